@@ -66,7 +66,8 @@ std::vector<std::string> DeviceArguments::arguments() const {
     words.insert(words.end(), {"--further", text});
   }
   if (settings.power) words.insert(words.end(), {"--power", text_of(*settings.power)});
-  for (const auto& [name, file] : settings.files) words.insert(words.end(), {"--file", fmt::format("{}={}", name, file)});
+  for (const auto& [name, file] : settings.files)
+    words.insert(words.end(), {"--file", fmt::format("{}={}", name, file)});
   return words;
 }
 
@@ -96,14 +97,15 @@ struct Played {
 }
 
 /// Adds the files that a configuration's settings of it name. In words which two configurations do not agree about.
-[[nodiscard]] std::optional<std::string> add_files(const descriptor::Subsystem& subsystem, const descriptor::DeviceUse& use,
+[[nodiscard]] std::optional<std::string> add_files(const descriptor::Subsystem& subsystem,
+                                                   const descriptor::DeviceUse& use,
                                                    std::map<std::string, std::string>& files) {
   for (const descriptor::Setting& setting : use.settings) {
     if (!descriptor::names_file(setting)) continue;
     const std::string file = descriptor::file_of(subsystem, setting.value).string();
     if (const auto [known, is_new] = files.emplace(setting.name, file); !is_new && known->second != file)
-      return fmt::format("configurations of {} name different files by {}, and its device has one world", subsystem.name,
-                         setting.name);
+      return fmt::format("configurations of {} name different files by {}, and its device has one world",
+                         subsystem.name, setting.name);
   }
   return std::nullopt;
 }

@@ -52,9 +52,7 @@ Result<> MujocoDevice::take(OctetReader payload) noexcept {
 void MujocoDevice::advance(Duration cycle) noexcept {
   using Brakes = MujocoRobot::Brakes;
   driven_ = output() == DeviceOutput::Active;
-  const Brakes brakes = driven_                            ? Brakes::Open
-                        : output() == DeviceOutput::Stopping ? Brakes::Slowing
-                                                           : Brakes::Closed;
+  const Brakes brakes = driven_ ? Brakes::Open : output() == DeviceOutput::Stopping ? Brakes::Slowing : Brakes::Closed;
   robot_->step(driven_ ? std::span<const double>{commanded_} : std::span<const double>{}, brakes, cycle);
 }
 
@@ -148,8 +146,8 @@ std::string MujocoDevice::do_truth() const {
   if (!robot_) return "no_world=1";
   std::string text;
   for (std::size_t i = 0; i < robot_->joints(); ++i)
-    text += fmt::format("q{0}={1:.6f} qd{0}={2:.6f} torque_{0}={3:.4f} ", i + 1, robot_->position(i), robot_->velocity(i),
-                        robot_->torque(i));
+    text += fmt::format("q{0}={1:.6f} qd{0}={2:.6f} torque_{0}={3:.4f} ", i + 1, robot_->position(i),
+                        robot_->velocity(i), robot_->torque(i));
   const auto tip = robot_->tip_m();
   return text + fmt::format("tip_x={:.6f} tip_y={:.6f} tip_z={:.6f} output={} flags={}", tip[0], tip[1], tip[2],
                             static_cast<int>(output()), flags());

@@ -25,8 +25,8 @@ constexpr double friction_s = 0.001;
 constexpr double friction_rigid = 0.9999;
 
 /// What MuJoCo is given of a file: what moves and has mass. Shapes would want files of their own.
-constexpr std::array known{"robot", "link", "inertial", "origin", "mass", "inertia", "joint", "parent", "child", "axis", "limit",
-                           "dynamics"};
+constexpr std::array known{"robot", "link",   "inertial", "origin", "mass",  "inertia",
+                           "joint", "parent", "child",    "axis",   "limit", "dynamics"};
 
 void write(const Element& element, std::string& text) {
   if (std::ranges::find(known, element.name) == known.end()) return;
@@ -75,12 +75,12 @@ std::expected<MujocoRobot, std::string> MujocoRobot::make(std::string_view urdf)
     const std::string type = attribute(element, "type");
     if (type == "fixed") continue;
     if (child(element, "mimic") != nullptr)
-      return std::unexpected{"joint '" + attribute(element, "name") + "' mimics another one, which this world does not know"};
+      return std::unexpected{"joint '" + attribute(element, "name") +
+                             "' mimics another one, which this world does not know"};
     robot.joints_.push_back({.name = attribute(element, "name"), .effort = effort_of(element)});
   }
-  const auto leaf = std::ranges::find_if(carried, [&](const std::string& link) {
-    return std::ranges::find(carrying, link) == carrying.end();
-  });
+  const auto leaf = std::ranges::find_if(
+      carried, [&](const std::string& link) { return std::ranges::find(carrying, link) == carrying.end(); });
   std::string text;
   write(*tree, text);
   std::array<char, 1000> why{};
@@ -136,9 +136,10 @@ void MujocoRobot::place(std::span<const double> positions) noexcept {
 
 void MujocoRobot::brake(Brakes brakes) noexcept {
   for (const Joint& joint : joints_) {
-    const double held = brakes == Brakes::Open      ? 0
-                        : brakes == Brakes::Slowing ? std::abs(data_->qfrc_bias[joint.dof]) + slowing_share * joint.effort
-                                                    : brake_share * joint.effort;
+    const double held = brakes == Brakes::Open ? 0
+                        : brakes == Brakes::Slowing
+                            ? std::abs(data_->qfrc_bias[joint.dof]) + slowing_share * joint.effort
+                            : brake_share * joint.effort;
     model_->dof_frictionloss[joint.dof] = joint.friction * friction_factor_ + more_friction_ + held;
     model_->dof_damping[joint.dof] = joint.damping * friction_factor_;
   }
@@ -160,8 +161,9 @@ void MujocoRobot::step(std::span<const double> torques, Brakes brakes, Duration 
 
 /// Friction and brakes act between drive and link, mechanical stops on the link itself.
 void MujocoRobot::feel() noexcept {
-  for (Joint& joint : joints_) joint.torque = data_->qfrc_applied[joint.dof] + data_->qfrc_passive[joint.dof] -
-                                             model_->dof_armature[joint.dof] * data_->qacc[joint.dof];
+  for (Joint& joint : joints_)
+    joint.torque = data_->qfrc_applied[joint.dof] + data_->qfrc_passive[joint.dof] -
+                   model_->dof_armature[joint.dof] * data_->qacc[joint.dof];
   for (int i = 0; i < data_->nefc; ++i) {
     if (data_->efc_type[i] != mjCNSTR_FRICTION_DOF) continue;
     const auto found = std::ranges::find(joints_, data_->efc_id[i], &Joint::dof);
@@ -178,7 +180,8 @@ void MujocoRobot::change_inertia() noexcept {
   }
   if (tip_ > 0) model_->body_mass[tip_] = payload_kg_;
   // It leaves the robot where its file has it at zero.
-  const std::vector<double> where(data_->qpos, data_->qpos + model_->nq), how_fast(data_->qvel, data_->qvel + model_->nv);
+  const std::vector<double> where(data_->qpos, data_->qpos + model_->nq),
+      how_fast(data_->qvel, data_->qvel + model_->nv);
   mj_setConst(model_.get(), data_.get());
   std::ranges::copy(where, data_->qpos);
   std::ranges::copy(how_fast, data_->qvel);

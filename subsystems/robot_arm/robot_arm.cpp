@@ -175,7 +175,9 @@ robot_arm::Payload RobotArm::payload() const noexcept {
 robot_arm::Law::Settings RobotArm::law_settings() noexcept {
   const auto gravity = gravity_m_s2_.load();
   rotor_ = rotor_inertia_.load();
-  return {.bandwidth_rad_s = bandwidth_rad_s_.load(), .rotor = rotor_, .gravity_m_s2 = {gravity[0], gravity[1], gravity[2]}};
+  return {.bandwidth_rad_s = bandwidth_rad_s_.load(),
+          .rotor = rotor_,
+          .gravity_m_s2 = {gravity[0], gravity[1], gravity[2]}};
 }
 
 void RobotArm::control() noexcept {

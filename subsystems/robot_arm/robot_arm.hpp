@@ -98,9 +98,10 @@ class RobotArm final : public Subsystem {
   Parameter<std::uint8_t> active_;
   Event<> motion_done_{"MOTION_DONE"};
   /// Joint from 1, what was measured, the limit.
-  Event<std::uint8_t, double, double> position_exceeded_{"POSITION_LIMIT_EXCEEDED"}, speed_exceeded_{"SPEED_LIMIT_EXCEEDED"},
-      torque_exceeded_{"TORQUE_LIMIT_EXCEEDED"}, torque_hard_exceeded_{"TORQUE_HARD_EXCEEDED"},
-      following_exceeded_{"FOLLOWING_LIMIT_EXCEEDED"}, contact_{"CONTACT"};
+  Event<std::uint8_t, double, double> position_exceeded_{"POSITION_LIMIT_EXCEEDED"},
+      speed_exceeded_{"SPEED_LIMIT_EXCEEDED"}, torque_exceeded_{"TORQUE_LIMIT_EXCEEDED"},
+      torque_hard_exceeded_{"TORQUE_HARD_EXCEEDED"}, following_exceeded_{"FOLLOWING_LIMIT_EXCEEDED"},
+      contact_{"CONTACT"};
   Event<double> too_near_{"TOO_NEAR"};  ///< m
   DevicePort<robot_arm::ArmInput, robot_arm::ArmOutput> device_;
 

@@ -33,9 +33,9 @@ constexpr double displacement = 0.01;
 Result<Step> RobotArm::software_init() {
   publish_all();
   use_device(device_name, device_, {model_setting, tip_setting});
-  for (EventPort* event : std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_,
-                                                            &torque_exceeded_, &torque_hard_exceeded_,
-                                                            &following_exceeded_, &contact_, &too_near_})
+  for (EventPort* event :
+       std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_, &torque_exceeded_,
+                                         &torque_hard_exceeded_, &following_exceeded_, &contact_, &too_near_})
     use_event(*event);
   HIROSCO_TRY(read_model());
   bind_functions();
@@ -192,7 +192,8 @@ Result<> RobotArm::check_lengths() noexcept {
       Length{device_.input().position.size(), joints, "ARM's POSITION has another length than the robot has joints"},
       Length{device_.input().velocity.size(), joints, "ARM's VELOCITY has another length than the robot has joints"},
       Length{device_.input().torque.size(), joints, "ARM's TORQUE has another length than the robot has joints"},
-      Length{device_.output().torque.size(), joints, "ARM's output TORQUE has another length than the robot has joints"},
+      Length{device_.output().torque.size(), joints,
+             "ARM's output TORQUE has another length than the robot has joints"},
       Length{arguments_of("MOVE_J"), joints + 1, "MOVE_J takes a number for each joint, and SPEED"},
       Length{arguments_of("JOG_J"), joints + 1, "JOG_J takes a number for each joint, and SECONDS"},
       Length{arguments_of("MOVE_L"), 9, "MOVE_L takes POSITION[3], ORIENTATION[4], SPEED, TURNING"},
@@ -225,7 +226,8 @@ Result<> RobotArm::check_sensors() noexcept {
     // Written so that what is no number fails.
     if (!(std::abs(measured_.velocity[i]) < rest_rad_s))
       return fail(ErrorCode::Internal, "it moves though nothing drives it, joint", number);
-    if (!(measured_.position[i] > bounds_[joint].lowest - past_end && measured_.position[i] < bounds_[joint].highest + past_end))
+    if (!(measured_.position[i] > bounds_[joint].lowest - past_end &&
+          measured_.position[i] < bounds_[joint].highest + past_end))
       return fail(ErrorCode::Internal, "measured outside of its range, joint", number);
     if (!(std::abs(measured_.torque[i]) < torque_limit_.load() * bounds_[joint].effort))
       return fail(ErrorCode::Internal, "its load at rest is above its limit, joint", number);

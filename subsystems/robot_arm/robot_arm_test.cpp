@@ -38,12 +38,13 @@ std::string chain(std::size_t joints) {
   for (std::size_t i = 1; i <= joints; ++i) {
     const std::string link = i == joints ? "tool" : "link" + std::to_string(i);
     const char* axis = i % 3 == 1 ? "1 0 0" : i % 3 == 2 ? "0 1 0" : "0 0 1";
-    text += "<joint name='j" + std::to_string(i) + "' type='revolute'><origin xyz='0 0.02 0.1'/><parent link='" + below +
-            "'/><child link='" + link + "'/><axis xyz='" + axis +
+    text += "<joint name='j" + std::to_string(i) + "' type='revolute'><origin xyz='0 0.02 0.1'/><parent link='" +
+            below + "'/><child link='" + link + "'/><axis xyz='" + axis +
             "'/><limit lower='-2' upper='2' velocity='2' effort='200'/><dynamics damping='0.2' friction='0.1'/></joint>"
             "<link name='" +
             link +
-            "'><inertial><origin xyz='0.01 0 0.05'/><mass value='0.5'/><inertia ixx='0.004' ixy='0' ixz='0' iyy='0.004' iyz='0' "
+            "'><inertial><origin xyz='0.01 0 0.05'/><mass value='0.5'/><inertia ixx='0.004' ixy='0' ixz='0' "
+            "iyy='0.004' iyz='0' "
             "izz='0.003'/></inertial></link>";
     below = link;
   }
@@ -108,7 +109,8 @@ struct Flown {
     OctetReader reader{command.payload, std::endian::little};
     for (Eigen::Index i = 0; i < commanded.size(); ++i) {
       commanded[i] = reader.get<double>();
-      largest_share = std::max(largest_share, std::abs(commanded[i]) / model.joints()[static_cast<std::size_t>(i)].limits.effort.value());
+      largest_share = std::max(
+          largest_share, std::abs(commanded[i]) / model.joints()[static_cast<std::size_t>(i)].limits.effort.value());
     }
     if (mode == DeviceMode::Active) plant.step(commanded, 0.001, &outside);
     else plant.place(plant.measured().position);
@@ -145,7 +147,9 @@ struct Flown {
     numbers.push_back(speed);
     return ask("MOVE_J", numbers);
   }
-  [[nodiscard]] double off(const JointVector& goal) const { return (plant.measured().position - goal).cwiseAbs().maxCoeff(); }
+  [[nodiscard]] double off(const JointVector& goal) const {
+    return (plant.measured().position - goal).cwiseAbs().maxCoeff();
+  }
   /// Cycles until a request has ended.
   int finish(testing::Sent request, int most = 30'000) {
     int cycles = 0;
@@ -156,7 +160,9 @@ struct Flown {
 
 struct ArmOf : ::testing::TestWithParam<std::size_t> {
   std::size_t n = GetParam();
-  Flown flown{n, n == 6 ? std::string{folder} + "robot_arm.urdf" : file_with("chain" + std::to_string(n) + ".urdf", chain(n)), 1.1};
+  Flown flown{
+      n, n == 6 ? std::string{folder} + "robot_arm.urdf" : file_with("chain" + std::to_string(n) + ".urdf", chain(n)),
+      1.1};
   JointVector start = 0.1 * JointVector::Ones(static_cast<Eigen::Index>(n));
   JointVector goal = JointVector::Constant(static_cast<Eigen::Index>(n), n > 6 ? 0.3 : 0.9);
   void SetUp() override { flown.plant.place(start); }

@@ -29,10 +29,11 @@ struct SixJoints : ::testing::Test {
 
   /// `differs`: how the world differs from the mission's own.
   void fly(const std::vector<std::string>& differs = {}, std::uint64_t seed = 1) {
-    flown.emplace(simulation::Plan{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/six_joints/mission.xml",
-                                   .subsystems = {},
-                                   .devices = {},
-                                   .seed = seed});
+    flown.emplace(
+        simulation::Plan{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/six_joints/mission.xml",
+                         .subsystems = {},
+                         .devices = {},
+                         .seed = seed});
     for (const std::string& line : differs) ASSERT_TRUE(arm().fault(line)) << line;
     ASSERT_TRUE(flown->commission()) << flown->story().text();
   }
@@ -71,7 +72,9 @@ struct SixJoints : ::testing::Test {
 };
 
 TEST(SixJointsPage, ShowsTheRobotThatFlies) {
-  const auto text = [](const char* file) { return descriptor::file_system()(std::filesystem::path{HIROSCO_SOURCE_DIR} / file).value(); };
+  const auto text = [](const char* file) {
+    return descriptor::file_system()(std::filesystem::path{HIROSCO_SOURCE_DIR} / file).value();
+  };
   EXPECT_EQ(text("missions/six_joints/page/robot_arm.urdf"), text("subsystems/robot_arm/robot_arm.urdf"));
 }
 
@@ -81,12 +84,11 @@ TEST_F(SixJoints, ReachesItsGoalsWithinAMilliradianHoweverTheWorldDiffersFromThe
     std::vector<std::string> differs;
     double declared_kg{0};
   };
-  const std::array cases{
-      Case{"as the file says", {"mass 1", "friction 1"}},
-      Case{"masses, rotors, inertias, friction",
-           {"mass 1.1", "friction 3", "inertia 1.05", "rotors 0.55,0.55,0.44,0.11,0.11,0.11"}},
-      Case{"2 kg undeclared", {"mass 1", "friction 1", "payload 2"}},
-      Case{"2 kg declared", {"mass 1", "friction 1", "payload 2"}, 2}};
+  const std::array cases{Case{"as the file says", {"mass 1", "friction 1"}},
+                         Case{"masses, rotors, inertias, friction",
+                              {"mass 1.1", "friction 3", "inertia 1.05", "rotors 0.55,0.55,0.44,0.11,0.11,0.11"}},
+                         Case{"2 kg undeclared", {"mass 1", "friction 1", "payload 2"}},
+                         Case{"2 kg declared", {"mass 1", "friction 1", "payload 2"}, 2}};
   for (const Case& each : cases) {
     fly(each.differs);
     if (each.declared_kg > 0) {
@@ -107,7 +109,8 @@ TEST_F(SixJoints, ReachesItsGoalsWithinAMilliradianHoweverTheWorldDiffersFromThe
 
 TEST_F(SixJoints, GoesStraightWithinTwoMillimetres) {
   fly();
-  const auto reading = robotics::urdf::read(HIROSCO_SOURCE_DIR "/subsystems/robot_arm/robot_arm.urdf", descriptor::file_system());
+  const auto reading =
+      robotics::urdf::read(HIROSCO_SOURCE_DIR "/subsystems/robot_arm/robot_arm.urdf", descriptor::file_system());
   const auto model = robotics::Model::make(robotics::urdf::describe(reading.value.value())).value();
   robotics::Dynamics kinematics{model, robotics::Base::Fixed};
   const auto tool = [&] {
@@ -134,7 +137,8 @@ TEST_F(SixJoints, GoesStraightWithinTwoMillimetres) {
   const auto outcome = flown->craft().command(
       "ARM", "MOVE_L", {to.x(), to.y(), to.z(), kept.w(), kept.x(), kept.y(), kept.z(), 0.25, 0.5}, 20s);
   EXPECT_TRUE(outcome.completed) << flown->story().text();
-  std::cout << fmt::format("  beside its line: {:.2f} mm, off its goal {:.2f} mm\n", 1e3 * beside_m, 1e3 * (tool().position - to).norm());
+  std::cout << fmt::format("  beside its line: {:.2f} mm, off its goal {:.2f} mm\n", 1e3 * beside_m,
+                           1e3 * (tool().position - to).norm());
   EXPECT_LE(beside_m, 0.002);
   EXPECT_LE((tool().position - to).norm(), 0.001);
 }

@@ -34,7 +34,8 @@ using xml::Element;
 }
 
 [[nodiscard]] std::optional<Capsule> enclosing(const Element& geometry) {
-  if (const Element* sphere = child(geometry, "sphere")) return Capsule{Vector3::Zero(), Vector3::Zero(), numbers(sphere, "radius")[0]};
+  if (const Element* sphere = child(geometry, "sphere"))
+    return Capsule{Vector3::Zero(), Vector3::Zero(), numbers(sphere, "radius")[0]};
   if (const Element* cylinder = child(geometry, "cylinder")) {
     const Vector3 half{0, 0, numbers(cylinder, "length")[0] / 2};
     return Capsule{-half, half, numbers(cylinder, "radius")[0]};
@@ -58,7 +59,8 @@ using xml::Element;
   const Element* origin = child(element, "origin");
   const auto xyz = numbers(origin, "xyz"), rpy = numbers(origin, "rpy");
   using Eigen::AngleAxisd;
-  return {(AngleAxisd{rpy[2], Vector3::UnitZ()} * AngleAxisd{rpy[1], Vector3::UnitY()} * AngleAxisd{rpy[0], Vector3::UnitX()})
+  return {(AngleAxisd{rpy[2], Vector3::UnitZ()} * AngleAxisd{rpy[1], Vector3::UnitY()} *
+           AngleAxisd{rpy[0], Vector3::UnitX()})
               .toRotationMatrix(),
           {xyz[0], xyz[1], xyz[2]}};
 }

@@ -31,7 +31,9 @@ TEST(Capsules, AreAsFarAsASearchFinds) {
     double least = HUGE_VAL;
     for (int s = 0; s <= steps; ++s)
       for (int t = 0; t <= steps; ++t)
-        least = std::min(least, (one.from + (one.to - one.from) * s / steps - other.from - (other.to - other.from) * t / steps).norm());
+        least = std::min(
+            least,
+            (one.from + (one.to - one.from) * s / steps - other.from - (other.to - other.from) * t / steps).norm());
     EXPECT_NEAR(distance_m(one, other), least - 0.15, 0.01);
     EXPECT_LE(distance_m(one, other), least - 0.15 + 1e-12);
   }

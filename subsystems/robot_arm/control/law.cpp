@@ -51,8 +51,8 @@ JointVector Law::torque(const Setpoint& wanted, const Measured& measured, roboti
   const double w = settings.bandwidth_rad_s;
   const JointVector error = wanted.position - measured.position;
   learn(error, wanted, measured, dynamics, bounds, settings);
-  robotics::Coordinates acceleration = wanted.acceleration + 3 * w * (wanted.velocity - measured.velocity) +
-                                       3 * w * w * error + w * w * w * integral_;
+  robotics::Coordinates acceleration =
+      wanted.acceleration + 3 * w * (wanted.velocity - measured.velocity) + 3 * w * w * error + w * w * w * integral_;
   robotics::Coordinates force;
   dynamics.inverse(acceleration, force);
   add_payload(payload, tip_, settings.gravity_m_s2, dynamics, acceleration, force);
@@ -63,7 +63,8 @@ JointVector Law::torque(const Setpoint& wanted, const Measured& measured, roboti
   for (Eigen::Index i = 0; i < error.size(); ++i) {
     const auto& joint = joints[static_cast<std::size_t>(i)];
     const double speed = wanted.velocity[i];
-    double value = force[i] + rotor_of(settings, i) * acceleration[i] + joint.damping * speed + joint.friction * std::tanh(speed / friction_knee);
+    double value = force[i] + rotor_of(settings, i) * acceleration[i] + joint.damping * speed +
+                   joint.friction * std::tanh(speed / friction_knee);
     if (!std::isfinite(value)) value = 0;
     const double effort = bounds[static_cast<std::size_t>(i)].effort;
     torque[i] = std::clamp(value, -effort, effort);

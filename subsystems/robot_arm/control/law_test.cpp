@@ -105,8 +105,7 @@ TEST_F(LawTest, GivesNoMoreThanEachJointsEffortWhateverIsAsked) {
     wanted.position = far * JointVector::Ones(6);
     const JointVector given = torque({zeros, zeros, zeros});
     EXPECT_TRUE(law.saturated());
-    for (std::size_t i = 0; i < 6; ++i)
-      EXPECT_LE(std::abs(given[static_cast<Eigen::Index>(i)]), bounds[i].effort) << i;
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_LE(std::abs(given[static_cast<Eigen::Index>(i)]), bounds[i].effort) << i;
   }
 }
 

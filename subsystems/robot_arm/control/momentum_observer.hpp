@@ -15,7 +15,8 @@ class MomentumObserver {
   MomentumObserver(int joints, double cycle_s, double gain_per_s) noexcept;
   void reset() noexcept;
   /// `dynamics` was updated with what is measured, gravity included; `payload_torque`: what the payload takes without accelerating.
-  void update(const Measured& measured, robotics::Dynamics& dynamics, const robotics::Coordinates& payload_torque) noexcept;
+  void update(const Measured& measured, robotics::Dynamics& dynamics,
+              const robotics::Coordinates& payload_torque) noexcept;
   /// N m or N, in the direction in which it would accelerate the joints.
   [[nodiscard]] const JointVector& external() const noexcept { return external_; }
 

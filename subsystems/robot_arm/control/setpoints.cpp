@@ -132,7 +132,8 @@ JointVector Setpoints::braked() const noexcept {
   if (kind_ == Kind::Line) return now_.position + farther * ramp_s / 2 * now_.velocity;
   double longest_s = 0;
   for (std::size_t i = 0; i < bounds_.size(); ++i)
-    longest_s = std::max(longest_s, std::abs(now_.velocity[static_cast<Eigen::Index>(i)]) / bounds_[i].motion.acceleration);
+    longest_s =
+        std::max(longest_s, std::abs(now_.velocity[static_cast<Eigen::Index>(i)]) / bounds_[i].motion.acceleration);
   if (kind_ == Kind::JointPath) {
     robotics::PointToPoint::Sample sample;
     path_.at(path_s_ + farther * pace_ * longest_s / 2, sample);
@@ -228,7 +229,8 @@ void Setpoints::advance_jog(const JointVector& wanted) noexcept {
     const auto i = static_cast<Eigen::Index>(joint);
     const JointBounds& its = bounds_[joint];
     const double most = its.motion.velocity, step = urgency_ * its.motion.acceleration * cycle_s_;
-    const double left = std::max(0.0, its.highest - now_.position[i]), right = std::max(0.0, now_.position[i] - its.lowest);
+    const double left = std::max(0.0, its.highest - now_.position[i]),
+                 right = std::max(0.0, now_.position[i] - its.lowest);
     const double up = std::min(most, std::sqrt(2 * 0.8 * its.motion.acceleration * left));
     const double down = std::min(most, std::sqrt(2 * 0.8 * its.motion.acceleration * right));
     const double goal = braking_ ? 0.0 : std::clamp(wanted[i], -down, up);
