@@ -188,6 +188,23 @@ TEST_F(SixJoints, StaysWhereItMeetsSomebody) {
   EXPECT_TRUE(move_j(goal).completed) << flown->story().text();
 }
 
+TEST(SixJointsWorld, ThatCannotBeMadeIsToldWithItsReason) {
+  simulation::Flight flight{{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/six_joints/mission.xml",
+                             .edit =
+                                 [](descriptor::Mission& mission) {
+                                   for (auto& member : mission.subsystems)
+                                     for (auto& configuration : member.subsystem.configurations)
+                                       for (auto& use : configuration.devices)
+                                         for (auto& setting : use.settings)
+                                           if (setting.name == "MODEL_FILE") setting.value = "nowhere.urdf";
+                                 },
+                             .subsystems = {},
+                             .devices = {}}};
+  EXPECT_TRUE(flight.story().has("no simulated device arm: ")) << flight.story().text();
+  EXPECT_TRUE(flight.story().has("nowhere.urdf")) << flight.story().text();
+  EXPECT_FALSE(flight.commission());
+}
+
 TEST_F(SixJoints, GivesTheSameOctetsTwice) {
   std::array<std::vector<supervisor::LogRecord>, 2> records;
   for (auto& each : records) {
