@@ -16,7 +16,8 @@ class SixJoints(unittest.TestCase):
     def test_it_moves_and_is_held_when_it_is_unplugged(self):
         with flight.Flight(MISSION) as craft:
             craft.wait_told("commissioned: mode operation", 30.0)
-            craft.tc("ARM", "MOVE_J", *GOAL, 0.8)
+            code, said = craft.tc("ARM", "MOVE_J", ",".join(map(str, GOAL)), 0.8)[:2]
+            self.assertEqual(code, 0, said)
             truth = craft.truth("arm")
             flight.measure("off its goal: " + ", ".join(f"{1e3 * abs(truth[f'q{i + 1}'] - goal):.2f}" for i, goal in enumerate(GOAL)) + " mrad")
             for i, goal in enumerate(GOAL):
