@@ -53,12 +53,37 @@ void write(const Element& element, std::string& text) {
   return found != element.children.end() ? &*found : nullptr;
 }
 
+[[nodiscard]] double number(const Element& element, std::string_view name, double otherwise) {
+  const std::string text = attribute(element, name);
+  double value = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return problem == std::errc{} && std::isfinite(value) ? value : otherwise;
+}
+
 [[nodiscard]] double effort_of(const Element& joint) {
   const Element* limit = child(joint, "limit");
-  const std::string text = limit != nullptr ? attribute(*limit, "effort") : "";
-  double effort = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), effort);
-  return problem == std::errc{} && effort > 0 && std::isfinite(effort) ? effort : default_effort;
+  const double effort = limit != nullptr ? number(*limit, "effort", 0) : 0;
+  return effort > 0 ? effort : default_effort;
+}
+
+/// Who follows whom. It has no drive and no brake of its own.
+struct Mimic {
+  std::string joint;
+  std::string followed;
+  double multiplier{1};
+  double offset{0};
+};
+
+/// As a constraint: MuJoCo knows such joints in no URDF file.
+void add(const Mimic& mimic, mjSpec& spec) {
+  mjsEquality& equal = *mjs_addEquality(&spec, nullptr);
+  equal.type = mjEQ_JOINT;
+  equal.objtype = mjOBJ_JOINT;
+  mjs_setString(equal.name1, mimic.joint.c_str());
+  mjs_setString(equal.name2, mimic.followed.c_str());
+  equal.data[0] = mimic.offset;
+  equal.data[1] = mimic.multiplier;
+  equal.solref[0] = friction_s;
 }
 
 }  // namespace
@@ -68,15 +93,18 @@ std::expected<MujocoRobot, std::string> MujocoRobot::make(std::string_view urdf)
   if (!tree) return std::unexpected{"the URDF file: " + tree.error().reason};
   MujocoRobot robot;
   std::vector<std::string> carried, carrying;
+  std::vector<Mimic> mimics;
   for (const Element& element : tree->children) {
     if (element.name != "joint") continue;
     if (const Element* parent = child(element, "parent")) carrying.push_back(attribute(*parent, "link"));
     if (const Element* carries = child(element, "child")) carried.push_back(attribute(*carries, "link"));
     const std::string type = attribute(element, "type");
     if (type == "fixed") continue;
-    if (child(element, "mimic") != nullptr)
-      return std::unexpected{"joint '" + attribute(element, "name") +
-                             "' mimics another one, which this world does not know"};
+    if (const Element* mimic = child(element, "mimic")) {
+      mimics.push_back({attribute(element, "name"), attribute(*mimic, "joint"), number(*mimic, "multiplier", 1),
+                        number(*mimic, "offset", 0)});
+      continue;
+    }
     robot.joints_.push_back({.name = attribute(element, "name"), .effort = effort_of(element)});
   }
   const auto leaf = std::ranges::find_if(
@@ -95,6 +123,7 @@ std::expected<MujocoRobot, std::string> MujocoRobot::make(std::string_view urdf)
     mjs_setName(payload->element, "hirosco_payload");
     payload->explicitinertial = 1;
   }
+  for (const Mimic& mimic : mimics) add(mimic, *spec);
   robot.model_.reset(mj_compile(spec.get(), nullptr));
   if (robot.model_ == nullptr) return std::unexpected{std::string{"MuJoCo: "} + mjs_getError(spec.get())};
   mjModel& model = *robot.model_;
@@ -110,7 +139,7 @@ std::expected<MujocoRobot, std::string> MujocoRobot::make(std::string_view urdf)
     model.dof_solref[mjNREF * joint.dof] = friction_s;
     model.dof_solimp[mjNIMP * joint.dof] = model.dof_solimp[mjNIMP * joint.dof + 1] = friction_rigid;
   }
-  if (static_cast<std::size_t>(model.nv) != robot.joints_.size())
+  if (static_cast<std::size_t>(model.nv) != robot.joints_.size() + mimics.size())
     return std::unexpected{"MuJoCo has another number of joints than the file"};
   robot.tip_ = std::max(0, mj_name2id(&model, mjOBJ_BODY, "hirosco_payload"));
   robot.mass_.assign(model.body_mass, model.body_mass + model.nbody);
