@@ -61,7 +61,7 @@ function(hirosco_install)
   set(share share/hirosco)
   install(DIRECTORY missions DESTINATION ${share} FILES_MATCHING PATTERN *.xml PATTERN *.csv PATTERN usual PATTERN "page/*"
     PATTERN scenarios EXCLUDE PATTERN independent EXCLUDE)
-  install(DIRECTORY subsystems supervisor DESTINATION ${share} FILES_MATCHING PATTERN *.xml)
+  install(DIRECTORY subsystems supervisor DESTINATION ${share} FILES_MATCHING PATTERN *.xml PATTERN *.urdf)
   install(DIRECTORY hirosco/descriptor/ DESTINATION ${share}/schemas FILES_MATCHING PATTERN *.xsd PATTERN testdata EXCLUDE)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/${share}/page DESTINATION ${share} OPTIONAL)
   install(DIRECTORY docs/guide DESTINATION share/doc/hirosco)

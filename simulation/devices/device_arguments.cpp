@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "hirosco/descriptor/model/setting_files.hpp"
+
 namespace hirosco::simulation {
 namespace {
 
@@ -64,6 +66,8 @@ std::vector<std::string> DeviceArguments::arguments() const {
     words.insert(words.end(), {"--further", text});
   }
   if (settings.power) words.insert(words.end(), {"--power", text_of(*settings.power)});
+  for (const auto& [name, file] : settings.files)
+    words.insert(words.end(), {"--file", fmt::format("{}={}", name, file)});
   return words;
 }
 
@@ -90,6 +94,20 @@ struct Played {
   return std::ranges::equal(left, right, [](const FlowAddress& one, const FlowAddress& other) {
     return one.transfer == other.transfer && one.address == other.address;
   });
+}
+
+/// Adds the files that a configuration's settings of it name. In words which two configurations do not agree about.
+[[nodiscard]] std::optional<std::string> add_files(const descriptor::Subsystem& subsystem,
+                                                   const descriptor::DeviceUse& use,
+                                                   std::map<std::string, std::string>& files) {
+  for (const descriptor::Setting& setting : use.settings) {
+    if (!descriptor::names_file(setting)) continue;
+    const std::string file = descriptor::file_of(subsystem, setting.value).string();
+    if (const auto [known, is_new] = files.emplace(setting.name, file); !is_new && known->second != file)
+      return fmt::format("configurations of {} name different files by {}, and its device has one world",
+                         subsystem.name, setting.name);
+  }
+  return std::nullopt;
 }
 
 /// Empty `first`: no configuration uses it.
@@ -154,6 +172,12 @@ std::expected<DeviceArguments, std::string> device_arguments(const descriptor::M
   made.endnode.address = main.addresses.front().address;
   made.endnode.byte_order = main.byte_order;
   SimulatedDevice::Settings& settings = made.settings;
+  for (const auto& configuration : subsystem.configurations)
+    for (const auto& use : configuration.devices) {
+      const descriptor::Device& its = subsystem.devices[use.device];
+      if (its.name != device.device && its.part_of != device.device) continue;
+      if (auto differ = add_files(subsystem, use, settings.files)) return std::unexpected{std::move(*differ)};
+    }
   settings.cycle = main.cycle;
   settings.byte_order = endian_of(main.byte_order);
   settings.stop = stop_of(main.device->stop);

@@ -113,6 +113,25 @@ TEST(DeviceArguments, TwoActuatorsInOneDeviceAreTooMany) {
   EXPECT_NE(made.error().find("several endnodes with actuators"), std::string::npos);
 }
 
+TEST(DeviceArguments, TellTheDeviceTheFilesThatItsSettingsName) {
+  auto mission = a_mission();
+  auto& subsystem = mission.subsystems[0].subsystem;
+  subsystem.file = "missions/arm.xml";
+  auto& settings = subsystem.configurations[0].devices[0].settings;
+  settings = {{"MODEL_FILE", "arm.urdf", {}}, {"GAIN", "3", {}}};
+  const auto made = device_arguments(mission, mission.devices[0]);
+  ASSERT_TRUE(made) << made.error();
+  const std::map<std::string, std::string> expected{{"MODEL_FILE", "missions/arm.urdf"}};
+  EXPECT_EQ(made->settings.files, expected);
+  const auto words = made->arguments();
+  ASSERT_GE(words.size(), 2U);
+  EXPECT_EQ(words.back(), "MODEL_FILE=missions/arm.urdf");
+  subsystem.configurations[1].devices[0].settings = {{"MODEL_FILE", "@hirosco/other.urdf", {}}};
+  const auto different = device_arguments(mission, mission.devices[0]);
+  ASSERT_FALSE(different);
+  EXPECT_NE(different.error().find("MODEL_FILE"), std::string::npos) << different.error();
+}
+
 TEST(DeviceArguments, IsRefusedInWordsWhereConfigurationsDisagreeOrNoneUsesIt) {
   auto mission = a_mission();
   mission.subsystems[0].subsystem.configurations[1].devices[0].endnode.byte_order = descriptor::ByteOrder::Little;

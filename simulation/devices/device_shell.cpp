@@ -58,6 +58,7 @@ struct Options {
   std::string endnode;
   std::vector<std::string> further;
   std::string power;
+  std::vector<std::string> files;
   std::vector<std::string> settings;
 };
 
@@ -126,6 +127,7 @@ std::optional<int> read_options(int argc, char** argv, const char* name, Options
   app.add_option("--endnode", options.endnode, "Name of its endnode, where it has several");
   app.add_option("--further", options.further, "Another endnode: NAME,BYTE_ORDER,TRANSFER=ADDRESS and its fall-backs");
   app.add_option("--power", options.power, "TRANSFER=ADDRESS of its power switch; without one it has power");
+  app.add_option("--file", options.files, "NAME=PATH of a file that a setting of the device names");
   app.add_option("--set", options.settings, "NAME=VALUE, carried out at the start");
   try {
     app.parse(argc, argv);
@@ -221,6 +223,8 @@ int run_device(int argc, char** argv, const char* name, const MakeDevice& make) 
                                      .stop_within = std::chrono::milliseconds{options.stop_within_ms}};
   if (!options.enable_address.empty()) settings.enable = {options.enable_transfer, options.enable_address};
   if (!realtime_permitted()) settings.enable_limit = enable_limit_reduced;
+  for (const std::string& text : options.files)
+    settings.files[text.substr(0, text.find('='))] = text.substr(std::min(text.size(), text.find('=') + 1));
   if (!add_endnodes(options, settings)) {
     std::cerr << name << ": an endnode is TRANSFER=ADDRESS\n";
     return 1;

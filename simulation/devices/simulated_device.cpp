@@ -61,6 +61,10 @@ SimulatedDevice::SimulatedDevice(FlowFactory& flows, FlowAddress address, const 
 Result<> SimulatedDevice::plug() {
   if (flow_ != nullptr) return ok();
   if (!can(settings_.stop)) return fail(ErrorCode::InvalidArgument, "a stop that this device does not have");
+  if (!world_made_) {
+    HIROSCO_TRY(make_world());
+  }
+  world_made_ = true;
   if (settings_.enable && enable_flow_ == nullptr) {
     HIROSCO_TRY_LET(enable_flow_, flows_.open(*settings_.enable, FlowSide::Device));
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -78,6 +79,8 @@ class SimulatedDevice {
     std::string endnode{};  ///< name of the one that the frames are of, where the device has several; empty: it has one
     std::vector<FurtherEndnode> further{};  ///< the others
     std::optional<FlowAddress> power{};  ///< endnode of its power switch; none: it has power always
+    /// Files that settings of the device name, by the settings' names: where each is, as file_system() takes it.
+    std::map<std::string, std::string> files{};
   };
   struct Injection {
     TimePoint at{};
@@ -102,7 +105,7 @@ class SimulatedDevice {
   SimulatedDevice(const SimulatedDevice&) = delete;
   SimulatedDevice& operator=(const SimulatedDevice&) = delete;
 
-  /// Opens the flows (the device's side). `flows` must outlive the device. InvalidArgument: it has no such stop.
+  /// Makes its world and opens the flows (the device's side). `flows` must outlive the device. InvalidArgument: it has no such stop.
   [[nodiscard]] Result<> plug();
   [[nodiscard]] bool plugged() const noexcept { return flow_ != nullptr; }
 
@@ -171,6 +174,8 @@ class SimulatedDevice {
   virtual void do_heal() noexcept {}
   /// Which stops it has.
   [[nodiscard]] virtual bool can(Stop stop) const noexcept { return stop == Stop::Drop; }
+  /// Before it is plugged in for the first time: makes its world, where that can fail.
+  [[nodiscard]] virtual Result<> make_world() { return ok(); }
 
   [[nodiscard]] Result<> open_all();
   void exchange_further() noexcept;
@@ -202,6 +207,7 @@ class SimulatedDevice {
   std::optional<SimulatedSwitch> switch_;
   bool had_power_{true};
 
+  bool world_made_{false};
   bool peer_gone_{false};
   bool started_{false};
   bool by_own_clock_{true};

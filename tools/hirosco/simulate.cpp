@@ -18,9 +18,12 @@
 namespace hirosco::tools {
 namespace {
 
-/// The story goes into the log, which is printed at the end: one stream, in order.
+/// The story goes into the log, which is printed at the end: one stream, in order. What is wrong with a simulated device is no part of it.
 struct Nobody final : supervisor::Observer {
-  void told(OnboardTime, std::string_view) override {}
+  void told(OnboardTime, std::string_view line) override {
+    if (line.starts_with("no simulated device ") || line.starts_with("simulated device "))
+      fmt::print(stderr, "hirosco simulate: {}\n", line);
+  }
 };
 
 struct Injection {

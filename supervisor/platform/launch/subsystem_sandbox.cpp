@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "hirosco/descriptor/model/setting_files.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 
 namespace hirosco::supervisor {
@@ -67,6 +68,9 @@ Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::fil
   sandbox.writable.emplace_back("/dev/null");
   for (const auto& configuration : subsystem.subsystem.configurations)
     for (const auto& use : configuration.devices) {
+      for (const auto& setting : use.settings)
+        if (descriptor::names_file(setting))
+          sandbox.readable.push_back(place_of(descriptor::file_of(subsystem.subsystem, setting.value)).string());
       add_address(use.endnode, sandbox);
       for (const auto& other : use.fall_backs) add_address(other, sandbox);
     }

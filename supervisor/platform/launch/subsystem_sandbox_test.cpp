@@ -44,6 +44,16 @@ TEST(SubsystemSandbox, OpensTheFolderThatADevicesTransferWritesTo) {
               ElementsAre("/dev/null", "/run/arm"));
 }
 
+TEST(SubsystemSandbox, LetsReadWhatASettingOfADeviceNamesAsAFileAndNothingElseThatSettingsSay) {
+  auto arm = with_device(Transfer::Udp, "127.0.0.1:5000");
+  arm.subsystem.configurations[0].devices[0].settings = {
+      {"MODEL_FILE", "../robots/arm.urdf", {}}, {"MODEL_NAME", "secret.txt", {}}, {"MAP_FILE", "/maps/all", {}}};
+  const Sandbox sandbox = sandbox_of(arm, "/bin/arm");
+  EXPECT_THAT(sandbox.readable, Contains("/robots/arm.urdf"));
+  EXPECT_THAT(sandbox.readable, Contains("/maps/all"));
+  EXPECT_THAT(sandbox.readable, Not(Contains("/missions/secret.txt")));
+}
+
 TEST(SubsystemSandbox, KnowsAScriptByItsFirstLine) {
   EXPECT_TRUE(is_script(HIROSCO_SOURCE_DIR "/tools/check_layers.py"));
   EXPECT_FALSE(is_script("/proc/self/exe"));

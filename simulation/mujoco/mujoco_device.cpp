@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/mujoco/mujoco_device.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "hirosco/descriptor/read/read.hpp"
+
+namespace hirosco::simulation {
+namespace {
+
+constexpr const char* model_setting = "MODEL_FILE";
+
+}  // namespace
+
+MujocoDevice::MujocoDevice(FlowFactory& flows, FlowAddress address, const Settings& settings)
+    : SimulatedDevice{flows, std::move(address), settings}, random_{settings.seed} {}
+
+Result<> MujocoDevice::make_world() {
+  const auto named = settings().files.find(model_setting);
+  if (named == settings().files.end())
+    return fail(ErrorCode::NotFound, "the descriptor names no URDF file: setting MODEL_FILE of the device");
+  const auto text = descriptor::file_system()(named->second);
+  if (!text) {
+    problem_ = fmt::format("{} {}", named->second, text.error().text);
+    return fail(text.error().code, problem_.c_str());
+  }
+  auto made = MujocoRobot::make(*text);
+  if (!made) {
+    problem_ = fmt::format("{}: {}", named->second, made.error());
+    return fail(ErrorCode::Malformed, problem_.c_str());
+  }
+  robot_.emplace(std::move(*made));
+  commanded_.assign(robot_->joints(), 0.0);
+  return ok();
+}
+
+Result<> MujocoDevice::take(OctetReader payload) noexcept {
+  for (double& torque : commanded_) {
+    torque = payload.get<double>();
+    if (!std::isfinite(torque)) torque = 0;
+  }
+  if (!payload.exhausted()) return fail(ErrorCode::Malformed, "torque command size");
+  return ok();
+}
+
+void MujocoDevice::advance(Duration cycle) noexcept {
+  using Brakes = MujocoRobot::Brakes;
+  driven_ = output() == DeviceOutput::Active;
+  const Brakes brakes = driven_ ? Brakes::Open : output() == DeviceOutput::Stopping ? Brakes::Slowing : Brakes::Closed;
+  robot_->step(driven_ ? std::span<const double>{commanded_} : std::span<const double>{}, brakes, cycle);
+}
+
+void MujocoDevice::write_sensors(OctetWriter& payload) noexcept {
+  for (std::size_t i = 0; i < robot_->joints(); ++i) payload.put(robot_->position(i));
+  for (std::size_t i = 0; i < robot_->joints(); ++i) payload.put(robot_->velocity(i));
+  for (std::size_t i = 0; i < robot_->joints(); ++i)
+    payload.put(robot_->torque(i) + (noise_n_m_ > 0 ? noise_n_m_ * random_.normal() : 0));
+}
+
+/// A,B,...: as many as there are joints.
+Result<std::vector<double>> MujocoDevice::each_joint(std::string_view text) const {
+  std::vector<double> numbers;
+  while (true) {
+    double value = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (problem != std::errc{} || !std::isfinite(value))
+      return fail(ErrorCode::InvalidArgument, "not a number", static_cast<std::int64_t>(numbers.size()));
+    numbers.push_back(value);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (text.empty()) break;
+    if (text.front() != ',') return fail(ErrorCode::InvalidArgument, "numbers with commas between them");
+    text.remove_prefix(1);
+  }
+  if (numbers.size() != robot_->joints())
+    return fail(ErrorCode::InvalidArgument, "another number of joints", static_cast<std::int64_t>(robot_->joints()));
+  return numbers;
+}
+
+Result<> MujocoDevice::differ(const Words& words) {
+  const std::string_view what = words[0];
+  if (what == "friction") {
+    HIROSCO_TRY_LET(const double factor, words.number(1, 0, 100));
+    double more = 0;
+    if (words.count() > 2) {
+      HIROSCO_TRY_LET(more, words.number(2, 0, 1000));
+    }
+    HIROSCO_TRY(words.expect(words.count() > 2 ? 3 : 2));
+    robot_->set_friction(factor, more);
+    return ok();
+  }
+  if (what == "gravity" || what == "push") {
+    constexpr double most = 1e4;
+    HIROSCO_TRY(words.expect(4));
+    HIROSCO_TRY_LET(const double x, words.number(1, -most, most));
+    HIROSCO_TRY_LET(const double y, words.number(2, -most, most));
+    HIROSCO_TRY_LET(const double z, words.number(3, -most, most));
+    what == "push" ? robot_->push(x, y, z) : robot_->set_gravity(x, y, z);
+    return ok();
+  }
+  HIROSCO_TRY(words.expect(2));
+  if (what == "mass" || what == "inertia") {
+    HIROSCO_TRY_LET(const double factor, words.number(1, 0.1, 10));
+    what == "mass" ? robot_->set_mass_factor(factor) : robot_->set_inertia_factor(factor);
+    return ok();
+  }
+  if (what == "payload") {
+    HIROSCO_TRY_LET(const double mass_kg, words.number(1, 0, 1000));
+    robot_->set_payload(mass_kg);
+    return ok();
+  }
+  if (what == "noise") {
+    HIROSCO_TRY_LET(noise_n_m_, words.number(1, 0, 100));
+    return ok();
+  }
+  return fail(ErrorCode::InvalidArgument, "unknown fault");
+}
+
+Result<> MujocoDevice::do_fault(const Words& words) {
+  if (!robot_) return fail(ErrorCode::Unavailable, "it has no world yet");
+  if (words[0] == "posture" || words[0] == "rotors") {
+    HIROSCO_TRY(words.expect(2));
+    HIROSCO_TRY_LET(const std::vector<double> numbers, each_joint(words[1]));
+    if (words[0] == "posture") robot_->place(numbers);
+    else if (std::ranges::all_of(numbers, [](double inertia) { return inertia >= 0 && inertia < 1e3; }))
+      robot_->set_rotors(numbers);
+    else return fail(ErrorCode::OutOfRange, "an inertia is from 0 to 1000");
+    return ok();
+  }
+  return differ(words);
+}
+
+/// What hangs on it and how heavy it is stays: that is where the world is, no fault.
+void MujocoDevice::do_heal() noexcept {
+  if (!robot_) return;
+  robot_->push(0, 0, 0);
+  noise_n_m_ = 0;
+}
+
+std::string MujocoDevice::do_truth() const {
+  if (!robot_) return "no_world=1";
+  std::string text;
+  for (std::size_t i = 0; i < robot_->joints(); ++i)
+    text += fmt::format("q{0}={1:.6f} qd{0}={2:.6f} torque_{0}={3:.4f} ", i + 1, robot_->position(i),
+                        robot_->velocity(i), robot_->torque(i));
+  const auto tip = robot_->tip_m();
+  return text + fmt::format("tip_x={:.6f} tip_y={:.6f} tip_z={:.6f} output={} flags={}", tip[0], tip[1], tip[2],
+                            static_cast<int>(output()), flags());
+}
+
+}  // namespace hirosco::simulation

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "simulation/devices/simulated_device.hpp"
+#include "simulation/mujoco/mujoco_robot.hpp"
+#include "simulation/world/random.hpp"
+
+namespace hirosco::simulation {
+
+/// The joints of any robot that has a URDF file, behind one bus. The file is the one that the setting MODEL_FILE of the device names
+/// in its subsystem's descriptor; the world reads it by itself.
+/// To the subsystem: POSITION, VELOCITY, TORQUE DOUBLE[n], n joints in the order of the file (rad or m; behind gears, friction and
+/// brakes). From it: TORQUE DOUBLE[n] of the drives.
+/// Without a command the brakes are closed. A controlled stop slows down by brakes that give as much as the drives, then they hold
+/// with twice of it.
+/// Faults besides the common ones, each also a <Setting> of its mission:
+///   posture Q1,Q2,... | rotors J1,J2,... | mass FACTOR | inertia FACTOR | friction FACTOR [MORE] | payload KG | gravity X Y Z | push X Y Z | noise N_M
+class MujocoDevice final : public SimulatedDevice {
+ public:
+  static constexpr std::array fault_lines{
+      FaultLine{"mass 1.1", "every link a tenth heavier"},
+      FaultLine{"friction 1 2", "2 N m more friction in every joint"},
+      FaultLine{"payload 2", "2 kg at the tip, which nobody was told of"},
+      FaultLine{"push 100 0 0", "somebody pushes the tip with 100 N"},
+      FaultLine{"push 0 0 0", "nobody pushes the tip"},
+      FaultLine{"noise 0.1", "noise of 0.1 N m in the torque sensors"},
+  };
+
+  MujocoDevice(FlowFactory& flows, FlowAddress address, const Settings& settings = {});
+
+  /// World truth, once it is plugged in.
+  [[nodiscard]] const MujocoRobot& robot() const noexcept { return *robot_; }
+  [[nodiscard]] bool drives() const noexcept override { return driven_; }
+
+ private:
+  [[nodiscard]] Result<> make_world() override;
+  void advance(Duration cycle) noexcept override;
+  [[nodiscard]] Result<> take(OctetReader payload) noexcept override;
+  void write_sensors(OctetWriter& payload) noexcept override;
+  [[nodiscard]] Result<> do_fault(const Words& words) override;
+  [[nodiscard]] std::string do_truth() const override;
+  void do_heal() noexcept override;
+  [[nodiscard]] bool can(Stop) const noexcept override { return true; }
+  [[nodiscard]] Result<std::vector<double>> each_joint(std::string_view text) const;
+  [[nodiscard]] Result<> differ(const Words& words);
+
+  std::optional<MujocoRobot> robot_;
+  std::string problem_;  ///< why there is no world
+  Random random_;
+  std::vector<double> commanded_;
+  double noise_n_m_{0};
+  bool driven_{false};
+};
+
+}  // namespace hirosco::simulation

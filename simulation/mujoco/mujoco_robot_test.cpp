@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "simulation/mujoco/mujoco_robot.hpp"
+
+namespace hirosco::simulation {
+namespace {
+
+using namespace std::chrono_literals;
+using Brakes = MujocoRobot::Brakes;
+
+/// A point of 2 kg on a rod of 0.5 m.
+std::string pendulum(const std::string& dynamics = "") {
+  return R"(<robot name="pendulum"><link name="world"/><joint name="swing" type="revolute"><parent link="world"/><child link="rod"/>
+    <axis xyz="0 1 0"/><limit lower="-3" upper="3" velocity="9" effort="20"/>)" +
+         dynamics + R"(</joint><link name="rod"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
+    <inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial>
+    <visual><geometry><mesh filename="package://not/here.stl"/></geometry></visual></link></robot>)";
+}
+constexpr double inertia_kg_m2 = 2 * 0.5 * 0.5 + 1e-6, weight_n_m = 2 * 9.81 * 0.5;
+constexpr std::array none{0.0};
+
+TEST(MujocoRobot, KeepsTheEnergyOfAPendulum) {
+  auto robot = MujocoRobot::make(pendulum()).value();
+  robot.place(std::array{1.0});
+  const auto energy = [&] {
+    return inertia_kg_m2 * robot.velocity(0) * robot.velocity(0) / 2 - weight_n_m * std::cos(robot.position(0));
+  };
+  const double before = energy();
+  for (int i = 0; i < 5000; ++i) {
+    robot.step(none, Brakes::Open, 1ms);
+    ASSERT_NEAR(energy(), before, 1e-8);
+  }
+}
+
+TEST(MujocoRobot, SwingsAsLongAsTheEllipticIntegralSays) {
+  auto robot = MujocoRobot::make(pendulum()).value();
+  robot.place(std::array{1.0});
+  // Half a period: from rest to rest.
+  const double half_s = 2 * std::sqrt(inertia_kg_m2 / weight_n_m) * std::comp_ellint_1(std::sin(0.5));
+  int cycles = 0;
+  do {
+    robot.step(none, Brakes::Open, 1ms);
+    ++cycles;
+  } while (robot.velocity(0) < 0);
+  EXPECT_NEAR(cycles * 0.001, half_s, 0.002);
+}
+
+TEST(MujocoRobot, HoldsWithClosedBrakesWhatItsDrivesCouldHoldTwice) {
+  for (const auto& [payload_kg, holds] : {std::pair{0.0, true}, {5.9, true}, {6.5, false}}) {
+    auto robot = MujocoRobot::make(pendulum()).value();
+    robot.place(std::array{std::numbers::pi / 2});
+    // The payload hangs at the rod's origin, where it weighs nothing: gravity grows instead.
+    robot.set_gravity(0, 0, -9.81 * (1 + payload_kg / 2));
+    for (int i = 0; i < 10'000; ++i) robot.step(none, Brakes::Closed, 1ms);
+    if (holds) {
+      EXPECT_NEAR(robot.position(0), std::numbers::pi / 2, 1e-3) << "for ten seconds";
+      EXPECT_NEAR(std::abs(robot.torque(0)), weight_n_m * (1 + payload_kg / 2), 1e-2);
+    } else {
+      EXPECT_LT(robot.position(0), std::numbers::pi / 2 - 0.2);
+    }
+  }
+}
+
+TEST(MujocoRobot, HasTheDryFrictionOfItsFileAndMoreWhereThatIsWanted) {
+  auto robot = MujocoRobot::make(pendulum("<dynamics damping='0' friction='3'/>")).value();
+  robot.set_gravity(0, 0, 0);
+  for (int i = 0; i < 1000; ++i) robot.step(std::array{2.9}, Brakes::Open, 1ms);
+  EXPECT_LT(std::abs(robot.position(0)), 1e-3) << "sticks";
+  robot.place(none);
+  for (int i = 0; i < 200; ++i) robot.step(std::array{4.0}, Brakes::Open, 1ms);
+  EXPECT_NEAR(robot.velocity(0), 1.0 / inertia_kg_m2 * 0.2, 0.01) << "slips";
+  EXPECT_NEAR(robot.torque(0), 1.0, 1e-2) << "the sensor is behind friction";
+  robot.place(none);
+  robot.set_friction(1, 2);
+  for (int i = 0; i < 1000; ++i) robot.step(std::array{4.0}, Brakes::Open, 1ms);
+  EXPECT_LT(std::abs(robot.position(0)), 2e-3);
+}
+
+TEST(MujocoRobot, DampsAsItsFileSays) {
+  auto robot = MujocoRobot::make(pendulum("<dynamics damping='2' friction='0'/>")).value();
+  robot.set_gravity(0, 0, 0);
+  for (int i = 0; i < 250; ++i) robot.step(std::array{1.0}, Brakes::Open, 1ms);
+  EXPECT_NEAR(robot.velocity(0), 0.5 * (1 - std::exp(-2 / inertia_kg_m2 * 0.25)), 1e-6);
+}
+
+TEST(MujocoRobot, AcceleratesRotorsBesidesLinksAndFeelsTheLinksAlone) {
+  auto robot = MujocoRobot::make(pendulum()).value();
+  robot.set_gravity(0, 0, 0);
+  robot.set_rotors(std::array{0.3});
+  for (int i = 0; i < 100; ++i) robot.step(std::array{4.0}, Brakes::Open, 1ms);
+  const double acceleration = 4.0 / (inertia_kg_m2 + 0.3);
+  EXPECT_NEAR(robot.velocity(0), 0.1 * acceleration, 1e-6);
+  EXPECT_NEAR(robot.torque(0), inertia_kg_m2 * acceleration, 1e-6);
+}
+
+TEST(MujocoRobot, IsHeavierWhereThatIsWanted) {
+  auto robot = MujocoRobot::make(pendulum()).value();
+  robot.place(std::array{0.5});
+  robot.set_mass_factor(1.1);
+  EXPECT_NEAR(robot.position(0), 0.5, 1e-12);
+  for (int i = 0; i < 3000; ++i) robot.step(none, Brakes::Closed, 1ms);
+  EXPECT_NEAR(std::abs(robot.torque(0)), 1.1 * weight_n_m * std::sin(0.5), 1e-2);
+}
+
+TEST(MujocoRobot, RefusesInWordsWhatItCannotMove) {
+  EXPECT_FALSE(MujocoRobot::make("no file"));
+  std::string text = pendulum();
+  text.insert(text.find("<axis"), "<mimic joint='other'/>");
+  EXPECT_FALSE(MujocoRobot::make(text)) << "of nobody";
+}
+
+TEST(MujocoRobot, MovesWhatMimicsAJointWithIt) {
+  // Two equal sliders without gravity, the second twice as fast the other way: the first feels 1 + 2 * 2 masses.
+  const std::string body =
+      R"(<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>)";
+  const std::string limit = R"(<axis xyz="1 0 0"/><limit lower="-9" upper="9" velocity="9" effort="20"/>)";
+  auto robot =
+      MujocoRobot::make(R"(<robot name="r"><link name="a"/><link name="b">)" + body + R"(<link name="c">)" + body +
+                        R"(<joint name="one" type="prismatic"><parent link="a"/><child link="b"/>)" + limit +
+                        R"(</joint><joint name="two" type="prismatic"><parent link="a"/><child link="c"/>)" + limit +
+                        R"(<mimic joint="one" multiplier="-2"/></joint></robot>)");
+  ASSERT_TRUE(robot) << robot.error();
+  ASSERT_EQ(robot->joints(), 1u);
+  robot->set_gravity(0, 0, 0);
+  for (int i = 0; i < 500; ++i) robot->step(std::array{5.0}, Brakes::Open, 1ms);
+  EXPECT_NEAR(robot->velocity(0), 0.5, 0.01);
+}
+
+TEST(MujocoRobot, TakesTheOrderOfJointsFromTheFile) {
+  const auto robot = MujocoRobot::make(R"(<robot name="r"><link name="a"/><link name="b"><inertial><mass value="1"/>
+      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link><link name="c"><inertial><mass value="1"/>
+      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+    <joint name="second" type="prismatic"><parent link="b"/><child link="c"/><limit lower="0" upper="1" velocity="1" effort="7"/></joint>
+    <joint name="first" type="continuous"><parent link="a"/><child link="b"/><limit velocity="1" effort="3"/></joint></robot>)");
+  ASSERT_TRUE(robot) << robot.error();
+  EXPECT_EQ(robot->joints(), 2u);
+  EXPECT_EQ(robot->effort(0), 7);
+  EXPECT_EQ(robot->effort(1), 3);
+}
+
+}  // namespace
+}  // namespace hirosco::simulation

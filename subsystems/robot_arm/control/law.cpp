@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/control/law.hpp"
+
+#include <algorithm>
+
+namespace hirosco::robot_arm {
+namespace {
+
+/// At rest an error this small is left alone: a joint with dry friction would hunt for less.
+constexpr double left_alone = 1e-4;
+constexpr double at_rest = 1e-6;
+/// An error this large is a collision or a jump and not the model's: nothing is learnt from it.
+constexpr double not_learnt = 0.05;
+/// Friction changes its sign over this speed.
+constexpr double friction_knee = 0.02;
+
+[[nodiscard]] double rotor_of(const Law::Settings& settings, Eigen::Index joint) noexcept {
+  const auto i = static_cast<std::size_t>(joint);
+  return i < settings.rotor.size() ? settings.rotor[i] : 0;
+}
+
+}  // namespace
+
+Law::Law(const robotics::Model& model, robotics::FrameId tip, double cycle_s)
+    : model_{&model}, tip_{tip}, cycle_s_{cycle_s} {
+  reset();
+}
+
+void Law::reset() noexcept {
+  integral_.setZero(model_->joint_count());
+  saturated_ = false;
+}
+
+void Law::learn(const JointVector& error, const Setpoint& wanted, const Measured& measured,
+                robotics::Dynamics& dynamics, Bounds bounds, const Settings& settings) noexcept {
+  const double w = settings.bandwidth_rad_s;
+  dynamics.mass_matrix(mass_);
+  for (Eigen::Index i = 0; i < error.size(); ++i) {
+    const bool rests = std::abs(wanted.velocity[i]) < at_rest;
+    if (rests && std::abs(error[i]) < left_alone && std::abs(measured.velocity[i]) < friction_knee) continue;
+    if (!(std::abs(error[i]) < not_learnt) || saturated_) continue;
+    const double most = settings.integral_share * bounds[static_cast<std::size_t>(i)].effort /
+                        std::max(mass_(i, i) + rotor_of(settings, i), 1e-9) / (w * w * w);
+    integral_[i] = std::clamp(integral_[i] + error[i] * cycle_s_, -most, most);
+  }
+}
+
+JointVector Law::torque(const Setpoint& wanted, const Measured& measured, robotics::Dynamics& dynamics,
+                        const Payload& payload, Bounds bounds, const Settings& settings) noexcept {
+  const double w = settings.bandwidth_rad_s;
+  const JointVector error = wanted.position - measured.position;
+  learn(error, wanted, measured, dynamics, bounds, settings);
+  robotics::Coordinates acceleration =
+      wanted.acceleration + 3 * w * (wanted.velocity - measured.velocity) + 3 * w * w * error + w * w * w * integral_;
+  robotics::Coordinates force;
+  dynamics.inverse(acceleration, force);
+  add_payload(payload, tip_, settings.gravity_m_s2, dynamics, acceleration, force);
+  const auto joints = model_->joints();
+  JointVector torque;
+  torque.resize(error.size());
+  saturated_ = false;
+  for (Eigen::Index i = 0; i < error.size(); ++i) {
+    const auto& joint = joints[static_cast<std::size_t>(i)];
+    const double speed = wanted.velocity[i];
+    double value = force[i] + rotor_of(settings, i) * acceleration[i] + joint.damping * speed +
+                   joint.friction * std::tanh(speed / friction_knee);
+    if (!std::isfinite(value)) value = 0;
+    const double effort = bounds[static_cast<std::size_t>(i)].effort;
+    torque[i] = std::clamp(value, -effort, effort);
+    saturated_ = saturated_ || torque[i] != value;
+  }
+  return torque;
+}
+
+void Law::add_payload(const Payload& payload, robotics::FrameId tip, const Vector3& gravity_m_s2,
+                      const robotics::Dynamics& dynamics, const JointVector& acceleration,
+                      robotics::Coordinates& torque) noexcept {
+  if (payload.mass_kg <= 0) return;
+  Jacobian jacobian;
+  dynamics.jacobian(tip, jacobian);
+  const Vector3 arm = dynamics.frame_pose(tip).rotation * payload.place_m;
+  const Vector6 drift = dynamics.frame_drift(tip);
+  const Vector3 turning = dynamics.frame_twist(tip).head<3>();
+  Vector6 rate = drift;
+  rate.noalias() += jacobian.lazyProduct(acceleration);
+  const Vector3 rotary = rate.head<3>();
+  const Vector3 moved = rate.tail<3>() + rotary.cross(arm) + turning.cross(turning.cross(arm));
+  const Vector3 force = payload.mass_kg * (moved - gravity_m_s2);
+  Vector6 wrench;
+  wrench.head<3>() = arm.cross(force);
+  wrench.tail<3>() = force;
+  torque.noalias() += jacobian.transpose().lazyProduct(wrench);
+}
+
+}  // namespace hirosco::robot_arm

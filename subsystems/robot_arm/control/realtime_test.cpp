@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "hirosco/utilities/allocation_guard.hpp"
+#include "subsystems/robot_arm/control/clearance.hpp"
+#include "subsystems/robot_arm/control/law.hpp"
+#include "subsystems/robot_arm/control/momentum_observer.hpp"
+#include "subsystems/robot_arm/control/setpoints.hpp"
+#include "subsystems/robot_arm/control/watch.hpp"
+#include "subsystems/robot_arm/testing/plant.hpp"
+
+namespace hirosco::robot_arm {
+namespace {
+
+constexpr double period_s = 0.001;
+
+/// All that a cycle of the arm calls, in every way to move.
+TEST(Control, UsesNoHeapInACycle) {
+  ASSERT_TRUE(RealtimeScope::hook_present());
+  const robotics::Model model = testing::model_of(testing::six_joints);
+  const auto bounds = testing::bounds_of(model);
+  const auto tip = model.find_frame("tool").value();
+  robotics::Dynamics dynamics{model, robotics::Base::Fixed};
+  Law law{model, tip, period_s};
+  MomentumObserver observer{6, period_s, 50};
+  Setpoints setpoints{model, tip, bounds, period_s};
+  Clearance clearance{model, hulls_of(descriptor::file_system()(testing::six_joints).value()), 0.02};
+  Watch watch;
+  const JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
+  const JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
+  const JointVector zeros = JointVector::Zero(6);
+  const Payload payload{2, {0.1, 0, 0}};
+  using Kind = Setpoints::Kind;
+  for (const Kind kind : {Kind::JointPath, Kind::Line, Kind::JointJog, Kind::TipJog}) {
+    setpoints.rest(start);
+    const RealtimeScope scope;
+    robotics::Pose pose = setpoints.tool();
+    pose.position.z() += 0.1;
+    switch (kind) {
+      case Kind::Rest: break;
+      case Kind::JointPath: EXPECT_TRUE(setpoints.go(goal, 1)); break;
+      case Kind::Line: EXPECT_TRUE(setpoints.go_straight(pose, {0.2, 0.5})); break;
+      case Kind::JointJog: setpoints.jog(goal); break;
+      case Kind::TipJog: setpoints.jog(Vector6{Vector6::Constant(0.05)}); break;
+    }
+    for (int i = 0; i < 300; ++i) {
+      if (i == 200) setpoints.brake();
+      const Setpoint& now = setpoints.advance();
+      const Measured measured{now.position, now.velocity, zeros};
+      robotics::State state;
+      state.q = measured.position;
+      state.qd = measured.velocity;
+      dynamics.update(state);
+      robotics::Coordinates of_payload = robotics::Coordinates::Zero(6);
+      Law::add_payload(payload, tip, {0, 0, -9.81}, dynamics, zeros, of_payload);
+      observer.update(measured, dynamics, of_payload);
+      EXPECT_TRUE(law.torque(now, measured, dynamics, payload, bounds, {}).allFinite());
+      EXPECT_GT(clearance.nearest(setpoints.braked()).distance_m, 0);
+      static_cast<void>(watch.update(measured, &now.position, bounds, {}));
+    }
+    EXPECT_EQ(scope.count(), AllocationCount{}) << static_cast<int>(kind);
+  }
+}
+
+}  // namespace
+}  // namespace hirosco::robot_arm

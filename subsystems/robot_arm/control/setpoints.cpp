@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/control/setpoints.hpp"
+
+#include <algorithm>
+
+namespace hirosco::robot_arm {
+namespace {
+
+/// How fast the pace on a line recovers after a joint was at its velocity.
+constexpr double pace_per_s = 2;
+/// With which a setpoint that is beside its line comes back to it, 1/s.
+constexpr double back_to_line_per_s = 50;
+/// On a line the speed is reached in this time, the acceleration in this share of it.
+constexpr double ramp_s = 0.4;
+constexpr double ramp_share = 0.25;
+constexpr double no_way = 1e-9;
+
+[[nodiscard]] Vector3 rotation_vector(const robotics::Matrix3& rotation) noexcept {
+  const Eigen::AngleAxisd turned{rotation};
+  return turned.angle() * turned.axis();
+}
+
+}  // namespace
+
+Setpoints::Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds bounds, double cycle_s)
+    : model_{&model},
+      tip_{tip},
+      bounds_{bounds},
+      cycle_s_{cycle_s},
+      dynamics_{model, robotics::Base::Fixed},
+      kinematics_{model, tip, {}} {
+  JointVector zeros;
+  zeros.setZero(model.joint_count());
+  jog_ = posture_ = zeros;
+  state_.qd = zeros;
+  rest(zeros);
+}
+
+void Setpoints::rest(const JointVector& position) noexcept {
+  now_.position = position;
+  come_to_rest();
+}
+
+void Setpoints::come_to_rest() noexcept {
+  kind_ = Kind::Rest;
+  braking_ = false;
+  urgency_ = 1;
+  off_line_m_ = 0;
+  now_.velocity.setZero(now_.position.size());
+  now_.acceleration.setZero(now_.position.size());
+}
+
+Result<> Setpoints::go(const JointVector& goal, double speed_share) noexcept {
+  std::array<robotics::MotionLimits, max_joints> limits;
+  for (std::size_t i = 0; i < bounds_.size(); ++i) {
+    limits[i] = bounds_[i].motion;
+    limits[i].velocity *= speed_share;
+  }
+  HIROSCO_TRY_LET(path_, robotics::PointToPoint::plan(now_.position, goal, std::span{limits}.first(bounds_.size())));
+  kind_ = Kind::JointPath;
+  braking_ = false;
+  path_s_ = 0;
+  pace_ = 1;
+  return ok();
+}
+
+Result<> Setpoints::go_straight(const robotics::Pose& goal, const LineSpeed& speed) noexcept {
+  from_ = tool();
+  way_m_ = goal.position - from_.position;
+  const Vector3 turn = rotation_vector(goal.rotation * from_.rotation.transpose());
+  angle_ = turn.norm();
+  axis_ = angle_ > no_way ? Vector3{turn / angle_} : Vector3::UnitZ();
+  const double length = way_m_.norm();
+  if (length < no_way && angle_ < no_way) return fail(ErrorCode::InvalidArgument, "it is there already");
+  // From 0 to 1, as fast as the slower of the two goes.
+  const double rate = std::min(length > no_way ? speed.linear_m_s / length : HUGE_VAL,
+                               angle_ > no_way ? speed.angular_rad_s / angle_ : HUGE_VAL);
+  const double acceleration = rate / ramp_s;
+  const std::array limits{robotics::MotionLimits{rate, acceleration, acceleration / (ramp_share * ramp_s)}};
+  HIROSCO_TRY_LET(path_, robotics::PointToPoint::plan(JointVector::Zero(1), JointVector::Ones(1), limits));
+  kind_ = Kind::Line;
+  braking_ = false;
+  path_s_ = 0;
+  pace_ = 1;
+  posture_ = now_.position;
+  return ok();
+}
+
+void Setpoints::jog(const JointVector& velocity) noexcept {
+  kind_ = Kind::JointJog;
+  braking_ = false;
+  jog_ = velocity;
+}
+
+void Setpoints::jog(const Vector6& twist) noexcept {
+  kind_ = Kind::TipJog;
+  braking_ = false;
+  twist_ = twist;
+  posture_ = now_.position;
+}
+
+void Setpoints::halt(const JointVector& position, const JointVector& velocity) noexcept {
+  now_.position = position;
+  for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    now_.velocity[i] = std::clamp(velocity[i], -bounds_[joint].motion.velocity, bounds_[joint].motion.velocity);
+  }
+  off_line_m_ = 0;
+  kind_ = Kind::JointJog;
+  braking_ = true;
+  urgency_ = 4;
+}
+
+void Setpoints::brake() noexcept {
+  if (kind_ != Kind::Rest) braking_ = true;
+}
+
+double Setpoints::progress() const noexcept {
+  return path_.duration_s() > 0 ? std::clamp(path_s_ / path_.duration_s(), 0.0, 1.0) : 1.0;
+}
+
+robotics::Pose Setpoints::tool() noexcept {
+  state_.q = now_.position;
+  dynamics_.update(state_);
+  return dynamics_.frame_pose(tip_) * tool_;
+}
+
+JointVector Setpoints::braked() const noexcept {
+  constexpr double farther = 1.5;
+  if (kind_ == Kind::Rest) return now_.position;
+  if (kind_ == Kind::Line) return now_.position + farther * ramp_s / 2 * now_.velocity;
+  double longest_s = 0;
+  for (std::size_t i = 0; i < bounds_.size(); ++i)
+    longest_s =
+        std::max(longest_s, std::abs(now_.velocity[static_cast<Eigen::Index>(i)]) / bounds_[i].motion.acceleration);
+  if (kind_ == Kind::JointPath) {
+    robotics::PointToPoint::Sample sample;
+    path_.at(path_s_ + farther * pace_ * longest_s / 2, sample);
+    return sample.position;
+  }
+  JointVector there = now_.position;
+  for (std::size_t i = 0; i < bounds_.size(); ++i) {
+    const double speed = now_.velocity[static_cast<Eigen::Index>(i)];
+    there[static_cast<Eigen::Index>(i)] += farther * speed * std::abs(speed) / (2 * bounds_[i].motion.acceleration);
+  }
+  return there;
+}
+
+const Setpoint& Setpoints::advance() noexcept {
+  switch (kind_) {
+    case Kind::Rest: break;
+    case Kind::JointPath: advance_path(); break;
+    case Kind::Line: advance_line(); break;
+    case Kind::JointJog: advance_jog(jog_); break;
+    case Kind::TipJog: advance_jog(braking_ ? jog_ : tip_rates(twist_)); break;
+  }
+  return now_;
+}
+
+/// Braked, the arm stays on its path: its time goes slower, as fast as the joints' accelerations permit.
+void Setpoints::advance_path() noexcept {
+  double slowing = 0;
+  if (braking_) {
+    path_.at(path_s_, sample_);
+    slowing = pace_ / cycle_s_;
+    for (std::size_t i = 0; i < bounds_.size(); ++i) {
+      const double speed = std::abs(sample_.velocity[static_cast<Eigen::Index>(i)]);
+      if (speed > 0) slowing = std::min(slowing, bounds_[i].motion.acceleration / speed);
+    }
+    pace_ = std::max(0.0, pace_ - slowing * cycle_s_);
+  }
+  path_s_ += pace_ * cycle_s_;
+  path_.at(path_s_, sample_);
+  now_.position = sample_.position;
+  now_.velocity = pace_ * sample_.velocity;
+  now_.acceleration = pace_ * pace_ * sample_.acceleration - slowing * sample_.velocity;
+  if (path_s_ >= path_.duration_s() || pace_ <= 0) come_to_rest();
+}
+
+JointVector Setpoints::tip_rates(const Vector6& twist) noexcept {
+  state_.q = now_.position;
+  dynamics_.update(state_);
+  // The same motion, told of the tip's origin.
+  const Vector3 lever = dynamics_.frame_pose(tip_).rotation * tool_.position;
+  Vector6 of_tip = twist;
+  const Vector3 turning = twist.head<3>();
+  of_tip.tail<3>() -= turning.cross(lever);
+  JointVector rates;
+  kinematics_.rates(dynamics_, of_tip, now_.position, posture_, rates);
+  return rates;
+}
+
+void Setpoints::keep_pace(double wanted) noexcept {
+  const double fastest = braking_ ? 0.0 : 1.0;
+  const double limit = std::min(fastest, wanted);
+  pace_ = limit < pace_ ? std::max(limit, pace_ - (braking_ ? 1 / ramp_s : 20.0) * cycle_s_)
+                        : std::min(limit, pace_ + pace_per_s * cycle_s_);
+}
+
+void Setpoints::advance_line() noexcept {
+  path_s_ += pace_ * cycle_s_;
+  path_.at(path_s_, sample_);
+  const double share = sample_.position[0], rate = pace_ * sample_.velocity[0];
+  const robotics::Pose here = tool();
+  const robotics::Matrix3 rotation = Eigen::AngleAxisd{share * angle_, axis_} * from_.rotation;
+  const Vector3 beside = from_.position + share * way_m_ - here.position;
+  off_line_m_ = beside.norm();
+  Vector6 twist;
+  twist.head<3>() = rate * angle_ * axis_ + back_to_line_per_s * rotation_vector(rotation * here.rotation.transpose());
+  twist.tail<3>() = rate * way_m_ + back_to_line_per_s * beside;
+  JointVector rates = tip_rates(twist);
+  double permitted = 1;
+  for (std::size_t i = 0; i < bounds_.size(); ++i) {
+    const double speed = std::abs(rates[static_cast<Eigen::Index>(i)]);
+    if (speed > bounds_[i].motion.velocity) permitted = std::min(permitted, bounds_[i].motion.velocity / speed);
+  }
+  keep_pace(pace_ * permitted < pace_ ? pace_ * permitted : 1.0);
+  follow(rates * permitted);
+  if (pace_ <= 0 || (path_s_ >= path_.duration_s() && beside.norm() < 1e-7 && rates.cwiseAbs().maxCoeff() < 1e-5))
+    come_to_rest();
+}
+
+/// Towards the velocities that are wanted, within acceleration, and so that each can be braked away before its range ends.
+void Setpoints::advance_jog(const JointVector& wanted) noexcept {
+  JointVector velocity = now_.velocity;
+  bool moves = false;
+  for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    const JointBounds& its = bounds_[joint];
+    const double most = its.motion.velocity, step = urgency_ * its.motion.acceleration * cycle_s_;
+    const double left = std::max(0.0, its.highest - now_.position[i]),
+                 right = std::max(0.0, now_.position[i] - its.lowest);
+    const double up = std::min(most, std::sqrt(2 * 0.8 * its.motion.acceleration * left));
+    const double down = std::min(most, std::sqrt(2 * 0.8 * its.motion.acceleration * right));
+    const double goal = braking_ ? 0.0 : std::clamp(wanted[i], -down, up);
+    velocity[i] += std::clamp(goal - velocity[i], -step, step);
+    moves = moves || velocity[i] != 0;
+  }
+  follow(velocity);
+  if (braking_ && !moves) come_to_rest();
+}
+
+void Setpoints::follow(const JointVector& velocity) noexcept {
+  now_.acceleration = (velocity - now_.velocity) / cycle_s_;
+  now_.velocity = velocity;
+  for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    const double next = now_.position[i] + velocity[i] * cycle_s_;
+    now_.position[i] = std::clamp(next, bounds_[joint].lowest, bounds_[joint].highest);
+  }
+}
+
+}  // namespace hirosco::robot_arm

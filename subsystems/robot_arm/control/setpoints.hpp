@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "robotics/motion/inverse_kinematics.hpp"
+#include "subsystems/robot_arm/control/joints.hpp"
+
+namespace hirosco::robot_arm {
+
+/// What moves the setpoint. One at a time; whatever it is, the setpoint keeps the joints' ranges and velocities, and is brought to
+/// rest by brake().
+class Setpoints {
+ public:
+  enum class Kind : std::uint8_t { Rest, JointPath, Line, JointJog, TipJog };
+
+  Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds bounds, double cycle_s);
+
+  /// Stands there from now on.
+  void rest(const JointVector& position) noexcept;
+  /// All joints at once, jerk-limited, with this share of their velocities. InvalidArgument: as of PointToPoint.
+  [[nodiscard]] Result<> go(const JointVector& goal, double speed_share) noexcept;
+  /// The tool on a straight line, turning about one axis meanwhile. InvalidArgument: there is no way, or no speed.
+  struct LineSpeed {
+    double linear_m_s{0};
+    double angular_rad_s{0};
+  };
+  [[nodiscard]] Result<> go_straight(const robotics::Pose& goal, const LineSpeed& speed) noexcept;
+  /// With these velocities from now on, until brake(); of the joints, or a twist [ω; v] of the tool in the axes of the base.
+  void jog(const JointVector& velocity) noexcept;
+  void jog(const Vector6& twist) noexcept;
+  /// Comes to rest from here as fast as four times the accelerations permit, whatever way it was on.
+  void halt(const JointVector& position, const JointVector& velocity) noexcept;
+  /// Comes to rest: on its path, where there is one.
+  void brake() noexcept;
+
+  /// Moves on by one cycle.
+  const Setpoint& advance() noexcept;
+  [[nodiscard]] const Setpoint& now() const noexcept { return now_; }
+  [[nodiscard]] Kind kind() const noexcept { return kind_; }
+  [[nodiscard]] bool at_rest() const noexcept { return kind_ == Kind::Rest; }
+  [[nodiscard]] bool braking() const noexcept { return braking_; }
+  /// About where it would come to rest if it braked now; rather farther than nearer.
+  [[nodiscard]] JointVector braked() const noexcept;
+  /// Of a path: 0 to 1.
+  [[nodiscard]] double progress() const noexcept;
+  [[nodiscard]] double duration_s() const noexcept { return path_.duration_s(); }
+  /// How far the setpoint's tool is from where its line has it, m; 0 without one.
+  [[nodiscard]] double off_line_m() const noexcept { return off_line_m_; }
+  /// Where the tool of the setpoint is.
+  [[nodiscard]] robotics::Pose tool() noexcept;
+  /// Where the tool is in the tip's frame; while nothing moves.
+  void set_tool(const robotics::Pose& in_tip) noexcept { tool_ = in_tip; }
+
+ private:
+  void advance_path() noexcept;
+  void advance_line() noexcept;
+  void advance_jog(const JointVector& wanted) noexcept;
+  [[nodiscard]] JointVector tip_rates(const Vector6& twist) noexcept;
+  void follow(const JointVector& velocity) noexcept;
+  void keep_pace(double wanted) noexcept;
+  void come_to_rest() noexcept;
+
+  const robotics::Model* model_;
+  robotics::FrameId tip_;
+  Bounds bounds_;
+  double cycle_s_;
+  robotics::Dynamics dynamics_;
+  robotics::InverseKinematics kinematics_;
+  robotics::State state_;
+  Setpoint now_;
+  Kind kind_{Kind::Rest};
+  bool braking_{false};
+  double urgency_{1};  ///< factor of accelerations while it halts
+  robotics::PointToPoint path_{};
+  robotics::PointToPoint::Sample sample_{};
+  double path_s_{0};  ///< how far on its path, in its own time
+  double pace_{1};  ///< of that time
+  robotics::Pose tool_{};
+  robotics::Pose from_{};  ///< of a line
+  Vector3 way_m_{Vector3::Zero()};
+  Vector3 axis_{Vector3::UnitZ()};
+  double angle_{0};
+  double off_line_m_{0};
+  JointVector posture_;
+  JointVector jog_;
+  Vector6 twist_{Vector6::Zero()};
+};
+
+}  // namespace hirosco::robot_arm

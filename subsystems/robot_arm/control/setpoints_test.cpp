@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "subsystems/robot_arm/control/setpoints.hpp"
+#include "subsystems/robot_arm/testing/plant.hpp"
+
+namespace hirosco::robot_arm {
+namespace {
+
+using testing::bounds_of;
+using testing::model_of;
+
+struct SetpointsTest : ::testing::Test {
+  static constexpr double cycle_s = 0.001;
+  robotics::Model model = model_of(testing::six_joints);
+  std::vector<JointBounds> bounds = bounds_of(model);
+  Setpoints setpoints{model, model.find_frame("tool").value(), bounds, cycle_s};
+  JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
+  JointVector before;
+
+  SetpointsTest() {
+    setpoints.rest(start);
+    before = start;
+  }
+  /// Another cycle, which keeps ranges and velocities, and tells no other velocity than it moves with.
+  void advance(double acceleration_factor = 2) {
+    const JointVector speed_before = setpoints.now().velocity;
+    const Setpoint& now = setpoints.advance();
+    for (std::size_t joint = 0; joint < 6; ++joint) {
+      const auto i = static_cast<Eigen::Index>(joint);
+      ASSERT_GE(now.position[i], bounds[joint].lowest - 1e-9);
+      ASSERT_LE(now.position[i], bounds[joint].highest + 1e-9);
+      ASSERT_LE(std::abs(now.velocity[i]), bounds[joint].motion.velocity * (1 + 1e-9));
+      ASSERT_LE(std::abs(now.velocity[i] - speed_before[i]),
+                acceleration_factor * bounds[joint].motion.acceleration * cycle_s * (1 + 1e-6) + 1e-9);
+      ASSERT_NEAR(now.position[i] - before[i], now.velocity[i] * cycle_s, 0.002 * cycle_s + 5e-6);
+    }
+    before = now.position;
+  }
+  void finish(int most = 60'000) {
+    while (!setpoints.at_rest() && most-- > 0) ASSERT_NO_FATAL_FAILURE(advance());
+    ASSERT_TRUE(setpoints.at_rest());
+  }
+};
+
+TEST_F(SetpointsTest, GoesToAnyPlaceOfAllRangesWithinItsLimits) {
+  std::mt19937 random{3};
+  for (int i = 0; i < 20; ++i) {
+    JointVector goal = start;
+    for (std::size_t joint = 0; joint < 6; ++joint)
+      goal[static_cast<Eigen::Index>(joint)] =
+          std::uniform_real_distribution<double>{bounds[joint].lowest, bounds[joint].highest}(random);
+    ASSERT_TRUE(setpoints.go(goal, i % 2 == 0 ? 1.0 : 0.3));
+    ASSERT_NO_FATAL_FAILURE(finish());
+    EXPECT_LT((setpoints.now().position - goal).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+TEST_F(SetpointsTest, BrakesOnItsPathWhereverItIsOnIt) {
+  const JointVector goal = vector_of(std::array{-1.5, -0.5, 0.2, 0.9, -0.7, 2.0});
+  std::vector<robotics::MotionLimits> limits;
+  for (const JointBounds& its : bounds) limits.push_back(its.motion);
+  const auto path = robotics::PointToPoint::plan(start, goal, limits).value();
+  for (int cycles = 50; cycles < 1500; cycles += 150) {
+    setpoints.rest(start);
+    before = start;
+    ASSERT_TRUE(setpoints.go(goal, 1));
+    for (int i = 0; i < cycles && !setpoints.at_rest(); ++i) ASSERT_NO_FATAL_FAILURE(advance());
+    setpoints.brake();
+    ASSERT_NO_FATAL_FAILURE(finish(2000));
+    double beside = HUGE_VAL;
+    robotics::PointToPoint::Sample sample;
+    for (double t = 0; t < path.duration_s(); t += 1e-4) {
+      path.at(t, sample);
+      beside = std::min(beside, (sample.position - setpoints.now().position).cwiseAbs().maxCoeff());
+    }
+    EXPECT_LT(beside, 3e-4) << "after " << cycles << " cycles";
+  }
+}
+
+TEST_F(SetpointsTest, HaltsFromWhereItIsWithFourTimesItsAccelerationsAtMost) {
+  ASSERT_TRUE(setpoints.go(vector_of(std::array{-1.5, -0.5, 0.2, 0.9, -0.7, 2.0}), 1));
+  for (int i = 0; i < 600; ++i) ASSERT_NO_FATAL_FAILURE(advance());
+  const JointVector from = setpoints.now().position, velocity = setpoints.now().velocity;
+  setpoints.halt(from, velocity);
+  int cycles = 0;
+  while (!setpoints.at_rest() && cycles < 1000) {
+    ASSERT_NO_FATAL_FAILURE(advance(4));
+    ++cycles;
+  }
+  EXPECT_NEAR(cycles * cycle_s, velocity.cwiseAbs().maxCoeff() / 16, 0.003);
+  for (Eigen::Index i = 0; i < 6; ++i)
+    EXPECT_NEAR(setpoints.now().position[i] - from[i], velocity[i] * std::abs(velocity[i]) / 32, 0.002) << i;
+}
+
+TEST_F(SetpointsTest, GoesStraightAndTurnsMeanwhile) {
+  const robotics::Pose from = setpoints.tool();
+  robotics::Pose goal = from;
+  goal.position += Vector3{-0.15, 0.25, -0.1};
+  goal.rotation = Eigen::AngleAxisd{0.6, Vector3{1, 2, -1}.normalized()} * goal.rotation;
+  const Vector3 way = goal.position - from.position;
+  ASSERT_TRUE(setpoints.go_straight(goal, {0.2, 0.5}));
+  double beside_m = 0;
+  while (!setpoints.at_rest()) {
+    ASSERT_NO_FATAL_FAILURE(advance(20));
+    const Vector3 gone = setpoints.tool().position - from.position;
+    beside_m = std::max(beside_m, (gone - gone.dot(way) / way.squaredNorm() * way).norm());
+  }
+  const robotics::Pose there = setpoints.tool();
+  EXPECT_LT(beside_m, 1e-4);
+  EXPECT_LT((there.position - goal.position).norm(), 1e-6);
+  EXPECT_LT((there.rotation - goal.rotation).norm(), 1e-5);
+}
+
+TEST_F(SetpointsTest, GoesStraightWithTheToolAndNotWithTheTip) {
+  setpoints.set_tool({robotics::Matrix3::Identity(), {0.05, 0.1, 0.2}});
+  const robotics::Pose from = setpoints.tool();
+  robotics::Pose goal = from;
+  goal.rotation = Eigen::AngleAxisd{0.5, Vector3::UnitX()} * goal.rotation;
+  ASSERT_TRUE(setpoints.go_straight(goal, {0.1, 0.3}));
+  double moved_m = 0;
+  while (!setpoints.at_rest()) {
+    ASSERT_NO_FATAL_FAILURE(advance(20));
+    moved_m = std::max(moved_m, (setpoints.tool().position - from.position).norm());
+  }
+  EXPECT_LT(moved_m, 1e-4) << "it turns about the tool";
+  EXPECT_LT((setpoints.tool().rotation - goal.rotation).norm(), 1e-5);
+}
+
+TEST_F(SetpointsTest, SaysThatItLeavesALineThatTheArmCannotFollow) {
+  robotics::Pose goal = setpoints.tool();
+  goal.position += Vector3{0, 0, 3};
+  ASSERT_TRUE(setpoints.go_straight(goal, {0.5, 0.5}));
+  double off_m = 0;
+  for (int i = 0; i < 6000 && off_m < 0.002; ++i) {
+    static_cast<void>(setpoints.advance());
+    off_m = setpoints.off_line_m();
+  }
+  EXPECT_GE(off_m, 0.002);
+}
+
+TEST_F(SetpointsTest, JogsEachJointToTheEndOfItsRangeAndNotBeyond) {
+  for (const double way : {1.0, -1.0}) {
+    setpoints.jog(JointVector{way * 5 * JointVector::Ones(6)});
+    for (int i = 0; i < 8000; ++i) ASSERT_NO_FATAL_FAILURE(advance());
+    for (std::size_t joint = 0; joint < 6; ++joint) {
+      const double end = way > 0 ? bounds[joint].highest : bounds[joint].lowest;
+      EXPECT_NEAR(setpoints.now().position[static_cast<Eigen::Index>(joint)], end, 0.01) << joint;
+    }
+    setpoints.brake();
+    ASSERT_NO_FATAL_FAILURE(finish());
+  }
+}
+
+TEST_F(SetpointsTest, JogsTheToolAlongAnAxis) {
+  const robotics::Pose from = setpoints.tool();
+  Vector6 twist = Vector6::Zero();
+  twist[5] = 0.1;
+  setpoints.jog(twist);
+  for (int i = 0; i < 1000; ++i) ASSERT_NO_FATAL_FAILURE(advance());
+  setpoints.brake();
+  ASSERT_NO_FATAL_FAILURE(finish());
+  const Vector3 gone = setpoints.tool().position - from.position;
+  EXPECT_NEAR(gone.z(), 0.1, 0.01);
+  EXPECT_LT(gone.head<2>().norm(), 0.002);
+}
+
+}  // namespace
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/control/watch.hpp"
+
+#include <bit>
+
+namespace hirosco::robot_arm {
+namespace {
+
+/// Shifts a sample into the last three and tells whether two of them are set.
+[[nodiscard]] bool two_of_three(std::uint8_t& history, bool sample) noexcept {
+  history = static_cast<std::uint8_t>((history << 1 | (sample ? 1 : 0)) & 0b111);
+  return std::popcount(history) >= 2;
+}
+
+}  // namespace
+
+std::optional<Finding> Watch::update(const Measured& measured, const JointVector* setpoint, Bounds bounds,
+                                     const Limits& limits) noexcept {
+  std::optional<Finding> worst;
+  const auto look = [&](Excess what, std::size_t joint, double value, double limit, bool within) {
+    const auto kind = static_cast<std::size_t>(what);
+    if (!two_of_three(history_[kind][joint], !within) || told_[kind]) return;
+    // The order of the kinds is not that of their gravity: the hard torque alone goes before what was found already.
+    if (!worst || what == Excess::TorqueHard) worst = {what, joint, value, limit};
+  };
+  for (std::size_t joint = 0; joint < bounds.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    const JointBounds& its = bounds[joint];
+    const double position = measured.position[i], speed = measured.velocity[i], torque = measured.torque[i];
+    const double lowest = its.lowest - limits.past_end, highest = its.highest + limits.past_end;
+    look(Excess::Position, joint, position, position < lowest ? its.lowest : its.highest,
+         position >= lowest && position <= highest);
+    const double fastest = limits.speed_share * its.motion.velocity;
+    look(Excess::Speed, joint, speed, fastest, std::abs(speed) <= fastest);
+    const double soft = limits.torque_share * its.effort, hard = limits.torque_hard_share * its.effort;
+    look(Excess::Torque, joint, torque, soft, std::abs(torque) <= soft);
+    look(Excess::TorqueHard, joint, torque, hard, std::abs(torque) <= hard);
+    const double behind = setpoint != nullptr ? (*setpoint)[i] - position : 0;
+    look(Excess::Following, joint, behind, limits.following, std::abs(behind) <= limits.following);
+  }
+  if (!worst) return std::nullopt;
+  told_[static_cast<std::size_t>(worst->what)] = true;
+  if (!first_) first_ = worst->what;
+  return worst;
+}
+
+}  // namespace hirosco::robot_arm

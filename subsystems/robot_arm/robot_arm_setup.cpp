@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "hirosco/descriptor/model/setting_files.hpp"
+#include "hirosco/descriptor/read/read.hpp"
+#include "robotics/urdf/robot.hpp"
+#include "subsystems/robot_arm/robot_arm.hpp"
+
+/// What an arm is told by its URDF file and its descriptor, and how it tries itself.
+namespace hirosco {
+
+using robot_arm::JointVector;
+
+namespace {
+
+constexpr std::string_view device_name = "ARM";
+constexpr std::string_view model_setting = "MODEL_FILE";
+constexpr std::string_view tip_setting = "TIP";
+/// Of the filter of what acts from outside.
+constexpr double observer_gain_per_s = 50;
+
+constexpr double rest_rad_s = 0.02;
+constexpr double past_end = 0.05;
+constexpr double displacement = 0.01;
+
+}  // namespace
+
+Result<Step> RobotArm::software_init() {
+  publish_all();
+  use_device(device_name, device_, {model_setting, tip_setting});
+  for (EventPort* event :
+       std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_, &torque_exceeded_,
+                                         &torque_hard_exceeded_, &following_exceeded_, &contact_, &too_near_})
+    use_event(*event);
+  HIROSCO_TRY(read_model());
+  bind_functions();
+  return done;
+}
+
+void RobotArm::publish_all() {
+  publish("CUR_VALUES", current_);
+  publish("DES_POSITION", desired_position_);
+  publish("DES_VELOCITY", desired_velocity_);
+  publish("EXTERNAL_TORQUE", external_torque_);
+  publish("TOOL", tool_values_);
+  publish("TOOL_PLACE", tool_place_m_);
+  publish("MOTION", motion_values_);
+  publish("PAYLOAD", payload_values_);
+  publish("CONTACT_WATCH", contact_values_);
+  publish("GRAVITY", gravity_m_s2_);
+  publish("ROTOR_INERTIA", rotor_inertia_);
+  publish("BANDWIDTH", bandwidth_rad_s_);
+  publish("ACCELERATION", acceleration_);
+  publish("JERK", jerk_);
+  publish("GOAL_TOLERANCE", goal_tolerance_);
+  publish("TORQUE_LIMIT", torque_limit_);
+  publish("TORQUE_HARD", torque_hard_);
+  publish("SPEED_LIMIT", speed_limit_);
+  publish("FOLLOWING_LIMIT", following_limit_);
+  publish("CLEARANCE_LIMIT", clearance_limit_m_);
+  publish("CLEARANCE", clearance_m_);
+  publish("KEPT_OUT", keep_out_);
+  publish("ACTIVE", active_);
+}
+
+/// What every configuration says of the device with this setting; empty: none says anything.
+Result<std::string> RobotArm::setting_of_all(std::string_view name) const {
+  const descriptor::Subsystem& own = own_descriptor();
+  const std::string* found = nullptr;
+  for (const auto& configuration : own.configurations)
+    for (const auto& use : configuration.devices) {
+      if (own.devices[use.device].name != device_name) continue;
+      for (const auto& setting : use.settings) {
+        if (setting.name != name) continue;
+        if (found != nullptr && *found != setting.value)
+          return fail(ErrorCode::Mismatch, "configurations name different robots, and the arm is one");
+        found = &setting.value;
+      }
+    }
+  return found != nullptr ? *found : std::string{};
+}
+
+Result<> RobotArm::read_model() {
+  HIROSCO_TRY_LET(const std::string named, setting_of_all(model_setting));
+  HIROSCO_TRY_LET(const std::string tip, setting_of_all(tip_setting));
+  if (named.empty()) return fail(ErrorCode::NotFound, "no configuration names a URDF file: setting MODEL_FILE of ARM");
+  const auto file = descriptor::file_of(own_descriptor(), named);
+  const auto text = descriptor::file_system()(file);
+  if (!text) {
+    problem_ = fmt::format("{} {}", file.string(), text.error().text);
+    return fail(text.error().code, problem_.c_str());
+  }
+  const auto reading = robotics::urdf::read(file, *text);
+  if (!reading.value) {
+    const auto& first = reading.problems.front();
+    problem_ = fmt::format("{}:{}:{}: {}: {}", file.filename().string(), first.at.line, first.at.column, first.code,
+                           first.message);
+    return fail(ErrorCode::Malformed, problem_.c_str(), static_cast<std::int64_t>(reading.problems.size()));
+  }
+  auto made = robotics::Model::make(robotics::urdf::describe(*reading.value));
+  if (!made) return fail(made.error());
+  model_ = std::move(*made);
+  hulls_ = robot_arm::hulls_of(*text);
+  const auto tips = robotics::urdf::tips(*reading.value);
+  if (tip.empty() && tips.size() != 1)
+    return fail(ErrorCode::InvalidArgument, "the robot has several ends: setting TIP of ARM names the link",
+                static_cast<std::int64_t>(tips.size()));
+  HIROSCO_TRY(find_tip(tip.empty() ? tips.front() : tip));
+  return take_bounds();
+}
+
+Result<> RobotArm::find_tip(const std::string& named) {
+  const auto found = model_->find_frame(named);
+  if (!found) {
+    problem_ = fmt::format("TIP of ARM: the robot has no link '{}'", named);
+    return fail(ErrorCode::NotFound, problem_.c_str());
+  }
+  tip_ = *found;
+  return ok();
+}
+
+/// Limits of the URDF file; those that a joint must have are asked for by name.
+Result<> RobotArm::take_bounds() {
+  bounds_.clear();
+  for (const auto& joint : model_->joints()) {
+    const auto& limits = joint.limits;
+    if (!limits.effort || !(*limits.effort > 0) || !limits.velocity || !(*limits.velocity > 0)) {
+      problem_ = fmt::format("joint '{}' has no effort or velocity above 0, and the arm keeps both", joint.name);
+      return fail(ErrorCode::InvalidArgument, problem_.c_str());
+    }
+    bounds_.push_back({.lowest = limits.lower.value_or(-HUGE_VAL),
+                       .highest = limits.upper.value_or(HUGE_VAL),
+                       .effort = *limits.effort,
+                       .motion = {.velocity = *limits.velocity, .acceleration = 0, .jerk = 0}});
+  }
+  return ok();
+}
+
+Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
+  HIROSCO_TRY(check_lengths());
+  cycle_s_ = seconds(configuration.sampling);
+  for (auto& bounds : bounds_) {
+    bounds.motion.acceleration = acceleration_.load();
+    bounds.motion.jerk = jerk_.load();
+  }
+  const int joints = model_->joint_count();
+  dynamics_.emplace(*model_, robotics::Base::Fixed);
+  law_.emplace(*model_, tip_, cycle_s_);
+  observer_.emplace(joints, cycle_s_, observer_gain_per_s);
+  setpoints_.emplace(*model_, tip_, bounds_, cycle_s_);
+  clearance_.emplace(*model_, hulls_, clearance_limit_m_.load());
+  static_cast<void>(keep_out(keep_out_.load()));
+  const auto place = tool_place_m_.load();
+  setpoints_->set_tool({robotics::Matrix3::Identity(), {place[0], place[1], place[2]}});
+  watch_.arm();
+  motion_.reset();
+  stop_.reset();
+  moving_ = stopped_ = false;
+  jog_left_s_ = 0;
+  return ok();
+}
+
+/// What is a number for each joint has as many as the URDF file has joints.
+Result<> RobotArm::check_lengths() noexcept {
+  const auto current = current_.load();
+  const auto arguments_of = [&](std::string_view name) -> std::size_t {
+    const descriptor::Function* function = own_descriptor().find_function(name);
+    std::size_t numbers = 0;
+    if (function != nullptr)
+      for (const auto& argument : function->arguments) numbers += argument.field.count;
+    return numbers;
+  };
+  struct Length {
+    std::size_t of;
+    std::size_t wanted;
+    const char* text;
+  };
+  const std::size_t joints = bounds_.size();
+  const std::array lengths{
+      Length{current.position.size(), joints, "CUR_VALUES.POSITION has another length than the robot has joints"},
+      Length{current.velocity.size(), joints, "CUR_VALUES.VELOCITY has another length than the robot has joints"},
+      Length{current.torque.size(), joints, "CUR_VALUES.TORQUE has another length than the robot has joints"},
+      Length{desired_position_.load().size(), joints, "DES_POSITION has another length than the robot has joints"},
+      Length{desired_velocity_.load().size(), joints, "DES_VELOCITY has another length than the robot has joints"},
+      Length{rotor_inertia_.load().size(), joints, "ROTOR_INERTIA has another length than the robot has joints"},
+      Length{external_torque_.load().size(), joints, "EXTERNAL_TORQUE has another length than the robot has joints"},
+      Length{device_.input().position.size(), joints, "ARM's POSITION has another length than the robot has joints"},
+      Length{device_.input().velocity.size(), joints, "ARM's VELOCITY has another length than the robot has joints"},
+      Length{device_.input().torque.size(), joints, "ARM's TORQUE has another length than the robot has joints"},
+      Length{device_.output().torque.size(), joints,
+             "ARM's output TORQUE has another length than the robot has joints"},
+      Length{arguments_of("MOVE_J"), joints + 1, "MOVE_J takes a number for each joint, and SPEED"},
+      Length{arguments_of("JOG_J"), joints + 1, "JOG_J takes a number for each joint, and SECONDS"},
+      Length{arguments_of("MOVE_L"), 9, "MOVE_L takes POSITION[3], ORIENTATION[4], SPEED, TURNING"},
+      Length{arguments_of("JOG_L"), 7, "JOG_L takes LINEAR[3], ANGULAR[3], SECONDS"},
+  };
+  for (const Length& length : lengths)
+    if (length.of != length.wanted) return fail(ErrorCode::Mismatch, length.text, static_cast<std::int64_t>(length.of));
+  return ok();
+}
+
+// --- self test ---------------------------------------------------------------------------------------------------------
+
+/// The sensors at rest, then a small deviation of each joint to each side, which the law has to answer against.
+Result<Step> RobotArm::self_test(const Cycle& cycle) noexcept {
+  if (cycle.first) {
+    tried_ = 0;
+    HIROSCO_TRY(check_sensors());
+  }
+  const auto checked = check_law(tried_ / 2, tried_ % 2 == 0 ? 1.0 : -1.0);
+  engage();
+  if (!checked) return fail(checked.error());
+  return ++tried_ < 2 * bounds_.size() ? again : done;
+}
+
+Result<> RobotArm::check_sensors() noexcept {
+  if (!device_.alive()) return fail(ErrorCode::Unavailable, "the arm says nothing");
+  for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    const auto number = static_cast<std::int64_t>(joint + 1);
+    // Written so that what is no number fails.
+    if (!(std::abs(measured_.velocity[i]) < rest_rad_s))
+      return fail(ErrorCode::Internal, "it moves though nothing drives it, joint", number);
+    if (!(measured_.position[i] > bounds_[joint].lowest - past_end &&
+          measured_.position[i] < bounds_[joint].highest + past_end))
+      return fail(ErrorCode::Internal, "measured outside of its range, joint", number);
+    if (!(std::abs(measured_.torque[i]) < torque_limit_.load() * bounds_[joint].effort))
+      return fail(ErrorCode::Internal, "its load at rest is above its limit, joint", number);
+  }
+  return ok();
+}
+
+Result<> RobotArm::check_law(std::size_t joint, double side) noexcept {
+  const auto i = static_cast<Eigen::Index>(joint);
+  setpoints_->rest(measured_.position);
+  const auto answer = [&](double deviation) {
+    law_->reset();
+    JointVector deviated = measured_.position;
+    deviated[i] += deviation;
+    setpoints_->rest(deviated);
+    control();
+    return device_.output().torque[joint];
+  };
+  const double at_rest = answer(0);
+  if (!(side * (answer(side * displacement) - at_rest) > 0))
+    return fail(ErrorCode::Internal, "driven away from its setpoint, joint", static_cast<std::int64_t>(joint + 1));
+  return ok();
+}
+
+}  // namespace hirosco

@@ -1,0 +1,427 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "hirosco/data_transfer/device/device_frame.hpp"
+#include "hirosco/subsystem/testing/rig.hpp"
+#include "subsystems/robot_arm/robot_arm.hpp"
+#include "subsystems/robot_arm/testing/plant.hpp"
+
+/// One class, robots with 1, 3, 6 and 16 joints: what differs between them is their URDF file and their descriptor.
+namespace hirosco {
+namespace {
+
+using robot_arm::JointVector;
+using robot_arm::vector_of;
+using robot_arm::testing::model_of;
+using robot_arm::testing::Plant;
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr const char* folder = HIROSCO_SOURCE_DIR "/subsystems/robot_arm/";
+
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+/// A chain whose axes are x, y, z in turn, ever lighter.
+std::string chain(std::size_t joints) {
+  std::string text = "<robot name='chain'><link name='base'/>";
+  std::string below = "base";
+  for (std::size_t i = 1; i <= joints; ++i) {
+    const std::string link = i == joints ? "tool" : "link" + std::to_string(i);
+    const char* axis = i % 3 == 1 ? "1 0 0" : i % 3 == 2 ? "0 1 0" : "0 0 1";
+    text += "<joint name='j" + std::to_string(i) + "' type='revolute'><origin xyz='0 0.02 0.1'/><parent link='" +
+            below + "'/><child link='" + link + "'/><axis xyz='" + axis +
+            "'/><limit lower='-2' upper='2' velocity='2' effort='200'/><dynamics damping='0.2' friction='0.1'/></joint>"
+            "<link name='" +
+            link +
+            "'><inertial><origin xyz='0.01 0 0.05'/><mass value='0.5'/><inertia ixx='0.004' ixy='0' ixz='0' "
+            "iyy='0.004' iyz='0' "
+            "izz='0.003'/></inertial></link>";
+    below = link;
+  }
+  return text + "</robot>";
+}
+
+std::string descriptor_text() { return descriptor::file_system()(std::string{folder} + "robot_arm.xml").value(); }
+
+/// robot_arm.xml for another robot.
+std::string descriptor_for(std::size_t joints, const std::string& file) {
+  std::string text = descriptor_text();
+  std::string safe, rotors;
+  for (std::size_t i = 0; i < joints; ++i) safe += i == 0 ? "0" : " 0", rotors += i == 0 ? "0.1" : " 0.1";
+  replace_all(text, "init=\"0.5 0.5 0.4 0.1 0.1 0.1\"", "init=\"" + rotors + "\"");
+  replace_all(text, "safe=\"0 0 0 0 0 0\"", "safe=\"" + safe + "\"");
+  replace_all(text, "count=\"6\"", "count=\"" + std::to_string(joints) + "\"");
+  replace_all(text, "value=\"robot_arm.urdf\"", "value=\"" + file + "\"");
+  return text;
+}
+
+std::string file_with(const std::string& name, const std::string& text) {
+  const auto path = std::filesystem::path{::testing::TempDir()} / name;
+  std::ofstream{path} << text;
+  return path.string();
+}
+
+/// The test plays the device: the robot itself, brakes that hold it, and whatever is done to it.
+struct Flown {
+  std::size_t n;
+  std::string file;
+  std::unique_ptr<Subsystem> arm = make_robot_arm();
+  testing::Rig rig{*arm, descriptor_for(n, file)};
+  std::unique_ptr<DataFlow> device =
+      std::move(rig.flows.open({Transfer::SharedMemory, "robot-arm"}, FlowSide::Device)).value();
+  robotics::Model model;
+  Plant plant{model};
+  JointVector commanded, outside;
+  DeviceMode mode{};
+  double fastest{0}, largest_share{0};
+  std::optional<robot_arm::Measured> told;  ///< in place of the truth
+
+  Flown(std::size_t joints, std::string urdf, double mass_factor = 1)
+      : n{joints}, file{std::move(urdf)}, model{model_of(file, mass_factor)} {
+    plant.rotor = 0.1;
+    commanded = outside = JointVector::Zero(static_cast<Eigen::Index>(n));
+  }
+  void cycle(int count = 1) {
+    for (int i = 0; i < count; ++i) {
+      rig.service();
+      rig.cycle();
+      exchange();
+    }
+    rig.service();
+  }
+  void exchange() {
+    std::array<std::byte, max_device_frame_octets> frame{};
+    const auto found = device->receive(frame);
+    if (!found || found->flow != Flow::New) return;
+    const auto command = read_command(Octets{frame}.first(found->octets)).value();
+    mode = command.mode;
+    ASSERT_EQ(command.payload.size(), 8 * n);
+    OctetReader reader{command.payload, std::endian::little};
+    for (Eigen::Index i = 0; i < commanded.size(); ++i) {
+      commanded[i] = reader.get<double>();
+      largest_share = std::max(
+          largest_share, std::abs(commanded[i]) / model.joints()[static_cast<std::size_t>(i)].limits.effort.value());
+    }
+    if (mode == DeviceMode::Active) plant.step(commanded, 0.001, &outside);
+    else plant.place(plant.measured().position);
+    fastest = std::max(fastest, plant.measured().velocity.cwiseAbs().maxCoeff());
+    std::vector<std::byte> payload(24 * n);
+    OctetWriter writer{payload, std::endian::little};
+    const robot_arm::Measured& measured = told ? *told : plant.measured();
+    for (const auto* numbers : {&measured.position, &measured.velocity, &measured.torque})
+      for (const double number : *numbers) writer.put(number);
+    std::array<std::byte, max_device_frame_octets> answer{};
+    const auto status = write_status(answer, {.epoch = 1, .sequence = command.sequence, .payload = payload});
+    static_cast<void>(device->send(status.value()));
+  }
+  void command(State state) {
+    const auto request = rig.set_state(state);
+    cycle(5);
+    ASSERT_EQ(rig.outcome(request), "1 3 7") << to_text(state) << ": " << ::testing::PrintToString(rig.explanations);
+  }
+  void operate() {
+    rig.bring_to(State::PreOperational, 1);
+    cycle(5);
+    command(State::SafeOperational);
+    command(State::Operational);
+    ASSERT_EQ(rig.inhibited(), 0u);
+    ASSERT_EQ(mode, DeviceMode::Active);
+  }
+  testing::Sent ask(const char* function, std::vector<double> numbers) {
+    const auto data = pus::encode_call(*rig.subsystem.descriptor().find_function(function), numbers).value();
+    std::vector<std::byte> octets(data.begin(), data.end());
+    return rig.send(8, 1, octets);
+  }
+  testing::Sent move_j(const JointVector& goal, double speed = 1) {
+    std::vector<double> numbers(goal.begin(), goal.end());
+    numbers.push_back(speed);
+    return ask("MOVE_J", numbers);
+  }
+  [[nodiscard]] double off(const JointVector& goal) const {
+    return (plant.measured().position - goal).cwiseAbs().maxCoeff();
+  }
+  /// Cycles until a request has ended.
+  int finish(testing::Sent request, int most = 30'000) {
+    int cycles = 0;
+    while (rig.outcome(request).find_first_of("78") == std::string::npos && cycles < most) cycle(10), cycles += 10;
+    return cycles;
+  }
+};
+
+struct ArmOf : ::testing::TestWithParam<std::size_t> {
+  std::size_t n = GetParam();
+  Flown flown{
+      n, n == 6 ? std::string{folder} + "robot_arm.urdf" : file_with("chain" + std::to_string(n) + ".urdf", chain(n)),
+      1.1};
+  JointVector start = 0.1 * JointVector::Ones(static_cast<Eigen::Index>(n));
+  JointVector goal = JointVector::Constant(static_cast<Eigen::Index>(n), n > 6 ? 0.3 : 0.9);
+  void SetUp() override { flown.plant.place(start); }
+};
+
+TEST_P(ArmOf, HoldsItsPlaceAndReachesEachGoalWithinAMilliradianThoughItIsATenthHeavier) {
+  flown.operate();
+  flown.cycle(500);
+  EXPECT_LT(flown.off(start), 1e-3);
+  for (const JointVector& where : {goal, start}) {
+    const auto request = flown.move_j(where);
+    flown.finish(request);
+    EXPECT_EQ(flown.rig.outcome(request), "1 3 5:0001 7");
+    EXPECT_LE(flown.off(where), 1e-3);
+  }
+  EXPECT_EQ(flown.rig.events(1001), 2);
+  EXPECT_LE(flown.largest_share, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Joints, ArmOf, ::testing::Values(1, 3, 6, 16));
+
+struct RobotArmTest : ::testing::Test {
+  Flown flown{6, std::string{folder} + "robot_arm.urdf"};
+  JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
+  JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
+  void SetUp() override { flown.plant.place(start); }
+};
+
+TEST_F(RobotArmTest, MovesNothingBeforeItIsOperational) {
+  flown.rig.bring_to(State::PreOperational, 1);
+  flown.cycle(5);
+  flown.command(State::SafeOperational);
+  flown.cycle(20);
+  EXPECT_EQ(flown.mode, DeviceMode::Off);
+  EXPECT_THAT(flown.commanded, Each(0.0));
+}
+
+TEST_F(RobotArmTest, RefusesAGoalBeyondTheRangeOfOneJointOfTheFile) {
+  flown.operate();
+  for (Eigen::Index i = 0; i < 6; ++i)
+    for (const double side : {1.0, -1.0}) {
+      const auto& limits = flown.model.joints()[static_cast<std::size_t>(i)].limits;
+      JointVector beyond = start;
+      beyond[i] = side > 0 ? *limits.upper + 0.01 : *limits.lower - 0.01;
+      const auto request = flown.move_j(beyond);
+      flown.cycle(3);
+      EXPECT_THAT(flown.rig.outcome(request), StartsWith("1 4:")) << i << " " << side;
+    }
+  flown.cycle(100);
+  EXPECT_LT(flown.off(start), 1e-3);
+}
+
+TEST_F(RobotArmTest, HoldEndsAMotionOnItsWayAndStaysThere) {
+  flown.operate();
+  const auto motion = flown.move_j(goal);
+  flown.cycle(400);
+  const auto hold = flown.rig.call("HOLD");
+  flown.cycle(3);
+  EXPECT_EQ(flown.rig.outcome(hold), "1 3 7");
+  EXPECT_EQ(flown.rig.outcome(motion), "1 3 8:0204");
+  flown.cycle(1000);
+  const JointVector where = flown.plant.measured().position;
+  EXPECT_GT(flown.off(goal), 0.1);
+  flown.cycle(500);
+  EXPECT_LT(flown.off(where), 1e-3);
+  const auto next = flown.move_j(start);
+  flown.finish(next);
+  EXPECT_EQ(flown.rig.outcome(next), "1 3 5:0001 7");
+}
+
+TEST_F(RobotArmTest, StopLeavesItToItsBrakesUntilItIsBroughtUpAnew) {
+  flown.operate();
+  const auto motion = flown.move_j(goal);
+  flown.cycle(400);
+  const auto stop = flown.rig.call("STOP");
+  flown.finish(stop);
+  EXPECT_EQ(flown.rig.outcome(stop), "1 3 7");
+  EXPECT_EQ(flown.rig.outcome(motion), "1 3 8:0204");
+  flown.cycle(5);
+  EXPECT_EQ(flown.mode, DeviceMode::Off);
+  EXPECT_EQ(flown.rig.inhibited(), inhibited_by_author);
+  const auto refused = flown.move_j(start);
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(refused), StartsWith("1 4:8006"));
+  flown.command(State::SafeOperational);
+  flown.command(State::Operational);
+  const auto next = flown.move_j(start);
+  flown.finish(next);
+  EXPECT_EQ(flown.rig.outcome(next), "1 3 5:0001 7");
+}
+
+/// What its sensors tell, and which event that is.
+struct Excessive {
+  const char* what;
+  int event;
+  void (*tell)(robot_arm::Measured&);
+};
+struct RobotArmLimits : RobotArmTest, ::testing::WithParamInterface<Excessive> {};
+
+TEST_P(RobotArmLimits, InhibitTheActuatorsWithTheirNameAndEndTheMotion) {
+  flown.operate();
+  const auto motion = flown.move_j(goal);
+  flown.cycle(100);
+  flown.told = flown.plant.measured();
+  GetParam().tell(*flown.told);
+  flown.cycle(4);
+  EXPECT_EQ(flown.rig.inhibited(), inhibited_by_author);
+  EXPECT_EQ(flown.mode, DeviceMode::Off);
+  EXPECT_THAT(flown.commanded, Each(0.0));
+  EXPECT_EQ(flown.rig.events(static_cast<std::uint16_t>(GetParam().event)), 1);
+  EXPECT_EQ(flown.rig.outcome(motion), "1 3 8:8003");
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, RobotArmLimits,
+                         ::testing::Values(Excessive{"torque", 1020, [](auto& m) { m.torque[3] = 23; }},
+                                           Excessive{"hard torque", 1021, [](auto& m) { m.torque[3] = -27; }},
+                                           Excessive{"position", 1022, [](auto& m) { m.position[1] = 2.3; }},
+                                           Excessive{"speed", 1023, [](auto& m) { m.velocity[0] = 2.3; }},
+                                           Excessive{"following", 1024, [](auto& m) { m.position[5] -= 0.2; }}),
+                         [](const auto& each) { return "By" + std::to_string(each.param.event); });
+
+TEST_F(RobotArmTest, StopsWhereSomebodyIsMet) {
+  flown.operate();
+  const auto motion = flown.move_j(goal, 0.5);
+  flown.cycle(500);
+  EXPECT_EQ(flown.rig.events(1025), 0);
+  flown.outside[0] = 60;
+  int cycles = 0;
+  while (flown.rig.events(1025) == 0 && cycles < 200) flown.cycle(), ++cycles;
+  EXPECT_LT(cycles, 40);
+  EXPECT_EQ(flown.rig.outcome(motion), "1 3 8:8004");
+  flown.outside[0] = 0;
+  flown.cycle(1500);
+  const JointVector where = flown.plant.measured().position;
+  flown.cycle(500);
+  EXPECT_LT(flown.off(where), 1e-3);
+  EXPECT_GT(flown.off(goal), 0.1);
+}
+
+TEST_F(RobotArmTest, SetsNoTorqueLimitBelowWhatItHolds) {
+  flown.operate();
+  flown.cycle(100);
+  const auto refused = flown.rig.call("SET_TORQUE_LIMIT", {0.1});
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(refused), StartsWith("1 4:8005"));
+  const auto taken = flown.rig.call("SET_TORQUE_LIMIT", {0.6});
+  flown.cycle(3);
+  EXPECT_EQ(flown.rig.outcome(taken), "1 3 7");
+}
+
+TEST_F(RobotArmTest, GoesStraightWithinTwoMillimetres) {
+  flown.operate();
+  robotics::Dynamics dynamics{flown.model, robotics::Base::Fixed};
+  const auto tip = flown.model.find_frame("tool").value();
+  const auto tool = [&] {
+    robotics::State state;
+    state.q = flown.plant.measured().position;
+    state.qd = flown.plant.measured().velocity;
+    dynamics.update(state);
+    return dynamics.frame_pose(tip);
+  };
+  const robotics::Pose from = tool();
+  const robotics::Quaternion kept{from.rotation};
+  const robotics::Vector3 way{-0.2, 0.15, 0.1};
+  const robotics::Vector3 to = from.position + way;
+  const auto request = flown.ask("MOVE_L", {to.x(), to.y(), to.z(), kept.w(), kept.x(), kept.y(), kept.z(), 0.25, 0.5});
+  double beside_m = 0;
+  for (int i = 0; i < 4000; ++i) {
+    flown.cycle();
+    const robotics::Vector3 gone = tool().position - from.position;
+    beside_m = std::max(beside_m, (gone - gone.dot(way) / way.squaredNorm() * way).norm());
+  }
+  EXPECT_EQ(flown.rig.outcome(request), "1 3 5:0001 7");
+  EXPECT_LE(beside_m, 0.002);
+  EXPECT_LE((tool().position - to).norm(), 0.001);
+}
+
+TEST_F(RobotArmTest, RefusesAGoalInWhichItMeetsItselfAndNamesWho) {
+  flown.operate();
+  const auto request = flown.move_j(vector_of(std::array{0.0, 0.0, 2.6, 2.2, 0.0, 0.0}));
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(request), StartsWith("1 4:800a"));
+  const std::string names = "upper_arm and ";
+  EXPECT_THAT(flown.rig.outcome(request), HasSubstr(testing::hex(std::as_bytes(std::span{names}))));
+}
+
+TEST_F(RobotArmTest, StopsBeforeWhatItIsToKeepOutOfAndMayGoAwayFromIt) {
+  flown.rig.bring_to(State::PreOperational, 1);
+  flown.cycle(5);
+  flown.command(State::SafeOperational);
+  robotics::Dynamics dynamics{flown.model, robotics::Base::Fixed};
+  const auto tool_at = [&](const JointVector& q) {
+    robotics::State state;
+    state.q = q;
+    state.qd = JointVector::Zero(6);
+    dynamics.update(state);
+    return dynamics.frame_pose(flown.model.find_frame("tool").value()).position;
+  };
+  // Between start and goal, where both are free.
+  const robotics::Vector3 between = tool_at((start + goal) / 2);
+  std::vector<std::optional<Value>> numbers;
+  for (const double number : {between.x(), between.y(), between.z(), between.x(), between.y(), between.z(), 0.05})
+    numbers.emplace_back(number);
+  numbers.resize(28, Value{0.0});
+  const auto set = flown.rig.call_with("KEEP_OUT", numbers);
+  flown.cycle(5);
+  ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
+  flown.command(State::Operational);
+  const auto motion = flown.move_j(goal);
+  flown.finish(motion);
+  EXPECT_THAT(flown.rig.outcome(motion), HasSubstr("8:800a"));
+  EXPECT_EQ(flown.rig.events(1026), 1);
+  flown.cycle(1000);
+  EXPECT_GT((tool_at(flown.plant.measured().position) - between).norm(), 0.05);
+  EXPECT_GT(flown.off(goal), 0.1);
+  const auto away = flown.move_j(start);
+  flown.finish(away);
+  EXPECT_EQ(flown.rig.outcome(away), "1 3 5:0001 7");
+}
+
+TEST_F(RobotArmTest, PassesItsSelfTest) {
+  flown.rig.bring_to(State::PreOperational, 1);
+  flown.cycle(5);
+  flown.command(State::SafeOperational);
+  const auto request = flown.rig.send(17, 128, {});
+  flown.cycle(40);
+  EXPECT_THAT(flown.rig.outcome(request), HasSubstr("7")) << ::testing::PrintToString(flown.rig.explanations);
+}
+
+/// A descriptor or a file that is wrong, and what it is refused with.
+struct Wrong {
+  const char* from;
+  const char* to;
+  const char* told;
+};
+struct RobotArmRefuses : ::testing::TestWithParam<Wrong> {};
+
+TEST_P(RobotArmRefuses, WhatDoesNotFitTogether) {
+  const auto& [from, to, told] = GetParam();
+  std::string text = descriptor_for(6, std::string{folder} + "robot_arm.urdf");
+  ASSERT_NE(text.find(from), std::string::npos);
+  replace_all(text, from, to);
+  const auto arm = make_robot_arm();
+  testing::Rig rig{*arm, text};
+  const std::string up = rig.set_state_now(State::PreOperational);
+  if (up == "1 3 7") {
+    EXPECT_THAT(rig.configure_now(1), StartsWith("1 3 8:"));
+  }
+  EXPECT_THAT(rig.explanations, Contains(HasSubstr(told)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Descriptors, RobotArmRefuses,
+    ::testing::Values(Wrong{"/robot_arm.urdf", "/nowhere.urdf", "nowhere.urdf"},
+                      Wrong{"value=\"tool\"", "value=\"nobody\"", "the robot has no link 'nobody'"},
+                      Wrong{"<Setting name=\"MODEL_FILE\"", "<Setting name=\"TIP2\"", "MODEL_FILE"},
+                      Wrong{R"(name="DES_VELOCITY" id="2" type="DOUBLE" count="6")",
+                            R"(name="DES_VELOCITY" id="2" type="DOUBLE" count="5")",
+                            "DES_VELOCITY has another length than the robot has joints"}));
+
+}  // namespace
+}  // namespace hirosco

@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "hirosco/pus/packet/failure_code.hpp"
+#include "robotics/dynamics/dynamics.hpp"
+#include "robotics/urdf/robot.hpp"
+#include "simulation/scenarios/flight.hpp"
+
+/// The mission six_joints on virtual time, judged by what its world tells, which shares nothing with the arm but a file.
+namespace hirosco {
+namespace {
+
+using Joints = std::array<double, 6>;
+using Place = std::array<double, 3>;
+
+constexpr Joints start{0.2, 0.5, 1.2, -0.6, 0.7, 0.1};
+constexpr Joints goal{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0};
+
+struct SixJoints : ::testing::Test {
+  std::optional<simulation::Flight> flown;
+
+  /// `differs`: how the world differs from the mission's own.
+  void fly(const std::vector<std::string>& differs = {}, std::uint64_t seed = 1) {
+    flown.emplace(
+        simulation::Plan{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/six_joints/mission.xml",
+                         .subsystems = {},
+                         .devices = {},
+                         .seed = seed});
+    for (const std::string& line : differs) ASSERT_TRUE(arm().fault(line)) << line;
+    ASSERT_TRUE(flown->commission()) << flown->story().text();
+  }
+  simulation::SimulatedDevice& arm() { return *flown->craft().device("arm"); }
+  static double word(const std::string& words, const std::string& name) {
+    const auto at = (" " + words).find(" " + name + "=");
+    return at == words.npos ? NAN : std::atof(words.c_str() + at + name.size() + 1);
+  }
+  Joints joints() {
+    const std::string words = arm().truth();
+    Joints found;
+    for (std::size_t i = 0; i < found.size(); ++i) found[i] = word(words, fmt::format("q{}", i + 1));
+    return found;
+  }
+  Place tip() {
+    const std::string words = arm().truth();
+    return {word(words, "tip_x"), word(words, "tip_y"), word(words, "tip_z")};
+  }
+  double off(const Joints& where) {
+    const Joints now = joints();
+    double most = 0;
+    for (std::size_t i = 0; i < where.size(); ++i) most = std::max(most, std::abs(now[i] - where[i]));
+    return most;
+  }
+  double fastest() {
+    const std::string words = arm().truth();
+    double most = 0;
+    for (std::size_t i = 1; i <= 6; ++i) most = std::max(most, std::abs(word(words, fmt::format("qd{}", i))));
+    return most;
+  }
+  simulation::CommandOutcome move_j(const Joints& where, double speed = 1) {
+    std::vector<Value> numbers(where.begin(), where.end());
+    numbers.emplace_back(speed);
+    return flown->craft().command("ARM", "MOVE_J", numbers, 70s);
+  }
+};
+
+TEST(SixJointsPage, ShowsTheRobotThatFlies) {
+  const auto text = [](const char* file) {
+    return descriptor::file_system()(std::filesystem::path{HIROSCO_SOURCE_DIR} / file).value();
+  };
+  EXPECT_EQ(text("missions/six_joints/page/robot_arm.urdf"), text("subsystems/robot_arm/robot_arm.urdf"));
+}
+
+TEST_F(SixJoints, ReachesItsGoalsWithinAMilliradianHoweverTheWorldDiffersFromTheFile) {
+  struct Case {
+    const char* name;
+    std::vector<std::string> differs;
+    double declared_kg{0};
+  };
+  const std::array cases{Case{"as the file says", {"mass 1", "friction 1"}},
+                         Case{"masses, rotors, inertias, friction",
+                              {"mass 1.1", "friction 3", "inertia 1.05", "rotors 0.55,0.55,0.44,0.11,0.11,0.11"}},
+                         Case{"2 kg undeclared", {"mass 1", "friction 1", "payload 2"}},
+                         Case{"2 kg declared", {"mass 1", "friction 1", "payload 2"}, 2}};
+  for (const Case& each : cases) {
+    fly(each.differs);
+    if (each.declared_kg > 0) {
+      ASSERT_TRUE(flown->craft().command("ARM", "SET_PAYLOAD", {each.declared_kg, 0.0, 0.0, 0.0}).completed);
+    }
+    double most = 0;
+    for (const Joints& where : {goal, start}) {
+      const auto outcome = move_j(where);
+      EXPECT_TRUE(outcome.completed) << each.name << "\n" << flown->story().text();
+      EXPECT_EQ(outcome.progress_reports, 1) << each.name;
+      most = std::max(most, off(where));
+    }
+    std::cout << fmt::format("  {}: {:.2f} mrad\n", each.name, 1e3 * most);
+    EXPECT_LE(most, 1e-3) << each.name;
+    EXPECT_EQ(flown->inhibited("ARM"), 0u);
+  }
+}
+
+TEST_F(SixJoints, GoesStraightWithinTwoMillimetres) {
+  fly();
+  const auto reading =
+      robotics::urdf::read(HIROSCO_SOURCE_DIR "/subsystems/robot_arm/robot_arm.urdf", descriptor::file_system());
+  const auto model = robotics::Model::make(robotics::urdf::describe(reading.value.value())).value();
+  robotics::Dynamics kinematics{model, robotics::Base::Fixed};
+  const auto tool = [&] {
+    const Joints now = joints();
+    robotics::State state;
+    state.q = Eigen::Map<const Eigen::VectorXd>(now.data(), 6);
+    state.qd = robotics::JointVector::Zero(6);
+    kinematics.update(state);
+    return kinematics.frame_pose(model.find_frame("tool").value());
+  };
+  const robotics::Pose from = tool();
+  const Place seen = tip();
+  EXPECT_LT((from.position - robotics::Vector3{seen[0], seen[1], seen[2]}).norm(), 1e-5) << "both read the file alike";
+  const robotics::Vector3 way{-0.2, 0.15, 0.1};
+  const robotics::Vector3 to = from.position + way;
+  const robotics::Quaternion kept{from.rotation};
+  double beside_m = 0;
+  flown->craft().on_cycle([&, cycles = 0](std::string_view, TimePoint) mutable {
+    if (++cycles % 10 != 0) return;
+    const Place now = tip();
+    const robotics::Vector3 gone = robotics::Vector3{now[0], now[1], now[2]} - from.position;
+    beside_m = std::max(beside_m, (gone - gone.dot(way) / way.squaredNorm() * way).norm());
+  });
+  const auto outcome = flown->craft().command(
+      "ARM", "MOVE_L", {to.x(), to.y(), to.z(), kept.w(), kept.x(), kept.y(), kept.z(), 0.25, 0.5}, 20s);
+  EXPECT_TRUE(outcome.completed) << flown->story().text();
+  std::cout << fmt::format("  beside its line: {:.2f} mm, off its goal {:.2f} mm\n", 1e3 * beside_m,
+                           1e3 * (tool().position - to).norm());
+  EXPECT_LE(beside_m, 0.002);
+  EXPECT_LE((tool().position - to).norm(), 0.001);
+}
+
+TEST_F(SixJoints, AnUnpluggedArmIsHeldByItsBrakesAndItsNetworkGoesDown) {
+  fly();
+  flown->craft().on_cycle([&, cycles = 0](std::string_view, TimePoint) mutable {
+    if (++cycles == 700) {
+      ASSERT_TRUE(arm().fault("unplug"));
+    }
+  });
+  const auto outcome = move_j(goal);
+  EXPECT_FALSE(outcome.completed);
+  EXPECT_TRUE(flown->story().has("ARM high ARM_LOST")) << flown->story().text();
+  ASSERT_TRUE(flown->run_until_state("ARM", State::Offline, 5s)) << flown->story().text();
+  flown->craft().run(1s);
+  EXPECT_LT(fastest(), 1e-3);
+  EXPECT_GT(off(goal), 0.1) << "it did not arrive";
+  EXPECT_FALSE(arm().active());
+}
+
+TEST_F(SixJoints, IsStoppedByALimitAndBroughtToSafeOperational) {
+  fly();
+  ASSERT_TRUE(flown->craft().command("ARM", "SET_CONTACT", {std::uint8_t{0}, 1.0}).completed);
+  ASSERT_TRUE(flown->craft().command("ARM", "SET_TORQUE_LIMIT", {0.6}).completed) << flown->story().text();
+  ASSERT_TRUE(arm().fault("push 0 0 -100"));
+  ASSERT_TRUE(flown->run_until_state("ARM", State::SafeOperational, 5s)) << flown->story().text();
+  EXPECT_TRUE(flown->story().has("_LIMIT_EXCEEDED")) << flown->story().text();
+  ASSERT_TRUE(arm().fault("push 0 0 0"));
+  flown->craft().run(1s);
+  EXPECT_LT(fastest(), 1e-3);
+}
+
+TEST_F(SixJoints, StaysWhereItMeetsSomebody) {
+  fly();
+  flown->craft().on_cycle([&, cycles = 0](std::string_view, TimePoint) mutable {
+    ++cycles;
+    if (cycles == 500 || cycles == 900) {
+      ASSERT_TRUE(arm().fault(cycles == 500 ? "push 0 120 0" : "push 0 0 0"));
+    }
+  });
+  const auto outcome = move_j(goal);
+  EXPECT_EQ(static_cast<std::uint16_t>(outcome.failure.value()), 0x8004) << flown->story().text();
+  flown->craft().run(2s);
+  EXPECT_LT(fastest(), 1e-3);
+  EXPECT_EQ(flown->state("ARM"), State::Operational);
+  EXPECT_TRUE(move_j(goal).completed) << flown->story().text();
+}
+
+TEST(SixJointsWorld, ThatCannotBeMadeIsToldWithItsReason) {
+  simulation::Flight flight{{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/six_joints/mission.xml",
+                             .edit =
+                                 [](descriptor::Mission& mission) {
+                                   for (auto& member : mission.subsystems)
+                                     for (auto& configuration : member.subsystem.configurations)
+                                       for (auto& use : configuration.devices)
+                                         for (auto& setting : use.settings)
+                                           if (setting.name == "MODEL_FILE") setting.value = "nowhere.urdf";
+                                 },
+                             .subsystems = {},
+                             .devices = {}}};
+  EXPECT_TRUE(flight.story().has("no simulated device arm: ")) << flight.story().text();
+  EXPECT_TRUE(flight.story().has("nowhere.urdf")) << flight.story().text();
+  EXPECT_FALSE(flight.commission());
+}
+
+TEST_F(SixJoints, GivesTheSameOctetsTwice) {
+  std::array<std::vector<supervisor::LogRecord>, 2> records;
+  for (auto& each : records) {
+    fly({"noise 0.1"});
+    EXPECT_TRUE(move_j(goal).completed);
+    each = flown->records();
+  }
+  EXPECT_GT(records[0].size(), 100u);
+  EXPECT_TRUE(records[0] == records[1]);
+}
+
+}  // namespace
+}  // namespace hirosco
