@@ -45,6 +45,21 @@ struct CheckOptions {
 };
 int check(const CheckOptions& options);
 
+struct DoctorOptions {
+  std::string mission;               ///< empty = the usual one
+  bool json{false};
+};
+/// What of this computer a mission needs to fly with its figures, and the line that mends what is missing (adr 0109). 1: something is.
+int look_after(const DoctorOptions& options);
+
+struct NewOptions {
+  std::string kind;                  ///< one of new_kinds()
+  std::string name;
+  std::string to{"."};               ///< folder that gets the new one
+};
+/// A folder of one's own to begin with (adr 0109).
+int make_new(const NewOptions& options);
+
 struct DynamicsOptions {
   std::string model;                 ///< URDF file
   std::string tip;                   ///< link; empty = the only one at an end
