@@ -38,9 +38,8 @@ using std::chrono::microseconds;
 
 Finding priority(const System& system) {
   if (!system.no_priority) return ok(fmt::format("SCHED_FIFO up to {} is granted", system.highest_priority));
-  const std::string refused =
-      fmt::format("SCHED_FIFO {} is refused to {}: {}; the reduced limits of time hold", system.highest_priority,
-                  system.user, why(*system.no_priority));
+  const std::string refused = fmt::format("SCHED_FIFO {} is refused to {}: {}; the reduced limits of time hold",
+                                          system.highest_priority, system.user, why(*system.no_priority));
   // Who has the limit and is refused is in a control group that has no such time.
   if (system.priority_limit >= static_cast<std::uint64_t>(system.highest_priority) || system.user == "root")
     return missing(refused + " (its control group has no time for it)",
@@ -78,9 +77,9 @@ Finding processors(const System& system) {
 
 Finding quota(const System& system) {
   if (system.quota == 0) return ok("no bound");
-  return missing(fmt::format("{:.2f} processors: whoever has used them up stands still until the next period",
-                             system.quota),
-                 fmt::format("echo max | sudo tee {}", system.group));
+  return missing(
+      fmt::format("{:.2f} processors: whoever has used them up stands still until the next period", system.quota),
+      fmt::format("echo max | sudo tee {}", system.group));
 }
 
 Finding throttling(const System& system) {
@@ -108,8 +107,9 @@ Finding governor(const System& system) {
 Finding clock(const System& system) {
   const std::string is = fmt::format("{}, in steps of {} ns", system.clock_source, system.resolution.count());
   if (system.resolution > 1us)
-    return missing(is + ": too coarse for cycles", "sudo sed -i 's/highres=off//' /etc/default/grub && sudo "
-                                                   "update-grub  # and restart");
+    return missing(is + ": too coarse for cycles",
+                   "sudo sed -i 's/highres=off//' /etc/default/grub && sudo "
+                   "update-grub  # and restart");
   const bool slow = system.clock_source == "hpet" || system.clock_source == "acpi_pm";
   return slow ? worth_knowing(is + ": each look at it takes a microsecond",
                               "echo tsc | sudo tee /sys/devices/system/clocksource/clocksource0/current_clocksource")
@@ -131,9 +131,8 @@ Finding slack(const System& system) {
 Finding wake_up(const System& system) {
   if (system.late.empty()) return worth_knowing("not measured");
   const Duration worst = system.late.back(), usual = system.late[system.late.size() / 2];
-  const std::string is =
-      fmt::format("{} sleeps of 500 us: {:.0f} us late as a rule, {:.0f} us at most", system.late.size(), in_us(usual),
-                  in_us(worst));
+  const std::string is = fmt::format("{} sleeps of 500 us: {:.0f} us late as a rule, {:.0f} us at most",
+                                     system.late.size(), in_us(usual), in_us(worst));
   if (worst < 500us) return ok(is);
   return worth_knowing(is + ", more than a cycle at 2 kHz", "bench/run  # says more of it; end other work meanwhile");
 }
@@ -145,9 +144,9 @@ Finding ground_link(const System& system) {
       return worth_knowing(fmt::format("{} is that of the flight {}", port.address, port.flight),
                            fmt::format("hirosco run {} --instance NAME", system.mission));
     if (port.why_not)
-      return missing(fmt::format("{}: {}", port.address, *port.why_not),
-                     fmt::format("hirosco run {} --instance NAME  # takes free ones; who has it: ss -ltnp",
-                                 system.mission));
+      return missing(
+          fmt::format("{}: {}", port.address, *port.why_not),
+          fmt::format("hirosco run {} --instance NAME  # takes free ones; who has it: ss -ltnp", system.mission));
     free += (free.empty() ? "" : ", ") + port.address;
   }
   return ok(free.empty() ? "the mission has none" : free + " are free");
@@ -155,7 +154,8 @@ Finding ground_link(const System& system) {
 
 Finding page(const System& system) {
   if (!system.station)
-    return worth_knowing("no program hirosco-ground", "sudo apt install hirosco-ground  # in sources: npm, libboost-dev");
+    return worth_knowing("no program hirosco-ground",
+                         "sudo apt install hirosco-ground  # in sources: npm, libboost-dev");
   if (!system.page_built) return worth_knowing("no page was built", "sudo apt install npm  # and build again");
   if (system.page.why_not) return ok(fmt::format("{} is taken: the next free port", system.page.address));
   return ok(fmt::format("{} is free", system.page.address));
@@ -169,9 +169,9 @@ Finding places(const System& system) {
       return missing(fmt::format("{}: {}", place.path.string(), *place.why_not),
                      fmt::format("sudo install -d -o {} {}", system.user, place.path.string()));
     if (place.free_octets < least)
-      return missing(fmt::format("{}: {} MiB free, {} wanted", place.path.string(), place.free_octets / mebi,
-                                 least / mebi),
-                     fmt::format("du -xh --max-depth 1 {} | sort -h", place.path.string()));
+      return missing(
+          fmt::format("{}: {} MiB free, {} wanted", place.path.string(), place.free_octets / mebi, least / mebi),
+          fmt::format("du -xh --max-depth 1 {} | sort -h", place.path.string()));
     are += fmt::format("{}{} ({} MiB free)", are.empty() ? "" : ", ", place.path.string(), place.free_octets / mebi);
   }
   return ok(are);
@@ -179,9 +179,10 @@ Finding places(const System& system) {
 
 Finding programs(const System& system) {
   if (system.not_ready.empty()) return ok(fmt::format("all that {} names", system.mission));
-  return missing(fmt::format("{}{}", system.not_ready.front(),
-                             system.not_ready.size() > 1 ? fmt::format(" and {} more", system.not_ready.size() - 1) : ""),
-                 fmt::format("hirosco check --fly {}  # tells all, with places", system.mission));
+  return missing(
+      fmt::format("{}{}", system.not_ready.front(),
+                  system.not_ready.size() > 1 ? fmt::format(" and {} more", system.not_ready.size() - 1) : ""),
+      fmt::format("hirosco check --fly {}  # tells all, with places", system.mission));
 }
 
 Finding build_tools(const System& system) {

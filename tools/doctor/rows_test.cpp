@@ -71,9 +71,8 @@ struct Case {
 
 const std::vector<Case>& cases() {
   static const std::vector<Case> all{
-      {"real-time rights",
-       [](System& system) { system.no_priority = refused(EPERM), system.priority_limit = 0; }, Verdict::Missing,
-       "SCHED_FIFO 91 is refused to ada: Operation not permitted",
+      {"real-time rights", [](System& system) { system.no_priority = refused(EPERM), system.priority_limit = 0; },
+       Verdict::Missing, "SCHED_FIFO 91 is refused to ada: Operation not permitted",
        "echo 'ada - rtprio 95' | sudo tee -a /etc/security/limits.d/90-hirosco.conf"},
       {"real-time rights", [](System& system) { system.no_priority = refused(EPERM); }, Verdict::Missing,
        "its control group has no time for it", "cpu.rt_runtime_us"},
@@ -91,9 +90,8 @@ const std::vector<Case>& cases() {
        },
        Verdict::Missing, "the mission requires all", "unset HIROSCO_SANDBOX"},
       {"processors", [](System& system) { system.processors = 1; }, Verdict::WorthKnowing, "one for cycles", "nproc"},
-      {"processor quota",
-       [](System& system) { system.quota = 0.5, system.group = "/sys/fs/cgroup/a/cpu.max"; }, Verdict::Missing,
-       "0.50 processors", "echo max | sudo tee /sys/fs/cgroup/a/cpu.max"},
+      {"processor quota", [](System& system) { system.quota = 0.5, system.group = "/sys/fs/cgroup/a/cpu.max"; },
+       Verdict::Missing, "0.50 processors", "echo max | sudo tee /sys/fs/cgroup/a/cpu.max"},
       {"throttling", [](System& system) { system.realtime_us = 500'000; }, Verdict::Missing, "50 %",
        "sudo sysctl kernel.sched_rt_runtime_us=950000"},
       {"kernel", [](System& system) { system.realtime_kernel = false, system.preemption = "PREEMPT_DYNAMIC"; },
@@ -106,7 +104,8 @@ const std::vector<Case>& cases() {
        "timedatectl set-ntp true"},
       {"timer slack", [](System& system) { system.no_priority = refused(EPERM); }, Verdict::WorthKnowing,
        "50 us, by which", "rtprio 95"},
-      {"wake-up", [](System& system) { system.late.back() = 2ms; }, Verdict::WorthKnowing, "2000 us at most", "bench/run"},
+      {"wake-up", [](System& system) { system.late.back() = 2ms; }, Verdict::WorthKnowing, "2000 us at most",
+       "bench/run"},
       {"wake-up", [](System& system) { system.late.clear(); }, Verdict::WorthKnowing, "not measured", ""},
       {"ground link", [](System& system) { system.ground_link[1].why_not = "somebody listens there"; },
        Verdict::Missing, "127.0.0.1:10025: somebody listens there", "hirosco run lamp/mission.xml --instance NAME"},

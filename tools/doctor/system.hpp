@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
 
@@ -31,7 +30,7 @@ struct Port {
   std::string flight;                  ///< of the registry, that listens there; empty: none
 };
 
-/// What `hirosco doctor` judges: of this computer by look_at(), of any other by a test.
+/// What `hirosco doctor` judges: of this computer by look_at() of the command, of any other by a test.
 struct System {
   std::string user;
   // Rights, asked as a flight asks for them.
@@ -66,8 +65,5 @@ struct System {
   bool station{false}, page_built{false};
   std::vector<std::string> no_tools;  ///< of those that build a subsystem
 };
-
-/// Looks, within half a second. `not_ready` is who calls' to say.
-[[nodiscard]] System look_at(const descriptor::Mission& mission);
 
 }  // namespace hirosco::tools::doctor

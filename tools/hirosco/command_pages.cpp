@@ -141,12 +141,12 @@ _hirosco() {
 )";
 
 constexpr std::string_view completion_ends = R"(  esac
-  [[ -z $missions ]] || words+=" $("${COMP_WORDS[0]}" command-pages missions 2>/dev/null)"
-  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
-  if [[ $current != -* && $command != hirosco ]]; then
-    compopt -o filenames 2>/dev/null
-    mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -- "$current")
-  fi
+  [[ -z $missions ]] || words+=" $("${COMP_WORDS[0]}" command-pages missions 2>/dev/null)" mapfile -
+                                                 t COMPREPLY < <
+                                             (compgen - W "$words" --"$current") if
+                                             [[$current != -*&&$command != hirosco]];
+then compopt - o filenames 2 > / dev / null mapfile - t - O "${#COMPREPLY[@]}" COMPREPLY < <
+    (compgen - f-- "$current") fi
 }
 complete -F _hirosco hirosco
 )";
@@ -158,7 +158,8 @@ std::string man_page(const CLI::App& app) {
       ".\\\" SPDX-FileCopyrightText: 2026 The HIROSCO developers\n.\\\" SPDX-License-Identifier: Apache-2.0\n"
       ".TH HIROSCO 1 \"\" \"hirosco {}\" \"User Commands\"\n.SH NAME\nhirosco \\- {}\n"
       ".SH SYNOPSIS\n.B hirosco\n.I COMMAND\n[ARGUMENTS] [OPTIONS]\n.SH DESCRIPTION\n"
-      "Flies, checks, simulates and commands missions: a supervisor, the subsystems that it watches, and the devices behind them.\n"
+      "Flies, checks, simulates and commands missions: a supervisor, the subsystems that it watches, and the devices "
+      "behind them.\n"
       ".SH OPTIONS\n",
       version, roff("high-level robotic spacecraft controller"));
   for (const CLI::Option* option : app.get_options())
@@ -190,8 +191,9 @@ std::string bash_completion(const CLI::App& app) {
     }
     words += fmt::format("    '{}') words='{}'{} ;;\n", name, fmt::join(all, " "), missions ? " missions=yes" : "");
   });
-  return fmt::format("{}{}    esac\n  done\n  case \"$command $before\" in\n{}    *) case $command in\n{}    esac ;;\n{}",
-                     completion_begins, nested, values, words, completion_ends);
+  return fmt::format(
+      "{}{}    esac\n  done\n  case \"$command $before\" in\n{}    *) case $command in\n{}    esac ;;\n{}",
+      completion_begins, nested, values, words, completion_ends);
 }
 
 }  // namespace hirosco::tools

@@ -46,16 +46,16 @@ struct CheckOptions {
 int check(const CheckOptions& options);
 
 struct DoctorOptions {
-  std::string mission;               ///< empty = the usual one
+  std::string mission;  ///< empty = the usual one
   bool json{false};
 };
-/// What of this computer a mission needs to fly with its figures, and the line that mends what is missing (adr 0109). 1: something is.
+/// What a mission needs of this computer to fly with its figures, and what mends it (adr 0109). 1: something is missing.
 int look_after(const DoctorOptions& options);
 
 struct NewOptions {
-  std::string kind;                  ///< one of new_kinds()
+  std::string kind;  ///< one of new_kinds()
   std::string name;
-  std::string to{"."};               ///< folder that gets the new one
+  std::string to{"."};  ///< folder that gets the new one
 };
 /// A folder of one's own to begin with (adr 0109).
 int make_new(const NewOptions& options);

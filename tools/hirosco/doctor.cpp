@@ -8,6 +8,7 @@
 #include "hirosco/utilities/version.hpp"
 #include "tools/doctor/rows.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/look_at.hpp"
 #include "tools/hirosco/readiness.hpp"
 
 namespace hirosco::tools {

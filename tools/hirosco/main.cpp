@@ -82,7 +82,8 @@ int read_and_do(int argc, char** argv) {
 
   DoctorOptions doctor_options;
   auto* doctor_command = app.add_subcommand(
-      "doctor", "What this computer has and lacks for a flight, with the line that mends it; ends with 1 when it matters");
+      "doctor",
+      "What this computer has and lacks for a flight, with the line that mends it; ends with 1 when it matters");
   doctor_command->add_option("mission", doctor_options.mission,
                              "Name or path of the mission that is to fly; by default the usual one");
   doctor_command->add_flag("--json", doctor_options.json, "One JSON object a line");
@@ -250,7 +251,8 @@ int read_and_do(int argc, char** argv) {
   add_export(Exported::Yamcs, "yamcs", "A project with which Yamcs starts: database, links, events in words, stacks");
   add_export(Exported::InterfaceDocument, "icd", "The interface document: every packet, octet by octet, as Markdown");
   std::string page;
-  auto* pages = app.add_subcommand(pages_command, "Writes the man page, the completion of bash, or the names of missions");
+  auto* pages =
+      app.add_subcommand(pages_command, "Writes the man page, the completion of bash, or the names of missions");
   pages->group("");
   pages->add_option("page", page)->required()->check(CLI::IsMember({"man", "bash", "missions"}));
   // Values such as -0.8 are arguments, not options.
@@ -273,7 +275,7 @@ int read_and_do(int argc, char** argv) {
     return code == 0 ? exit_ok : exit_usage;
   }
   if (*pages) {
-    fmt::print("{}", page == "man" ? man_page(app)
+    fmt::print("{}", page == "man"    ? man_page(app)
                      : page == "bash" ? bash_completion(app)
                                       : fmt::format("{}\n", fmt::join(known_missions(), "\n")));
     return exit_ok;

