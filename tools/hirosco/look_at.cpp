@@ -113,7 +113,7 @@ void look_at_group(System& system) {
   for (std::string line; std::getline(groups, line);) {
     const auto last = line.rfind(':');
     const auto first = line.find(':');
-    if (last == std::string::npos || first == last) continue;
+    if (last == std::string::npos || first == last || line.size() < last + 2) continue;
     const std::string controllers = line.substr(first + 1, last - first - 1);
     const bool second = controllers.empty();
     if (!second && controllers.find("cpu") != 0) continue;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <fstream>
 
 #include "hirosco/utilities/version.hpp"
 #include "tools/dynamics/batch.hpp"
@@ -42,6 +43,13 @@ void add_connection(CLI::App& command, Connection& connection) {
   fmt::print(stderr, "hirosco: no command '{}'{}; there are: {}\n", argv[1], did_you_mean(argv[1], names),
              fmt::join(names, ", "));
   return true;
+}
+
+/// To standard output where no file is named.
+int write_page(const std::string& file, const std::string& text) {
+  if (file.empty()) return fmt::print("{}", text), exit_ok;
+  std::ofstream written{file};
+  return written << text && written.flush() ? exit_ok : exit_environment;
 }
 
 int read_and_do(int argc, char** argv) {
@@ -254,7 +262,9 @@ int read_and_do(int argc, char** argv) {
   auto* pages =
       app.add_subcommand(pages_command, "Writes the man page, the completion of bash, or the names of missions");
   pages->group("");
+  std::string page_file;
   pages->add_option("page", page)->required()->check(CLI::IsMember({"man", "bash", "missions"}));
+  pages->add_option("file", page_file);
   // Values such as -0.8 are arguments, not options.
   tc_command->prefix_command(false);
 
@@ -274,12 +284,10 @@ int read_and_do(int argc, char** argv) {
     const int code = app.exit(error);
     return code == 0 ? exit_ok : exit_usage;
   }
-  if (*pages) {
-    fmt::print("{}", page == "man"    ? man_page(app)
-                     : page == "bash" ? bash_completion(app)
-                                      : fmt::format("{}\n", fmt::join(known_missions(), "\n")));
-    return exit_ok;
-  }
+  if (*pages)
+    return write_page(page_file, page == "man"    ? man_page(app)
+                                 : page == "bash" ? bash_completion(app)
+                                                  : fmt::format("{}\n", fmt::join(known_missions(), "\n")));
   run_options.ground = !no_ground;
   if (*run_command) return run(run_options);
   if (*tour_command) {
