@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <hirosco/descriptor/read/read.hpp>
 #include <hirosco/subsystem/testing/rig.hpp>
 
@@ -32,5 +33,6 @@ TEST(NewPart, GoesToWhereItIsToldAndSaysWhenItIsThere) {
   EXPECT_EQ(rig.outcome(request), "1 3") << "it takes half a second";
   cycles(200);
   EXPECT_EQ(rig.outcome(request), "1 3 7");
-  EXPECT_EQ(rig.reports(5, 1).size(), 1U);
+  const auto told = rig.reports(5, 1);
+  EXPECT_EQ(std::ranges::count(told, "13893fe0000000000000"), 1) << "event 5001 with the value 0.5, once";
 }

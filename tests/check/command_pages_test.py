@@ -28,7 +28,7 @@ def helped(*words):
             last = row[1].rstrip(",")
             found[part][last] = row[2]
         elif part and last and line.startswith("     "):
-            found[part][last] += " " + line
+            found[part][last] += "  " + line.strip()
     return found
 
 
@@ -55,7 +55,7 @@ class CommandPages(unittest.TestCase):
                     options += 1
                     self.assertRegex(parts[name], rf"(?m)^\.B (-h, )?{re.escape(word.split(',')[-1])}\b", name)
                     # Behind types and marks the words are the last thing in the line of help.
-                    self.assertIn(" ".join(description.split())[-20:], flat, f"{name} {word}")
+                    self.assertIn(" ".join(re.split(r"\s{2,}", description)[-1].split())[-20:], flat, f"{name} {word}")
         self.assertGreater(options, 80)
 
     def test_bash_completes_every_command_and_option(self):

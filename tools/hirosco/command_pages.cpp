@@ -140,16 +140,16 @@ _hirosco() {
     case "$command ${COMP_WORDS[i]}" in
 )";
 
-constexpr std::string_view completion_ends = R"(  esac
-  [[ -z $missions ]] || words+=" $("${COMP_WORDS[0]}" command-pages missions 2>/dev/null)" mapfile -
-                                                 t COMPREPLY < <
-                                             (compgen - W "$words" --"$current") if
-                                             [[$current != -*&&$command != hirosco]];
-then compopt - o filenames 2 > / dev / null mapfile - t - O "${#COMPREPLY[@]}" COMPREPLY < <
-    (compgen - f-- "$current") fi
+constexpr std::string_view completion_ends = R"sh(  esac
+  [[ -z $missions ]] || words+=" $("${COMP_WORDS[0]}" command-pages missions 2>/dev/null)"
+  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+  if [[ $current != -* && $command != hirosco ]]; then
+    compopt -o filenames 2>/dev/null
+    mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -- "$current")
+  fi
 }
 complete -F _hirosco hirosco
-)";
+)sh";
 
 }  // namespace
 
