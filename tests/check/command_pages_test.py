@@ -24,6 +24,8 @@ def helped(*words):
     for line in text.splitlines():
         if heading := re.fullmatch(r"(Subcommands|Options|Positionals):", line):
             part = heading[1]
+        elif line and not line.startswith(" "):
+            part = ""  # what stands below the options
         elif part and (row := re.match(r"  (-?\S+)(.*)", line)):
             last = row[1].rstrip(",")
             found[part][last] = row[2]
