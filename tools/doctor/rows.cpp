@@ -105,7 +105,9 @@ Finding governor(const System& system) {
 }
 
 Finding clock(const System& system) {
-  const std::string is = fmt::format("{}, in steps of {} ns", system.clock_source, system.resolution.count());
+  const std::string is =
+      fmt::format("{}, in steps of {} ns", system.clock_source.empty() ? "a clock without a name" : system.clock_source,
+                  system.resolution.count());
   if (system.resolution > 1us)
     return missing(is + ": too coarse for cycles",
                    "sudo sed -i 's/highres=off//' /etc/default/grub && sudo "
