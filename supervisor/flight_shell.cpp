@@ -313,6 +313,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   while (!supervisor.finished()) {
     const TimePoint wake = supervisor.step(clock.now());
     page.supervisor.fetch_add(1, std::memory_order_relaxed);
+    if (supervisor.commissioned()) page.commissioned.store(1, std::memory_order_relaxed);
     const bool still = kept && keeper_progress.stands_still(page.keeper.load(std::memory_order_relaxed), clock.now());
     if (still && !keeper_still) supervisor.keeper_stands_still();
     keeper_still = still;

@@ -25,6 +25,7 @@
 #include "hirosco/utilities/os/thread.hpp"
 #include "supervisor/keeper/inhibit_bridge.hpp"
 #include "supervisor/keeper/kept_store.hpp"
+#include "supervisor/keeper/service_notice.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -38,8 +39,6 @@ constexpr Duration one_wish = 1s;
 constexpr Duration orphan_grace = 5s;
 /// How often it looks; signals wake it.
 constexpr Duration look = 100ms;
-/// Above the supervisor's loop and every cycle: what it does when a supervisor has died takes well below a millisecond.
-constexpr int keeper_priority = 91;
 /// More than the supervisor allows itself for an orderly end.
 constexpr Duration supervisor_grace = 15s;
 
@@ -150,8 +149,10 @@ struct Shared {
 /// A flight with its supervisors, one after the other.
 class Flight {
  public:
-  Flight(KeeperPlan& plan, Shared& shared, const std::vector<Process>& devices, const sigset_t& signals)
+  Flight(KeeperPlan& plan, Shared& shared, const std::vector<Process>& devices, const sigset_t& signals,
+         const ServiceNotice& notice)
       : plan_{plan},
+        notice_{notice},
         devices_{devices},
         shared_{shared},
         page_{shared.page()},
@@ -184,6 +185,7 @@ class Flight {
       page_.keeper.fetch_add(1, std::memory_order_relaxed);
       shared_.store->take();
       reap();
+      tell_manager();
       if (const auto code = look_after()) return *code;
       take_signal(next_signal(signals_, revive_at_ ? 1ms : look));
     }
@@ -238,6 +240,17 @@ class Flight {
     });
   }
 
+  /// Once each.
+  void tell_manager() {
+    if (!told_ready_ && page_.commissioned.load(std::memory_order_relaxed) != 0) {
+      told_ready_ = true;
+      notice_.ready();
+    }
+    if (told_end_ || (!asked_ && page_.finished.load() == 0)) return;
+    told_end_ = true;
+    notice_.ends();
+  }
+
   /// By SIGSTOP: it neither steps nor guards.
   [[nodiscard]] bool stopped() const noexcept {
     siginfo_t info{};
@@ -269,6 +282,8 @@ class Flight {
 
   const SystemClock clock_;
   KeeperPlan& plan_;
+  const ServiceNotice& notice_;
+  bool told_ready_{false}, told_end_{false};
   const std::vector<Process>& devices_;
   Shared& shared_;
   KeeperPage& page_;
@@ -294,6 +309,7 @@ int keep(KeeperPlan plan) {
   const sigset_t set = handled_signals();
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
+  const ServiceNotice notice = ServiceNotice::take();  // before anybody is started
   Shared shared;
   if (const int code = prepare(shared); code != 0) return code;
 
@@ -312,7 +328,7 @@ int keep(KeeperPlan plan) {
   static_cast<void>(set_fifo_priority(keeper_priority));
   int code = 0;
   {
-    Flight flight{plan, shared, devices, set};
+    Flight flight{plan, shared, devices, set, notice};
     if (const auto started = flight.start(); !started)
       code = refused(("cannot start " + plan.supervisor.executable).c_str(), started.error().value);
     else code = flight.fly();

@@ -14,6 +14,10 @@
 /// what is left, and starts another supervisor where one has died (docs/adr/0093). Parses nothing from outside.
 namespace hirosco::supervisor {
 
+/// Above the supervisor's loop, its guard and every cycle, so the highest of a flight: what the keeper does when a supervisor has died
+/// takes well below a millisecond.
+inline constexpr int keeper_priority = 91;
+
 struct KeeperPlan {
   ProcessStart supervisor;
   std::vector<ProcessStart> devices;
@@ -22,6 +26,7 @@ struct KeeperPlan {
   std::vector<FlowAddress> inhibits;  ///< second inhibits of the mission's devices, in the order of kept_endnodes()
 };
 
+/// A service manager that has NOTIFY_SOCKET in the environment is told when the start mode is reached, and when the end begins.
 /// Returns the exit code of the supervisor; 4 when it was ended by a signal or stood still, and no other went on. SIGUSR1 stops
 /// everything that moves. Blocks until everything has ended, the subsystems of a supervisor that died before them included.
 [[nodiscard]] int keep(KeeperPlan plan);

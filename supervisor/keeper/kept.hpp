@@ -71,6 +71,7 @@ struct KeeperPage {
   std::atomic<std::uint64_t> keeper{0};
   std::atomic<std::uint64_t> supervisor{0};
   std::atomic<std::uint32_t> finished{0};  ///< 1: the supervisor ends by itself, and the flight with it
+  std::atomic<std::uint32_t> commissioned{0};  ///< 1: the start mode is reached, for once
   std::atomic<std::uint32_t> alone{
       0};  ///< 1: nothing that the supervisor has started outlives it, so nobody goes on for it
   std::atomic<std::uint32_t> starts{0};  ///< supervisors that were started

@@ -10,7 +10,6 @@ import shutil
 import socket
 import struct
 import subprocess
-import tempfile
 import threading
 import time
 import unittest
@@ -18,9 +17,11 @@ import urllib.error
 import urllib.request
 
 import flight
+import outside
+from new_kinds import New, NewFlown  # run by their names, with the same installed tree
+from outside import BUILD
 
 HERE = pathlib.Path(__file__).resolve().parent
-BUILD = pathlib.Path(os.environ.get("HIROSCO_BUILD", flight.BINARIES.parent))
 
 
 METER = """
@@ -45,35 +46,20 @@ with Spacecraft() as craft:
 """
 
 
-class Outside:
-    """The installed tree, moved, and the author's folder built against it."""
+class Outside(outside.Installed):
+    """The author's folder, built against the installed tree."""
 
     @classmethod
     def setUpClass(cls):
-        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="hirosco-author-"))
-        cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
-        cls.said("cmake", "--install", BUILD, "--prefix", cls.folder / "first")
-        # Nothing in it may know where it was put.
-        cls.prefix = (cls.folder / "first").rename(cls.folder / "moved")
-        cls.lamp = pathlib.Path(shutil.copytree(HERE / "lamp", cls.folder / "lamp"))
-        cls.built = cls.folder / "built"
-        cls.said("cmake", "-S", cls.lamp, "-B", cls.built, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                 f"-DCMAKE_PREFIX_PATH={cls.prefix}")
-        cls.said("cmake", "--build", cls.built)
+        super().setUpClass()
+        cls.lamp, cls.built = cls.folder / "lamp", cls.folder / "built"
+        if not cls.lamp.exists():
+            shutil.copytree(HERE / "lamp", cls.lamp)
+            cls.said("cmake", "-S", cls.lamp, "-B", cls.built, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                     f"-DCMAKE_PREFIX_PATH={cls.prefix}")
+            cls.said("cmake", "--build", cls.built)
         cls.environment = {"PATH": f"{cls.built}:{os.environ['PATH']}"}
         cls.mission = cls.lamp / "mission.xml"
-
-    @classmethod
-    def said(cls, *words, environment=None, code=0):
-        done = subprocess.run([*map(str, words)], capture_output=True, text=True, check=False, cwd=cls.folder,
-                              env={**os.environ, "NO_COLOR": "1", **(environment or {})})
-        told = done.stdout + done.stderr
-        if code is not None and done.returncode != code:
-            raise AssertionError(f"{words} ended with {done.returncode}:\n{told[-4000:]}")
-        return told
-
-    def hirosco(self, *words, code=0):
-        return self.said(self.prefix / "bin/hirosco", *words, environment=self.environment, code=code)
 
 
 class Built(Outside, unittest.TestCase):

@@ -53,6 +53,8 @@ class Output(unittest.TestCase):
                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
             if done.returncode == 127:  # not even its libraries have room
                 continue
+            if done.stderr == "terminate called without an active exception\n":  # nor what they make before main()
+                continue
             with self.subTest(megabytes):
                 self.assertIn(done.returncode, (0, ENVIRONMENT), done.stderr)
                 self.assertTrue(done.returncode == 0 or done.stderr.startswith("hirosco: "), done.stderr)

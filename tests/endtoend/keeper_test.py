@@ -7,6 +7,7 @@ import os
 import pathlib
 import resource
 import signal
+import socket
 import subprocess
 import tempfile
 import time
@@ -33,6 +34,26 @@ class Keeper(unittest.TestCase):
             self.assertEqual(code, 0, rokviss.errors)
             self.assertIn("shutdown", [line.told for line in rokviss.told()])
             self.assertEqual(rokviss.wait_until_gone(2.0), {})
+
+    def test_a_service_manager_hears_that_the_mission_is_commissioned_and_that_it_ends(self):
+        with tempfile.TemporaryDirectory(prefix="hirosco-manager-") as folder, \
+                socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
+            manager.bind(f"{folder}/notify")
+            manager.setblocking(False)
+            with flight.Flight(flight.HELLO, environment={"NOTIFY_SOCKET": f"{folder}/notify"}) as hello:
+                hello.wait_told("commissioned: mode operation", 20.0)
+                manager.settimeout(5.0)
+                self.assertEqual(manager.recv(200).split(b"\n")[0], b"READY=1")
+                for pid in hello.processes():
+                    if pid == hello.process.pid:  # it was given it, and has it in its first environment for good
+                        continue
+                    environment = pathlib.Path(f"/proc/{pid}/environ").read_bytes()
+                    self.assertNotIn(b"NOTIFY_SOCKET", environment, "nobody else speaks to the manager")
+                self.assertEqual(hello.end(), 0)
+            self.assertEqual(manager.recv(200).split(b"\n")[0], b"STOPPING=1")
+            with self.assertRaises(TimeoutError):
+                manager.settimeout(0.1)
+                manager.recv(200)
 
     def test_two_flights_never_write_one_log_whatever_the_runtime_folder_is(self):
         with flight.Flight() as rokviss, tempfile.TemporaryDirectory(prefix="hirosco-elsewhere-") as elsewhere:

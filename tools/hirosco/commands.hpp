@@ -181,6 +181,21 @@ struct ExportOptions {
 };
 int export_mission(const ExportOptions& options);
 
+struct DoctorOptions {
+  std::string mission;  ///< empty = the usual one
+  bool json{false};
+};
+/// What a mission needs of this computer to fly with its figures, and what mends it (adr 0109). 1: something is missing.
+int look_after(const DoctorOptions& options);
+
+struct NewOptions {
+  std::string kind;  ///< one of new_kinds()
+  std::string name;
+  std::string to{"."};  ///< folder that gets the new one
+};
+/// A folder of one's own to begin with (adr 0109).
+int make_new(const NewOptions& options);
+
 // --- shared ------------------------------------------------------------------------------------------------------------
 /// A name or a path: the mission file; a name is looked for in missions/NAME/mission.xml from the working directory and
 /// from this program upwards. Empty: nowhere.

@@ -4,11 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <fstream>
 
 #include "hirosco/utilities/version.hpp"
 #include "tools/dynamics/batch.hpp"
 #include "tools/hirosco/command_line.hpp"
+#include "tools/hirosco/command_pages.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/new_folder/kinds.hpp"
 
 /// `hirosco`: one command for everything. The command line is read here and nowhere else.
 namespace {
@@ -35,11 +38,18 @@ void add_connection(CLI::App& command, Connection& connection) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     if (command->get_name() == argv[1]) return false;
-    names.push_back(command->get_name());
+    if (!command->get_group().empty()) names.push_back(command->get_name());
   }
   fmt::print(stderr, "hirosco: no command '{}'{}; there are: {}\n", argv[1], did_you_mean(argv[1], names),
              fmt::join(names, ", "));
   return true;
+}
+
+/// To standard output where no file is named.
+int write_page(const std::string& file, const std::string& text) {
+  if (file.empty()) return fmt::print("{}", text), exit_ok;
+  std::ofstream written{file};
+  return written << text && written.flush() ? exit_ok : exit_environment;
 }
 
 int read_and_do(int argc, char** argv) {
@@ -77,6 +87,27 @@ int read_and_do(int argc, char** argv) {
                           "Print which plan each event would get in which mode, and which gives way to which");
   check_command->add_flag("--json", check_options.json, "Problems as JSON, one a line");
   check_command->add_flag("--fly", check_options.fly, "Also all programs that a mission needs must be here");
+
+  DoctorOptions doctor_options;
+  auto* doctor_command = app.add_subcommand(
+      "doctor",
+      "What this computer has and lacks for a flight, with the line that mends it; ends with 1 when it matters");
+  doctor_command->add_option("mission", doctor_options.mission,
+                             "Name or path of the mission that is to fly; by default the usual one");
+  doctor_command->add_flag("--json", doctor_options.json, "One JSON object a line");
+
+  NewOptions new_options;
+  std::vector<std::string> kinds;
+  std::string kinds_help = "What to make";
+  for (const NewKind& kind : new_kinds()) {
+    kinds.emplace_back(kind.name);
+    kinds_help += fmt::format("; {}: {}", kind.name, kind.makes);
+  }
+  auto* new_command =
+      app.add_subcommand("new", "Make a folder of one's own that builds, tests, simulates and flies as it is");
+  new_command->add_option("kind", new_options.kind, kinds_help)->required()->check(CLI::IsMember(kinds));
+  new_command->add_option("name", new_options.name, "Name of what it makes, and of the folder")->required();
+  new_command->add_option("--to", new_options.to, "Folder that gets it")->capture_default_str();
 
   SimulateOptions simulate_options;
   std::string simulate_for = "10s";
@@ -227,6 +258,13 @@ int read_and_do(int argc, char** argv) {
   add_export(Exported::Xtce, "xtce", "Telemetry and telecommands as XTCE 1.2, for ground stations that read it");
   add_export(Exported::Yamcs, "yamcs", "A project with which Yamcs starts: database, links, events in words, stacks");
   add_export(Exported::InterfaceDocument, "icd", "The interface document: every packet, octet by octet, as Markdown");
+  std::string page;
+  auto* pages =
+      app.add_subcommand(pages_command, "Writes the man page, the completion of bash, or the names of missions");
+  pages->group("");
+  std::string page_file;
+  pages->add_option("page", page)->required()->check(CLI::IsMember({"man", "bash", "missions"}));
+  pages->add_option("file", page_file);
   // Values such as -0.8 are arguments, not options.
   tc_command->prefix_command(false);
 
@@ -246,6 +284,10 @@ int read_and_do(int argc, char** argv) {
     const int code = app.exit(error);
     return code == 0 ? exit_ok : exit_usage;
   }
+  if (*pages)
+    return write_page(page_file, page == "man"    ? man_page(app)
+                                 : page == "bash" ? bash_completion(app)
+                                                  : fmt::format("{}\n", fmt::join(known_missions(), "\n")));
   run_options.ground = !no_ground;
   if (*run_command) return run(run_options);
   if (*tour_command) {
@@ -257,6 +299,8 @@ int read_and_do(int argc, char** argv) {
   if (*why_command) return why(ground_options);
   if (*export_command) return export_mission(export_options);
   if (*check_command) return check(check_options);
+  if (*new_command) return make_new(new_options);
+  if (*doctor_command) return look_after(doctor_options);
   if (*simulate_command) return simulate(simulate_options);
   if (*report_command) return mission_program("report", judged_mission, {});
   if (*tc_command) return telecommand(tc_options);

@@ -1,0 +1,103 @@
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""`hirosco doctor` on the computer that it stands on: what it says is what the system says to somebody else, what it gives to type
+mends what it found, and its exit code is that of its rows."""
+import json
+import os
+import pathlib
+import re
+import socket
+import subprocess
+import tempfile
+import unittest
+
+HIROSCO = pathlib.Path(os.environ["HIROSCO_BIN"]) / "hirosco"
+NOBODY = 65534
+AS_NOBODY = ("setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups", "--bounding-set=-all", "--inh-caps=-all")
+
+
+class Doctor(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="hirosco-doctor-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.folder.chmod(0o777)
+
+    def looked(self, *words, before=(), **environment):
+        """The rows by their names, and the exit code."""
+        done = subprocess.run([*before, HIROSCO, "doctor", *words, "--json"], cwd=self.folder, capture_output=True, text=True,
+                              check=False, env={**os.environ, "XDG_RUNTIME_DIR": str(self.folder), **environment})
+        rows = [json.loads(line) for line in done.stdout.splitlines()]
+        self.assertGreater(len(rows), 10, done.stderr)
+        self.assertEqual(done.returncode, 1 if "missing" in [row["verdict"] for row in rows] else 0)
+        return {row["row"]: row for row in rows}
+
+    def test_what_is_free_and_what_is_taken(self):
+        told = self.looked("rokviss")["ground link"]
+        with socket.socket() as taken:
+            taken.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                taken.bind(("127.0.0.1", 10025))
+                taken.listen()
+            except OSError:
+                self.assertNotEqual(told["verdict"], "ok")
+                self.skipTest("somebody flies")
+            self.assertEqual(told["verdict"], "ok")
+            told = self.looked("rokviss")["ground link"]
+            self.assertEqual(told["verdict"], "missing")
+            self.assertIn("127.0.0.1:10025", told["found"])
+
+    def test_of_the_kernel_it_says_what_the_kernel_says(self):
+        told = self.looked("rokviss")
+        self.assertIn(os.uname().release, told["kernel"]["found"])
+        self.assertIn(pathlib.Path("/sys/devices/system/clocksource/clocksource0/current_clocksource").read_text().strip(),
+                      told["clock"]["found"])
+        self.assertIn(f"{len(os.sched_getaffinity(0))}" if len(os.sched_getaffinity(0)) > 1 else "one", told["processors"]["found"])
+        self.assertIn("200 sleeps", told["wake-up"]["found"])
+
+    def test_a_sandbox_that_is_off_is_seen(self):
+        self.assertIn("HIROSCO_SANDBOX is off", self.looked("rokviss", HIROSCO_SANDBOX="off")["isolation"]["found"])
+
+    def test_a_folder_that_nobody_may_write_is_seen(self):
+        # Root may write everywhere: a file system may not.
+        told = self.looked("rokviss", XDG_RUNTIME_DIR="/proc")["folders"]
+        self.assertEqual(told["verdict"], "missing")
+        self.assertIn("/proc: ", told["found"])
+
+    def test_a_mission_whose_programs_are_not_here(self):
+        source = pathlib.Path(__file__).resolve().parents[2] / "missions/hello/mission.xml"
+        text = re.sub(r'<Subsystem executable="(?!hirosco-communication)[^"]*"', '<Subsystem executable="nowhere-to-be-found"', source.read_text())
+        text = text.replace('descriptor="../../', 'descriptor="@hirosco/')
+        mission = self.folder / "mission.xml"
+        mission.write_text(text)
+        told = self.looked(str(mission))["programs"]
+        self.assertEqual(told["verdict"], "missing")
+        self.assertIn("E0401 no program nowhere-to-be-found", told["found"])
+
+    @unittest.skipUnless(os.getuid() == 0, "needs root, to become somebody else")
+    def test_without_rights_it_names_the_limits_and_with_them_it_is_content(self):
+        told = self.looked("rokviss", before=("prlimit", "--rtprio=0", "--memlock=65536", *AS_NOBODY))
+        line = told["real-time rights"]["mends"]
+        self.assertEqual(told["real-time rights"]["verdict"], "missing")
+        self.assertRegex(line, r"nobody - rtprio \d+")
+        self.assertEqual(told["locked memory"]["verdict"], "missing")
+        self.assertRegex(told["locked memory"]["mends"], "nobody - memlock unlimited")
+        # What pam_limits would do of these lines at the next login; a root that may raise no limit gives the rights themselves.
+        wanted = re.search(r"rtprio (\d+)", line)[1]
+        limits = ("prlimit", f"--rtprio={wanted}", "--memlock=unlimited", *AS_NOBODY)
+        if subprocess.run([*limits, "true"], capture_output=True, check=False).returncode != 0:
+            rights = "+sys_nice,+ipc_lock"
+            limits = (*AS_NOBODY[:4], f"--inh-caps={rights}", f"--ambient-caps={rights}")
+        told = self.looked("rokviss", before=limits)
+        self.assertEqual((told["real-time rights"]["verdict"], told["locked memory"]["verdict"]), ("ok", "ok"), told)
+
+    def test_in_words_it_gives_the_line_to_type_below_what_it_found(self):
+        done = subprocess.run([HIROSCO, "doctor", "rokviss"], cwd=self.folder, capture_output=True, text=True, check=False,
+                              env={**os.environ, "XDG_RUNTIME_DIR": "/proc"})
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stdout, r"(?m)^missing +folders +/proc: .*\n +for: .*\n +\$ sudo install -d")
+        self.assertRegex(done.stdout.splitlines()[-1], r"^hirosco \S+: \d+ missing: ROKVISS does not fly here with its figures$")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/new_folder/kinds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+namespace hirosco::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::array kinds{
+    NewKind{"subsystem", "a subsystem with its test, and a mission that flies it", true},
+    NewKind{"device", "a simulated device, the subsystem that commands it, and a mission that flies both", true},
+    NewKind{"mission", "a mission made of what is installed, with a page of its own, without code", false},
+};
+
+/// As templates have it, in the order of NewName.
+constexpr std::string_view lower_word = "newpart", upper_word = "NEWPART", camel_word = "NewPart";
+constexpr std::size_t longest_name = 24;
+/// Other parts of every mission, and targets that a build has already.
+constexpr std::array taken{"supervisor", "communication", "ground",  "all",   "test",    "install", "clean",
+                           "help",       "package",       "hirosco", "build", "rebuild", "edit",    "codegen"};
+
+[[nodiscard]] bool is_upper(char letter) { return std::isupper(static_cast<unsigned char>(letter)) != 0; }
+[[nodiscard]] char lower(char letter) { return static_cast<char>(std::tolower(static_cast<unsigned char>(letter))); }
+[[nodiscard]] char upper(char letter) { return static_cast<char>(std::toupper(static_cast<unsigned char>(letter))); }
+
+void replace_all(std::string& text, std::string_view word, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += by.size())
+    text.replace(at, word.size(), by);
+}
+
+[[nodiscard]] std::string read(const fs::path& file) {
+  std::ifstream text{file, std::ios::binary};
+  return {std::istreambuf_iterator<char>{text}, {}};
+}
+
+/// Empty: all are made.
+[[nodiscard]] std::string make_files(const fs::path& from, const fs::path& target, const NewName& name,
+                                     std::vector<fs::path>& made) {
+  std::error_code failed;
+  for (const auto& entry : fs::recursive_directory_iterator{from, failed}) {
+    if (!entry.is_regular_file(failed)) continue;
+    const fs::path file = target / named_text(fs::relative(entry.path(), from, failed).string(), name);
+    fs::create_directories(file.parent_path(), failed);
+    std::ofstream written{file, std::ios::binary};
+    written << named_text(read(entry.path()), name);
+    if (!written.flush()) return fmt::format("{} cannot be written", file.string());
+    made.push_back(file);
+  }
+  if (failed) return fmt::format("{}: {}", from.string(), failed.message());
+  if (made.empty()) return fmt::format("there is nothing in {}", from.string());
+  std::ranges::sort(made);
+  return {};
+}
+
+}  // namespace
+
+std::span<const NewKind> new_kinds() { return kinds; }
+
+std::expected<NewName, std::string> new_name(const std::string& text) {
+  constexpr std::string_view rule = "letters, digits and single '_', first a letter, 24 at most";
+  NewName name;
+  bool begins = true;  // of a word
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char letter = text[i] == '-' ? '_' : text[i];
+    if (letter != '_' && std::isalnum(static_cast<unsigned char>(letter)) == 0)
+      return std::unexpected{std::string{rule}};
+    if (letter == '_' && begins) return std::unexpected{std::string{rule}};
+    const bool follows_lower = i > 0 && std::islower(static_cast<unsigned char>(text[i - 1])) != 0;
+    if (is_upper(letter) && follows_lower) {
+      name.lower += '_';
+      begins = true;
+    }
+    if (letter == '_') name.lower += '_';
+    else {
+      name.lower += lower(letter);
+      name.camel += begins ? upper(letter) : lower(letter);
+    }
+    begins = letter == '_';
+  }
+  if (name.lower.empty() || begins || name.lower.size() > longest_name ||
+      std::isalpha(static_cast<unsigned char>(name.lower[0])) == 0)
+    return std::unexpected{std::string{rule}};
+  if (std::ranges::find(taken, name.lower) != taken.end())
+    return std::unexpected{fmt::format("'{}' is a name of the framework or of its build", name.lower)};
+  std::ranges::transform(name.lower, std::back_inserter(name.upper), upper);
+  return name;
+}
+
+std::string named_text(const std::string& text, const NewName& name) {
+  std::string made;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+    const std::string_view line{text.data() + begin, end - begin};
+    if (line.find("SP"
+                  "DX-") == std::string_view::npos)
+      made += line;
+    begin = end;
+  }
+  if (made.size() < text.size() && made.starts_with('\n')) made.erase(0, 1);
+  replace_all(made, lower_word, name.lower);
+  replace_all(made, upper_word, name.upper);
+  replace_all(made, camel_word, name.camel);
+  return made;
+}
+
+std::expected<std::vector<fs::path>, std::string> make_folder(const fs::path& from, const fs::path& target,
+                                                              const NewName& name) {
+  std::error_code failed;
+  if (fs::exists(fs::symlink_status(target, failed)))
+    return std::unexpected{fmt::format("{} is there already", target.string())};
+  if (!fs::create_directories(target, failed))
+    return std::unexpected{fmt::format("{}: {}", target.string(), failed.message())};
+  std::vector<fs::path> made;
+  if (std::string why_not = make_files(from, target, name, made); !why_not.empty()) {
+    fs::remove_all(target, failed);
+    return std::unexpected{std::move(why_not)};
+  }
+  return made;
+}
+
+}  // namespace hirosco::tools
