@@ -24,8 +24,7 @@ constexpr double no_way = 1e-9;
 }  // namespace
 
 Setpoints::Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds bounds, double cycle_s)
-    : model_{&model},
-      tip_{tip},
+    : tip_{tip},
       bounds_{bounds},
       cycle_s_{cycle_s},
       dynamics_{model, robotics::Base::Fixed},

@@ -64,7 +64,6 @@ class Setpoints {
   void keep_pace(double wanted) noexcept;
   void come_to_rest() noexcept;
 
-  const robotics::Model* model_;
   robotics::FrameId tip_;
   Bounds bounds_;
   double cycle_s_;
