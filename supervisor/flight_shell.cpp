@@ -47,6 +47,7 @@ constexpr int exit_unprovoked = 5;
 /// Below every cycle, above ordinary work.
 constexpr int supervisor_priority = 30;
 constexpr Duration last_wait = 2s;
+static_assert(ending_patience > 3 * last_wait, "the keeper ends nobody who waits for a disk at its end");
 constexpr Duration log_start_limit = 3s;
 
 struct Options {

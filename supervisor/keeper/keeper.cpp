@@ -204,7 +204,7 @@ class Flight {
     const auto end = supervisor_->poll();
     if (end && *end) return ended(**end, now);
     // One that ends flushes its log, which may take a disk's time: nobody goes on for it.
-    if (page_.finished.load() != 0 && !std::exchange(ends_, true)) progress_ = Progress{keeper_patience};
+    if (page_.finished.load() != 0 && !std::exchange(ends_, true)) progress_ = Progress{ending_patience};
     const bool still = progress_.stands_still(page_.supervisor.load(std::memory_order_relaxed), now);
     if ((!still && !stopped()) || killed_) return std::nullopt;
     killed_ = true;

@@ -103,6 +103,9 @@ struct KeeperPage {
 
 /// How long the keeper may stand still once it has moved.
 inline constexpr Duration keeper_patience = std::chrono::seconds{3};
+/// One that ends waits twice for its log, each time at most two seconds, and nothing moves any more. What the disk has not given back
+/// by then, the system waits for.
+inline constexpr Duration ending_patience = std::chrono::seconds{10};
 /// The supervisor: less than its own guard grants it before all is fenced, so that another one can go on with what moves.
 inline constexpr Duration supervisor_patience = std::chrono::milliseconds{800};
 

@@ -218,7 +218,8 @@ class Judge:
         descriptor = self.wire.descriptor if isinstance(self.wire, Stream) else self.wire.socket.fileno()
         os.set_blocking(descriptor, False)
         while time.monotonic() < end:
-            with contextlib.suppress(BlockingIOError, ConnectionRefusedError):
+            # It may also leave who does not read.
+            with contextlib.suppress(BlockingIOError, ConnectionError):
                 os.write(descriptor, burst)
         self.played.wait("stopping", PATIENCE, before)
 
