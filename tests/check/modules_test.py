@@ -56,7 +56,8 @@ class Modules(unittest.TestCase):
 
     def test_one_built_against_other_headers_of_the_same_version_is_refused(self):
         octets = self.module.read_bytes()
-        at = octets.index(b" interface ") + len(b" interface ")
+        version = subprocess.run([BINARIES / "hirosco", "--version"], capture_output=True, check=True).stdout.split()[1]
+        at = octets.index(version + b" interface ") + len(version + b" interface ")
         self.module.write_bytes(octets[:at] + b"0123456789ab" + octets[at + 12:])
         self.refused("interface 0123456789ab, this is ")
 
