@@ -10,6 +10,8 @@
 #include <fstream>
 #include <memory>
 
+#include "supervisor/testing/pair_overview.hpp"
+
 namespace hirosco::supervisor {
 namespace {
 
@@ -65,28 +67,9 @@ TEST_F(ConsoleTest, GivesTheTerminalNothingButWhatCanBePrinted) {
   }
 }
 
-struct ConsoleOfCraft : ConsoleTest {
-  static Overview craft() {
-    Overview overview{.mission = "PAIR", .mode = "coupled", .members = {}, .links = {}};
-    for (const char* name : {"ARM", "HAND"})
-      overview.members.push_back({.name = name,
-                                  .runs = true,
-                                  .state = "Operational",
-                                  .wanted = "Operational",
-                                  .counted = true,
-                                  .cycling = true,
-                                  .realtime = true,
-                                  .period_ns = 500'000,
-                                  .cycles = 1000,
-                                  .latency_max_ns = 31'000});
-    overview.links.push_back({.id = 1, .from = "ARM", .to = "HAND", .up = true, .wanted = true});
-    return overview;
-  }
-};
-
-TEST_F(ConsoleOfCraft, TellsInLinesWhatHasChangedAndNothingElse) {
+TEST_F(ConsoleTest, TellsInLinesWhatHasChangedAndNothingElse) {
   const auto lines = shown(Console::Style::Text, [&](Console& console) {
-    Overview overview = craft();
+    Overview overview = testing::pair();
     console.show(overview, 1s);
     overview.members[0].cycles = 9000;  // rises all the time
     overview.members[0].latency_max_ns = 40'000;
@@ -97,28 +80,28 @@ TEST_F(ConsoleOfCraft, TellsInLinesWhatHasChangedAndNothingElse) {
     console.show(overview, 3s);
     console.show(overview, 4s);
   });
-  EXPECT_THAT(lines, ::testing::ElementsAre("[   1.0 s] mode coupled; ARM Operational; HAND Operational; links 1/1",
-                                            "[   3.0 s] HAND Offline, inhibited; links 0/1"));
+  EXPECT_THAT(lines, ::testing::ElementsAre("[   1.0 s] mode coupled; ARM Operational; HAND Operational; links 2/2",
+                                            "[   3.0 s] HAND Offline, inhibited; links 1/2"));
 }
 
-TEST_F(ConsoleOfCraft, TellsCountsThatRiseAllTheTimeEveryTenSeconds) {
+TEST_F(ConsoleTest, TellsCountsThatRiseAllTheTimeEveryTenSeconds) {
   const auto lines = shown(Console::Style::Text, [&](Console& console) {
-    Overview overview = craft();
+    Overview overview = testing::pair();
     for (int second = 1; second <= 25; ++second) {
       overview.members[0].missed = static_cast<std::uint64_t>(second);
       console.show(overview, std::chrono::seconds{second});
     }
   });
   ASSERT_EQ(lines.size(), 3U);
-  EXPECT_THAT(lines[0], EndsWith("ARM Operational; ARM missed 1 cycles; HAND Operational; links 1/1"));
+  EXPECT_THAT(lines[0], EndsWith("ARM Operational; ARM missed 1 cycles; HAND Operational; links 2/2"));
   EXPECT_EQ(lines[1], "[  11.0 s] ARM missed 11 cycles");
   EXPECT_EQ(lines[2], "[  21.0 s] ARM missed 21 cycles");
 }
 
-TEST_F(ConsoleOfCraft, EndsWithTheFiguresOfWhoCycled) {
+TEST_F(ConsoleTest, EndsWithTheFiguresOfWhoCycled) {
   const auto lines = shown(Console::Style::Text, [&](Console& console) {
-    console.show(craft(), 1s);
-    Overview down = craft();
+    console.show(testing::pair(), 1s);
+    Overview down = testing::pair();
     for (Overview::Member& member : down.members) member = {.name = member.name};
     console.show(down, 2s);
     console.ended();
@@ -127,10 +110,10 @@ TEST_F(ConsoleOfCraft, EndsWithTheFiguresOfWhoCycled) {
   EXPECT_EQ(lines.back(), "HAND: 1000 cycles, 0 missed, 0 overran, 31.0 us late at most");
 }
 
-TEST_F(ConsoleOfCraft, TellsAScreenAllThatItShowsInOneLineEachTime) {
+TEST_F(ConsoleTest, TellsAScreenAllThatItShowsInOneLineEachTime) {
   const auto lines = shown(Console::Style::Screen, [&](Console& console) {
     console.told(when, "ARM info \"X\"");
-    console.show(craft(), 1s);
+    console.show(testing::pair(), 1s);
     console.ended();
   });
   ASSERT_EQ(lines.size(), 2U);

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "supervisor/testing/pair_overview.hpp"
 #include "tools/terminal/lines.hpp"
-#include "tools/terminal/testing/pair.hpp"
 
 namespace hirosco::terminal {
 namespace {
@@ -16,7 +16,7 @@ std::string told(double at_s, const std::string& text) {
 
 TEST(ScreenModelTest, KnowsWhatTheSupervisorSaysOfTheCraft) {
   ScreenModel model;
-  Overview craft = testing::pair();
+  Overview craft = supervisor::testing::pair();
   craft.members[1].inhibited = 4;
   craft.members[1].missed = 7;
   craft.links[1].up = false;
@@ -76,7 +76,7 @@ TEST(ScreenModelTest, IsBoundedWhateverIsToldAndKeepsTheNewest) {
 
 TEST(ScreenModelTest, WhatIsGarbledOrOfAnotherFormChangesNothingAndSteersNothing) {
   ScreenModel model;
-  model.take(supervisor::json_of(testing::pair(), 1, {}));
+  model.take(supervisor::json_of(supervisor::testing::pair(), 1, {}));
   for (const char* line : {"{", "{\"told\":", "{\"members\":[{\"na", "", "{}"}) model.take(line);
   EXPECT_EQ(model.events().size(), 0U);
   EXPECT_EQ(model.overview().members.size(), 2U);
@@ -132,9 +132,9 @@ TEST(ScreenModelTest, ReadsKeysOneByOneAndPassesOverThoseThatAreNotItsOwn) {
 
 TEST(ScreenModelTest, HowItWasIsWhatItWasBeforeTheEndBegan) {
   ScreenModel model;
-  model.take(supervisor::json_of(testing::pair(), 5, {}));
+  model.take(supervisor::json_of(supervisor::testing::pair(), 5, {}));
   model.take(told(5.5, "shutdown"));
-  Overview down = testing::pair();
+  Overview down = supervisor::testing::pair();
   for (auto& member : down.members) member.state = "Offline";
   model.take(supervisor::json_of(down, 6, {}));
   EXPECT_TRUE(model.ending());

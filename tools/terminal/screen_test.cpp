@@ -7,8 +7,8 @@
 
 #include <random>
 
+#include "supervisor/testing/pair_overview.hpp"
 #include "tools/terminal/columns.hpp"
-#include "tools/terminal/testing/pair.hpp"
 
 namespace hirosco::terminal {
 namespace {
@@ -34,7 +34,7 @@ std::string whole(const Picture& picture) {
 }
 
 Overview stopped() {
-  Overview craft = testing::pair();
+  Overview craft = supervisor::testing::pair();
   for (auto& member : craft.members) member.state = "Offline";
   for (auto& member : craft.members) member.cycling = false;
   craft.members[1].inhibited = 4;
@@ -43,7 +43,7 @@ Overview stopped() {
 }
 
 TEST(ScreenTest, ShowsACraftThatIsWellIn80Columns) {
-  EXPECT_EQ(whole(draw(known(testing::pair()), {80, 24}, 0.1)),
+  EXPECT_EQ(whole(draw(known(supervisor::testing::pair()), {80, 24}, 0.1)),
             R"( PAIR  coupled                                                 ● well  0:12:34
  page     http://127.0.0.1:8080/#token=0123456789abcdef0123456789abcdef
  to look  http://127.0.0.1:8080/#token=0123456789abcdef0123456789abcdef
@@ -72,7 +72,7 @@ TEST(ScreenTest, ShowsACraftThatIsWellIn80Columns) {
 }
 
 TEST(ScreenTest, UsesTheWidthThatItHas) {
-  const auto lines = words_of(draw(known(testing::pair()), {120, 40}, 0.1));
+  const auto lines = words_of(draw(known(supervisor::testing::pair()), {120, 40}, 0.1));
   EXPECT_EQ(lines[4], "   SUBSYSTEM  STATE                CYCLE      LATE   MISSED   OVERRAN    LOAD  ACTUATORS");
   EXPECT_EQ(lines[5], " ● ARM        Operational        2000 Hz     31 us        0         0   4.0 %  free");
   ASSERT_EQ(lines.size(), 40U);
@@ -108,7 +108,7 @@ TEST(ScreenTest, SaysWhatStoppedAboveTheEvents) {
 }
 
 TEST(ScreenTest, SaysThatNothingIsToldAnyMoreRatherThanWhatWasLast) {
-  const auto lines = words_of(draw(known(testing::pair()), {80, 24}, 7.4));
+  const auto lines = words_of(draw(known(supervisor::testing::pair()), {80, 24}, 7.4));
   EXPECT_THAT(lines[0], HasSubstr("■ SUPERVISOR SILENT FOR 7 s"));
   EXPECT_THAT(lines[0], Not(HasSubstr("well")));
 }
@@ -120,7 +120,7 @@ TEST(ScreenTest, StartsBeforeAnythingIsKnown) {
 }
 
 TEST(ScreenTest, AsksBeforeItEndsAFlightAndSaysThatItEnds) {
-  ScreenModel model = known(testing::pair());
+  ScreenModel model = known(supervisor::testing::pair());
   model.press(Key::End, 5);
   EXPECT_THAT(words_of(draw(model, {80, 24}, 0)).back(), HasSubstr("End the flight? q again"));
   model.press(Key::End, 5);
@@ -128,7 +128,7 @@ TEST(ScreenTest, AsksBeforeItEndsAFlightAndSaysThatItEnds) {
 }
 
 TEST(ScreenTest, ScrollsBackAndFiltersEvents) {
-  ScreenModel model = known(testing::pair());
+  ScreenModel model = known(supervisor::testing::pair());
   for (int i = 0; i < 100; ++i) model.take("{\"at_s\":20,\"told\":\"line " + std::to_string(i) + "\"}");
   const Picture newest = draw(model, {80, 24}, 0);
   EXPECT_THAT(whole(newest), HasSubstr("line 99\n"));
@@ -145,7 +145,7 @@ TEST(ScreenTest, ScrollsBackAndFiltersEvents) {
 }
 
 TEST(ScreenTest, CutsLongWordsButNoUrl) {
-  Overview craft = testing::pair();
+  Overview craft = supervisor::testing::pair();
   craft.members[0].name = "A_PROBE_OF_A_VERY_LONG_NAME_INDEED";
   craft.mode = std::string(100, 'm');
   ScreenModel model = known(craft);
@@ -160,7 +160,7 @@ TEST(ScreenTest, CutsLongWordsButNoUrl) {
 }
 
 TEST(ScreenTest, OfMoreSubsystemsThanThereIsRoomForThoseThatDeviateAreSeen) {
-  Overview craft = testing::pair();
+  Overview craft = supervisor::testing::pair();
   for (int i = 0; i < 40; ++i) {
     craft.members.push_back(craft.members[1]);
     craft.members.back().name = "PART_" + std::to_string(i);
@@ -217,7 +217,7 @@ TEST(ScreenTest, NeverIsWiderOrHigherThanTheTerminalWhateverItShows) {
 }
 
 TEST(PaintTest, SendsTheRowsThatDifferAndNoOthers) {
-  ScreenModel model = known(testing::pair());
+  ScreenModel model = known(supervisor::testing::pair());
   const Picture first = draw(model, {80, 24}, 0);
   EXPECT_EQ(paint(first, first, {80, 24}, {}), "");
   model.take(R"({"at_s":13,"told":"HAND Offline"})");
@@ -237,7 +237,7 @@ TEST(PaintTest, WithoutColourThereIsNoneAndWithoutUnicodeNoneOfThat) {
 }
 
 TEST(FarewellTest, SaysHowItWasWhatWasGraveAndWhatToAskNext) {
-  EXPECT_EQ(farewell(known(testing::pair()), "log/pair.db"),
+  EXPECT_EQ(farewell(known(supervisor::testing::pair()), "log/pair.db"),
             (std::vector<std::string>{"PAIR flew 0:12:34, in mode coupled at the end. It was well.",
                                       "All of it: hirosco log (log/pair.db)"}));
   ScreenModel model = known(stopped());

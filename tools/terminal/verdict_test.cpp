@@ -9,7 +9,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "tools/terminal/testing/pair.hpp"
+#include "supervisor/testing/pair_overview.hpp"
 
 namespace hirosco::terminal {
 namespace {
@@ -25,7 +25,7 @@ std::vector<std::string> texts(const Judgement& judged) {
 }
 
 TEST(VerdictTest, IsWellWhereEverybodyIsWhereTheModeHasHim) {
-  const Judgement judged = judge(testing::pair());
+  const Judgement judged = judge(supervisor::testing::pair());
   EXPECT_EQ(judged.verdict, Verdict::Well);
   EXPECT_EQ(judged.line, "well: mode coupled, 2 subsystems as it has them, 2 links up");
   EXPECT_THAT(judged.findings, IsEmpty());
@@ -34,7 +34,7 @@ TEST(VerdictTest, IsWellWhereEverybodyIsWhereTheModeHasHim) {
 TEST(VerdictTest, IsNotWellInAnyOtherState) {
   for (const auto& row : EnumTexts<descriptor::State>::table) {
     if (row.value == descriptor::State::Operational) continue;
-    Overview craft = testing::pair();
+    Overview craft = supervisor::testing::pair();
     craft.members[0].state = row.text;
     const Judgement judged = judge(craft);
     EXPECT_EQ(judged.verdict, Verdict::NotWell) << row.text;
@@ -45,7 +45,7 @@ TEST(VerdictTest, IsNotWellInAnyOtherState) {
 
 TEST(VerdictTest, EveryReasonOfAnInhibitionMakesItUnwellAndHasWords) {
   for (unsigned bit = 0; bit < 7; ++bit) {
-    Overview craft = testing::pair();
+    Overview craft = supervisor::testing::pair();
     craft.members[1].inhibited = 1U << bit;
     const Judgement judged = judge(craft);
     EXPECT_EQ(judged.verdict, Verdict::NotWell) << bit;
@@ -65,14 +65,14 @@ TEST(VerdictTest, SaysTheWordsThatThePageSays) {
 }
 
 TEST(VerdictTest, WhoDoesNotRunALinkThatIsDownAndWhoStaysInTheInitialModeAreUnwell) {
-  Overview craft = testing::pair();
+  Overview craft = supervisor::testing::pair();
   craft.members[0] = {.name = "ARM", .wanted = "Operational"};
   craft.links[1].up = false;
   EXPECT_EQ(judge(craft).line, "NOT WELL: 1 of 2 subsystems not as mode coupled has it, 1 link down");
   EXPECT_THAT(texts(judge(craft)),
               ElementsAre("ARM does not run, the mode has it Operational", "link 2, HAND → ARM, is down"));
 
-  Overview initial = testing::pair();
+  Overview initial = supervisor::testing::pair();
   initial.mode = "commissioning";
   for (auto& member : initial.members) member.wanted.clear();
   for (auto& link : initial.links) link.wanted = link.up = false;
@@ -82,14 +82,14 @@ TEST(VerdictTest, WhoDoesNotRunALinkThatIsDownAndWhoStaysInTheInitialModeAreUnwe
 }
 
 TEST(VerdictTest, WhatTheModeDoesNotWantIsNoFault) {
-  Overview craft = testing::pair();
+  Overview craft = supervisor::testing::pair();
   craft.members.push_back({.name = "LAMP"});
   craft.links.push_back({.id = 3, .from = "ARM", .to = "LAMP"});
   EXPECT_EQ(judge(craft).verdict, Verdict::Well);
 }
 
 TEST(VerdictTest, CountsAreSaidAndMakeNobodyUnwell) {
-  Overview craft = testing::pair();
+  Overview craft = supervisor::testing::pair();
   craft.members[0].missed = 3;
   craft.members[1].overruns = 2;
   craft.members[1].realtime = false;
@@ -100,7 +100,7 @@ TEST(VerdictTest, CountsAreSaidAndMakeNobodyUnwell) {
 }
 
 TEST(VerdictTest, OnTheWayNothingIsAFaultYet) {
-  Overview craft = testing::pair();
+  Overview craft = supervisor::testing::pair();
   craft.waits_for = "ARM: self test";
   craft.members[0].state = "SafeOperational";
   const Judgement judged = judge(craft);

@@ -3,28 +3,10 @@
 #include "hirosco/data_transfer/device/device_socket.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <optional>
 
 namespace hirosco {
 namespace {
-
-[[nodiscard]] std::optional<InternetAddress> address_of(const sockaddr* from) noexcept {
-  InternetAddress address;
-  if (from == nullptr) return std::nullopt;
-  if (from->sa_family == AF_INET) {
-    sockaddr_in fourth{};
-    std::memcpy(&fourth, from, sizeof fourth);
-    std::memcpy(address.octets.data(), &fourth.sin_addr, sizeof fourth.sin_addr);
-    return address;
-  }
-  if (from->sa_family != AF_INET6) return std::nullopt;
-  sockaddr_in6 sixth{};
-  std::memcpy(&sixth, from, sizeof sixth);
-  address.family = InternetAddress::Family::Ipv6;
-  std::memcpy(address.octets.data(), &sixth.sin6_addr, sizeof sixth.sin6_addr);
-  return address;
-}
 
 [[nodiscard]] bool set_option(const FileDescriptor& socket, int option, int value) noexcept {
   return ::setsockopt(socket.get(), SOL_SOCKET, option, &value, sizeof value) == 0;
@@ -33,38 +15,17 @@ namespace {
 /// From where the system would speak to the device without a gateway; that has to be in its network, too.
 [[nodiscard]] Result<SocketAddress> own_address(const DeviceRoute& route) {
   HIROSCO_TRY_LET(const FileDescriptor probe, make_device_socket(SOCK_DGRAM, route, {}));
-  SocketAddress own;
-  own.octets = sizeof own.storage;
+  std::optional<InternetAddress> own;
   if (::connect(probe.get(), route.device.get(), route.device.octets) != 0 ||
-      ::getsockname(probe.get(), reinterpret_cast<sockaddr*>(&own.storage), &own.octets) != 0)
+      !(own = own_internet_address(probe.get())))
     return fail(ErrorCode::Unavailable, "there is no way to the device's network", errno);
-  const auto address = address_of(reinterpret_cast<const sockaddr*>(&own.storage));
-  if (!address || !route.network->contains(*address))
+  if (!route.network->contains(*own))
     return fail(ErrorCode::Unavailable, "this computer has no address in the device's network");
-  return socket_address(*address);
+  own->port = 0;
+  return socket_address(*own);
 }
 
 }  // namespace
-
-SocketAddress socket_address(const InternetAddress& address) noexcept {
-  SocketAddress made;
-  if (address.family == InternetAddress::Family::Ipv4) {
-    sockaddr_in fourth{};
-    fourth.sin_family = AF_INET;
-    fourth.sin_port = htons(address.port);
-    std::memcpy(&fourth.sin_addr, address.octets.data(), sizeof fourth.sin_addr);
-    std::memcpy(&made.storage, &fourth, sizeof fourth);
-    made.octets = sizeof fourth;
-  } else {
-    sockaddr_in6 sixth{};
-    sixth.sin6_family = AF_INET6;
-    sixth.sin6_port = htons(address.port);
-    std::memcpy(&sixth.sin6_addr, address.octets.data(), sizeof sixth.sin6_addr);
-    std::memcpy(&made.storage, &sixth, sizeof sixth);
-    made.octets = sizeof sixth;
-  }
-  return made;
-}
 
 Result<DeviceRoute> find_route(const FlowOpening& opening) {
   HIROSCO_TRY_LET(const InternetAddress address, read_device_address(opening.address));

@@ -2,21 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <netinet/in.h>
-#include <sys/socket.h>
-
 #include "hirosco/data_transfer/device/flow_means.hpp"
+#include "hirosco/data_transfer/link/socket_address.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 
 /// What UDP and TCP have in common: where a device is, and that nothing goes beyond the network that the mission permits.
 namespace hirosco {
-
-struct SocketAddress {
-  sockaddr_storage storage{};
-  socklen_t octets{0};
-  [[nodiscard]] const sockaddr* get() const noexcept { return reinterpret_cast<const sockaddr*>(&storage); }
-};
-[[nodiscard]] SocketAddress socket_address(const InternetAddress& address) noexcept;
 
 /// Where a device is, and for whoever speaks to it from outside of this computer, from where.
 struct DeviceRoute {

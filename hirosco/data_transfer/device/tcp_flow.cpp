@@ -128,13 +128,8 @@ class TcpClient final : public DataFlow {
 
   /// The system may choose the device's port for this end, and connect it with itself.
   [[nodiscard]] bool is_with_itself() const noexcept {
-    SocketAddress own;
-    own.octets = sizeof own.storage;
-    if (::getsockname(begun_.get(), reinterpret_cast<sockaddr*>(&own.storage), &own.octets) != 0) return true;
-    sockaddr_in here{}, there{};  // the port lies at the same place of both families
-    std::memcpy(&here, &own.storage, sizeof here);
-    std::memcpy(&there, &route_.device.storage, sizeof there);
-    return here.sin_port == there.sin_port && route_.network == nullptr;
+    const auto own = own_internet_address(begun_.get()), there = internet_address(route_.device);
+    return !own || (there && own->port == there->port && route_.network == nullptr);
   }
 
   [[nodiscard]] Result<> do_send(Octets frame) noexcept override {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "hirosco/data_transfer/link/internet_address.hpp"
+#include "hirosco/data_transfer/link/socket_address.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 
 namespace hirosco {
@@ -30,33 +31,6 @@ constexpr int most_tellings = 3;
 constexpr std::size_t waiting_datagrams = 8;
 constexpr std::size_t added_by_system = 1024;
 
-/// An address as the system has it.
-struct Place {
-  sockaddr_storage storage{};
-  socklen_t octets{sizeof(sockaddr_storage)};
-  sockaddr* get() noexcept { return reinterpret_cast<sockaddr*>(&storage); }
-};
-
-Place place_of(const InternetAddress& address) noexcept {
-  Place place;
-  if (address.family == InternetAddress::Family::Ipv4) {
-    sockaddr_in fourth{};
-    fourth.sin_family = AF_INET;
-    fourth.sin_port = htons(address.port);
-    std::memcpy(&fourth.sin_addr, address.octets.data(), sizeof fourth.sin_addr);
-    std::memcpy(&place.storage, &fourth, sizeof fourth);
-    place.octets = sizeof fourth;
-  } else {
-    sockaddr_in6 sixth{};
-    sixth.sin6_family = AF_INET6;
-    sixth.sin6_port = htons(address.port);
-    std::memcpy(&sixth.sin6_addr, address.octets.data(), sizeof sixth.sin6_addr);
-    std::memcpy(&place.storage, &sixth, sizeof sixth);
-    place.octets = sizeof sixth;
-  }
-  return place;
-}
-
 template <class Value>
 Result<> set(const FileDescriptor& socket, int level, int option, Value value) noexcept {
   if (::setsockopt(socket.get(), level, option, &value, sizeof value) == 0) return ok();
@@ -68,28 +42,19 @@ Result<FileDescriptor> stand_at(InternetAddress& address) {
   const bool sixth = address.family == InternetAddress::Family::Ipv6;
   FileDescriptor socket{::socket(sixth ? AF_INET6 : AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
   if (!socket) return fail(ErrorCode::SystemFailure, "make socket", errno);
-  Place place = place_of(address);
+  const SocketAddress place = socket_address(address);
   if (::bind(socket.get(), place.get(), place.octets) != 0)
     return fail(ErrorCode::Unavailable,
                 errno == EADDRINUSE ? "the port of a link is taken" : "a link's address is not of this computer",
                 errno);
-  Place own;
-  if (::getsockname(socket.get(), own.get(), &own.octets) != 0)
-    return fail(ErrorCode::SystemFailure, "ask for the port of a socket", errno);
-  if (sixth) {
-    sockaddr_in6 there{};
-    std::memcpy(&there, &own.storage, sizeof there);
-    address.port = ntohs(there.sin6_port);
-  } else {
-    sockaddr_in there{};
-    std::memcpy(&there, &own.storage, sizeof there);
-    address.port = ntohs(there.sin_port);
-  }
+  const auto own = own_internet_address(socket.get());
+  if (!own) return fail(ErrorCode::SystemFailure, "ask for the port of a socket", errno);
+  address.port = own->port;
   return socket;
 }
 
 Result<> connect_to(const FileDescriptor& socket, const InternetAddress& address) {
-  Place place = place_of(address);
+  const SocketAddress place = socket_address(address);
   if (::connect(socket.get(), place.get(), place.octets) == 0) return ok();
   return fail(ErrorCode::Unavailable, "there is no way to the other end of a link", errno);
 }

@@ -4,16 +4,16 @@
 
 #include "supervisor/overview.hpp"
 
-/// A craft of two that is well, for tests.
-namespace hirosco::terminal::testing {
+/// What is told of a craft of two that is well, for tests.
+namespace hirosco::supervisor::testing {
 
-[[nodiscard]] inline supervisor::Overview pair() {
-  supervisor::Overview craft{.mission = "PAIR",
-                             .mode = "coupled",
-                             .initial_mode = "commissioning",
-                             .usual_mode = "coupled",
-                             .members = {},
-                             .links = {}};
+[[nodiscard]] inline Overview pair() {
+  Overview craft{.mission = "PAIR",
+                 .mode = "coupled",
+                 .initial_mode = "commissioning",
+                 .usual_mode = "coupled",
+                 .members = {},
+                 .links = {}};
   for (const char* name : {"ARM", "HAND"})
     craft.members.push_back({.name = name,
                              .runs = true,
@@ -31,4 +31,4 @@ namespace hirosco::terminal::testing {
   return craft;
 }
 
-}  // namespace hirosco::terminal::testing
+}  // namespace hirosco::supervisor::testing
