@@ -59,8 +59,6 @@ function(hirosco_install)
     cmake/HiroscoAuthor.cmake cmake/hirosco_module.map DESTINATION ${package})
 
   set(share share/hirosco)
-  install(DIRECTORY missions DESTINATION ${share} FILES_MATCHING PATTERN *.xml PATTERN *.csv PATTERN usual PATTERN "page/*"
-    PATTERN scenarios EXCLUDE PATTERN independent EXCLUDE)
   install(DIRECTORY subsystems supervisor DESTINATION ${share} FILES_MATCHING PATTERN *.xml PATTERN *.urdf)
   install(DIRECTORY hirosco/descriptor/ DESTINATION ${share}/schemas FILES_MATCHING PATTERN *.xsd PATTERN testdata EXCLUDE)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/${share}/page DESTINATION ${share} OPTIONAL)

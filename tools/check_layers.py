@@ -9,7 +9,8 @@ may = {"hirosco": ["hirosco"], "robotics": ["hirosco", "robotics"], "subsystems"
 shells = ("hirosco/utilities/os/", "hirosco/data_transfer/device/datagram_flow", "hirosco/data_transfer/device/shared_memory_flow",
           "hirosco/data_transfer/device/device_socket", "hirosco/data_transfer/device/framed_stream", "hirosco/data_transfer/device/message_queue_flow",
           "hirosco/data_transfer/device/serial_flow", "hirosco/data_transfer/device/tcp_flow",
-          "hirosco/data_transfer/control/socket_channel", "hirosco/data_transfer/control/stream_channel", "hirosco/data_transfer/link/internet_address", "hirosco/data_transfer/link/udp_link",
+          "hirosco/data_transfer/control/socket_channel", "hirosco/data_transfer/control/stream_channel", "hirosco/data_transfer/link/internet_address", "hirosco/data_transfer/link/socket_address",
+          "hirosco/data_transfer/link/udp_link",
           "hirosco/data_transfer/memory/sealed_memory", "supervisor/guard/guard_shell", "supervisor/flight_shell.cpp", "supervisor/keeper/", "supervisor/platform/", "tools/",
           "tests/", "bench/", "simulation/devices/")
 # These, and tests, their rigs, main.cpp, run.cpp and a TCP server anywhere, may ask the operating system.
