@@ -8,7 +8,7 @@
 # A part of a mission: the program NAME, and the module NAME.so beside it, for `hirosco simulate`. One of the sources defines
 # hirosco_module(). They are compiled once, into NAME_objects, which tests link. MAIN: a main() of the program's own in place
 # of the one that runs the module. Both are installed, into bin and lib/hirosco, unless they are a
-# test's.
+# test's or whoever makes them says where.
 function(hirosco_subsystem name)
   hirosco_part(${name} hirosco::subsystem_main hirosco::subsystem ${ARGN})
 endfunction()
