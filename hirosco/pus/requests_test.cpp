@@ -48,7 +48,7 @@ descriptor::Mission one_with_a_service() {
   return mission;
 }
 
-const descriptor::Function* named(const std::vector<descriptor::Function>& requests, std::string_view name) {
+const descriptor::Function* request_named(const std::vector<descriptor::Function>& requests, std::string_view name) {
   const auto found = std::ranges::find(requests, name, &descriptor::Function::name);
   return found == requests.end() ? nullptr : &*found;
 }
@@ -65,7 +65,7 @@ TEST(Requests, AreThoseOfEverySubsystemOfItsFunctionsAndOfItsOwnServices) {
 TEST(Requests, OfAnOwnServiceCarryTheirArgumentsInOrderAndNothingElse) {
   const auto mission = one_with_a_service();
   const auto requests = requests_of(mission.subsystems[0].subsystem);
-  const descriptor::Function& blink = *named(requests, "BLINK");
+  const descriptor::Function& blink = *request_named(requests, "BLINK");
   const std::vector<std::optional<Value>> given{300.0, 0.25};
   const auto data = encode_request(blink, given);
   ASSERT_TRUE(data);
@@ -75,16 +75,16 @@ TEST(Requests, OfAnOwnServiceCarryTheirArgumentsInOrderAndNothingElse) {
   const std::vector<std::optional<Value>> too_large{501.0}, none{};
   EXPECT_EQ(encode_request(blink, too_large).error().code, ErrorCode::OutOfRange);
   EXPECT_EQ(encode_request(blink, none).error().code, ErrorCode::InvalidArgument);
-  EXPECT_EQ(encode_request(*named(requests, "PING"), none)->size(), 0);
+  EXPECT_EQ(encode_request(*request_named(requests, "PING"), none)->size(), 0);
 }
 
 TEST(Requests, AreReadBackAsCallsOfFunctionsToo) {
   const auto mission = one_with_a_service();
   const auto requests = requests_of(mission.subsystems[0].subsystem);
   const std::vector<std::optional<Value>> operational{5.0};
-  const auto data = encode_request(*named(requests, "SET_STATE"), operational);
+  const auto data = encode_request(*request_named(requests, "SET_STATE"), operational);
   ASSERT_TRUE(data);
-  EXPECT_EQ(decode_request(*named(requests, "SET_STATE"), *data), std::vector<Value>{5.0});
+  EXPECT_EQ(decode_request(*request_named(requests, "SET_STATE"), *data), std::vector<Value>{5.0});
 }
 
 descriptor::Subsystem one_with_a_structure() {
@@ -115,9 +115,9 @@ descriptor::Subsystem one_with_a_structure() {
 
 TEST(Requests, SetAParameterWholeAndEachPartOfIt) {
   const auto requests = requests_of(one_with_a_structure());
-  const descriptor::Function* const whole = named(requests, "SET:LAMP");
-  const descriptor::Function* const light = named(requests, "SET:LAMP.LIGHT");
-  ASSERT_TRUE(whole != nullptr && light != nullptr && named(requests, "SET:LAMP.LIGHT.LEVEL") != nullptr);
+  const descriptor::Function* const whole = request_named(requests, "SET:LAMP");
+  const descriptor::Function* const light = request_named(requests, "SET:LAMP.LIGHT");
+  ASSERT_TRUE(whole != nullptr && light != nullptr && request_named(requests, "SET:LAMP.LIGHT.LEVEL") != nullptr);
   EXPECT_TRUE(light->permitted_in(descriptor::State::SafeOperational));
   EXPECT_FALSE(light->permitted_in(descriptor::State::Operational));
   EXPECT_EQ(light->arguments[0].texts.size(), 2u);
@@ -135,22 +135,22 @@ TEST(Requests, SetAParameterWholeAndEachPartOfIt) {
 
 TEST(Requests, SetNothingThatIsOutsideItsRangeOrIncomplete) {
   const auto requests = requests_of(one_with_a_structure());
-  const descriptor::Function& light = *named(requests, "SET:LAMP.LIGHT");
+  const descriptor::Function& light = *request_named(requests, "SET:LAMP.LIGHT");
   const std::vector<std::optional<Value>> too_bright{1.0, 1.5}, half{1.0}, no_colour{3.0, 0.5}, many{1.0, 0.5, 0.5};
   EXPECT_EQ(encode_request(light, too_bright).error().code, ErrorCode::OutOfRange);
   EXPECT_EQ(encode_request(light, half).error().code, ErrorCode::InvalidArgument);
   EXPECT_EQ(encode_request(light, no_colour).error().code, ErrorCode::OutOfRange);
   EXPECT_EQ(encode_request(light, many).error().code, ErrorCode::InvalidArgument);
   const std::vector<std::optional<Value>> long_words{"longer", 1.0, 0.5};
-  EXPECT_EQ(encode_request(*named(requests, "SET:LAMP"), long_words).error().code, ErrorCode::OutOfRange);
+  EXPECT_EQ(encode_request(*request_named(requests, "SET:LAMP"), long_words).error().code, ErrorCode::OutOfRange);
 }
 
 TEST(Requests, WhatIsEssentialGoesAloneAndAPingDoesNot) {
   const auto mission = one_with_a_service();
   auto requests = requests_of(mission.subsystems[0].subsystem);
-  EXPECT_FALSE(goes_alone(*named(requests, "PING")));
-  EXPECT_FALSE(goes_alone(*named(requests, "DIM")));
-  descriptor::Function stop = *named(requests, "DIM");
+  EXPECT_FALSE(goes_alone(*request_named(requests, "PING")));
+  EXPECT_FALSE(goes_alone(*request_named(requests, "DIM")));
+  descriptor::Function stop = *request_named(requests, "DIM");
   stop.essential = true;
   EXPECT_TRUE(goes_alone(stop));
 }

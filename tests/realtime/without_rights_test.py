@@ -14,7 +14,7 @@ import unittest
 
 import flight
 
-SECONDS = 20.0
+SECONDS = 8.0
 NOBODY = 65534
 AS_NOBODY = ("setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups", "--no-new-privs",
              "--inh-caps=-all", "--bounding-set=-all")

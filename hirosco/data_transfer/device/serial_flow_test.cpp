@@ -13,11 +13,13 @@
 #include <fstream>
 #include <vector>
 
-#include "hirosco/data_transfer/device/stream_framing.hpp"
+#include "hirosco/data_transfer/device/testing/streamed.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 
 namespace hirosco {
 namespace {
+
+using testing::streamed;
 
 TEST(SerialLine, IsAPathAndASpeedThatLinesHave) {
   EXPECT_EQ(read_serial_line("/dev/ttyUSB0@9600").value().path, "/dev/ttyUSB0");
@@ -47,12 +49,6 @@ struct Master {
     ASSERT_EQ(::write(end.get(), octets.data(), octets.size()), static_cast<ssize_t>(octets.size()));
   }
 };
-
-std::vector<std::byte> streamed(std::uint8_t mark) {
-  std::array<std::byte, max_streamed_octets> buffer;
-  const Octets made = write_streamed(buffer, std::vector<std::byte>(40, std::byte{mark}));
-  return {made.begin(), made.end()};
-}
 
 std::string unique_name() { return ::testing::TempDir() + "hirosco-line-" + std::to_string(::getpid()); }
 

@@ -12,12 +12,14 @@
 #include <thread>
 #include <vector>
 
-#include "hirosco/data_transfer/device/stream_framing.hpp"
+#include "hirosco/data_transfer/device/testing/streamed.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 
 namespace hirosco {
 namespace {
+
+using testing::streamed;
 
 /// A listener or a client of the test's own, beside the flow.
 struct Wire {
@@ -48,12 +50,6 @@ std::string free_address() {
   Wire wire;
   wire.listen();
   return wire.address();
-}
-
-std::vector<std::byte> streamed(std::uint8_t mark, std::size_t octets = 40) {
-  std::array<std::byte, max_streamed_octets> buffer;
-  const Octets made = write_streamed(buffer, std::vector<std::byte>(octets, std::byte{mark}));
-  return {made.begin(), made.end()};
 }
 
 struct TcpFlow : ::testing::Test {

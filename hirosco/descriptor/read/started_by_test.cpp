@@ -17,8 +17,8 @@ using testing::overlay;
 using testing::rendered;
 
 /// The example's mission with FLYWHEEL's cycle as said, PLATE_STATE with these methods at both ends, and link 1 as said.
-Reading<Mission> with(const std::string& flywheel, const std::string& methods = "shared_memory",
-                      const std::string& link = {}) {
+Reading<Mission> flown_with(const std::string& flywheel, const std::string& methods = "shared_memory",
+                            const std::string& link = {}) {
   const auto file = [](const char* name) { return file_system()(data / name).value(); };
   const std::string attribute = "methods=\"" + methods + "\"";
   return read_mission(
@@ -35,7 +35,7 @@ Reading<Mission> with(const std::string& flywheel, const std::string& methods = 
 }
 
 TEST(StartedBy, NamesARequiredSetAndTheShortestDistance) {
-  const auto reading = with(R"(started_by="PLATE_STATE" least_us="250" budget_us="100")");
+  const auto reading = flown_with(R"(started_by="PLATE_STATE" least_us="250" budget_us="100")");
   ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
   const Subsystem& flywheel = reading.value->find_subsystem("FLYWHEEL")->subsystem;
   const Configuration& started = *flywheel.find_configuration("COUPLED");
@@ -50,10 +50,10 @@ TEST(StartedBy, NamesARequiredSetAndTheShortestDistance) {
 }
 
 TEST(StartedBy, TheLeastDistanceIsWhatACycleCostsTheProcessor) {
-  const auto fits = with(R"(started_by="PLATE_STATE" least_us="250" budget_us="100")");
+  const auto fits = flown_with(R"(started_by="PLATE_STATE" least_us="250" budget_us="100")");
   ASSERT_TRUE(fits.value);
   EXPECT_DOUBLE_EQ(cycle_share(*fits.value, *fits.value->find_mode("telepresence")), 0.64);
-  const auto much = with(R"(started_by="PLATE_STATE" least_us="125" budget_us="100")");
+  const auto much = flown_with(R"(started_by="PLATE_STATE" least_us="125" budget_us="100")");
   ASSERT_EQ(much.problems.size(), 1U) << rendered(much.problems, file_system());
   EXPECT_EQ(much.problems[0].code, "E0324");
   EXPECT_EQ(much.problems[0].message, "the cycles of mode 'telepresence' take 104 % of a processor");
@@ -61,10 +61,10 @@ TEST(StartedBy, TheLeastDistanceIsWhatACycleCostsTheProcessor) {
 
 TEST(StartedBy, AMissionSendsItBySomeWayThatWakes) {
   constexpr auto started = R"(started_by="PLATE_STATE" least_us="250" budget_us="100")";
-  EXPECT_TRUE(with(started, "shared_memory udp").value);
-  EXPECT_TRUE(with(started, "shared_memory udp", R"(method="shared_memory")").value);
-  EXPECT_TRUE(with(R"(budget_us="100")", "shared_memory udp", R"(method="udp")").value);
-  const auto deaf = with(started, "shared_memory udp", R"(method="udp")");
+  EXPECT_TRUE(flown_with(started, "shared_memory udp").value);
+  EXPECT_TRUE(flown_with(started, "shared_memory udp", R"(method="shared_memory")").value);
+  EXPECT_TRUE(flown_with(R"(budget_us="100")", "shared_memory udp", R"(method="udp")").value);
+  const auto deaf = flown_with(started, "shared_memory udp", R"(method="udp")");
   ASSERT_FALSE(deaf.problems.empty());
   EXPECT_NE(deaf.problems[0].message.find("its samples start a cycle, and 'udp' wakes nobody"), std::string::npos)
       << rendered(deaf.problems, file_system());

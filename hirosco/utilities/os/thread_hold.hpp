@@ -40,7 +40,7 @@ class ThreadHold {
   Mutex mutex_;
   bool present_{false};
   pthread_t handle_{};
-  int number_{0};  ///< of the system, where it has one
+  [[maybe_unused]] int number_{0};  ///< of the system, where it has one
   Scheduling taken_{};  ///< priority 0: nothing
   Duration had_before_{};
 };
