@@ -88,7 +88,7 @@ TEST_F(Journals, MemoryThatIsTooSmallHoldsNothingAndHarmsNobody) {
   }
 }
 
-struct Number final : Remembered {
+struct RememberedNumber final : Remembered {
   void note(OctetWriter& writer) const override { writer.put(value); }
   void recall(OctetReader& reader) override { recalled = reader.get<std::uint32_t>(); }
   std::uint32_t value{0};
@@ -102,13 +102,13 @@ struct Text final : Remembered {
 };
 
 TEST_F(Journals, EachPartIsToldWhatItHadNoted) {
-  Number number;
+  RememberedNumber number;
   Text text;
   Memory memory_of_one{&journal, {&number, &text}};
   number.value = 7;
   text.value = "seven";
   ASSERT_TRUE(memory_of_one.note());
-  Number later_number;
+  RememberedNumber later_number;
   Text later_text;
   Journal later{memory};
   Memory memory_of_next{&later, {&later_number, &later_text}};
@@ -118,10 +118,10 @@ TEST_F(Journals, EachPartIsToldWhatItHadNoted) {
 }
 
 TEST_F(Journals, OtherPartsOrPartsThatReadOtherwiseAreNotTold) {
-  Number number;
+  RememberedNumber number;
   Memory one{&journal, {&number}};
   ASSERT_TRUE(one.note());
-  Number first, second;
+  RememberedNumber first, second;
   EXPECT_FALSE((Memory{&journal, {&first, &second}}.recall()));
   struct Half final : Remembered {
     void note(OctetWriter&) const override {}

@@ -16,7 +16,7 @@ namespace {
 struct PowerLost {};
 
 /// Loses its power before the step that the test says. What was not on the disk then is there in part, as the test says, too.
-class FailingDisk final : public MemoryValueDisk {
+class FailingValueDisk final : public MemoryValueDisk {
  public:
   void lose_power_before(int step) { steps_left_ = step; }
   /// Of a file that was created and not synchronised `prefix` octets are there; names given since the folder was synchronised
@@ -90,7 +90,7 @@ class FailingDisk final : public MemoryValueDisk {
 constexpr int steps_of_a_write = 8;
 
 struct ValueCopiesTest : ::testing::Test {
-  FailingDisk disk;
+  FailingValueDisk disk;
   ValueCopies copies{disk, "values/ARM"};
 };
 
@@ -136,7 +136,7 @@ TEST(ValueCopies, HaveTheNewestChangeOrTheOneBeforeWheneverThePowerGoes) {
     for (int step = 0; step < steps_of_a_write; ++step)
       for (const std::size_t prefix : {std::size_t{0}, std::size_t{1}, std::size_t{30}, std::size_t{1000}})
         for (const bool names_are_there : {false, true}) {
-          FailingDisk disk;
+          FailingValueDisk disk;
           const auto write = [&](std::uint64_t number, int until) {
             ValueCopies copies{disk, "values/ARM"};
             static_cast<void>(copies.read());
@@ -158,7 +158,7 @@ TEST(ValueCopies, HaveTheNewestChangeOrTheOneBeforeWheneverThePowerGoes) {
 
 TEST(ValueCopies, OnceTheFirstIsOnTheDiskTheNewestChangeIsThere) {
   for (int step = steps_of_a_write / 2; step < steps_of_a_write; ++step) {
-    FailingDisk disk;
+    FailingValueDisk disk;
     ValueCopies copies{disk, "values/ARM"};
     ASSERT_TRUE(copies.write(change(1)));
     disk.lose_power_before(step);
@@ -172,7 +172,7 @@ TEST(ValueCopies, OnceTheFirstIsOnTheDiskTheNewestChangeIsThere) {
 TEST(ValueCopies, TheOnlyWholeOneIsTheLastToBeReplaced) {
   for (const std::size_t damaged : {0U, 1U})
     for (int step = 0; step < steps_of_a_write; ++step) {
-      FailingDisk disk;
+      FailingValueDisk disk;
       ValueCopies copies{disk, "values/ARM"};
       ASSERT_TRUE(copies.write(change(1)));
       disk.damage(copies.path(damaged), 40, std::byte{1});

@@ -14,7 +14,7 @@ using ::testing::IsEmpty;
 using enum descriptor::State;
 namespace st129 = pus::st129;
 
-constexpr std::uint16_t hot = 2000;
+constexpr std::uint16_t joint_hot = 2000;
 
 struct PlanPreviewTest : PartsTest {
   std::uint16_t count{0};
@@ -23,7 +23,7 @@ struct PlanPreviewTest : PartsTest {
     PartsTest::SetUp();
     descriptor::Event event;
     event.name = "HOT";
-    event.id = hot;
+    event.id = joint_hot;
     event.severity = Severity::Medium;
     craft.mission.subsystems.front().subsystem.events.push_back(event);
     start_all(Operational);
@@ -80,10 +80,10 @@ struct PlanPreviewTest : PartsTest {
 TEST_F(PlanPreviewTest, TellsThePlanItsNumberAndItsStepsInTheirOrder) {
   plan("other", {{"log"}}, "PROCESS_DIED");
   plan("cool", {{"set_state", {static_cast<int>(SafeOperational)}}, {"fence", {}, "HAND"}, {"kill"}});
-  const auto preview = ask(arm, hot);
+  const auto preview = ask(arm, joint_hot);
   ASSERT_TRUE(preview);
   EXPECT_EQ(preview->subsystem, arm);
-  EXPECT_EQ(preview->event, hot);
+  EXPECT_EQ(preview->event, joint_hot);
   EXPECT_EQ(preview->severity, 3);
   EXPECT_EQ(preview->plan, 2);
   EXPECT_EQ(preview->name, "cool");
@@ -93,9 +93,9 @@ TEST_F(PlanPreviewTest, TellsThePlanItsNumberAndItsStepsInTheirOrder) {
 }
 
 TEST_F(PlanPreviewTest, WhatThereIsNothingToDoForIsNoStep) {
-  EXPECT_THAT(words(*ask(arm, hot)), ElementsAre("1 10 SafeOperational")) << "the default";
+  EXPECT_THAT(words(*ask(arm, joint_hot)), ElementsAre("1 10 SafeOperational")) << "the default";
   set(arm, PreOperational);
-  const auto preview = ask(arm, hot);
+  const auto preview = ask(arm, joint_hot);
   ASSERT_TRUE(preview);
   EXPECT_EQ(preview->plan, 0);
   EXPECT_EQ(preview->name, "default");
@@ -120,21 +120,21 @@ TEST_F(PlanPreviewTest, TellsWhatIsAgainstIt) {
        "BURNING");
   descriptor::Event event;
   event.name = "BURNING";
-  event.id = hot + 1;
+  event.id = joint_hot + 1;
   event.severity = Severity::High;
   craft.mission.subsystems.front().subsystem.events.push_back(event);
-  this->event(arm, hot + 1, Severity::High);
-  const auto preview = ask(arm, hot);
+  this->event(arm, joint_hot + 1, Severity::High);
+  const auto preview = ask(arm, joint_hot);
   ASSERT_TRUE(preview);
   EXPECT_THAT(preview->against, ElementsAre("ARM: plan down runs"));
   craft.shutting_down = true;
-  EXPECT_THAT(ask(arm, hot)->against, ElementsAre("the craft shuts down"));
+  EXPECT_THAT(ask(arm, joint_hot)->against, ElementsAre("the craft shuts down"));
 }
 
 TEST_F(PlanPreviewTest, AStepSaysItself) {
   plan("hand-over", {{"hand_over", {hand, 1}, {}, {"HAND", "ONLY"}}});
   guard.fence(hand);
-  const auto preview = ask(arm, hot);
+  const auto preview = ask(arm, joint_hot);
   ASSERT_TRUE(preview);
   EXPECT_THAT(words(*preview), ElementsAre("1 10 task to HAND in ONLY"));
   EXPECT_THAT(preview->against,
@@ -159,7 +159,7 @@ TEST_F(PlanPreviewTest, OfALinkThatTheMissionSpeaksOfItTellsThat) {
 
 TEST_F(PlanPreviewTest, OfNoSuchEventThereIsNoAnswer) {
   EXPECT_FALSE(ask(arm, 9999));
-  EXPECT_FALSE(ask(99, hot));
+  EXPECT_FALSE(ask(99, joint_hot));
   EXPECT_FALSE(ask(supervisor_apid, 101)) << "a death is somebody's";
   EXPECT_FALSE(ask(arm, 109)) << "the log is nobody's";
   EXPECT_FALSE(ask(supervisor_apid, 126)) << "what tells of plans has none";
