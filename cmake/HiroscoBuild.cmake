@@ -91,13 +91,13 @@ function(hirosco_for_modules name)
     POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endfunction()
 
-# The headers that every test includes, compiled once, and tests themselves compiled for speed of building, four files in one
+# The headers that every test includes, compiled once, and tests themselves compiled for speed of building, eight files in one
 # piece (with sanitizers fourteen, see above): together this is a third of the time. What is under test keeps its own options. In a piece names of the files of one
 # target must differ.
 # A second word is a header of ours that nearly all of its files include: it is compiled once, too.
 function(hirosco_compile_as_test name)
   if(HIROSCO_IN_PIECES)
-    set(piece 4)
+    set(piece 8)
     if(HIROSCO_SANITIZE)
       set(piece 14)
     endif()

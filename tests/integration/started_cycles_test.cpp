@@ -10,7 +10,7 @@
 namespace hirosco::testing {
 namespace {
 
-constexpr auto encoder_text = R"(<Subsystem name="ENCODER" id="20">
+constexpr auto quick_encoder_text = R"(<Subsystem name="ENCODER" id="20">
   <Parameters><ParamRef name="NUMBER" id="1" type="UINT64"/><ParamRef name="ANGLE" id="2" type="DOUBLE" unit="rad"/></Parameters>
   <Configuration name="QUICK" id="1" sampling_us="2000"><RealTimeLinkService>
     <Provides name="TICK"><ParamRef name="NUMBER"/><ParamRef name="ANGLE"/></Provides></RealTimeLinkService></Configuration>
@@ -55,7 +55,7 @@ struct StartedCycles : ::testing::Test {
   Follower* follower{nullptr};
   std::optional<Flight> flight;
   void begin(std::string_view on_loss = R"(on_loss="ignore")") {
-    flight.emplace(two_ends({"ENCODER", "QUICK", "TICK", encoder_text, making(encoder)},
+    flight.emplace(two_ends({"ENCODER", "QUICK", "TICK", quick_encoder_text, making(encoder)},
                             {"FOLLOWER", "FOLLOW", "TICKS", follower_text, making(follower)}, std::string{on_loss},
                             R"(<Permit subsystem="*" functions="SET_STATE CONFIGURE"/>)"));
     ASSERT_TRUE(flight->commission()) << flight->story().text();
