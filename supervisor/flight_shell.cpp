@@ -34,6 +34,7 @@
 #include "supervisor/platform/storage/log_store.hpp"
 #include "supervisor/platform/storage/postgresql_database.hpp"
 #include "supervisor/platform/storage/value_store.hpp"
+#include "supervisor/supervision/texts_in_force.hpp"
 #include "supervisor/supervisor.hpp"
 #include "supervisor/unprovoked_reactions.hpp"
 
@@ -148,7 +149,7 @@ class Waker {
 /// What the keeper holds for this supervisor and for one after it; where there is none, memory of our own.
 class Kept {
  public:
-  explicit Kept(const descriptor::Mission& mission) : mission_{mission} {
+  Kept() {
     if (auto mapped = MappedMemory::map(keeper_page_descriptor, sizeof(KeeperPage), MapMode::ReadWrite)) {
       page_memory_ = std::move(*mapped);
       page_ = reinterpret_cast<KeeperPage*>(page_memory_.octets().data());
@@ -156,6 +157,10 @@ class Kept {
     if (auto mapped = MappedMemory::map(keeper_journal_descriptor, journal_octets, MapMode::ReadWrite)) {
       journal_memory_ = std::move(*mapped);
       journal_.emplace(journal_memory_.octets());
+    }
+    if (auto mapped = MappedMemory::map(keeper_texts_descriptor, texts_octets, MapMode::ReadWrite)) {
+      texts_memory_ = std::move(*mapped);
+      texts_.emplace(texts_memory_.octets());
     }
   }
   [[nodiscard]] KeeperPage& page() noexcept { return *page_; }
@@ -165,7 +170,19 @@ class Kept {
     return StoreClient{page_ != &own_ ? keeper_store_descriptor : -1};
   }
   [[nodiscard]] Journal* journal() noexcept { return journal_ ? &*journal_ : nullptr; }
-  [[nodiscard]] InhibitNotes notes() const { return InhibitNotes{mission_, *page_}; }
+  [[nodiscard]] InhibitNotes notes(const descriptor::Mission& mission) const { return InhibitNotes{mission, *page_}; }
+  /// By what the supervisor before flew: its files may say something else by now, and nobody has judged that.
+  [[nodiscard]] descriptor::FileSource source() const {
+    auto texts = goes_on() && texts_ ? texts_->newest() : TextsInForce::Texts{};
+    if (texts.empty()) return descriptor::file_system();
+    return [texts = std::move(texts)](const std::filesystem::path& asked) -> Result<std::string> {
+      const auto known = texts.find(asked);
+      if (known == texts.end()) return fail(ErrorCode::NotFound, "is no file of this flight");
+      return *known->second;
+    };
+  }
+  /// False: they have no room. The next supervisor reads the files.
+  bool note(const TextsInForce::Texts& texts) { return !texts_ || texts_->note(texts); }
   /// From the keeper, which has told the devices what the guard before had told them.
   void take_inhibits(const Clock& clock) const {
     constexpr Duration longest = 100ms;
@@ -176,11 +193,11 @@ class Kept {
   }
 
  private:
-  const descriptor::Mission& mission_;
-  MappedMemory page_memory_, journal_memory_;
+  MappedMemory page_memory_, journal_memory_, texts_memory_;
   KeeperPage own_;
   KeeperPage* page_{&own_};
   std::optional<Journal> journal_;
+  std::optional<TextsInForce> texts_;
 };
 
 /// An exception in it ends the process where it is thrown, with last words. On its way out it would shut down the channels, and with them
@@ -277,9 +294,10 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
     fmt::print(stderr, "hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text);
     return exit_environment;
   }
-  Guard guard{{.clock = clock, .flows = flows, .first_epoch = *first_epoch, .notes = keeper.notes(), .on_finding = [&] {
-                 guard_found->notify();
-               }}};
+  Guard guard{
+      {.clock = clock, .flows = flows, .first_epoch = *first_epoch, .notes = keeper.notes(mission), .on_finding = [&] {
+         guard_found->notify();
+       }}};
   Supervisor supervisor{
       {.mission = mission,
        .platform = {.clock = clock,
@@ -300,6 +318,9 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
        .journal = keeper.journal(),
        .values = &values,
        .readings = &readings}};
+  if (!keeper.note(supervisor.mission().texts))
+    console.told(clock.onboard(),
+                 "the texts of this mission are too long to be kept: who goes on for this supervisor reads its files");
   if (!realtime) console.told(clock.onboard(), "no real-time scheduling: the reduced limits hold");
 
   Waker waker{signal_descriptor.get(), log_progress->descriptor(), guard_found->descriptor(),
@@ -333,6 +354,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
     while (!supervisor.finished()) {
       const TimePoint wake = supervisor.step(clock.now());
       page.supervisor.fetch_add(1, std::memory_order_relaxed);
+      static_cast<void>(keeper.note(supervisor.mission().texts));
       if (reserve.used() && !std::exchange(ends_as_a_whole, true)) {
         if (kept && page.alone.load() == 0 && !asked_to_end) leave_to_another();
         console.told(clock.onboard(), "no memory left: the flight ends in order");
@@ -399,8 +421,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
 }
 
 int named_failures(const char* program, const descriptor::Mission& mission, const Options& options,
-                   const MakeDeployment& deploy) {
-  Kept keeper{mission};
+                   const MakeDeployment& deploy, Kept& keeper) {
   const auto flight = [&] { return serve(mission, options, deploy, keeper); };
   try {
     return keeper.goes_on() ? without_unwinding(flight) : flight();
@@ -425,7 +446,8 @@ int fly(int argc, char** argv, const MakeDeployment& deploy) {
     fmt::print(stderr, "{}: started by 'hirosco run MISSION'\n  --mission FILE [--json|--quiet]\n", argv[0]);
     return exit_usage;
   }
-  const auto source = descriptor::file_system();
+  Kept keeper;
+  const auto source = keeper.source();
   auto reading = descriptor::read_mission(options.mission, source);
   for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));
   if (!reading.value) return exit_finding;
@@ -434,7 +456,7 @@ int fly(int argc, char** argv, const MakeDeployment& deploy) {
       fmt::print(stderr, "{}: {}\n", argv[0], *why_not);
       return exit_usage;
     }
-  return named_failures(program, *reading.value, options, deploy);
+  return named_failures(program, *reading.value, options, deploy, keeper);
 }
 
 }  // namespace hirosco::supervisor
