@@ -10,13 +10,13 @@ namespace hirosco {
 namespace {
 
 /// Whoever is asked for memory has no argument.
-std::atomic<void*>& reserve() noexcept {
+std::atomic<void*>& kept_in_reserve() noexcept {
   static std::atomic<void*> octets{nullptr};
   return octets;
 }
 
-void give_back() {
-  void* const octets = reserve().exchange(nullptr);
+void give_reserve_back() {
+  void* const octets = kept_in_reserve().exchange(nullptr);
   if (octets == nullptr) throw std::bad_alloc{};
   std::free(octets);
 }
@@ -26,15 +26,15 @@ void give_back() {
 MemoryReserve::MemoryReserve(std::size_t octets) {
   void* const taken = std::malloc(octets);
   if (taken == nullptr) throw std::bad_alloc{};
-  reserve().store(taken);
-  before_ = std::set_new_handler(give_back);
+  kept_in_reserve().store(taken);
+  before_ = std::set_new_handler(give_reserve_back);
 }
 
 MemoryReserve::~MemoryReserve() {
   std::set_new_handler(before_);
-  std::free(reserve().exchange(nullptr));
+  std::free(kept_in_reserve().exchange(nullptr));
 }
 
-bool MemoryReserve::used() const noexcept { return reserve().load(std::memory_order_relaxed) == nullptr; }
+bool MemoryReserve::used() const noexcept { return kept_in_reserve().load(std::memory_order_relaxed) == nullptr; }
 
 }  // namespace hirosco

@@ -9,10 +9,10 @@
 namespace hirosco {
 namespace {
 
-constexpr std::size_t mega = std::size_t{1} << 20;
+constexpr std::size_t octets_in_reserve = std::size_t{1} << 20;
 
 TEST(MemoryReserve, IsGivenBackOnceWhenThereIsNoMoreMemoryAndWhoLooksIsTold) {
-  const MemoryReserve reserve{mega};
+  const MemoryReserve reserve{octets_in_reserve};
   EXPECT_FALSE(reserve.used());
   const auto asked_for_memory = std::get_new_handler();
   ASSERT_NE(asked_for_memory, nullptr);
@@ -23,14 +23,14 @@ TEST(MemoryReserve, IsGivenBackOnceWhenThereIsNoMoreMemoryAndWhoLooksIsTold) {
 
 TEST(MemoryReserve, LeavesNothingBehindWhetherItWasUsedOrNot) {
   const auto before = std::get_new_handler();
-  { const MemoryReserve unused{mega}; }
+  { const MemoryReserve unused{octets_in_reserve}; }
   EXPECT_EQ(std::get_new_handler(), before);
   {
-    const MemoryReserve used{mega};
+    const MemoryReserve used{octets_in_reserve};
     std::get_new_handler()();
   }
   EXPECT_EQ(std::get_new_handler(), before);
-  const MemoryReserve next{mega};
+  const MemoryReserve next{octets_in_reserve};
   EXPECT_FALSE(next.used());
 }
 

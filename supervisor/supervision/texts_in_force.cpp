@@ -12,14 +12,14 @@
 namespace hirosco::supervisor {
 namespace {
 
-using Length = std::uint32_t;
+using TextLength = std::uint32_t;
 
-void put(OctetWriter& writer, std::string_view text) {
-  writer.put(static_cast<Length>(text.size())).put(std::as_bytes(std::span{text}));
+void put_text(OctetWriter& writer, std::string_view text) {
+  writer.put(static_cast<TextLength>(text.size())).put(std::as_bytes(std::span{text}));
 }
 
-[[nodiscard]] std::string take(OctetReader& reader) {
-  const Octets octets = reader.get(reader.get<Length>());
+[[nodiscard]] std::string take_next_text(OctetReader& reader) {
+  const Octets octets = reader.get(reader.get<TextLength>());
   return {reinterpret_cast<const char*>(octets.data()), octets.size()};
 }
 
@@ -29,8 +29,8 @@ TextsInForce::Texts TextsInForce::newest() const {
   Texts texts;
   OctetReader reader{journal_.newest()};
   while (reader.good() && !reader.exhausted()) {
-    std::filesystem::path file = take(reader);
-    texts[std::move(file)] = std::make_shared<const std::string>(take(reader));
+    std::filesystem::path file = take_next_text(reader);
+    texts[std::move(file)] = std::make_shared<const std::string>(take_next_text(reader));
   }
   return reader.good() ? texts : Texts{};
 }
@@ -42,13 +42,13 @@ bool TextsInForce::note(const Texts& texts) {
   std::size_t octets = 0;
   for (const auto& [file, text] : texts) {
     noted_.push_back(text);
-    octets += 2 * sizeof(Length) + file.native().size() + text->size();
+    octets += 2 * sizeof(TextLength) + file.native().size() + text->size();
   }
   std::vector<std::byte> content(octets);
   OctetWriter writer{content};
   for (const auto& [file, text] : texts) {
-    put(writer, file.native());
-    put(writer, *text);
+    put_text(writer, file.native());
+    put_text(writer, *text);
   }
   // What was noted before is not in force any more.
   return journal_.write(content) || (journal_.write({}) && false);

@@ -8,12 +8,12 @@
 namespace hirosco::supervisor {
 namespace {
 
-using Texts = TextsInForce::Texts;
+using NotedTexts = TextsInForce::Texts;
 
-[[nodiscard]] std::shared_ptr<const std::string> text(std::string words) {
+[[nodiscard]] std::shared_ptr<const std::string> shared_text(std::string words) {
   return std::make_shared<const std::string>(std::move(words));
 }
-[[nodiscard]] std::map<std::string, std::string> words_of(const Texts& texts) {
+[[nodiscard]] std::map<std::string, std::string> texts_by_file(const NotedTexts& texts) {
   std::map<std::string, std::string> words;
   for (const auto& [file, each] : texts) words[file.string()] = *each;
   return words;
@@ -22,23 +22,25 @@ using Texts = TextsInForce::Texts;
 struct TextsTest : ::testing::Test {
   std::vector<std::byte> memory = std::vector<std::byte>(1024);
   TextsInForce noted{memory};
-  Texts texts{{"arm.xml", text("<Subsystem/>")}, {"@hirosco/mission.xml", text("<Mission/>")}, {"none.xml", text("")}};
+  NotedTexts texts{{"arm.xml", shared_text("<Subsystem/>")},
+                   {"@hirosco/mission.xml", shared_text("<Mission/>")},
+                   {"none.xml", shared_text("")}};
   /// Of who goes on.
-  [[nodiscard]] Texts found() { return TextsInForce{memory}.newest(); }
+  [[nodiscard]] NotedTexts found() { return TextsInForce{memory}.newest(); }
 };
 
 TEST_F(TextsTest, AreNoneBeforeTheFirstSupervisor) { EXPECT_TRUE(found().empty()); }
 
 TEST_F(TextsTest, AreThoseOfTheSupervisorBefore) {
   ASSERT_TRUE(noted.note(texts));
-  EXPECT_EQ(words_of(found()), words_of(texts));
+  EXPECT_EQ(texts_by_file(found()), texts_by_file(texts));
 }
 
 TEST_F(TextsTest, FollowADescriptorThatIsReadAgain) {
   ASSERT_TRUE(noted.note(texts));
-  texts["arm.xml"] = text("<Subsystem>\n</Subsystem>");
+  texts["arm.xml"] = shared_text("<Subsystem>\n</Subsystem>");
   ASSERT_TRUE(noted.note(texts));
-  EXPECT_EQ(words_of(found()), words_of(texts));
+  EXPECT_EQ(texts_by_file(found()), texts_by_file(texts));
 }
 
 TEST_F(TextsTest, AreWrittenOnlyWhereOneIsAnother) {
@@ -50,10 +52,10 @@ TEST_F(TextsTest, AreWrittenOnlyWhereOneIsAnother) {
 
 TEST_F(TextsTest, ThatDoNotFitAreNotThereAndNoEarlierOnesEither) {
   ASSERT_TRUE(noted.note(texts));
-  texts["arm.xml"] = text(std::string(memory.size(), 'x'));
+  texts["arm.xml"] = shared_text(std::string(memory.size(), 'x'));
   EXPECT_FALSE(noted.note(texts));
   EXPECT_TRUE(found().empty());
-  texts["arm.xml"] = text("short");
+  texts["arm.xml"] = shared_text("short");
   EXPECT_TRUE(noted.note(texts));
   EXPECT_EQ(found().size(), 3U);
 }
@@ -63,8 +65,8 @@ TEST_F(TextsTest, AreNoneOnceOneOctetIsDamaged) {
   for (std::size_t i = 0; i < memory.size() / 2; ++i) {
     auto damaged = memory;
     damaged[i] ^= std::byte{0x10};
-    const auto words = words_of(TextsInForce{damaged}.newest());
-    EXPECT_TRUE(words.empty() || words == words_of(texts)) << i;
+    const auto words = texts_by_file(TextsInForce{damaged}.newest());
+    EXPECT_TRUE(words.empty() || words == texts_by_file(texts)) << i;
   }
 }
 

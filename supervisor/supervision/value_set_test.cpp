@@ -197,7 +197,7 @@ TEST(ValueSet, KeepsAStructureWholeInPlaceOfAllThatIsInIt) {
 }
 
 /// LABEL{OWNER, SHELF}, persistent: words of four octets and a number.
-[[nodiscard]] descriptor::MissionSubsystem with_words() {
+[[nodiscard]] descriptor::MissionSubsystem with_a_labelled_structure() {
   auto made = with_a_structure();
   descriptor::Parameter& label = made.subsystem.parameters[0];
   label.field.name = "LABEL";
@@ -217,7 +217,7 @@ TEST(ValueSet, KeepsAStructureWholeInPlaceOfAllThatIsInIt) {
 
 TEST(ValueSet, KeepsAStructureWithWordsAndBeginsWithItMemberByMember) {
   using namespace std::string_view_literals;
-  const auto declared = with_words();
+  const auto declared = with_a_labelled_structure();
   const std::uint32_t id = ParameterId{10, Type::Struct, 5}.wire();
   ValueSet set{declared};
   EXPECT_FALSE(set.set(id, words_and_number("a\0b\0"sv, 2))) << "something behind its first zero";
