@@ -17,6 +17,7 @@
 
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/descriptor/read/read.hpp"
+#include "hirosco/utilities/memory_reserve.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
 #include "hirosco/utilities/os/shared_memory.hpp"
@@ -33,6 +34,7 @@
 #include "supervisor/platform/storage/log_store.hpp"
 #include "supervisor/platform/storage/postgresql_database.hpp"
 #include "supervisor/platform/storage/value_store.hpp"
+#include "supervisor/supervision/texts_in_force.hpp"
 #include "supervisor/supervisor.hpp"
 #include "supervisor/unprovoked_reactions.hpp"
 
@@ -49,6 +51,8 @@ constexpr int supervisor_priority = 30;
 constexpr Duration last_wait = 2s;
 static_assert(ending_patience > 3 * last_wait, "the keeper ends nobody who waits for a disk at its end");
 constexpr Duration log_start_limit = 3s;
+/// More than one step takes: 256 messages of each member, each of 1 kB and copied for log and ground.
+constexpr std::size_t memory_of_a_step = std::size_t{4} << 20;
 
 struct Options {
   std::filesystem::path mission;
@@ -145,7 +149,7 @@ class Waker {
 /// What the keeper holds for this supervisor and for one after it; where there is none, memory of our own.
 class Kept {
  public:
-  explicit Kept(const descriptor::Mission& mission) : mission_{mission} {
+  Kept() {
     if (auto mapped = MappedMemory::map(keeper_page_descriptor, sizeof(KeeperPage), MapMode::ReadWrite)) {
       page_memory_ = std::move(*mapped);
       page_ = reinterpret_cast<KeeperPage*>(page_memory_.octets().data());
@@ -154,13 +158,31 @@ class Kept {
       journal_memory_ = std::move(*mapped);
       journal_.emplace(journal_memory_.octets());
     }
+    if (auto mapped = MappedMemory::map(keeper_texts_descriptor, texts_octets, MapMode::ReadWrite)) {
+      texts_memory_ = std::move(*mapped);
+      texts_.emplace(texts_memory_.octets());
+    }
   }
   [[nodiscard]] KeeperPage& page() noexcept { return *page_; }
+  /// There was a supervisor before this one.
+  [[nodiscard]] bool goes_on() const noexcept { return page_->starts.load() > 1; }
   [[nodiscard]] StoreClient store() const noexcept {
     return StoreClient{page_ != &own_ ? keeper_store_descriptor : -1};
   }
   [[nodiscard]] Journal* journal() noexcept { return journal_ ? &*journal_ : nullptr; }
-  [[nodiscard]] InhibitNotes notes() const { return InhibitNotes{mission_, *page_}; }
+  [[nodiscard]] InhibitNotes notes(const descriptor::Mission& mission) const { return InhibitNotes{mission, *page_}; }
+  /// By what the supervisor before flew: its files may say something else by now, and nobody has judged that.
+  [[nodiscard]] descriptor::FileSource source() const {
+    auto texts = goes_on() && texts_ ? texts_->newest() : TextsInForce::Texts{};
+    if (texts.empty()) return descriptor::file_system();
+    return [texts = std::move(texts)](const std::filesystem::path& asked) -> Result<std::string> {
+      const auto known = texts.find(asked);
+      if (known == texts.end()) return fail(ErrorCode::NotFound, "is no file of this flight");
+      return *known->second;
+    };
+  }
+  /// False: they have no room. The next supervisor reads the files.
+  bool note(const TextsInForce::Texts& texts) { return !texts_ || texts_->note(texts); }
   /// From the keeper, which has told the devices what the guard before had told them.
   void take_inhibits(const Clock& clock) const {
     constexpr Duration longest = 100ms;
@@ -171,14 +193,27 @@ class Kept {
   }
 
  private:
-  const descriptor::Mission& mission_;
-  MappedMemory page_memory_, journal_memory_;
+  MappedMemory page_memory_, journal_memory_, texts_memory_;
   KeeperPage own_;
   KeeperPage* page_{&own_};
   std::optional<Journal> journal_;
+  std::optional<TextsInForce> texts_;
 };
 
-int serve(const descriptor::Mission& mission, const Options& options, const MakeDeployment& deploy) {
+/// An exception in it ends the process where it is thrown, with last words. On its way out it would shut down the channels, and with them
+/// what another supervisor is to go on with (docs/adr/0114).
+template <class Body>
+auto without_unwinding(Body body) noexcept {
+  return body();
+}
+
+/// Between two steps, all of which is noted: for the next supervisor as a death, and one of its own choice.
+[[noreturn]] void leave_to_another() noexcept {
+  std::fputs("hirosco: no memory left: the supervisor ends between two steps\n", stderr);
+  std::_Exit(exit_environment);
+}
+
+int serve(const descriptor::Mission& mission, const Options& options, const MakeDeployment& deploy, Kept& keeper) {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
@@ -190,9 +225,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   const FileDescriptor signal_descriptor{::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK)};
 
   const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;
-  Kept keeper{mission};
   KeeperPage& page = keeper.page();
-  const bool goes_on = page.starts.load() > 1;
+  const bool goes_on = keeper.goes_on();
   // First of all: their numbers are free again after that.
   auto inherited = goes_on ? StoreClient::inherited() : InheritedParts{};
   // Who has to be there before others make themselves safe waits for no ordinary work. Threads are ordinary all the same.
@@ -260,9 +294,10 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
     fmt::print(stderr, "hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text);
     return exit_environment;
   }
-  Guard guard{{.clock = clock, .flows = flows, .first_epoch = *first_epoch, .notes = keeper.notes(), .on_finding = [&] {
-                 guard_found->notify();
-               }}};
+  Guard guard{
+      {.clock = clock, .flows = flows, .first_epoch = *first_epoch, .notes = keeper.notes(mission), .on_finding = [&] {
+         guard_found->notify();
+       }}};
   Supervisor supervisor{
       {.mission = mission,
        .platform = {.clock = clock,
@@ -283,6 +318,9 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
        .journal = keeper.journal(),
        .values = &values,
        .readings = &readings}};
+  if (!keeper.note(supervisor.mission().texts))
+    console.told(clock.onboard(),
+                 "the texts of this mission are too long to be kept: who goes on for this supervisor reads its files");
   if (!realtime) console.told(clock.onboard(), "no real-time scheduling: the reduced limits hold");
 
   Waker waker{signal_descriptor.get(), log_progress->descriptor(), guard_found->descriptor(),
@@ -291,7 +329,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   bool keeper_still = false;
   const TimePoint started = clock.now();
   TimePoint next_status = started + console.period();
-  bool ends_as_a_whole = false;
+  bool ends_as_a_whole = false, asked_to_end = false;
+  const MemoryReserve reserve{memory_of_a_step};
   if (goes_on) {
     keeper.take_inhibits(clock);
     supervisor.adopt(page.stops_asked.load() != page.stops_taken.load());
@@ -311,34 +350,45 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   }
   const auto life_watch = LifeWatch::start(guard);
   if (!life_watch) console.told(clock.onboard(), "that a process has ended is known by its handle alone");
-  while (!supervisor.finished()) {
-    const TimePoint wake = supervisor.step(clock.now());
-    page.supervisor.fetch_add(1, std::memory_order_relaxed);
-    if (supervisor.commissioned()) page.commissioned.store(1, std::memory_order_relaxed);
-    const bool still = kept && keeper_progress.stands_still(page.keeper.load(std::memory_order_relaxed), clock.now());
-    if (still && !keeper_still) supervisor.keeper_stands_still();
-    keeper_still = still;
-    waker.follow(supervisor, launcher);
-    for (const Ready& ready : waker.wait(std::min(wake, next_status) - clock.now())) {
-      const bool keeper_gone = ready.descriptor == keeper_descriptor && ready.hung_up;
-      if (keeper_gone) waker.forget(keeper_descriptor);  // it would end every wait from now on
-      if (ready.descriptor == log_progress->descriptor()) log_progress->clear();
-      if (ready.descriptor == guard_found->descriptor()) guard_found->clear();
-      if (ready.descriptor == signal_descriptor.get()) {
-        signalfd_siginfo info;
-        static_cast<void>(!::read(signal_descriptor.get(), &info, sizeof info));
+  without_unwinding([&] {
+    while (!supervisor.finished()) {
+      const TimePoint wake = supervisor.step(clock.now());
+      page.supervisor.fetch_add(1, std::memory_order_relaxed);
+      static_cast<void>(keeper.note(supervisor.mission().texts));
+      if (reserve.used() && !std::exchange(ends_as_a_whole, true)) {
+        if (kept && page.alone.load() == 0 && !asked_to_end) leave_to_another();
+        console.told(clock.onboard(), "no memory left: the flight ends in order");
+        supervisor.request_shutdown();
       }
-      if (ready.descriptor == signal_descriptor.get() || keeper_gone) supervisor.request_shutdown();
+      if (supervisor.commissioned()) page.commissioned.store(1, std::memory_order_relaxed);
+      const bool still = kept && keeper_progress.stands_still(page.keeper.load(std::memory_order_relaxed), clock.now());
+      if (still && !keeper_still) supervisor.keeper_stands_still();
+      keeper_still = still;
+      waker.follow(supervisor, launcher);
+      for (const Ready& ready : waker.wait(std::min(wake, next_status) - clock.now())) {
+        const bool keeper_gone = ready.descriptor == keeper_descriptor && ready.hung_up;
+        if (keeper_gone) waker.forget(keeper_descriptor);  // it would end every wait from now on
+        if (ready.descriptor == log_progress->descriptor()) log_progress->clear();
+        if (ready.descriptor == guard_found->descriptor()) guard_found->clear();
+        if (ready.descriptor == signal_descriptor.get()) {
+          signalfd_siginfo info;
+          static_cast<void>(!::read(signal_descriptor.get(), &info, sizeof info));
+        }
+        if (ready.descriptor == signal_descriptor.get() || keeper_gone) {
+          supervisor.request_shutdown();
+          asked_to_end = true;
+        }
+      }
+      if (const auto why = launcher.must_end(clock.now()); why && !std::exchange(ends_as_a_whole, true)) {
+        console.told(clock.onboard(), *why);
+        supervisor.request_shutdown();
+      }
+      epochs.keep_above(guard.highest_epoch());
+      if (clock.now() < next_status) continue;
+      next_status += console.period();
+      console.show(overview_of(mission, supervisor), clock.now() - started);
     }
-    if (const auto why = launcher.must_end(clock.now()); why && !std::exchange(ends_as_a_whole, true)) {
-      console.told(clock.onboard(), *why);
-      supervisor.request_shutdown();
-    }
-    epochs.keep_above(guard.highest_epoch());
-    if (clock.now() < next_status) continue;
-    next_status += console.period();
-    console.show(overview_of(mission, supervisor), clock.now() - started);
-  }
+  });
   console.ended();
   // The keeper looks on as long as this takes, too.
   const auto wait_for_ends = [&] {
@@ -371,9 +421,10 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
 }
 
 int named_failures(const char* program, const descriptor::Mission& mission, const Options& options,
-                   const MakeDeployment& deploy) {
+                   const MakeDeployment& deploy, Kept& keeper) {
+  const auto flight = [&] { return serve(mission, options, deploy, keeper); };
   try {
-    return serve(mission, options, deploy);
+    return keeper.goes_on() ? without_unwinding(flight) : flight();
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "{}: no memory left for this flight\n", program);
   } catch (const std::system_error& problem) {
@@ -395,7 +446,8 @@ int fly(int argc, char** argv, const MakeDeployment& deploy) {
     fmt::print(stderr, "{}: started by 'hirosco run MISSION'\n  --mission FILE [--json|--quiet]\n", argv[0]);
     return exit_usage;
   }
-  const auto source = descriptor::file_system();
+  Kept keeper;
+  const auto source = keeper.source();
   auto reading = descriptor::read_mission(options.mission, source);
   for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));
   if (!reading.value) return exit_finding;
@@ -404,7 +456,7 @@ int fly(int argc, char** argv, const MakeDeployment& deploy) {
       fmt::print(stderr, "{}: {}\n", argv[0], *why_not);
       return exit_usage;
     }
-  return named_failures(program, *reading.value, options, deploy);
+  return named_failures(program, *reading.value, options, deploy, keeper);
 }
 
 }  // namespace hirosco::supervisor

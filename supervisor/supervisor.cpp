@@ -85,6 +85,7 @@ std::string Supervisor::waiting_for() const {
   return parts_->craft.shutting_down ? parts_->shutdown.waiting_for() : parts_->commissioning.waiting_for();
 }
 const std::vector<Member>& Supervisor::members() const noexcept { return parts_->craft.members; }
+const descriptor::Mission& Supervisor::mission() const noexcept { return parts_->craft.mission; }
 const descriptor::Mode& Supervisor::mode() const noexcept { return *parts_->craft.mode; }
 const LinkGraph& Supervisor::links() const noexcept { return parts_->links.graph(); }
 descriptor::State Supervisor::own_state() const noexcept { return parts_->own.state(); }

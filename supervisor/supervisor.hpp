@@ -62,6 +62,8 @@ class Supervisor final {
   [[nodiscard]] std::string waiting_for() const;
 
   [[nodiscard]] const std::vector<Member>& members() const noexcept;
+  /// As it is flown now: descriptors may have been read again.
+  [[nodiscard]] const descriptor::Mission& mission() const noexcept;
   [[nodiscard]] const descriptor::Mode& mode() const noexcept;
   [[nodiscard]] const LinkGraph& links() const noexcept;
   [[nodiscard]] descriptor::State own_state() const noexcept;

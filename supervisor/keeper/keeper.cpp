@@ -115,7 +115,7 @@ int refused(const char* what, std::int64_t number) {
 /// What is shared with the supervisors of this flight.
 struct Shared {
   FileDescriptor watched, held;  ///< a pipe: its end tells everybody that the keeper is gone
-  FileDescriptor page_memory, journal;
+  FileDescriptor page_memory, journal, texts;
   MappedMemory mapped;
   FileDescriptor to_store;
   std::optional<KeptStore> store;
@@ -134,6 +134,7 @@ struct Shared {
   };
   auto made = memory("hirosco-keeper", sizeof(KeeperPage), shared.page_memory);
   if (made) made = memory("hirosco-journal", journal_octets, shared.journal);
+  if (made) made = memory("hirosco-texts", texts_octets, shared.texts);
   if (!made) return refused("no memory to watch over the flight", made.error().value);
   auto mapped = MappedMemory::map(shared.page_memory.get(), sizeof(KeeperPage), MapMode::ReadWrite);
   if (!mapped) return refused("no memory to watch over the flight", mapped.error().value);
@@ -167,7 +168,8 @@ class Flight {
     start.inherited.insert(start.inherited.end(), {{shared_.watched.get(), keeper_descriptor},
                                                    {shared_.page_memory.get(), keeper_page_descriptor},
                                                    {shared_.to_store.get(), keeper_store_descriptor},
-                                                   {shared_.journal.get(), keeper_journal_descriptor}});
+                                                   {shared_.journal.get(), keeper_journal_descriptor},
+                                                   {shared_.texts.get(), keeper_texts_descriptor}});
     shared_.store->pass_on(start.inherited);
     // It is asked for its end before it can listen, too.
     start.blocked = {SIGTERM, SIGINT, SIGUSR1};

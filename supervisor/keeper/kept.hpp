@@ -23,6 +23,8 @@ inline constexpr int keeper_page_descriptor = 7;
 inline constexpr int keeper_store_descriptor = 8;
 /// Memory of the journal (supervision/journal.hpp), of `journal_octets`.
 inline constexpr int keeper_journal_descriptor = 9;
+/// Memory of the texts by which the mission flies (supervision/texts_in_force.hpp), of `texts_octets`.
+inline constexpr int keeper_texts_descriptor = 10;
 /// From here on, what the supervisor before had handed over: slot by slot, a descriptor for each role.
 inline constexpr int first_kept_descriptor = 16;
 
@@ -35,6 +37,8 @@ inline constexpr std::size_t most_kept = 96;
 }
 
 inline constexpr std::size_t journal_octets = std::size_t{2} << 20;
+/// Twice as many as texts take; what is not used of it is no memory.
+inline constexpr std::size_t texts_octets = std::size_t{8} << 20;
 
 /// The second inhibit of one device as the guard told it last: the keeper goes on telling it while there is no guard.
 /// Damage enables nothing: it has to be the permission word of its epoch.

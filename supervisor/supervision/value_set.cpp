@@ -3,6 +3,7 @@
 #include "supervisor/supervision/value_set.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 #include <string>
 
@@ -120,7 +121,7 @@ void ValueSet::begin(descriptor::MissionSubsystem& member) const {
     std::erase_if(member.overrides, [&](const descriptor::Override& other) {
       return std::string_view{other.parameter}.substr(0, other.parameter.find('.')) == parameter.field.name;
     });
-    member.overrides.push_back({parameter.field.name, parameter.init});
+    std::ranges::move(descriptor::overrides_of(parameter), std::back_inserter(member.overrides));
   }
 }
 

@@ -196,5 +196,50 @@ TEST(ValueSet, KeepsAStructureWholeInPlaceOfAllThatIsInIt) {
   EXPECT_EQ(ValueSet{renamed}.take(whole_copy(set)).error(), CopyFault::Layout);
 }
 
+/// LABEL{OWNER, SHELF}, persistent: words of four octets and a number.
+[[nodiscard]] descriptor::MissionSubsystem with_a_labelled_structure() {
+  auto made = with_a_structure();
+  descriptor::Parameter& label = made.subsystem.parameters[0];
+  label.field.name = "LABEL";
+  descriptor::Field& owner = label.members[0].field;
+  owner.name = "OWNER";
+  owner.type = Type::Text;
+  owner.text_octets = 4;
+  label.members[1].field.name = "SHELF";
+  made.overrides = {{"LABEL.OWNER", {"eve"}}, {"OTHER", {Number{1}}}};
+  return made;
+}
+[[nodiscard]] std::vector<std::byte> words_and_number(std::string_view words, std::uint16_t number) {
+  std::vector<std::byte> octets(words.size() + 2);
+  OctetWriter{octets}.put(std::as_bytes(std::span{words})).put(number);
+  return octets;
+}
+
+TEST(ValueSet, KeepsAStructureWithWordsAndBeginsWithItMemberByMember) {
+  using namespace std::string_view_literals;
+  const auto declared = with_a_labelled_structure();
+  const std::uint32_t id = ParameterId{10, Type::Struct, 5}.wire();
+  ValueSet set{declared};
+  EXPECT_FALSE(set.set(id, words_and_number("a\0b\0"sv, 2))) << "something behind its first zero";
+  EXPECT_FALSE(set.set(id, words_and_number("\xC3\0\0\0"sv, 2))) << "half a character";
+  EXPECT_FALSE(set.set(id, words_and_number("a b\0"sv, 11))) << "its neighbour has a range";
+  ASSERT_TRUE(set.set(id, words_and_number("a b\0"sv, 2)));
+  ValueSet later{declared};
+  ASSERT_TRUE(later.take(whole_copy(set)));
+  auto member = declared;
+  later.begin(member);
+  EXPECT_EQ(member.subsystem.parameters[0].init, (std::vector<Value>{"a b", Number{2}}));
+  std::vector<std::string> told;
+  for (const auto& each : member.overrides) told.push_back(to_string(each));
+  EXPECT_THAT(told, ElementsAre("OTHER=1", "LABEL.OWNER=a b", "LABEL.SHELF=2"));
+  auto longer = declared;
+  longer.subsystem.parameters[0].members[0].field.text_octets = 5;
+  EXPECT_EQ(ValueSet{longer}.take(whole_copy(set)).error(), CopyFault::Layout);
+  // Words that no telecommand could have set are not taken from a copy either, its check sum notwithstanding.
+  ValueCopy forged = whole_copy(set);
+  forged.values[1 + 4 + 1] = std::byte{0};
+  EXPECT_EQ(ValueSet{declared}.take(forged).error(), CopyFault::Range);
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

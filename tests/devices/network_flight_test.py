@@ -2,9 +2,11 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """Devices on a network of the craft's own: the reference device in C by UDP and in Python by TCP in one network namespace, the flight in another. Refused
-until the mission names the network, reached by its interface alone then; the cable is cut and mended, and the device says what became of it."""
+until the mission names the network, reached by its interface alone then; the cable is cut and mended, and the device says what became of it. A
+descriptor that is read again in flight (docs/adr/0095) is held to the same networks."""
 import contextlib
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import time
@@ -19,6 +21,9 @@ HERE = pathlib.Path(__file__).resolve().parent
 INSTANCE = "far-axes"
 WATCHDOG_S, SLACK_S = 0.25, 0.15
 FAR = wire.ADDRESSES[1]
+TCP_AXIS = 71
+OFFLINE, SAFE_OPERATIONAL = 0, 4
+NAMED = '<DeviceNetwork address="198.18.0.0/24" interface="end"/>'
 
 
 def mission_in(folder, networks):
@@ -59,7 +64,7 @@ class Network(unittest.TestCase):
             far = cable.inside(1)
             by_tcp = until_end.enter_context(reference.Device(*far, reference.PYTHON, "-B", reference.FOLDER / "device.py", f"{FAR}:5000"))
             by_udp = until_end.enter_context(reference.Device(*far, reference.built(self.folder), "udp", f"{FAR}:5001"))
-            mission = mission_in(self.folder, '<DeviceNetwork address="198.18.0.0/24" interface="end"/>')
+            mission = mission_in(self.folder, NAMED)
             flight = until_end.enter_context(Flight(mission, folder=self.folder, instance=INSTANCE, prefix=cable.inside(0)))
             flight.wait_told("commissioned: mode operation", 30)
             for device in (by_tcp, by_udp):
@@ -84,6 +89,63 @@ class Network(unittest.TestCase):
                 self.assertLess(time.monotonic(), end)
             for device, start in zip((by_tcp, by_udp), before):
                 device.wait("active", 10, start)
+            flight.end()
+
+    def test_a_device_moves_within_the_network_by_a_descriptor_that_is_read_again_and_no_further(self):
+        if not wire.possible():
+            flights.skip("no-network-namespace")
+        with contextlib.ExitStack() as until_end:
+            cable = until_end.enter_context(wire.Wire())
+            far = cable.inside(1)
+            here, there = (until_end.enter_context(reference.Device(*far, reference.PYTHON, "-B", reference.FOLDER / "device.py", f"{FAR}:{port}"))
+                           for port in (5000, 5002))
+            until_end.enter_context(reference.Device(*far, reference.built(self.folder), "udp", f"{FAR}:5001"))
+            mission = mission_in(self.folder, NAMED)
+            mission.write_text(mission.read_text().replace('<Permit subsystem="*" functions="*"/>',
+                                                           '<Permit subsystem="*" functions="*"/><Permit subsystem="SUPERVISOR" functions="REREAD"/>'))
+            # The ground's own copy: what refuses is the craft.
+            ground = pathlib.Path(until_end.enter_context(tempfile.TemporaryDirectory(prefix="hirosco-network-ground-")))
+            for file in self.folder.glob("*.xml"):
+                shutil.copy(file, ground)
+            descriptor = self.folder / "axis_tcp.xml"
+            first = descriptor.read_text()
+            flight = until_end.enter_context(Flight(mission, folder=self.folder, instance=INSTANCE, prefix=cable.inside(0)))
+
+            def hirosco(*words):
+                done = subprocess.run([*cable.inside(0), BINARIES / "hirosco", *map(str, words), "--mission", ground / "mission.xml",
+                                       "--instance", INSTANCE], cwd=self.folder, env={**flight.environment, flights.MARK: ""}, capture_output=True, text=True, check=False)
+                return done.returncode, done.stdout + done.stderr
+
+            def reread(address):
+                descriptor.write_text(first.replace(f"{FAR}:5000", address))
+                return hirosco("tc", "supervisor", "REREAD", TCP_AXIS)
+
+            def comes_up():
+                end = time.monotonic() + 20
+                while (done := hirosco("mode", "operation"))[0] != 0:
+                    self.assertLess(time.monotonic(), end, done[1])
+
+            flight.wait_told("commissioned: mode operation", 30)
+            here.wait("active", 10)
+            for state in (SAFE_OPERATIONAL, OFFLINE):
+                code, told = hirosco("tc", "TCP_AXIS", "SET_STATE", state)
+                self.assertEqual(code, 0, told)
+            line = 1 + first.split("<Endnode")[0].count("\n")
+            code, told = reread("198.18.1.2:5000")
+            self.assertEqual(code, 1, told)
+            self.assertRegex(told, rf"axis_tcp\.xml:{line}:\d+: error: E0313: '198\.18\.1\.2:5000' leaves this computer")
+            before = here.count()
+            comes_up()                                                # by what was in force
+            here.wait("active", 10, before)
+            for state in (SAFE_OPERATIONAL, OFFLINE):
+                hirosco("tc", "TCP_AXIS", "SET_STATE", state)
+            self.assertFalse([each for each in there.lines if each["output"] == "active"])
+            code, told = reread(f"{FAR}:5002")
+            self.assertEqual(code, 0, told)
+            before = here.count()
+            comes_up()
+            there.wait("active", 10)
+            self.assertFalse([each for each in here.lines[before:] if each["output"] == "active"])
             flight.end()
 
 

@@ -86,8 +86,11 @@ class Reread(unittest.TestCase):
                 self.assertNotEqual(self.reread(craft), 0)
                 craft.wait_told("parameter DES_POSITION: its id cannot change in flight", 5.0, begin)
 
-                # Who dies comes back by what is in force, not by what the disk says.
+                # Who dies comes back by what is in force, not by what the disk says: the supervisor, too.
                 descriptor.write_text(bad)
+                craft.kill("hirosco-supervisor")
+                craft.wait_told("this supervisor goes on for one that died", 10.0, begin)
+                self.assertEqual(craft.pid_of("hirosco-hello"), process, "what is Offline goes on, too")
                 os.kill(process, signal.SIGKILL)
                 craft.wait_told("started HELLO", 20.0, begin)
                 self.assertNotEqual(craft.pid_of("hirosco-hello"), process)

@@ -3,15 +3,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The supervisor dies or hangs while the robot is coupled: cycles and links run on, the robot pushes on, and another supervisor
 goes on within a second (docs/adr/0093)."""
-import os
-import pathlib
 import signal
-import tempfile
 import threading
 import time
 import unittest
 
 import flight
+import supervisors
 
 ADOPTED_S = 1.0
 PATIENCE_S = 0.8                  # supervisor/keeper/kept.hpp
@@ -80,20 +78,15 @@ class Adoption(unittest.TestCase):
             rokviss.wait_at_rest("robot", time.monotonic())
 
     def test_one_that_spins_is_replaced_before_its_guard_gives_up(self):
-        with tempfile.TemporaryDirectory(prefix="hirosco-spinnable-", dir=flight.BINARIES) as programs:
-            for program in flight.BINARIES.glob("hirosco*"):
-                if program.is_file() and program.name != "hirosco-supervisor":
-                    os.link(program, pathlib.Path(programs) / program.name)
-            os.link(flight.BINARIES / "hirosco-spinnable-supervisor", pathlib.Path(programs) / "hirosco-supervisor")
-            with flight.Flight(binaries=programs) as rokviss:
-                rokviss.wait_commissioned()
-                self.push(rokviss)
-                begin = rokviss.count()
-                # To the process: its first thread, which is the supervisor's loop, takes it.
-                took = self.is_adopted(rokviss, begin, rokviss.kill("hirosco-supervisor", signal.SIGUSR2))
-                flight.measure(f"a supervisor that spins is replaced after {took:.3f} s")
-                self.assertLess(took, PATIENCE_S + ADOPTED_S)
-                self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0)
+        with supervisors.instead("spinnable") as programs, flight.Flight(binaries=programs) as rokviss:
+            rokviss.wait_commissioned()
+            self.push(rokviss)
+            begin = rokviss.count()
+            # To the process: its first thread, which is the supervisor's loop, takes it.
+            took = self.is_adopted(rokviss, begin, rokviss.kill("hirosco-supervisor", signal.SIGUSR2))
+            flight.measure(f"a supervisor that spins is replaced after {took:.3f} s")
+            self.assertLess(took, PATIENCE_S + ADOPTED_S)
+            self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0)
 
     def test_a_stop_that_is_asked_for_while_nobody_is_there_holds(self):
         with flight.Flight() as rokviss:

@@ -3,17 +3,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """A supervisor that gets no more memory, or no more descriptors, while the robot is coupled. It refuses what it cannot do, or it dies of it
 and another one goes on (docs/adr/0093): either way what moves is stopped by whoever asks, nothing that was begun is left half done, and the
-flight flies again."""
+flight flies again. What leaks until nothing is left ends between two of its steps (docs/adr/0114): cycles and links run on, and nobody's
+telecommand is lost."""
 import contextlib
 import os
 import pathlib
 import resource
+import select
+import signal
 import time
-import unittest
 
 import flight
+import honest
+import supervisor_kills
+import supervisors
 
 MODE = 3
+ADOPTED_S = 1.0
+# The structures of both machines come every so often, by their cycles' count.
+SAMPLES_S = {4713: 0.05, 4721: 0.25}
+# With a heap for each thread what one of them lacks another one has.
+ONE_HEAP = {"MALLOC_ARENA_MAX": "1"}
 
 
 def held(pid):
@@ -23,7 +33,7 @@ def held(pid):
     return octets, len(os.listdir(f"/proc/{pid}/fd"))
 
 
-class Exhausted(unittest.TestCase):
+class Exhausted(supervisor_kills.Accounts):
     def starve(self, craft, what):
         """From now on it gets nothing more; returns its pid."""
         pid = craft.pid_of("hirosco-supervisor")
@@ -53,9 +63,57 @@ class Exhausted(unittest.TestCase):
         craft.tc("supervisor", "SET_MODE", MODE, seconds=90)
         craft.tc("supervisor", "SET_DATABASE", 1, seconds=60)
 
+    def dies(self, pid):
+        """It begins to leak; when it was gone."""
+        process = os.pidfd_open(pid)
+        try:
+            os.kill(pid, signal.SIGUSR2)
+            self.assertTrue(select.select([process], [], [], 20.0)[0], "it ends")
+            return time.monotonic()
+        finally:
+            os.close(process)
+
+    def leaks_until_nothing_is_left(self, craft):
+        """While the robot pushes and a client commands without a pause."""
+        self.push(craft)
+        ground = honest.Honest()
+        client = supervisor_kills.Client(ground)
+        with flight.Telemetry() as telemetry:
+            time.sleep(0.5)
+            begin = craft.count()
+            pid = self.starve(craft, "memory")
+            lost_at, told = self.dies(pid), None
+            while told is None:
+                self.assertLess(time.monotonic(), lost_at + 10.0, "another supervisor goes on")
+                truth = craft.truth("robot")
+                self.assertNotEqual((truth["motor_1"], truth["motor_2"]), (0.0, 0.0), "the robot pushes on")
+                told = craft.wait_line(lambda l: "goes on with MANIPULATOR" in l.told, 0.005, begin)
+            flight.measure(f"a supervisor without memory is replaced after {told.received - lost_at:.3f} s")
+            self.assertNotIn("stopped", told.told)
+            self.assertLess(told.received - lost_at, ADOPTED_S)
+            time.sleep(2.5)
+            self.assertGreater(craft.truth("robot")["force"], 20.0, "it pushes on when nobody would any more without a supervisor")
+            self.assertEqual([l.told for l in craft.told(begin) if "STATE_CHANGED" in l.told and "SUPERVISOR" not in l.told], [])
+            self.assertTrue([each for each in craft.errors if "no memory left: the supervisor ends between two steps" in each], craft.errors)
+            for structure, every in SAMPLES_S.items():
+                times = [at for at, _ in telemetry.housekeeping(structure)]
+                gaps = [b - a for a, b in zip(times, times[1:])]
+                flight.measure(f"largest gap of structure {structure}: {max(gaps):.3f} s of {every} s")
+                self.assertLess(max(gaps), 2 * every + 0.02, "its cycles and its reports went on")
+        client.ending = True
+        client.thread.join()
+        for packet, _ in client.sent[-200:]:
+            ground.verdict(packet, 5.0)
+        client.socket.close()
+        self.compare(craft, ground, client.sent)
+
     def starved_of(self, what):
-        with flight.Flight() as rokviss:
+        with contextlib.ExitStack() as until_end:
+            programs = until_end.enter_context(supervisors.instead("leaking"))
+            rokviss = until_end.enter_context(flight.Flight(binaries=programs, environment=ONE_HEAP))
             rokviss.wait_commissioned()
+            if what == "memory":
+                self.leaks_until_nothing_is_left(rokviss)
             begin = rokviss.count()
             pid = self.starve(rokviss, what)
             self.want_much(rokviss)

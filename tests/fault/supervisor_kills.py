@@ -55,7 +55,9 @@ class Client:
         return packet
 
 
-class SupervisorKills(unittest.TestCase):
+class Accounts(unittest.TestCase):
+    """What a client sent and received, compared with each other and with the log."""
+
     def push(self, craft):
         """Until the robot leans on the rail. Coupled anew behind a stop it stands elsewhere, and the hand has farther to go."""
         for reach_mm in range(22, 60, 4):
@@ -65,6 +67,39 @@ class SupervisorKills(unittest.TestCase):
                 return
         self.fail("the robot does not push")
 
+    def compare(self, rokviss, ground, sent, most_silent=0):
+        silent, several, accepted_only = [], [], []
+        for packet, at in sent:
+            subtypes = [subtype for subtype, _ in ground.reports.get(packet[:4], [])]
+            ends = [subtype for subtype in subtypes if subtype in honest.ENDS]
+            if not subtypes:
+                silent.append((packet[:4].hex(), at))
+            elif not ends:
+                accepted_only.append((packet[:4].hex(), subtypes))
+            if len(ends) > 1:
+                several.append((packet[:4].hex(), subtypes))
+        unknown = sum(any(subtype == 8 for subtype, _ in ground.reports.get(packet[:4], [])) for packet, _ in sent)
+        flight.measure(f"ended as unknown: {unknown}, without any report: {len(silent)}")
+        self.is_continuous(rokviss)
+        self.assertEqual(several, [], "one end each")
+        self.assertEqual(accepted_only, [], "what was accepted has an end")
+        self.assertLessEqual(len(silent), most_silent, f"between reading and noting: {silent[:5]}")
+
+    def is_continuous(self, rokviss):
+        """Each number of the log once, in a record or in a gap that says so."""
+        expected, missing = None, 0
+        for record in rokviss.log():
+            number = record["number"]
+            if expected is not None:
+                self.assertEqual(number, expected, record)
+            expected = number + 1
+            if record["kind"] == "gap":
+                missing += int(record["text"].rsplit("number ", 1)[1].split('"')[0]) - number + 1
+                expected = int(record["text"].rsplit("number ", 1)[1].split('"')[0]) + 1
+        flight.measure(f"numbers of the log that stand in gaps: {missing}")
+
+
+class SupervisorKills(Accounts):
     def test_nothing_is_lost_and_the_robot_stays_coupled(self):
         draw = random.Random(SEED)
         with flight.Flight() as rokviss:
@@ -102,41 +137,10 @@ class SupervisorKills(unittest.TestCase):
             sent = list(client.sent)
             for packet, _ in sent[-200:]:
                 ground.verdict(packet, 5.0)
-            self.compare(rokviss, ground, sent)
+            self.compare(rokviss, ground, sent, KILLS // 50)
             took.sort()
             flight.measure(f"{KILLS} kills of the supervisor, {len(sent)} telecommands, another one went on after "
                            f"{took[len(took) // 2]:.3f} s, {took[-1]:.3f} s at most")
-
-    def compare(self, rokviss, ground, sent):
-        silent, several, accepted_only = [], [], []
-        for packet, at in sent:
-            subtypes = [subtype for subtype, _ in ground.reports.get(packet[:4], [])]
-            ends = [subtype for subtype in subtypes if subtype in honest.ENDS]
-            if not subtypes:
-                silent.append((packet[:4].hex(), at))
-            elif not ends:
-                accepted_only.append((packet[:4].hex(), subtypes))
-            if len(ends) > 1:
-                several.append((packet[:4].hex(), subtypes))
-        unknown = sum(any(subtype == 8 for subtype, _ in ground.reports.get(packet[:4], [])) for packet, _ in sent)
-        flight.measure(f"ended as unknown: {unknown}, without any report: {len(silent)}")
-        self.is_continuous(rokviss)
-        self.assertEqual(several, [], "one end each")
-        self.assertEqual(accepted_only, [], "what was accepted has an end")
-        self.assertLessEqual(len(silent), KILLS // 50, f"between reading and noting: {silent[:5]}")
-
-    def is_continuous(self, rokviss):
-        """Each number of the log once, in a record or in a gap that says so."""
-        expected, missing = None, 0
-        for record in rokviss.log():
-            number = record["number"]
-            if expected is not None:
-                self.assertEqual(number, expected, record)
-            expected = number + 1
-            if record["kind"] == "gap":
-                missing += int(record["text"].rsplit("number ", 1)[1].split('"')[0]) - number + 1
-                expected = int(record["text"].rsplit("number ", 1)[1].split('"')[0]) + 1
-        flight.measure(f"numbers of the log that stand in gaps: {missing}")
 
 
 if __name__ == "__main__":

@@ -37,7 +37,8 @@ using ::testing::HasSubstr;
 }
 
 struct Reread : ::testing::Test {
-  Flight flight{with_reread()};
+  explicit Reread(Plan plan = with_reread()) : flight{std::move(plan)} {}
+  Flight flight;
   const std::string shipped = text_of("subsystems/joystick/joystick.xml");
   std::vector<pus::st129::DescriptorProblem> problems;
 
@@ -57,7 +58,49 @@ struct Reread : ::testing::Test {
   [[nodiscard]] const descriptor::Subsystem& in_the_member() {
     return flight.craft().subsystem("JOYSTICK")->descriptor();
   }
+  /// The descriptor in force when it is read, with another place of the device in its first configuration.
+  [[nodiscard]] std::string with_device_at(const std::string& address) const {
+    return changed(shipped, endnode, "transfer=\"udp\" address=\"" + address + "\"");
+  }
+  [[nodiscard]] std::string address_in_the_member() {
+    return in_the_member().configurations.front().devices.front().endnode.address;
+  }
+  /// Told by file, line, column, number and words as `hirosco check` and the start tell it.
+  void is_refused_as_at_the_start(const std::string& text, const std::string& address) {
+    problems.clear();
+    flight.write("joystick.xml", text);
+    EXPECT_FALSE(reread()) << flight.story().text();
+    const auto at_the_start =
+        descriptor::read_mission(flight.mission().file, [&](const std::filesystem::path& file) -> Result<std::string> {
+          if (file.filename() == "joystick.xml") return text;
+          return *flight.mission().texts.at(file);
+        });
+    ASSERT_EQ(at_the_start.problems.size(), 1U);
+    const descriptor::Diagnostic& wanted = at_the_start.problems.front();
+    EXPECT_EQ(wanted.code, "E0313");
+    EXPECT_EQ(wanted.message, "'" + address + "' leaves this computer");
+    ASSERT_EQ(problems.size(), 1U) << flight.story().text();
+    const pus::st129::DescriptorProblem& told = problems.front();
+    EXPECT_EQ(told.code, wanted.code);
+    EXPECT_EQ(told.what, wanted.message);
+    EXPECT_EQ(told.hint, wanted.hint);
+    EXPECT_EQ(told.file, wanted.file.string());
+    EXPECT_EQ(told.line, wanted.at.line);
+    EXPECT_EQ(told.column, wanted.at.column);
+  }
   static constexpr int joystick = 11;
+  static constexpr auto endnode = R"(transfer="shared_memory" address="rokviss-joystick")";
+};
+
+/// The mission lets devices be in one network besides this computer (docs/adr/0112).
+struct RereadInANetwork : Reread {
+  RereadInANetwork() : Reread{plan()} {}
+  static Plan plan() {
+    Plan plan = with_reread();
+    plan.files["mission.xml"] = changed(text_of("missions/rokviss/mission.xml"), "<Supervisor ",
+                                        "<DeviceNetwork address=\"192.0.2.0/24\"/>\n  <Supervisor ");
+    return plan;
+  }
 };
 
 TEST_F(Reread, HousekeepingOfWhoIsOfflineChangesWithTheSameProcess) {
@@ -101,6 +144,35 @@ TEST_F(Reread, WhoNeedsWhatIsGoneIsNamedByItsFile) {
   ASSERT_FALSE(problems.empty());
   EXPECT_THAT(problems.front().file, HasSubstr("mission.xml"));
   EXPECT_THAT(problems.front().what, HasSubstr(set));
+}
+
+TEST_F(Reread, ADeviceBeyondThisComputerIsRefusedAsAtTheStart) {
+  ASSERT_TRUE(comes_to_rest()) << flight.story().text();
+  is_refused_as_at_the_start(with_device_at("192.0.2.7:5001"), "192.0.2.7:5001");
+  EXPECT_EQ(address_in_the_member(), "rokviss-joystick");
+  // What was in force is, for who is started anew as well.
+  EXPECT_TRUE(flight.set_mode("standalone").completed) << flight.story().text();
+  EXPECT_EQ(flight.state("JOYSTICK"), State::Operational);
+}
+
+TEST_F(RereadInANetwork, ADeviceInItIsTakenAndOneOutsideIsNot) {
+  ASSERT_TRUE(comes_to_rest()) << flight.story().text();
+  flight.write("joystick.xml", with_device_at("192.0.2.7:5001"));
+  ASSERT_TRUE(reread()) << flight.story().text();
+  EXPECT_EQ(address_in_the_member(), "192.0.2.7:5001");
+  is_refused_as_at_the_start(with_device_at("192.0.3.7:5001"), "192.0.3.7:5001");
+  EXPECT_EQ(address_in_the_member(), "192.0.2.7:5001") << "it keeps the one before";
+  flight.craft().kill("JOYSTICK");
+  ASSERT_TRUE(flight.craft().run_until([&] { return flight.craft().alive("JOYSTICK"); }, 10s)) << flight.story().text();
+  EXPECT_EQ(address_in_the_member(), "192.0.2.7:5001") << "and begins with it";
+}
+
+TEST_F(RereadInANetwork, WhatItPermitsIsWhatTheMissionSaidWhenItWasJudged) {
+  ASSERT_TRUE(comes_to_rest()) << flight.story().text();
+  flight.write("mission.xml", changed(text_of("missions/rokviss/mission.xml"), "<Supervisor ",
+                                      "<DeviceNetwork address=\"192.0.3.0/24\"/>\n  <Supervisor "));
+  is_refused_as_at_the_start(with_device_at("192.0.3.7:5001"), "192.0.3.7:5001");
+  EXPECT_EQ(address_in_the_member(), "rokviss-joystick");
 }
 
 }  // namespace

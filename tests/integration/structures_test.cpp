@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
+#include <span>
 
 #include "hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"
@@ -37,6 +39,7 @@ constexpr auto structured_arm_text = R"(<?xml version="1.0" encoding="UTF-8"?>
     <ParamRef name="LAW" id="0" type="UINT8" enumeration="LAWS" minimum="0" maximum="1" init="follow"/>
     <StructRef name="JOINTS" id="1" count="2">
       <ParamRef name="ON" id="0" type="BOOL" init="on"/>
+      <ParamRef name="TOOL" id="0" type="TEXT" octets="12" init="none"/>
       <StructRef name="GAINS" id="3">
         <ParamRef name="P" id="0" type="DOUBLE" minimum="0" maximum="100" init="20"/>
         <ParamRef name="D" id="1" type="DOUBLE" minimum="0" maximum="10" init="2"/>
@@ -57,6 +60,7 @@ struct JointGains {
 };
 struct GainedJoint {
   bool on;
+  Text<12> tool;
   JointGains gains;
 };
 struct JointController {
@@ -122,8 +126,9 @@ TEST(Structures, BeginAsDescriptorAndMissionSayAndAreToldWholeAndInPart) {
   EXPECT_EQ(arm.seen.joints[0].gains.p, 20);
   EXPECT_EQ(arm.seen.joints[1].gains.p, 5);
   EXPECT_EQ(arm.told,
-            "CONTROLLER.LAW=1 CONTROLLER.JOINTS[0].ON=on CONTROLLER.JOINTS[0].GAINS.P=20 "
-            "CONTROLLER.JOINTS[0].GAINS.D=2 CONTROLLER.JOINTS[1].ON=on CONTROLLER.JOINTS[1].GAINS.P=5 "
+            "CONTROLLER.LAW=1 CONTROLLER.JOINTS[0].ON=on CONTROLLER.JOINTS[0].TOOL='none' "
+            "CONTROLLER.JOINTS[0].GAINS.P=20 CONTROLLER.JOINTS[0].GAINS.D=2 CONTROLLER.JOINTS[1].ON=on "
+            "CONTROLLER.JOINTS[1].TOOL='none' CONTROLLER.JOINTS[1].GAINS.P=5 "
             "CONTROLLER.JOINTS[1].GAINS.D=6 CONTROLLER.JOINTS[1].GAINS.P=5 CONTROLLER.JOINTS[1].GAINS.D=6 ");
 }
 
@@ -136,10 +141,11 @@ TEST(Structures, AreSetWholeAndInPart) {
   EXPECT_EQ(arm.seen.joints[1].gains.p, 5) << "its neighbour is as it was";
   EXPECT_TRUE(arm.set(".JOINTS[1].ON", {0.0}).completed);
   EXPECT_FALSE(arm.seen.joints[1].on);
-  EXPECT_TRUE(arm.set("", {0.0, 1.0, 1.0, 1.5, 1.0, 2.0, 2.5}).completed);
+  EXPECT_TRUE(arm.set("", {0.0, 1.0, "saw", 1.0, 1.5, 1.0, "file", 2.0, 2.5}).completed);
   EXPECT_EQ(arm.seen.law, 0);
   EXPECT_TRUE(arm.seen.joints[1].on);
   EXPECT_EQ(arm.seen.joints[1].gains.d, 2.5);
+  EXPECT_EQ(arm.seen.joints[1].tool, "file");
   EXPECT_NE(arm.told.find("CONTROLLER.JOINTS[1].GAINS.D=2.5"), std::string::npos) << arm.told;
 }
 
@@ -168,14 +174,47 @@ TEST(Structures, OutliveTheFlightWholeWhenOnePartOfThemWasSet) {
     Structured arm{&store};
     ASSERT_TRUE(arm.commissioned) << arm.flight.story().text();
     ASSERT_TRUE(arm.set(".JOINTS[0].GAINS.P", {33.0}).completed);
+    ASSERT_TRUE(arm.set(".JOINTS[1].TOOL", {"saw no. 2"}).completed);
     arm.flight.craft().run(1s);
   }
   Structured next{&store};
   ASSERT_TRUE(next.commissioned) << next.flight.story().text();
   next.flight.craft().run(100ms);
   EXPECT_EQ(next.seen.joints[0].gains.p, 33);
-  EXPECT_EQ(next.seen.joints[1].gains.p, 5) << "what the mission says of the rest";
+  EXPECT_EQ(next.seen.joints[1].tool, "saw no. 2");
+  EXPECT_EQ(next.seen.joints[0].tool, "none") << "what the descriptor says of the rest";
+  EXPECT_EQ(next.seen.joints[1].gains.p, 5) << "and the mission";
   EXPECT_TRUE(next.flight.story().has("ARM takes over 1 stored value, of ")) << next.flight.story().text();
+}
+
+TEST(Structures, WithWordsAreNeverTakenFromADamagedCopy) {
+  supervisor::MemoryValueDisk disk;
+  supervisor::DirectValueStore store{disk, "values"};
+  const supervisor::ValueCopies copies{disk, "values/ARM"};
+  {
+    Structured arm{&store};
+    ASSERT_TRUE(arm.set(".JOINTS[1].TOOL", {"saw"}).completed) << arm.flight.story().text();
+    arm.flight.craft().run(1s);
+  }
+  const auto damage = [&](std::size_t copy) {
+    auto octets = disk.read(copies.path(copy), 4096).value();
+    const auto words = std::ranges::search(octets, std::as_bytes(std::span{"saw", 3}));
+    ASSERT_FALSE(words.empty());
+    words.front() = std::byte{'p'};  // words still, but nobody set them
+    ASSERT_TRUE(disk.create(copies.path(copy), octets));
+  };
+  const auto begins_with = [&] {
+    Structured next{&store};
+    EXPECT_TRUE(next.commissioned) << next.flight.story().text();
+    next.flight.craft().run(100ms);
+    EXPECT_TRUE(next.flight.story().has("of ARM's stored values is not used: damaged"));
+    return std::string{next.seen.joints[1].tool.view()};
+  };
+  damage(0);
+  EXPECT_EQ(begins_with(), "saw") << "the other copy is whole";
+  damage(0);  // it was made whole again
+  damage(1);
+  EXPECT_EQ(begins_with(), "none");
 }
 
 }  // namespace

@@ -227,7 +227,7 @@ int run(const RunOptions& options) {
     plan.supervisor.arguments.insert(plan.supervisor.arguments.end(), {"--mode", options.mode});
   if (flight.named()) plan.supervisor.arguments.insert(plan.supervisor.arguments.end(), {"--log", flight.log.string()});
   for (auto& endnode : supervisor::kept_endnodes(*mission)) plan.inhibits.push_back(std::move(endnode.address));
-  constexpr int first_lock = supervisor::keeper_journal_descriptor + 1;
+  constexpr int first_lock = supervisor::keeper_texts_descriptor + 1;
   plan.supervisor.inherited = {{locks->folder.get(), first_lock}, {locks->registry.get(), first_lock + 1}};
   if (locks->log) plan.supervisor.inherited.push_back({locks->log.get(), first_lock + 2});
   if (options.json) plan.supervisor.arguments.emplace_back("--json");

@@ -29,6 +29,10 @@ struct Override {
 /// The reverse, into `subsystem`. NotFound: no such parameter. OutOfRange: not as many values as it has, or no such ones.
 [[nodiscard]] Result<> apply_override(Subsystem& subsystem, std::string_view text);
 
+/// What tells a launched subsystem to begin with all of `init`: one of the whole, or where a structure has words among its members one of each
+/// member, as words stand alone.
+[[nodiscard]] std::vector<Override> overrides_of(const Parameter& parameter);
+
 /// A device of this instance has another address than its subsystem's descriptor says, in every configuration.
 struct Readdressed {
   std::string device;

@@ -66,6 +66,20 @@ Result<> apply_override(Subsystem& subsystem, std::string_view text) {
   return ok();
 }
 
+std::vector<Override> overrides_of(const Parameter& parameter) {
+  const bool words = std::ranges::any_of(
+      parameter.members, [](const Parameter::Member& member) { return member.field.type == Type::Text; });
+  if (!words) return {{parameter.field.name, parameter.init}};
+  std::vector<Override> each;
+  auto value = parameter.init.begin();
+  for (const Parameter::Member& member : parameter.members) {
+    const auto end = value + static_cast<std::ptrdiff_t>(member.field.values());
+    each.push_back({parameter.field.name + "." + member.field.name, {value, end}});
+    value = end;
+  }
+  return each;
+}
+
 std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsystem& member) {
   std::vector<std::pair<std::string, std::string>> changes{
       {"--as", fmt::format("{}:{}", member.subsystem.name, member.subsystem.id)}};

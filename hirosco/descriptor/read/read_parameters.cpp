@@ -185,12 +185,7 @@ void SubsystemReader::read_persistent(Attributes& attributes, Parameter& paramet
   const std::string& name = parameter.field.name;
   const bool before_it_moves =
       parameter.writable_in(State::PreOperational) || parameter.writable_in(State::SafeOperational);
-  const bool words = std::ranges::any_of(
-      parameter.members, [](const Parameter::Member& member) { return member.field.type == Type::Text; });
-  if (words)
-    problems_.add(at, "E0236", fmt::format("'{}' has words among its members and is persistent", name),
-                  "a TEXT is persistent as a parameter of its own");
-  else if (parameter.protection)
+  if (parameter.protection)
     problems_.add(at, "E0236", fmt::format("'{}' is a protection and persistent", name),
                   "what a function has loosened begins as the descriptor says");
   else if (!before_it_moves)

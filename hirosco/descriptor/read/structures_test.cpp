@@ -105,6 +105,32 @@ TEST(Structures, BeginWithWhatAMissionOrAProcessIsToldInPart) {
   EXPECT_EQ(apply_override(subsystem, "CONTROLLER.GAIN=3").error().code, ErrorCode::NotFound);
 }
 
+TEST(Structures, WithWordsArePersistentAndToldToAProcessMemberByMember) {
+  const std::string text = with_structures(R"(
+<StructRef name="LABEL" id="7" writable="SafeOperational" persistent="yes">
+  <ParamRef name="OWNER" id="1" type="TEXT" octets="12" init="nobody"/>
+  <StructRef name="SHELVES" id="8" count="2">
+    <ParamRef name="TITLE" id="2" type="TEXT" octets="8"/>
+    <ParamRef name="SIZES" id="1" type="DOUBLE" count="2" minimum="0" maximum="9"/>
+  </StructRef>
+</StructRef>)");
+  auto reading = read_text(text);
+  ASSERT_TRUE(reading.value) << testing::rendered(reading.problems, testing::text_source(text));
+  MissionSubsystem set;
+  set.subsystem = *reading.value;
+  Parameter label = *set.subsystem.find_parameter("LABEL");
+  label.init = {"Ada = L.", "a  b ", 1.0, 0.1, "", 3.0, 4.0};
+  set.overrides = overrides_of(label);
+  std::vector<std::string> told;
+  for (const auto& [word, what] : changes_of(set)) {
+    if (word == "--set") told.push_back(what);
+    ASSERT_TRUE(apply_change(*reading.value, word, what)) << what;
+  }
+  EXPECT_THAT(told, ElementsAre("LABEL.OWNER=Ada = L.", "LABEL.SHELVES[0].TITLE=a  b ", "LABEL.SHELVES[0].SIZES=1 0.1",
+                                "LABEL.SHELVES[1].TITLE=", "LABEL.SHELVES[1].SIZES=3 4"));
+  EXPECT_EQ(reading.value->find_parameter("LABEL")->init, label.init);
+}
+
 TEST(Structures, AreSetByAConfigurationInPart) {
   const auto reading = read_text(with_structures(std::string{nested_controller} +
                                                  R"(<Configuration name="C" id="1" sampling_us="1000">

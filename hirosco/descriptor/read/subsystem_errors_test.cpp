@@ -157,7 +157,6 @@ constexpr Bad bad_meaning[] = {
     {"E0217", R"(<Configuration name="C" id="1" sampling_us="100"><Device name="PLATE"><Endnode transfer="unix" address="@../x"/></Device></Configuration>)"},
     {"E0218", R"(<Device name="X" actuator="yes"><Output>@<Field name="Y" type="DOUBLE"/></Output></Device>)", "safe"},
     {"E0112", R"(<Configuration name="C" id="1" sampling_us="@49"/>)", "50 to"},
-    {"E0236", R"(<StructRef name="A" id="1" writable="PreOperational" persistent="@yes"><ParamRef name="X" id="2" type="TEXT" octets="4"/></StructRef>)", "of its own"},
     {"E0237", R"(<StructRef name="A" id="1" writable="Operational" persistent="@yes"><ParamRef name="X" id="2" type="INT8" minimum="0" maximum="1"/></StructRef>)"},
     {"E0236", R"(<ParamRef name="X" id="2" type="DOUBLE" protection="yes" persistent="@yes"/>)", "loosened"},
     {"E0237", R"(<ParamRef name="X" id="2" type="DOUBLE" persistent="@yes"/>)", "by itself"},
