@@ -192,6 +192,8 @@ struct NewOptions {
   std::string kind;  ///< one of new_kinds()
   std::string name;
   std::string to{"."};  ///< folder that gets the new one
+  std::string urdf;  ///< of a robot: its file; empty = the one that comes with the template
+  std::string tip;  ///< of a robot: link; empty = the only end that moves
 };
 /// A folder of one's own to begin with (adr 0109).
 int make_new(const NewOptions& options);

@@ -108,6 +108,10 @@ int read_and_do(int argc, char** argv) {
   new_command->add_option("kind", new_options.kind, kinds_help)->required()->check(CLI::IsMember(kinds));
   new_command->add_option("name", new_options.name, "Name of what it makes, and of the folder")->required();
   new_command->add_option("--to", new_options.to, "Folder that gets it")->capture_default_str();
+  new_command->add_option("--urdf", new_options.urdf,
+                          "Of a robot: its URDF file; by default an arm that is there to try");
+  new_command->add_option("--tip", new_options.tip,
+                          "Of a robot: the link that is its tool; by default the only end that moves");
 
   SimulateOptions simulate_options;
   std::string simulate_for = "10s";

@@ -1,12 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "hirosco/utilities/os/installation.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/new_folder/kinds.hpp"
+#include "tools/new_folder/robot.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -33,6 +36,34 @@ void say_what_is_next(const NewKind& kind, const std::string& folder, const std:
   fmt::print("  hirosco simulate mission.xml --for 5s\n  hirosco run mission.xml\n");
 }
 
+constexpr const char* world_program = "hirosco-sim-mujoco";
+
+/// Of a file of one's own, or of the one that comes with the template. Nothing: told why.
+[[nodiscard]] std::optional<NewParts> parts_of_robot(const NewOptions& options, const NewName& name,
+                                                     const fs::path& from) {
+  const auto source = descriptor::file_system();
+  const fs::path file = options.urdf.empty() ? referred(from, "page/newpart.urdf") : fs::path{options.urdf};
+  JudgedRobot judged = judge_robot(file, source, options.tip);
+  const bool colour = ::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+  for (const auto* list : {&judged.problems, &judged.warnings})
+    for (const auto& problem : *list) fmt::print(stderr, "{}", descriptor::render(problem, source, colour));
+  if (!judged.robot) {
+    fmt::print(stderr, "hirosco new: {} cannot be flown; codes are explained in docs/urdf-errors.md\n", file.string());
+    return std::nullopt;
+  }
+  if (options.urdf.empty()) judged.robot->urdf = without_licence(judged.robot->urdf);
+  return parts_of(*judged.robot, name);
+}
+
+/// Its world is none of the parts that everybody has.
+void say_what_is_missing() {
+  if (!find_program(world_program).empty()) return;
+  fmt::print(
+      "\nIts world, {}, is not here. It is built with HIROSCO's sources once tools/fetch_mujoco has\n"
+      "fetched MuJoCo (10 MB, judged by hash); until then the mission can be checked, but not flown.\n",
+      world_program);
+}
+
 }  // namespace
 
 int make_new(const NewOptions& options) {
@@ -43,19 +74,31 @@ int make_new(const NewOptions& options) {
     fmt::print(stderr, "hirosco new: '{}' is no name for it: {}\n", options.name, name.error());
     return exit_usage;
   }
+  if (!kind->of_urdf && !(options.urdf.empty() && options.tip.empty())) {
+    fmt::print(stderr, "hirosco new: --urdf and --tip are of a robot: hirosco new robot {} --urdf FILE\n",
+               options.name);
+    return exit_usage;
+  }
   const fs::path from = find_shipped("templates") / kind->name;
   if (from.is_relative()) {
     fmt::print(stderr, "hirosco new: there are no templates with this program: sudo apt install libhirosco-dev\n");
     return exit_environment;
   }
   const fs::path target = fs::path{options.to} / name->lower;
-  const auto made = make_folder(from, target, *name);
+  NewParts parts;
+  if (kind->of_urdf) {
+    auto found = parts_of_robot(options, *name, from);
+    if (!found) return exit_finding;
+    parts = std::move(*found);
+  }
+  const auto made = make_folder(from, target, *name, parts);
   if (!made) {
     fmt::print(stderr, "hirosco new: {}\n", made.error());
     return exit_environment;
   }
   fmt::print("{}: {}\n", target.string(), kind->makes);
   for (const fs::path& file : *made) fmt::print("  {}\n", file.lexically_relative(target).string());
+  if (kind->of_urdf) say_what_is_missing();
   fmt::print("\nNow:\n");
   say_what_is_next(*kind, target.string(), where_installed(from.parent_path()));
   return exit_ok;

@@ -11,6 +11,8 @@
 #include <iterator>
 #include <string_view>
 
+#include "hirosco/utilities/os/installation.hpp"
+
 namespace hirosco::tools {
 
 namespace fs = std::filesystem;
@@ -21,6 +23,7 @@ constexpr std::array kinds{
     NewKind{"subsystem", "a subsystem with its test, and a mission that flies it", true},
     NewKind{"device", "a simulated device, the subsystem that commands it, and a mission that flies both", true},
     NewKind{"mission", "a mission made of what is installed, with a page of its own, without code", false},
+    NewKind{"robot", "an arm of a URDF file in a world of MuJoCo's, shown by the page, without code", false, true},
 };
 
 /// As templates have it, in the order of NewName.
@@ -46,17 +49,23 @@ void replace_all(std::string& text, std::string_view word, const std::string& by
 
 /// Empty: all are made.
 [[nodiscard]] std::string make_files(const fs::path& from, const fs::path& target, const NewName& name,
-                                     std::vector<fs::path>& made) {
+                                     const NewParts& parts, std::vector<fs::path>& made) {
   std::error_code failed;
-  for (const auto& entry : fs::recursive_directory_iterator{from, failed}) {
-    if (!entry.is_regular_file(failed)) continue;
-    const fs::path file = target / named_text(fs::relative(entry.path(), from, failed).string(), name);
+  const auto make = [&](const std::string& as_in_template, const std::string& text) {
+    const fs::path file = target / named_text(as_in_template, name);
     fs::create_directories(file.parent_path(), failed);
     std::ofstream written{file, std::ios::binary};
-    written << named_text(read(entry.path()), name);
-    if (!written.flush()) return fmt::format("{} cannot be written", file.string());
+    written << text;
     made.push_back(file);
+    return static_cast<bool>(written.flush());
+  };
+  for (const auto& entry : fs::recursive_directory_iterator{from, failed}) {
+    if (!entry.is_regular_file(failed) || entry.path().extension() == reference_ending) continue;
+    if (!make(fs::relative(entry.path(), from, failed).string(), named_text(read(entry.path()), name, parts)))
+      return fmt::format("{} cannot be written", made.back().string());
   }
+  for (const auto& [as_in_template, text] : parts.files)
+    if (!make(as_in_template, text)) return fmt::format("{} cannot be written", made.back().string());
   if (failed) return fmt::format("{}: {}", from.string(), failed.message());
   if (made.empty()) return fmt::format("there is nothing in {}", from.string());
   std::ranges::sort(made);
@@ -97,7 +106,7 @@ std::expected<NewName, std::string> new_name(const std::string& text) {
   return name;
 }
 
-std::string named_text(const std::string& text, const NewName& name) {
+std::string without_licence(const std::string& text) {
   std::string made;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
@@ -108,21 +117,34 @@ std::string named_text(const std::string& text, const NewName& name) {
     begin = end;
   }
   if (made.size() < text.size() && made.starts_with('\n')) made.erase(0, 1);
-  replace_all(made, lower_word, name.lower);
-  replace_all(made, upper_word, name.upper);
-  replace_all(made, camel_word, name.camel);
   return made;
 }
 
+std::string named_text(const std::string& text, const NewName& name, const NewParts& parts) {
+  std::string made = without_licence(text);
+  replace_all(made, lower_word, name.lower);
+  replace_all(made, upper_word, name.upper);
+  replace_all(made, camel_word, name.camel);
+  for (const auto& [word, by] : parts.words) replace_all(made, word, by);
+  return made;
+}
+
+fs::path referred(const fs::path& from, const std::string& name) {
+  std::ifstream lines{from / (name + reference_ending)};
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty() && !line.starts_with('#')) return find_shipped(line);
+  return {};
+}
+
 std::expected<std::vector<fs::path>, std::string> make_folder(const fs::path& from, const fs::path& target,
-                                                              const NewName& name) {
+                                                              const NewName& name, const NewParts& parts) {
   std::error_code failed;
   if (fs::exists(fs::symlink_status(target, failed)))
     return std::unexpected{fmt::format("{} is there already", target.string())};
   if (!fs::create_directories(target, failed))
     return std::unexpected{fmt::format("{}: {}", target.string(), failed.message())};
   std::vector<fs::path> made;
-  if (std::string why_not = make_files(from, target, name, made); !why_not.empty()) {
+  if (std::string why_not = make_files(from, target, name, parts, made); !why_not.empty()) {
     fs::remove_all(target, failed);
     return std::unexpected{std::move(why_not)};
   }

@@ -4,8 +4,10 @@
 
 #include <expected>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// `hirosco new`: a folder that builds, tests, simulates and flies as it is (docs/adr/0109).
@@ -16,6 +18,7 @@ struct NewKind {
   const char* name;
   const char* makes;  ///< in words, for help
   bool compiles;      ///< it has code to build before it flies
+  bool of_urdf{false};  ///< of a robot's file (docs/adr/0115)
 };
 [[nodiscard]] std::span<const NewKind> new_kinds();
 
@@ -29,12 +32,26 @@ struct NewName {
 /// or by the build.
 [[nodiscard]] std::expected<NewName, std::string> new_name(const std::string& text);
 
-/// The text of a template with this name in it, without the lines of this repository's licence. Names of files, too.
-[[nodiscard]] std::string named_text(const std::string& text, const NewName& name);
+/// What a folder has besides its name.
+struct NewParts {
+  std::map<std::string, std::string> words;  ///< by what stands for them in the template: "@joints@"
+  std::vector<std::pair<std::string, std::string>> files;  ///< names as in a template, and what is in them, as it is
+};
+
+/// Without the lines of this repository's licence: what is made is its author's.
+[[nodiscard]] std::string without_licence(const std::string& text);
+/// The text of a template with this name and these words in it, without licence. Names of files, too.
+[[nodiscard]] std::string named_text(const std::string& text, const NewName& name, const NewParts& parts = {});
+
+/// A file of a template with this ending is not copied: its first line that is no comment names one that comes with HIROSCO.
+inline constexpr const char* reference_ending = ".from";
+/// The file that a template's `name` refers to; empty when there is none.
+[[nodiscard]] std::filesystem::path referred(const std::filesystem::path& from, const std::string& name);
 
 /// Makes `target`, which must not be there, from all files below `from`. The files made, or in words what is in the way; then nothing
 /// is left of it.
 [[nodiscard]] std::expected<std::vector<std::filesystem::path>, std::string> make_folder(
-    const std::filesystem::path& from, const std::filesystem::path& target, const NewName& name);
+    const std::filesystem::path& from, const std::filesystem::path& target, const NewName& name,
+    const NewParts& parts = {});
 
 }  // namespace hirosco::tools

@@ -67,7 +67,11 @@ TEST_F(Made, EveryKindHasATemplateAndNothingOfItsWordsIsLeft) {
                 fs::exists(target / "README.md"))
         << kind.name;
     EXPECT_EQ(kind.compiles, fs::exists(target / "pipe.cpp"));
+    EXPECT_EQ(kind.of_urdf,
+              fs::exists(referred(fs::path{HIROSCO_SOURCE_DIR} / "templates" / kind.name, "page/newpart.urdf")))
+        << "where none is named";
     for (const fs::path& file : *made) {
+      EXPECT_NE(file.extension(), reference_ending) << file;
       std::stringstream text;
       text << std::ifstream{file}.rdbuf();
       for (const char* word : {"newpart", "NEWPART", "NewPart",
@@ -77,6 +81,19 @@ TEST_F(Made, EveryKindHasATemplateAndNothingOfItsWordsIsLeft) {
       EXPECT_NE(text.str(), "") << file;
     }
   }
+}
+
+TEST_F(Made, WordsOfItsOwnAreReplacedAndFilesOfItsOwnAreAsTheyAre) {
+  fs::create_directory(folder_ / "template");
+  std::ofstream{folder_ / "template/newpart.txt"} << "newpart has @joints@ joints";
+  const NewParts parts{.words = {{"@joints@", "3"}}, .files = {{"page/newpart.urdf", "newpart @joints@"}}};
+  const auto made = make_folder(folder_ / "template", folder_ / "made", new_name("pipe").value(), parts);
+  ASSERT_TRUE(made) << made.error();
+  std::string text;
+  std::getline(std::ifstream{folder_ / "made/pipe.txt"}, text);
+  EXPECT_EQ(text, "pipe has 3 joints");
+  std::getline(std::ifstream{folder_ / "made/page/pipe.urdf"}, text);
+  EXPECT_EQ(text, "newpart @joints@");
 }
 
 TEST_F(Made, WhatIsThereIsLeftAsItIs) {

@@ -11,7 +11,9 @@ import {commands, mission, mode_of, operator, outcome_of, replay, slow, status_o
 import {command_is, commander, i_ask, may_send, take_command} from '../people.js';
 import {arguments_text, choices_of} from './arguments.js';
 import {as_python, as_tc, is_favourite, toggle_favourite} from './favourites.js';
+import {JointRows} from './joint_rows.js';
 import {mode_wanted} from './mode_menu.js';
+import {joints_of} from './robot_file.js';
 import {scene_of_mission} from './scene_file.js';
 import {fill_form, kept_texts, typed} from './typed.js';
 
@@ -87,16 +89,18 @@ function Field({subsystem, action, argument, text, on_text, result, focus, now})
   const field = `field-${argument.name}`;
   const error = result.error && text !== '' ? result.error : null;
   const placeholder = argument.type === 'TEXT' ? `text, at most ${argument.octets} octets` : range_text(argument) || argument.type.toLowerCase();
+  const joints = joints_of(subsystem, action.name, argument);
   return html`<label class=${`field ${error ? 'wrong' : ''}`}><span>${argument.name}${unit ? html` <small>${unit}</small>` : null}</span>
     ${argument.type === 'BOOL' && (argument.count ?? 1) === 1 ? html`<input data-test=${field} type="checkbox" checked=${judged(argument, text).value === 1}
         onChange=${(event) => on_text(event.currentTarget.checked ? '1' : '0')} />` :
       choices?.length ? html`<select data-test=${field} value=${text} onChange=${(event) => on_text(event.currentTarget.value)}>
         ${choices.map((one) => html`<option value=${String(one.value)}>${state_text(one.name)}${
           Number.isInteger(one.value) ? ` (${one.value})` : ''}</option>`)}</select>` :
-      html`<span class="in"><input data-test=${field} type="text" inputmode=${argument.type === 'TEXT' ? 'text' : 'decimal'} autocomplete="off" spellcheck="false" value=${text}
+      html`<span class=${joints ? 'in whole' : 'in'}><input data-test=${field} type="text" inputmode=${argument.type === 'TEXT' ? 'text' : 'decimal'} autocomplete="off" spellcheck="false" value=${text}
         aria-invalid=${Boolean(error)} placeholder=${placeholder}
-        autofocus=${focus} onInput=${(event) => on_text(event.currentTarget.value)} /><small>${text && argument.type !== 'TEXT' ? range_text(argument) : ''}</small></span>`}
-    <em>${error ?? ''}</em>${now ? html`<${Way} argument=${argument} now=${now} wanted=${result.value} />` : null}</label>`;
+        autofocus=${focus} onInput=${(event) => on_text(event.currentTarget.value)} /><small>${text && argument.type !== 'TEXT' && !joints ? range_text(argument) : ''}</small></span>`}
+    <em>${error ?? ''}</em>${now ? html`<${Way} argument=${argument} now=${now} wanted=${result.value} />` : null}</label>
+    ${joints ? html`<${JointRows} argument=${argument} joints=${joints} text=${text} on_text=${on_text} />` : null}`;
 }
 
 const verdict_words = {sent: 'sent', accepted: 'accepted', started: 'started', progress: 'progress', completed: 'completed',

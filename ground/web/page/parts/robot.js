@@ -60,6 +60,7 @@ function Verdict({description}) {
     <span>${why}${why && silent ? ' · ' : ''}${silent ? `last pose, ${age_text(age_s)} old` : ''}</span></div>`;
 }
 
+const feels = (description) => description.robots.some((one) => one.force);
 const toggles = [['goal', 'Goal'], ['limits', 'Limits'], ['force', 'Force'], ['trail', 'Trail'], ['frames', 'Frames']];
 
 export function Robot() {
@@ -117,7 +118,7 @@ export function Robot() {
     <canvas class="still" ref=${still} aria-hidden="true" /><div class="stage" ref=${stage} data-test="robot" /><div class="shade" />
     <svg class="leads" ref=${leads} aria-hidden="true" /><div class="readout" ref=${tags} />
     ${description ? html`<div class="tools">
-      ${description.robots.length ? toggles.map(([name, title]) => html`<button class=${`chip ${show[name] ? 'on' : ''}`} aria-pressed=${show[name]} onClick=${() => set_show({...show, [name]: !show[name]})}>${title}</button>`) : null}
+      ${description.robots.length ? toggles.filter(([name]) => name !== 'force' || feels(description)).map(([name, title]) => html`<button class=${`chip ${show[name] ? 'on' : ''}`} aria-pressed=${show[name]} onClick=${() => set_show({...show, [name]: !show[name]})}>${title}</button>`) : null}
       <span class="space" />
       ${hand && operator.value && !replay.value ? html`<button class="chip" title="the simulated hand wanders by itself" onClick=${() => fault(hand.device, 'hand wander').catch(() => {})}>Hand wanders</button>
         <button class=${`chip ${gamepad ? 'on' : ''}`} title="the left stick of a gamepad is the hand" aria-pressed=${gamepad} onClick=${() => set_gamepad(!gamepad)}>Gamepad</button>` : null}
@@ -129,7 +130,7 @@ export function Robot() {
     ${description?.inset ? html`<${Hand} description=${description} window_ref=${window_ref} />` : null}
     ${description ? html`<${Verdict} description=${description} />
       <div class="key">${stopped.length ? html`<span><i />last known pose</span><span><i class="fallen" />inhibited</span>` : html`${description.robots.length ? html`<span><i />measured</span>` : html`<span><i />Operational</span><span><i class="fallen" />inhibited or failed</span>`}${
-        typed.value?.values || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : 'goal, not sent'}</span>` : null}${description.robots.length ? html`<span><i class="touched" />touched</span>` : null}${
+        typed.value?.values || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : 'goal, not sent'}</span>` : null}${feels(description) ? html`<span><i class="touched" />touched</span>` : null}${
         description.inset ? html`<span><i class="felt" />felt</span>` : null}`}${hand && operator.value && !replay.value && !stopped.length ? html`<span class="hint">drag the handle or the fingertip</span>` : null}</div>` : null}
   </div>`;
 }

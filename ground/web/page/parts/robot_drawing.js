@@ -28,6 +28,7 @@ const quick_ms = 10, software_period_ms = 47, tick_ms = 1000 / 60;
 const trail_points = 300, trail_step_m2 = 4e-6;
 const least_force_n = 0.5;
 const words_ms = 200, still_after_ms = 250;
+const most_angles = 3;
 
 function drawn_by_processor(context) {
   const about = context.getExtension('WEBGL_debug_renderer_info');
@@ -65,6 +66,8 @@ export class RobotView {
     this.still = this.software ? new StillPicture(renderer, this.far, nodes.still) : null;
     const {camera} = description;
     this.scale = new Vector3().fromArray(camera.from_m).distanceTo(new Vector3().fromArray(camera.to_m));
+    // Lines are as thick as seen from a metre away.
+    this.thick = this.scale > 0.75 ? Math.max(1, Math.round(this.scale)) : this.scale;
     this.camera = new PerspectiveCamera(camera.fov_deg ?? 34, 1, 0.05 * this.scale, 900 * this.scale);
     this.camera.up.set(0, 0, 1);
     this.camera.position.fromArray(camera.from_m);
@@ -97,7 +100,7 @@ export class RobotView {
   make_instruments() {
     this.force = new Arrow(colours.touched, 0.0046);
     this.contact = contact_ring(1);
-    this.trail = new Ribbon(trail_points, 0.0022);
+    this.trail = new Ribbon(trail_points, 0.0022 * this.thick);
     this.scene.add(this.force.group, this.contact, this.trail.mesh);
     const target = new Vector3().fromArray(this.description.camera.to_m);
     this.scene.add(...lights({target, reach_m: 0.62 * this.scale, shadow: !this.software}));
@@ -113,11 +116,12 @@ export class RobotView {
     for (const [i, about] of description.robots.entries()) {
       const parts = () => own.links?.[about.urdf]?.(kit) ?? {};
       const robot = new RobotModel(about, texts[i], parts(), {environment: this.mirror, software: this.software});
-      robot.make_goal = about.goal ? () => new Goal(robot, texts[i], parts(), {scale: 1, contour: description.contour}) : null;
-      robot.angle_tags = about.inset ? [] : robot.names.map((name) => this.tags.add('', `${about.names?.[name] ?? name} `, 'rad'));
+      robot.make_goal = about.goal ? () => new Goal(robot, texts[i], parts(), {scale: this.thick, contour: description.contour}) : null;
+      robot.angle_tags = about.inset ? [] : robot.names.map((name) => this.tags.add('', `${about.names?.[name] ?? name} `, robot.body.joints[name].jointType === 'prismatic' ? 'm' : 'rad'));
       if (robot.tip) robot.tip_tag = this.tags.add('', 'tip ', 'mm');
       if (about.goal) robot.goal_tag = this.tags.add('goal', 'goal ', '');
       if (about.force) robot.force_tag = this.tags.add('touched', Object.assign(document.createElement('span'), {className: 'unseen', textContent: 'force '}), 'N');
+      this.nodes.stage.dataset.bones = robot.bones + Number(this.nodes.stage.dataset.bones ?? 0);
       this.scene_of(robot).add(robot.body);
       if (this.software && !about.inset) cast_on_plane(robot.body, sun_from, 0.0006);
       this.robots.push(robot);
@@ -397,15 +401,18 @@ export class RobotView {
       });
       if (robot.tip_tag) {
         robot.tip_tag.at = this.at_px(robot.tip);
-        if (telling) this.tags.tell(robot.tip_tag, `${fixed_text(robot.tip.x * 1000, 1)}, ${fixed_text(robot.tip.y * 1000, 1)}`, {shown: seen, stale});
+        // A robot that works in a plane says where in it.
+        const {x, y, z} = robot.tip, place = this.description.plane_z_m === undefined ? [x, y, z] : [x, y];
+        if (telling) this.tags.tell(robot.tip_tag, place.map((metres) => fixed_text(metres * 1000, 1)).join(', '), {shown: seen, stale});
       }
       if (robot.goal_tag) {
         const told = robot.goal_wanted ? robot.goal_told : null;
         robot.goal_tag.at = told?.tip ? this.at_px(told.tip) : null;
         if (telling || !told) {
-          const words = told ? Object.values(robot.goal_wanted.angles).map((angle) => fixed_text(angle, 3)).join(', ') : '';
-          this.tags.tell(robot.goal_tag, words, {shown: Boolean(told), look: told?.wrong ? 'wrong' : 'goal',
-            unit: told ? told.wrong || `in ${fixed_text(robot.goal_wanted.duration_s, 1)} s, ${fixed_text(told.fastest, 2)} rad/s` : ''});
+          const angles = told ? Object.values(robot.goal_wanted.angles) : [];
+          // More of them would be wider than the picture; the form has them.
+          const words = angles.length > most_angles ? `${angles.length} joints` : angles.map((angle) => fixed_text(angle, 3)).join(', ');
+          this.tags.tell(robot.goal_tag, words, {shown: Boolean(told), look: told?.wrong ? 'wrong' : 'goal', unit: told ? told.wrong || told.pace : ''});
         }
       }
       if (robot.force_tag) {

@@ -3,8 +3,10 @@
 //
 // Where a motion that is typed, or sent and not ended, would lead: the robot's ghost at its goal, the path of its tip, red where it cannot be.
 import {Group} from 'three';
+import {fixed_text} from '../format.js';
 import {outcome_of} from '../store.js';
 import {surface_x_m} from '../parts/hand.js';
+import {led_value} from '../parts/robot_file.js';
 import {colours, GoalPath} from './instruments.js';
 import {Phantom} from './robot_model.js';
 import {ghost_skin, make_ghost} from './skins.js';
@@ -13,14 +15,17 @@ const points = 48;
 /// The smooth path of on-board motions: a polynomial of the fifth degree.
 const smooth = (s) => s * s * s * (10 - 15 * s + 6 * s * s);
 const most_smooth_rate = 1.875;
+/// What is nearer is where the robot stands already.
+const there_s = 0.02;
 
-/// The goal that is to be shown: {angles: {joint: angle}, duration_s, sent}; null when none is.
+/// The goal that is to be shown: {angles: {joint: angle}, duration_s, speed, sent}; null when none is. With a speed, a share of what each joint
+/// may, nobody has said how long it takes.
 export function goal_of(about, typed, commands) {
   if (!about.goal) return null;
   const read = (values, sent) => {
-    const angles = Object.fromEntries(Object.entries(about.goal.joints).map(([joint, argument]) => [joint, Number(values?.[argument])]));
+    const angles = Object.fromEntries(Object.entries(about.goal.joints).map(([joint, argument]) => [joint, led_value(values, argument)]));
     if (!Object.values(angles).every(Number.isFinite)) return null;
-    return {angles, duration_s: Number(values[about.goal.duration]) || 3, sent};
+    return {angles, duration_s: Number(values[about.goal.duration]) || 3, speed: about.goal.speed ? Number(values[about.goal.speed]) : null, sent};
   };
   const under_way = commands.find((one) => one.subsystem === about.subsystem && one.function === about.goal.function && !['completed', 'failed'].includes(outcome_of(one).stage));
   if (under_way) return read(under_way.arguments, true);
@@ -43,7 +48,16 @@ export class Goal {
     this.told = '';
   }
 
-  /// Shows `goal` from where the robot stands; what there is to be said of it: {wrong, fastest, tip}.
+  /// How long it takes at least, and the speed of the fastest joint: {duration_s, words}.
+  #pace(goal, from) {
+    const ways = this.robot.names.map((name) => Math.abs((goal.angles[name] ?? from[name]) - from[name]));
+    if (!goal.speed) return {duration_s: goal.duration_s, words: `in ${fixed_text(goal.duration_s, 1)} s, ${fixed_text(Math.max(...ways) * most_smooth_rate / goal.duration_s, 2)} rad/s`};
+    const longest_s = Math.max(...ways.map((way, i) => way / (goal.speed * (this.robot.velocities[i] || 1))));
+    if (longest_s < there_s) return {duration_s: 0.1, words: 'reached'};
+    return {duration_s: Math.max(longest_s, 0.1), words: `at ${fixed_text(100 * goal.speed, 0)} %, at least ${fixed_text(longest_s, 1)} s`};
+  }
+
+  /// Shows `goal` from where the robot stands; what there is to be said of it: {wrong, pace, tip}.
   show(goal, camera) {
     this.group.visible = Boolean(goal);
     if (!goal) return null;
@@ -59,9 +73,9 @@ export class Goal {
     }
     this.skin.uniforms.colour.value.set(wrong ? colours.wrong : colours.goal);
     this.path.group.visible = path.length > 0;
-    this.path.lay(path, goal.duration_s, camera);
-    const fastest = Math.max(...this.robot.names.map((name) => Math.abs((goal.angles[name] ?? from[name]) - from[name]))) * most_smooth_rate / goal.duration_s;
-    return {wrong, fastest, tip: path.at(-1)?.at ?? null};
+    const {duration_s, words} = this.#pace(goal, from);
+    this.path.lay(path, duration_s, camera);
+    return {wrong, pace: words, tip: path.at(-1)?.at ?? null};
   }
 
   #wrong(angles, tip) {

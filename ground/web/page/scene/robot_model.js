@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A robot of scene.json: its URDF with the parts that the mission gives for its links, posed by telemetry, with its dials, halo and tool frame.
-import {Box3, Color, MeshLambertMaterial, MeshStandardMaterial, Quaternion, ShaderMaterial, Vector3} from 'three';
+import {Box3, Color, CylinderGeometry, Group, Mesh, MeshLambertMaterial, MeshStandardMaterial, Quaternion, ShaderMaterial, SphereGeometry, Vector3} from 'three';
 import URDFLoader from 'urdf-loader';
 import {merged} from './kit.js';
 import {Dial, triad} from './instruments.js';
@@ -13,10 +13,50 @@ import {sun_from} from './space.js';
 const moved_rad = 1e-5;
 const dial_of_size = 0.28;
 
+/// Numbers as they are read strictly on board, whatever blanks stand between them. What would be fetched from elsewhere is left out: a mission
+/// shows no file of meshes (adr 0100).
 export function parsed_urdf(text) {
+  const file = new DOMParser().parseFromString(text, 'text/xml');
+  for (const [name, attribute] of [['axis', 'xyz'], ['color', 'rgba']]) {
+    for (const node of file.querySelectorAll(`${name}[${attribute}]`)) node.setAttribute(attribute, node.getAttribute(attribute).trim().replace(/\s+/g, ' '));
+  }
+  for (const node of file.querySelectorAll('texture')) node.remove();
   const loader = new URDFLoader();
   loader.parseCollision = false;
-  return loader.parse(text);
+  // Who asks says last whom to tell.
+  loader.loadMeshCb = (...words) => words.at(-1)(null);
+  return loader.parse(file);
+}
+
+const is_mesh = (visual) => visual.urdfNode.querySelector('geometry > mesh') !== null;
+const visuals_of = (link) => link.children.filter((child) => child.isURDFVisual);
+const bone_share = 0.028, ball_of_bone = 1.45, end_of_bone = 2.2;
+
+/// How far the joints of a robot are from each other in all, along the longest way.
+function length_of(link) {
+  return Math.max(0, ...link.children.filter((child) => child.isURDFJoint).map((joint) => joint.position.length() + Math.max(0, ...joint.children.filter((one) => one.isURDFLink).map(length_of))));
+}
+
+/// In place of meshes: what a link carries is where its joints are. A bone to each, a ball at each joint that moves.
+function bones(link, thick, material) {
+  const group = new Group(), joints = link.children.filter((child) => child.isURDFJoint);
+  const reach = Math.max(0, ...joints.map((joint) => joint.position.length()));
+  if (link.parent?.isURDFJoint && link.parent.jointType !== 'fixed') group.add(new Mesh(new SphereGeometry(thick * ball_of_bone, 20, 14), material));
+  for (const {position} of joints) {
+    const long = position.length();
+    if (long < thick / 2) continue;
+    const bone = new Mesh(new CylinderGeometry(thick * 0.8, thick, long, 18), material);
+    bone.position.copy(position).multiplyScalar(0.5);
+    bone.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), position.clone().divideScalar(long));
+    group.add(bone);
+  }
+  // What is at an end has nothing to reach: a stub along the axis that turns it.
+  if (!joints.length && reach === 0 && link.parent?.isURDFJoint) {
+    const stub = new Mesh(new CylinderGeometry(thick * 0.6, thick * 0.8, thick * end_of_bone, 18), material);
+    stub.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), link.parent.axis.clone().normalize());
+    group.add(stub);
+  }
+  return group;
 }
 
 /// Lit at its corners by the sun and the sky of space.js, and toned there: a processor that draws pays for every point of the picture.
@@ -49,13 +89,21 @@ export function affordable(material, software) {
   return plain.get(material);
 }
 
-/// The mission's parts in place of the URDF's own shapes, where it has them; each link's parts of one material are one mesh.
+/// The mission's parts in place of the URDF's own shapes, where it has them; each link's parts of one material are one mesh. How many parts of bones
+/// it took for shapes that are nowhere.
 export function dress(body, parts, environment, software) {
+  const links = Object.values(body.links), bare = !links.some((link) => visuals_of(link).length);
+  const plain_skin = (color) => affordable(new MeshStandardMaterial({color, roughness: 0.5, metalness: 0.15, envMap: environment}), software);
+  let bone_skin = null, count = 0;
   for (const [name, link] of Object.entries(body.links)) {
     if (!parts[name]) {
-      link.traverse((part) => {
-        if (part.isMesh) part.material = affordable(new MeshStandardMaterial({color: part.material.color, roughness: 0.5, metalness: 0.15, envMap: environment}), software);
-      });
+      // Its own shapes only: below them are the links that it carries.
+      for (const visual of visuals_of(link)) visual.traverse((part) => { if (part.isMesh) part.material = plain_skin(part.material.color); });
+      if (bare || visuals_of(link).some(is_mesh)) {
+        const group = bones(link, bone_share * length_of(body), bone_skin ??= plain_skin(new Color(0xd3d7dd)));
+        count += group.children.length;
+        link.add(group);
+      }
       continue;
     }
     for (const child of [...link.children]) if (child.isURDFVisual) child.removeFromParent();
@@ -67,17 +115,19 @@ export function dress(body, parts, environment, software) {
     });
     link.add(whole);
   }
+  return count;
 }
 
 export class RobotModel {
   constructor(about, text, parts, {environment, software}) {
     this.about = about;
     this.body = parsed_urdf(text);
-    dress(this.body, parts, environment, software);
+    this.bones = dress(this.body, parts, environment, software);
     // Unseen until the first telemetry says how it stands.
     this.body.visible = false;
     this.body.position.fromArray(about.at_m ?? [0, 0, 0]);
     this.names = Object.keys(about.joints);
+    this.velocities = this.names.map((name) => Number.parseFloat(this.body.joints[name].urdfNode.querySelector('limit')?.getAttribute('velocity') ?? ''));
     this.motion = new Motion();
     this.last = [];
     this.size = new Box3().setFromObject(this.body).getSize(new Vector3()).length();

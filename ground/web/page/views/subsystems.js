@@ -5,6 +5,7 @@ import {bring_up, legal_states, route, send_and_say, state_name, state_value} fr
 import {age_text, duration_text, number_text, rate_text, state_text, unit_text, value_text} from '../format.js';
 import {html} from '../html.js';
 import {Panel} from '../parts/panel.js';
+import {joint_of} from '../parts/robot_file.js';
 import {StateDiagram} from '../parts/state_diagram.js';
 import {SubsystemCard, configuration_of, state_look, waits_text} from '../parts/subsystem_card.js';
 import {inhibited_text} from '../stop_story.js';
@@ -83,7 +84,8 @@ function entries_of(name) {
     const base = column.name.replace(/\[\d+\]$/, '');
     found.set(base, [...(found.get(base) ?? []), column]);
   }
-  return [...found.entries()].flatMap(([base, list]) => list.length >= long_array ?
+  // Heights are of counts: an arm of many joints has its numbers.
+  return [...found.entries()].flatMap(([base, list]) => list.length >= long_array && !/DOUBLE|FLOAT/.test(list[0].type) ?
     [{column: {...list[0], name: base}, elements: list}] : list.map((column) => ({column})));
 }
 
@@ -103,12 +105,12 @@ export function Values({name}) {
   const half = Math.ceil(own.length / 2);
   return html`<div class="two" data-test="values">${[own.slice(0, half), own.slice(half)].map((part) => html`<table class="values"><thead><tr><th>parameter</th><th>value</th><th>unit</th><th>range</th><th>age</th></tr></thead>
     <tbody>${part.map(({column, elements}) => {
-      const value = values.get(column.name)?.v;
+      const value = values.get(column.name)?.v, joint = joint_of(column.name);
       const {age_s, stale} = freshness(elements?.[0].name ?? column.name);
       return html`<tr key=${column.name} class=${stale ? 'stale' : ''}>
-        <td>${column.type === 'TEXT' ? column.name.slice(name.length + 1) : html`<a href=${`#/plots?p=${(elements ?? [column]).slice(0, 8).map((one) => encodeURIComponent(one.name)).join('+')}`} title="plot">${column.name.slice(name.length + 1)}</a>`}</td>
+        <td>${column.type === 'TEXT' ? column.name.slice(name.length + 1) : html`<a href=${`#/plots?p=${(elements ?? [column]).slice(0, 8).map((one) => encodeURIComponent(one.name)).join('+')}`} title="plot">${column.name.slice(name.length + 1)}</a>`}${joint ? html` <small>${joint.name}</small>` : null}</td>
         ${elements ? html`<td class="number" colspan="3"><${Bars} elements=${elements} /></td>` : html`<td class="number">${column.enumeration?.length ? state_text(value_text(value, column)) : value_text(value, column)}</td><td>${unit_text(column.unit)}</td>
-        <td><${Bar} value=${value} column=${column} /></td>`}<td class="number age">${age_text(age_s)}</td></tr>`;
+        <td><${Bar} value=${value} column=${joint ? {min: joint.lower, max: joint.upper} : column} /></td>`}<td class="number age">${age_text(age_s)}</td></tr>`;
     })}</tbody></table>`)}</div>
     ${own.length ? null : html`<p class="empty">This subsystem tells no housekeeping.</p>`}`;
 }

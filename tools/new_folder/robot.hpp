@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hirosco/descriptor/read/read.hpp"
+#include "robotics/dynamics/model.hpp"
+#include "tools/new_folder/kinds.hpp"
+
+/// `hirosco new robot`: whether a URDF file can be flown as an arm, and what of its folder follows from it (docs/adr/0115).
+namespace hirosco::tools {
+
+/// A robot that can be flown.
+struct NewRobot {
+  std::string name;  ///< as its file says
+  std::string urdf;  ///< the file, as it is
+  robotics::Model model;
+  std::string tip;  ///< link
+  std::vector<double> posture;  ///< to begin with: within all ranges, held by the drives
+  std::vector<double> goal;  ///< not far from it, likewise
+  double acceleration{0};  ///< of every joint at once, wherever the robot can hold itself; rad/s2 or m/s2
+  double reach_m{0};  ///< of the tip, from the origin of the base
+  double tip_z_m{0};  ///< in the posture to begin with
+};
+
+struct JudgedRobot {
+  std::optional<NewRobot> robot;  ///< only when `problems` is empty
+  std::vector<descriptor::Diagnostic>
+      problems;  ///< of the reader, and U06.. of what an arm needs besides (docs/urdf-errors.md)
+  std::vector<descriptor::Diagnostic> warnings;
+};
+
+/// Reads the file strictly and judges what its reader leaves open: tip, drives, ranges, what MuJoCo refuses, whether it can hold itself.
+/// `tip`: a link, or empty where only one end moves. Every posture that is looked at is the same at each call.
+[[nodiscard]] JudgedRobot judge_robot(const std::filesystem::path& file, const descriptor::FileSource& source,
+                                      const std::string& tip);
+
+/// What of it stands in the templates, and the files that are its own: URDF and scene of the page.
+[[nodiscard]] NewParts parts_of(const NewRobot& robot, const NewName& name);
+
+}  // namespace hirosco::tools

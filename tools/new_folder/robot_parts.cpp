@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tools/new_folder/robot.hpp"
+
+namespace hirosco::tools {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+/// What a drive moves besides its link, where nobody knows better (subsystem's README): of the effort.
+constexpr double rotor_share = 1.0 / 300;
+constexpr double rotor_step = 0.1, usual_rotor_most = 10;
+/// With six of them a cycle takes 100 us on a slow computer, with twelve less than three times as long; what a period has room for.
+constexpr double budget_of_six_us = 200, most_budget_us = 600;
+/// A goal that is a little too far is refused by the arm, which names the reason: rad or m.
+constexpr double beyond_all = 0.05;
+/// Of a joint that turns on and on.
+constexpr double turns_rad = 6.28;
+constexpr double usual_reach_m = 2;
+constexpr double jerk_per_acceleration = 10;
+/// Plots beside each other, and curves of one that can be told apart.
+constexpr std::size_t most_joint_plots = 3, most_curves = 6;
+
+[[nodiscard]] std::string for_xml(std::string_view text) {
+  std::string made;
+  for (const char letter : text) {
+    switch (letter) {
+      case '&': made += "&amp;"; break;
+      case '<': made += "&lt;"; break;
+      case '>': made += "&gt;"; break;
+      case '"': made += "&quot;"; break;
+      default: made += letter;
+    }
+  }
+  return made;
+}
+
+/// What all joints have in common, or both.
+[[nodiscard]] std::string unit(const robotics::Model& model, const char* turning, const char* sliding) {
+  const auto slides = [](const robotics::Model::Joint& joint) { return joint.kind == robotics::JointKind::Prismatic; };
+  const auto count = std::ranges::count_if(model.joints(), slides);
+  if (count == 0) return turning;
+  return count == model.joint_count() ? sliding : fmt::format("{}|{}", turning, sliding);
+}
+
+/// In tenths, but for light drives: nobody knows it better.
+[[nodiscard]] double rotor(double effort) {
+  const double inertia = effort * rotor_share;
+  return inertia >= rotor_step / 2 ? std::round(inertia / rotor_step) * rotor_step : inertia;
+}
+[[nodiscard]] std::string brief(double value) { return fmt::format("{:.4g}", value); }
+
+struct Widest {
+  double lowest{0}, highest{0}, fastest{0}, strongest{0}, heaviest_rotor{0};
+};
+[[nodiscard]] Widest widest(const robotics::Model& model) {
+  Widest all{.lowest = HUGE_VAL, .highest = -HUGE_VAL};
+  for (const auto& joint : model.joints()) {
+    all.lowest = std::min(all.lowest, joint.limits.lower.value_or(-turns_rad));
+    all.highest = std::max(all.highest, joint.limits.upper.value_or(turns_rad));
+    all.fastest = std::max(all.fastest, *joint.limits.velocity);
+    all.strongest = std::max(all.strongest, *joint.limits.effort);
+    all.heaviest_rotor = std::max(all.heaviest_rotor, rotor(*joint.limits.effort));
+  }
+  return all;
+}
+
+/// What all names begin with, up to a '_': in a picture it tells nobody apart.
+[[nodiscard]] std::size_t common_beginning(const robotics::Model& model) {
+  const std::string& first = model.joints().front().name;
+  std::size_t common = model.joint_count() > 1 ? first.size() : 0;
+  for (const auto& joint : model.joints())
+    common = std::min(common, static_cast<std::size_t>(std::ranges::mismatch(first, joint.name).in1 - first.begin()));
+  const std::size_t end = first.substr(0, common).rfind('_');
+  return end == std::string::npos ? 0 : end + 1;
+}
+/// "2 lift": its place among numbers, and its name.
+[[nodiscard]] std::string shown_name(const robotics::Model& model, std::size_t joint) {
+  return fmt::format("{} {}", joint + 1, model.joints()[joint].name.substr(common_beginning(model)));
+}
+
+[[nodiscard]] double rounded(double value) { return std::round(value * 100) / 100; }
+[[nodiscard]] std::vector<double> rounded(double x, double y, double z) {
+  std::vector<double> place{x, y, z};
+  for (double& each : place) each = rounded(each);
+  return place;
+}
+
+/// A curve of a plot; `look` may be empty.
+[[nodiscard]] ordered_json curve(const std::string& name, const std::string& label, const char* look) {
+  ordered_json made;
+  made["name"] = name;
+  made["label"] = label;
+  if (*look != '\0') made["look"] = look;
+  return made;
+}
+
+[[nodiscard]] ordered_json plots_of(const robotics::Model& model, const std::string& subsystem) {
+  ordered_json plots = ordered_json::array();
+  for (std::size_t i = 0; i < std::min(model.joints().size(), most_joint_plots); ++i) {
+    const auto& joint = model.joints()[i];
+    ordered_json plot;
+    plot["title"] = shown_name(model, i);
+    if (joint.limits.lower && joint.limits.upper)
+      plot["range"] = ordered_json::array({rounded(*joint.limits.lower), rounded(*joint.limits.upper)});
+    plot["least"] = 0.1;
+    plot["curves"].push_back(curve(fmt::format("{}.CUR_VALUES.POSITION[{}]", subsystem, i), "is", "is"));
+    plot["curves"].push_back(curve(fmt::format("{}.DES_POSITION[{}]", subsystem, i), "set", "set"));
+    plots.push_back(plot);
+  }
+  ordered_json torques;
+  torques["title"] = "Torques";
+  torques["hint"] = unit(model, "N m", "N");
+  torques["least"] = 1;
+  for (std::size_t i = 0; i < std::min(model.joints().size(), most_curves); ++i)
+    torques["curves"].push_back(
+        curve(fmt::format("{}.CUR_VALUES.TORQUE[{}]", subsystem, i), std::to_string(i + 1), ""));
+  plots.push_back(torques);
+  return plots;
+}
+
+/// Of the page (ground/web/README.md).
+[[nodiscard]] std::string scene_of(const NewRobot& robot, const NewName& name) {
+  ordered_json shown;
+  shown["urdf"] = name.lower + ".urdf";
+  shown["subsystem"] = name.upper;
+  ordered_json goal, jog;
+  goal["function"] = "MOVE_J";
+  jog["function"] = "JOG_J";
+  for (std::size_t i = 0; i < robot.model.joints().size(); ++i) {
+    const std::string& joint = robot.model.joints()[i].name;
+    shown["joints"][joint] = fmt::format("{}.CUR_VALUES.POSITION[{}]", name.upper, i);
+    shown["names"][joint] = shown_name(robot.model, i);
+    goal["joints"][joint] = fmt::format("GOAL[{}]", i);
+    jog["joints"][joint] = fmt::format("VELOCITY[{}]", i);
+  }
+  goal["speed"] = "SPEED";
+  shown["goal"] = goal;
+  shown["jog"] = jog;
+  shown["tip"] = robot.tip;
+  const double reach = robot.reach_m, middle = robot.tip_z_m / 2;
+  ordered_json scene;
+  scene["robots"].push_back(shown);
+  scene["camera"]["fov_deg"] = 33;
+  scene["camera"]["from_m"] = rounded(1.4 * reach, -1.4 * reach, middle + 0.6 * reach);
+  scene["camera"]["to_m"] = rounded(0.1 * reach, 0, middle);
+  scene["camera"]["above_m"] = rounded(0.1 * reach, 0, middle + 2.4 * reach);
+  scene["camera"]["tip_from_m"] = rounded(0.7 * reach, -0.7 * reach, middle + 0.4 * reach);
+  scene["plots"] = plots_of(robot.model, name.upper);
+  return scene.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+/// us
+struct Timing {
+  int budget{0}, sampling{1000};
+};
+[[nodiscard]] Timing timing_of(const robotics::Model& model) {
+  const double times = model.joint_count() / 6.0, budget = budget_of_six_us * std::max(1.0, std::pow(times, 1.5));
+  Timing timing{.budget = static_cast<int>(std::ceil(budget / 50) * 50)};
+  if (budget > most_budget_us) timing.sampling *= 2;
+  return timing;
+}
+
+}  // namespace
+
+NewParts parts_of(const NewRobot& robot, const NewName& name) {
+  const robotics::Model& model = robot.model;
+  const Widest all = widest(model);
+  const Timing timing = timing_of(model);
+  std::string names;
+  std::vector<std::string> rotors, safe;
+  for (std::size_t i = 0; i < model.joints().size(); ++i) {
+    const auto& joint = model.joints()[i];
+    names += fmt::format("    <Text value=\"{}\">{}</Text>\n", i + 1, for_xml(joint.name));
+    rotors.push_back(brief(rotor(*joint.limits.effort)));
+    safe.emplace_back("0");
+  }
+  return {.words = {{"@robot@", robot.name},
+                    {"@joints@", std::to_string(model.joint_count())},
+                    {"@joint_names@", names},
+                    {"@tip@", for_xml(robot.tip)},
+                    {"@lowest@", fmt::format("{:.10g}", all.lowest - beyond_all)},
+                    {"@highest@", fmt::format("{:.10g}", all.highest + beyond_all)},
+                    {"@fastest@", fmt::format("{}", all.fastest)},
+                    {"@strongest@", fmt::format("{}", all.strongest)},
+                    {"@safe@", fmt::format("{}", fmt::join(safe, " "))},
+                    {"@rotors@", fmt::format("{}", fmt::join(rotors, " "))},
+                    {"@rotors_of_world@", fmt::format("{}", fmt::join(rotors, ","))},
+                    {"@rotors_most@", brief(std::max(usual_rotor_most, 2 * all.heaviest_rotor))},
+                    {"@budget@", std::to_string(timing.budget)},
+                    {"@sampling@", std::to_string(timing.sampling)},
+                    {"@acceleration@", brief(robot.acceleration)},
+                    {"@jerk@", brief(robot.acceleration * jerk_per_acceleration)},
+                    {"@reach@", brief(std::max(usual_reach_m, std::ceil(robot.reach_m)))},
+                    {"@posture@", fmt::format("{}", fmt::join(robot.posture, ","))},
+                    {"@goal@", fmt::format("{}", fmt::join(robot.goal, ","))},
+                    {"@place_unit@", unit(model, "rad", "m")},
+                    {"@speed_unit@", unit(model, "rad/s", "m/s")},
+                    {"@acceleration_unit@", unit(model, "rad/s2", "m/s2")},
+                    {"@jerk_unit@", unit(model, "rad/s3", "m/s3")},
+                    {"@force_unit@", unit(model, "N m", "N")},
+                    {"@inertia_unit@", unit(model, "kg m2", "kg")}},
+          .files = {{"page/newpart.urdf", robot.urdf}, {"page/scene.json", scene_of(robot, name)}}};
+}
+
+}  // namespace hirosco::tools

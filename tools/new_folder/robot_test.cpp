@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/new_folder/robot.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+/// What an arm needs besides what the reader of URDF files wants, each refusal with its place.
+namespace hirosco::tools {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+/// A rod of 1 m and 2 kg that lies along x at 0 and turns about y; and what else there is.
+struct Parts {
+  std::string inertia{R"(<inertia ixx="0.001" ixy="0" ixz="0" iyy="0.17" iyz="0" izz="0.17"/>)"};
+  std::string type{"revolute"};
+  std::string limit{R"(<limit lower="-1" upper="2" velocity="3" effort="60"/>)"};
+  std::string more{};
+};
+[[nodiscard]] std::string text_of(const Parts& parts = {}) {
+  return "<robot name=\"rod\">\n<link name=\"base\"/>\n<link name=\"rod\"><inertial><origin xyz=\"0.5 0 0\"/><mass "
+         "value=\"2\"/>\n" +
+         parts.inertia + "</inertial></link>\n<joint name=\"swing\" type=\"" + parts.type +
+         "\"><parent link=\"base\"/><child link=\"rod\"/><axis xyz=\"0 1 0\"/>\n" + parts.limit +
+         "</joint>\n<joint name=\"end\" type=\"fixed\"><origin xyz=\"1 0 0\"/><parent link=\"rod\"/><child "
+         "link=\"tool\"/></joint><link name=\"tool\"/>\n" +
+         parts.more + "</robot>";
+}
+[[nodiscard]] JudgedRobot judged(const std::string& text, const std::string& tip = "") {
+  return judge_robot("rod.urdf", [&](const fs::path&) -> Result<std::string> { return text; }, tip);
+}
+[[nodiscard]] std::string in_repository(const char* file) {
+  return descriptor::file_system()(fs::path{HIROSCO_SOURCE_DIR} / file).value();
+}
+
+TEST(NewRobot, BeginsWhereItsDrivesHoldItAndGoesWhereTheyDoToo) {
+  const auto rod = judged(text_of());
+  ASSERT_TRUE(rod.robot);
+  EXPECT_THAT(rod.problems, testing::IsEmpty());
+  EXPECT_THAT(rod.warnings, testing::IsEmpty());
+  EXPECT_EQ(rod.robot->tip, "tool");
+  EXPECT_THAT(rod.robot->posture, ElementsAre(0.0)) << "2 kg at 0.5 m take 9.81 N m of 60";
+  EXPECT_THAT(rod.robot->goal, ElementsAre(0.3));
+  EXPECT_NEAR(rod.robot->reach_m, 1, 1e-9);
+  EXPECT_EQ(rod.robot->acceleration, 4) << "45 - 9.81 N m are left for 0.67 kg m2";
+}
+
+TEST(NewRobot, SpeedsUpAsSlowlyAsItsDrivesAreWeak) {
+  const auto weak = judged(text_of({.limit = R"(<limit lower="-1" upper="2" velocity="3" effort="15"/>)"}));
+  ASSERT_TRUE(weak.robot);
+  // Lying: (0.75 * 15 - 9.81) / (0.17 + 2 * 0.25), in tenths.
+  EXPECT_NEAR(weak.robot->acceleration, 2.1, 1e-9);
+}
+
+TEST(NewRobot, LooksForAPostureThatItsDrivesHoldWhereZeroIsTooHeavy) {
+  const auto heavy = judged(text_of({.limit = R"(<limit lower="-1.5" upper="2" velocity="3" effort="12"/>)"}));
+  ASSERT_TRUE(heavy.robot);
+  EXPECT_LE(9.81 * std::cos(heavy.robot->posture[0]), 0.5 * 12 + 1e-3);
+  ASSERT_EQ(heavy.warnings.size(), 1u) << "where it lies it is too heavy";
+  EXPECT_EQ(heavy.warnings[0].code, "U0606");
+}
+
+TEST(NewRobot, StandsWithinARangeThatZeroIsNotIn) {
+  const auto bent = judged(text_of({.limit = R"(<limit lower="0.4" upper="2.4" velocity="3" effort="60"/>)"}));
+  ASSERT_TRUE(bent.robot);
+  EXPECT_THAT(bent.robot->posture, ElementsAre(0.5));
+}
+
+TEST(NewRobot, IsRefusedWithPlaceReasonAndWhatToDo) {
+  const std::string second =
+      R"(<joint name="side" type="fixed"><parent link="rod"/><child link="other"/></joint><link name="other"/>)";
+  struct Case {
+    const char* code;
+    int line;
+    int column;
+    const char* told;
+    std::string text;
+    std::string tip{};
+  };
+  const std::vector<Case> cases{
+      {"U0601", 6, 1, "joint 'swing' has no effort above 0",
+       text_of({.limit = R"(<limit lower="-1" upper="2" velocity="3" effort="0"/>)"})},
+      {"U0601", 6, 1, "joint 'swing' has no velocity above 0",
+       text_of({.limit = R"(<limit lower="-1" upper="2" velocity="0" effort="5"/>)"})},
+      {"U0601", 5, 1, "joint 'swing' has no velocity above 0", text_of({.type = "continuous", .limit = ""})},
+      {"U0602", 6, 1, "the range of joint 'swing' is from 0 to 0",
+       text_of({.limit = R"(<limit velocity="3" effort="60"/>)"})},
+      {"U0603", 1, 1, "the robot has 2 ends that move", text_of({.more = second})},
+      {"U0603", 1, 1, "the robot has no link 'tol'", text_of(), "tol"},
+      {"U0603", 2, 1, "no joint moves link 'base'", text_of(), "base"},
+      {"U0604", 4, 1, "no body has the inertia of link 'rod'",
+       text_of({.inertia = R"(<inertia ixx="0.001" ixy="0" ixz="0" iyy="0.17" iyz="0" izz="0.3"/>)"})},
+      {"U0604", 4, 1, "principal moments 0, 0.17 and 0.17",
+       text_of({.inertia = R"(<inertia ixx="0" ixy="0" ixz="0" iyy="0.17" iyz="0" izz="0.17"/>)"})},
+      {"U0607", 4, 1, "joint 'swing' moves link 'rod', which has no mass or no inertia about some axis",
+       text_of({.inertia = R"(<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/>)"})},
+      {"U0605", 6, 1, "takes 9.", text_of({.limit = R"(<limit lower="-0.2" upper="0.2" velocity="3" effort="10"/>)"})},
+      {"U0605", 6, 1, "of the effort 5 of joint 'swing'",
+       text_of({.limit = R"(<limit lower="-1.5" upper="2" velocity="3" effort="5"/><dynamics friction="4"/>)"})},
+      // Of the reader, as it says it.
+      {"U0303", 5, 1, "joint 'swing' has no <limit>", text_of({.limit = ""})},
+      {"U0102", 8, 1, "lnik", text_of({.more = "<lnik/>"})},
+  };
+  for (const Case& each : cases) {
+    const auto found = judged(each.text, each.tip);
+    EXPECT_FALSE(found.robot) << each.code;
+    ASSERT_FALSE(found.problems.empty()) << each.code << " " << each.told;
+    const auto& problem = found.problems.front();
+    EXPECT_EQ(problem.code, each.code) << problem.message;
+    EXPECT_EQ(problem.at.line, each.line) << problem.message;
+    EXPECT_EQ(problem.at.column, each.column) << problem.message;
+    EXPECT_THAT(problem.message, HasSubstr(each.told));
+    EXPECT_EQ(problem.file, "rod.urdf");
+    EXPECT_NE(problem.hint, "") << "what to do about " << each.code;
+    EXPECT_EQ(problem.grade, descriptor::Grade::Error);
+  }
+  EXPECT_TRUE(judged(text_of({.more = second}), "other").robot) << "once the tool is named";
+}
+
+TEST(NewRobot, EveryCodeIsExplained) {
+  const std::string page = in_repository("docs/urdf-errors.md");
+  for (const char* code : {"U0601", "U0602", "U0603", "U0604", "U0605", "U0606", "U0607"})
+    EXPECT_THAT(page, HasSubstr(std::string{"| "} + code + " |"));
+}
+
+TEST(NewRobot, ItsSceneNamesItsJointsAndWhatLeadsThem) {
+  const auto name = new_name("MyRod").value();
+  const auto parts = parts_of(*judged(text_of()).robot, name);
+  ASSERT_EQ(parts.files.size(), 2u);
+  EXPECT_EQ(parts.files[0], (std::pair<std::string, std::string>{"page/newpart.urdf", text_of()})) << "octet by octet";
+  EXPECT_EQ(parts.files[1].first, "page/scene.json");
+  const auto scene = nlohmann::json::parse(parts.files[1].second);
+  const auto& robot = scene.at("robots").at(0);
+  EXPECT_EQ(robot.at("urdf"), "my_rod.urdf");
+  EXPECT_EQ(robot.at("joints").at("swing"), "MY_ROD.CUR_VALUES.POSITION[0]");
+  EXPECT_EQ(robot.at("names").at("swing"), "1 swing");
+  EXPECT_EQ(robot.at("goal").at("joints").at("swing"), "GOAL[0]");
+  EXPECT_EQ(robot.at("jog").at("joints").at("swing"), "VELOCITY[0]");
+  EXPECT_EQ(robot.at("tip"), "tool");
+  EXPECT_EQ(scene.at("plots").size(), 2u);
+}
+
+TEST(NewRobot, NamesOfAPictureLeaveOutWhatAllBeginWith) {
+  std::string text =
+      text_of({.more = R"(<joint name="left_arm_wrist" type="continuous"><parent link="rod"/><child link="hand"/>
+<limit velocity="1" effort="30"/></joint><link name="hand"><inertial><mass value="1"/>
+<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>)"});
+  text.replace(text.find("\"swing\""), 7, "\"left_arm_swing\"");
+  const auto parts = parts_of(*judged(text, "hand").robot, new_name("rod").value());
+  const auto names = nlohmann::json::parse(parts.files[1].second).at("robots").at(0).at("names");
+  EXPECT_EQ(names.at("left_arm_swing"), "1 swing");
+  EXPECT_EQ(names.at("left_arm_wrist"), "2 wrist");
+  EXPECT_THAT(parts.words.at("@joint_names@"), HasSubstr(">left_arm_wrist<")) << "in events it has its whole name";
+}
+
+TEST(NewRobot, SaysBothUnitsWhereSomeJointsSlide) {
+  const std::string slide =
+      R"(<joint name="slide" type="prismatic"><parent link="rod"/><child link="cart"/><axis xyz="1 0 0"/>
+<limit lower="0" upper="0.2" velocity="1" effort="30"/></joint><link name="cart"><inertial><mass value="1"/>
+<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>)";
+  const auto name = new_name("both").value();
+  const auto words = parts_of(*judged(text_of({.more = slide}), "cart").robot, name).words;
+  EXPECT_EQ(words.at("@joints@"), "2");
+  EXPECT_EQ(words.at("@place_unit@"), "rad|m");
+  EXPECT_EQ(words.at("@force_unit@"), "N m|N");
+  EXPECT_EQ(words.at("@rotors@"), "0.2 0.1");
+  EXPECT_EQ(words.at("@lowest@"), "-1.05");
+  EXPECT_EQ(words.at("@strongest@"), "60");
+}
+
+TEST(NewRobot, NamesOfAFileAreNoMarkup) {
+  std::string text = text_of();
+  for (std::size_t at = 0; (at = text.find("\"swing\"", at)) != std::string::npos;)
+    text.replace(at, 7, "\"a&lt;b &amp; &quot;c&quot;\"");
+  const auto name = new_name("rod").value();
+  const auto parts = parts_of(*judged(text).robot, name);
+  EXPECT_THAT(parts.words.at("@joint_names@"), HasSubstr(">a&lt;b &amp; &quot;c&quot;<"));
+  EXPECT_EQ(nlohmann::json::parse(parts.files[1].second).at("robots").at(0).at("joints").count("a<b & \"c\""), 1u);
+}
+
+}  // namespace
+}  // namespace hirosco::tools
