@@ -43,7 +43,7 @@ std::optional<Target> read_target(std::string_view target) {
   while (!rest.empty()) {
     const auto end = std::min(rest.find('&'), rest.size());
     const std::string_view one = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+    rest = end < rest.size() ? rest.substr(end + 1) : std::string_view{};
     const auto equals = std::min(one.find('='), one.size());
     const auto name = decoded(one.substr(0, equals), true);
     const auto value = decoded(one.substr(std::min(equals + 1, one.size())), true);
