@@ -58,7 +58,7 @@ class LogQueue {
  public:
   struct Limits {
     std::size_t telemetry_records{16'384};
-    std::size_t telemetry_octets{7 << 20};  ///< so many records of 448 octets; those of rokviss have 173
+    std::size_t telemetry_octets{7 << 20};  ///< so many records of 448 octets
     std::size_t vital_records{8192};  ///< the last quarter is kept for events and actions: a flood of
     std::size_t vital_octets{4 << 20};  ///< telecommands cannot drown what the supervisor has to say
   };
