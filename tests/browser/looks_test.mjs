@@ -8,7 +8,7 @@ import {spawn} from 'node:child_process';
 import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, describe, it} from 'node:test';
-import {go, open_browser, open_page, until, views} from './browser.mjs';
+import {go, holds, open_browser, open_page, until, views} from './browser.mjs';
 import {cut_texts, faint_texts, loud_texts, overlapping_texts, typefaces} from './looks.mjs';
 
 const [server_file, page_folder] = [process.env.HIROSCO_PAGE_SERVER, process.env.HIROSCO_PAGE];
@@ -52,6 +52,7 @@ for (const state of ['synthetic:well', 'synthetic:stopped']) {
       const settled = watch(page);
       await page.waitForSelector('[data-test=subsystem-MANIPULATOR]');
       if (state !== 'synthetic:well') await page.waitForSelector('[data-test=stop-banner]');
+      else await holds(page, () => [...document.querySelectorAll('[data-test^=subsystem-] .state')].every((one) => one.textContent === 'Operational'));
       const judge_layout = async (where) => {
         found.cut.push(...(await page.evaluate(cut_texts)).map((one) => `${where}: ${one}`));
         found.overlapping.push(...(await page.evaluate(overlapping_texts)).map((one) => `${where}: ${one}`));
