@@ -4,6 +4,7 @@
 """kill -9 of the supervisor, N times (`--kills N`), while the robot pushes on the rail and a client commands without a pause
 (docs/adr/0093). Each time another one goes on with both machines as they are. Every sixth kill falls between TM[1,1] and TM[1,7] of a
 SAFE_ALL. In the end what the client sent and received is compared with each other and with the log."""
+import math
 import os
 import random
 import signal
@@ -69,22 +70,33 @@ class Accounts(unittest.TestCase):
         self.fail("the robot does not push")
 
     def compare(self, rokviss, ground, sent, most_silent=0):
-        silent, several, accepted_only = [], [], []
-        for packet, at in sent:
-            subtypes = [subtype for subtype, _ in ground.reports.get(packet[:4], [])]
-            ends = [subtype for subtype in subtypes if subtype in honest.ENDS]
-            if not subtypes:
-                silent.append((packet[:4].hex(), at))
-            elif not ends:
-                accepted_only.append((packet[:4].hex(), subtypes))
-            if len(ends) > 1:
-                several.append((packet[:4].hex(), subtypes))
-        unknown = sum(any(subtype == 8 for subtype, _ in ground.reports.get(packet[:4], [])) for packet, _ in sent)
+        silent, several, accepted_only, unknown = [], [], [], 0
+        for request, times in self.sent_at(sent).items():
+            reports = ground.reports.get(request, [])
+            # A sequence count comes again after 16384: what is told until then is about the telecommand before.
+            for at, until in zip(times, [*times[1:], math.inf]):
+                subtypes = [subtype for subtype, told_at in reports if at <= told_at < until]
+                ends = [subtype for subtype in subtypes if subtype in honest.ENDS]
+                if not subtypes:
+                    silent.append((request.hex(), at))
+                elif not ends:
+                    accepted_only.append((request.hex(), subtypes))
+                if len(ends) > 1:
+                    several.append((request.hex(), subtypes))
+                unknown += 8 in subtypes
         flight.measure(f"ended as unknown: {unknown}, without any report: {len(silent)}")
         self.is_continuous(rokviss)
         self.assertEqual(several, [], "one end each")
         self.assertEqual(accepted_only, [], "what was accepted has an end")
         self.assertLessEqual(len(silent), most_silent, f"between reading and noting: {silent[:5]}")
+
+    @staticmethod
+    def sent_at(sent):
+        """{request id: when it was sent, first of all first}."""
+        times = {}
+        for packet, at in sent:
+            times.setdefault(packet[:4], []).append(at)
+        return times
 
     def is_continuous(self, rokviss):
         """Each number of the log once, in a record or in a gap that says so."""
