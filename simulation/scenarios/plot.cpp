@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "hirosco/xml/escaped.hpp"
+
 namespace hirosco::simulation {
 namespace {
 
@@ -68,7 +70,7 @@ class Drawing {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" height=\"{1:g}\" "
         "role=\"img\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"13\">\n<title>{2}</title>\n"
         "<rect width=\"{0:g}\" height=\"{1:g}\" fill=\"#ffffff\"/>\n",
-        width, height, escaped(plot_.title));
+        width, height, xml::escaped(plot_.title));
     label(left, 22, "start", plot_.title, "font-weight=\"bold\" font-size=\"15\"");
     grid();
     if (plot_.bars) bars();
@@ -86,7 +88,7 @@ class Drawing {
 
   void label(double x, double y, std::string_view anchor, std::string_view words, std::string_view more = "") {
     text_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"#1c1c1c\" {}>{}</text>\n", x, y,
-                         anchor, more, escaped(words));
+                         anchor, more, xml::escaped(words));
   }
   void line(double x1, double y1, double x2, double y2, std::string_view style) {
     text_ += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", x1, y1, x2, y2, style);
@@ -200,20 +202,6 @@ class Drawing {
 };
 
 }  // namespace
-
-std::string escaped(std::string_view text) {
-  std::string safe;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&': safe += "&amp;"; break;
-      case '<': safe += "&lt;"; break;
-      case '>': safe += "&gt;"; break;
-      case '"': safe += "&quot;"; break;
-      default: safe += letter;
-    }
-  }
-  return safe;
-}
 
 std::string svg_of(const Plot& plot) { return plot.curves.empty() ? std::string{} : Drawing{plot}.draw(); }
 

@@ -45,7 +45,5 @@ struct Plot {
 /// The plot as a whole SVG document. Curves with more points than can be seen are drawn by the smallest and the largest
 /// value of each column, so that no peak is lost. Values that are no numbers leave a gap.
 [[nodiscard]] std::string svg_of(const Plot& plot);
-/// Text as it stands in XML and HTML.
-[[nodiscard]] std::string escaped(std::string_view text);
 
 }  // namespace hirosco::simulation

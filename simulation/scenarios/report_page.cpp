@@ -8,8 +8,12 @@
 #include <cerrno>
 #include <fstream>
 
+#include "hirosco/xml/escaped.hpp"
+
 namespace hirosco::simulation {
 namespace {
+
+using xml::escaped;
 
 constexpr std::string_view style = R"(
 body { font: 15px/1.5 Helvetica, Arial, sans-serif; color: #1c1c1c; max-width: 1060px; margin: 2em auto; padding: 0 1.2em; }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hirosco/xml/escaped.hpp"
 #include "tools/new_folder/robot.hpp"
 
 namespace hirosco::tools {
@@ -28,20 +29,6 @@ constexpr double usual_reach_m = 2;
 constexpr double jerk_per_acceleration = 10;
 /// Plots beside each other, and curves of one that can be told apart.
 constexpr std::size_t most_joint_plots = 3, most_curves = 6;
-
-[[nodiscard]] std::string for_xml(std::string_view text) {
-  std::string made;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&': made += "&amp;"; break;
-      case '<': made += "&lt;"; break;
-      case '>': made += "&gt;"; break;
-      case '"': made += "&quot;"; break;
-      default: made += letter;
-    }
-  }
-  return made;
-}
 
 /// What all joints have in common, or both.
 [[nodiscard]] std::string unit(const robotics::Model& model, const char* turning, const char* sliding) {
@@ -179,14 +166,14 @@ NewParts parts_of(const NewRobot& robot, const NewName& name) {
   std::vector<std::string> rotors, safe;
   for (std::size_t i = 0; i < model.joints().size(); ++i) {
     const auto& joint = model.joints()[i];
-    names += fmt::format("    <Text value=\"{}\">{}</Text>\n", i + 1, for_xml(joint.name));
+    names += fmt::format("    <Text value=\"{}\">{}</Text>\n", i + 1, xml::escaped(joint.name));
     rotors.push_back(brief(rotor(*joint.limits.effort)));
     safe.emplace_back("0");
   }
   return {.words = {{"@robot@", robot.name},
                     {"@joints@", std::to_string(model.joint_count())},
                     {"@joint_names@", names},
-                    {"@tip@", for_xml(robot.tip)},
+                    {"@tip@", xml::escaped(robot.tip)},
                     {"@lowest@", fmt::format("{:.10g}", all.lowest - beyond_all)},
                     {"@highest@", fmt::format("{:.10g}", all.highest + beyond_all)},
                     {"@fastest@", fmt::format("{}", all.fastest)},

@@ -5,36 +5,28 @@
 #include <algorithm>
 
 #include "hirosco/utilities/utf8.hpp"
+#include "hirosco/xml/escaped.hpp"
 
 namespace hirosco::ground {
 namespace {
 
-[[nodiscard]] std::string escaped(std::string_view text) {
-  std::string result, line{text};
+[[nodiscard]] std::string words_of(std::string_view text) {
+  std::string line{text};
   std::ranges::replace_if(line, [](char c) { return c == '\n' || c == '\t' || c == '\r'; }, ' ');
-  for (const char c : printable_words(line)) {
-    switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
-    }
-  }
-  return result;
+  return xml::escaped(printable_words(line));
 }
 
 void write(const Element& element, std::size_t depth, std::string& out) {
   out.append(2 * depth, ' ').append("<").append(element.name);
   for (const auto& [name, value] : element.attributes)
-    out.append(" ").append(name).append("=\"").append(escaped(value)).append("\"");
+    out.append(" ").append(name).append("=\"").append(words_of(value)).append("\"");
   if (element.children.empty() && element.text.empty()) {
     out += "/>\n";
     return;
   }
   out += ">";
   if (element.children.empty()) {
-    out += escaped(element.text);
+    out += words_of(element.text);
   } else {
     out += "\n";
     for (const Element& child : element.children) write(child, depth + 1, out);
