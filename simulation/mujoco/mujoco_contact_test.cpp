@@ -25,7 +25,8 @@ std::string link(const std::string& name, const std::string& shapes) {
     <inertia ixx="0.02" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/></inertial>)" +
          shapes + "</link>";
 }
-std::string slide(const std::string& name, const std::string& parent, const std::string& child, const std::string& axis) {
+std::string slide(const std::string& name, const std::string& parent, const std::string& child,
+                  const std::string& axis) {
   return "<joint name='" + name + "' type='prismatic'><parent link='" + parent + "'/><child link='" + child +
          "'/><axis xyz='" + axis + "'/><limit lower='-5' upper='5' velocity='9' effort='200'/></joint>";
 }
@@ -33,8 +34,8 @@ std::string slide(const std::string& name, const std::string& parent, const std:
 std::string cube(const std::string& shape = R"(<box size="0.2 0.2 0.2"/>)") {
   return R"(<robot name="cube"><link name="base"/><link name="carriage"><inertial><mass value="1e-6"/>
     <inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial></link>)" +
-         link("cube", collision(shape)) + slide("x", "base", "carriage", "1 0 0") + slide("z", "carriage", "cube", "0 0 1") +
-         "</robot>";
+         link("cube", collision(shape)) + slide("x", "base", "carriage", "1 0 0") +
+         slide("z", "carriage", "cube", "0 0 1") + "</robot>";
 }
 constexpr std::array undriven{0.0, 0.0};
 
@@ -77,7 +78,8 @@ TEST(MujocoContact, FrictionHoldsWhatSlidesUntilItIsPulledHarderAndSlowsItThen) 
 
 /// A rod of 0.5 m that turns about y, with a sphere at its end.
 std::string rod() {
-  return R"(<robot name="rod"><link name="base"/>)" + link("rod", collision(R"(<sphere radius="0.05"/>)", R"(<origin xyz="0 0 0.5"/>)")) +
+  return R"(<robot name="rod"><link name="base"/>)" +
+         link("rod", collision(R"(<sphere radius="0.05"/>)", R"(<origin xyz="0 0 0.5"/>)")) +
          R"(<joint name="turn" type="revolute"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/>
     <limit lower="-3" upper="3" velocity="9" effort="50"/></joint></robot>)";
 }
@@ -147,13 +149,15 @@ TEST(MujocoContact, NeighboursPassThroughEachOtherAndWhoIsAtEachOtherAtZeroIsTol
   const std::string shape = collision(R"(<box size="0.1 0.1 0.5"/>)");
   const auto turn = [](const char* name, const char* parent, const char* child) {
     return std::string{"<joint name='"} + name + "' type='revolute'><origin xyz='0 0 0.2'/><parent link='" + parent +
-           "'/><child link='" + child + "'/><axis xyz='0 1 0'/><limit lower='-3' upper='3' velocity='9' effort='50'/></joint>";
+           "'/><child link='" + child +
+           "'/><axis xyz='0 1 0'/><limit lower='-3' upper='3' velocity='9' effort='50'/></joint>";
   };
-  auto robot = MujocoRobot::make("<robot name='r'><link name='base'>" + shape + "</link>" + link("a", shape) + link("b", shape) +
-                                 turn("one", "base", "a") + turn("two", "a", "b") + "</robot>");
+  auto robot = MujocoRobot::make("<robot name='r'><link name='base'>" + shape + "</link>" + link("a", shape) +
+                                 link("b", shape) + turn("one", "base", "a") + turn("two", "a", "b") + "</robot>");
   ASSERT_TRUE(robot) << robot.error();
-  ASSERT_EQ(robot->left_out(), std::vector<std::string>{
-                                   "contact of links 'base' and 'b', which are at each other where all joints are at 0"});
+  ASSERT_EQ(
+      robot->left_out(),
+      std::vector<std::string>{"contact of links 'base' and 'b', which are at each other where all joints are at 0"});
   run(*robot, undriven, 1);
   EXPECT_EQ(robot->touched().contacts, 0);
 }
@@ -168,9 +172,9 @@ TEST(MujocoContact, LinksThatAreNoNeighboursTouch) {
            "'/><child link='" + child + "'/><axis xyz='0 1 0'/><limit lower='-" + most + "' upper='" + most +
            "' velocity='9' effort='50'/></joint>";
   };
-  auto robot =
-      MujocoRobot::make("<robot name='r'><link name='base'>" + box("0") + "</link>" + link("a", box("0")) +
-                        link("b", box("0.6")) + turn("one", "base", "a", "0.001") + turn("two", "a", "b", "3.1") + "</robot>");
+  auto robot = MujocoRobot::make("<robot name='r'><link name='base'>" + box("0") + "</link>" + link("a", box("0")) +
+                                 link("b", box("0.6")) + turn("one", "base", "a", "0.001") +
+                                 turn("two", "a", "b", "3.1") + "</robot>");
   ASSERT_TRUE(robot) << robot.error();
   EXPECT_TRUE(robot->left_out().empty());
   robot->set_gravity(0, 0, 0);
@@ -183,8 +187,18 @@ TEST(MujocoContact, LinksThatAreNoNeighboursTouch) {
 /// The eight corners of a cube of 200 mm, as octets of a binary STL file; `extent`: half of its side.
 std::string stl(float extent) {
   std::string octets(80, ' ');
-  constexpr std::array<std::array<int, 3>, 12> faces{{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                                                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}}};
+  constexpr std::array<std::array<int, 3>, 12> faces{{{0, 2, 1},
+                                                      {1, 2, 3},
+                                                      {4, 5, 6},
+                                                      {5, 7, 6},
+                                                      {0, 1, 4},
+                                                      {1, 5, 4},
+                                                      {2, 6, 3},
+                                                      {3, 6, 7},
+                                                      {0, 4, 2},
+                                                      {2, 4, 6},
+                                                      {1, 3, 5},
+                                                      {3, 7, 5}}};
   const auto put = [&](const auto& value) {
     std::array<char, sizeof value> raw;
     std::memcpy(raw.data(), &value, sizeof value);

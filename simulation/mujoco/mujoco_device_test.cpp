@@ -24,8 +24,10 @@ std::string rods() {
   constexpr const char* swings = R"(<axis xyz="0 1 0"/><limit lower="-3" upper="3" velocity="5" effort="60"/>
     <dynamics damping="0.2" friction="0.5"/>)";
   std::string text = R"(<robot name="rods"><link name="base"/><link name="upper">)";
-  text += std::string{mass} + R"(<collision><origin xyz="0 0 0.4"/><geometry><sphere radius="0.03"/></geometry></collision></link>
-    <link name="lower">)" + mass + R"(<collision><geometry><mesh filename="lower.stl"/></geometry></collision></link>
+  text += std::string{mass} +
+          R"(<collision><origin xyz="0 0 0.4"/><geometry><sphere radius="0.03"/></geometry></collision></link>
+    <link name="lower">)" +
+          mass + R"(<collision><geometry><mesh filename="lower.stl"/></geometry></collision></link>
     <joint name="one" type="revolute"><parent link="base"/><child link="upper"/>)" +
           swings + R"(</joint>
     <joint name="two" type="revolute"><origin xyz="0 0 0.4"/><parent link="upper"/><child link="lower"/>)" +

@@ -28,7 +28,8 @@ std::expected<MujocoRobot, std::string> MujocoRobot::make(std::string_view urdf,
   auto spec = MujocoSpec::make(urdf, meshes);
   if (!spec) return std::unexpected{std::move(spec.error())};
   MujocoRobot robot{std::move(*spec)};
-  for (const DrivenJoint& joint : robot.spec_.joints()) robot.joints_.push_back({.name = joint.name, .effort = joint.effort});
+  for (const DrivenJoint& joint : robot.spec_.joints())
+    robot.joints_.push_back({.name = joint.name, .effort = joint.effort});
   if (auto built = robot.build({}); !built) return std::unexpected{std::move(built.error())};
   return robot;
 }
@@ -113,7 +114,8 @@ std::optional<std::string> MujocoRobot::overlap() const {
       const std::string_view obstacle = MujocoSpec::obstacle_of(*model_, geom);
       if (obstacle.empty() || contact.dist > -within_m) continue;
       return fmt::format("link '{}' stands in obstacle '{}', {:.0f} mm deep",
-                         mj_id2name(model_.get(), mjOBJ_BODY, model_->geom_bodyid[link]), obstacle, -1e3 * contact.dist);
+                         mj_id2name(model_.get(), mjOBJ_BODY, model_->geom_bodyid[link]), obstacle,
+                         -1e3 * contact.dist);
     }
   }
   return std::nullopt;
@@ -126,7 +128,8 @@ std::span<const double, 3> MujocoRobot::tip_m() const noexcept {
 }
 
 std::expected<void, std::string> MujocoRobot::place(std::span<const double> positions) {
-  const std::vector<double> where(data_->qpos, data_->qpos + model_->nq), how_fast(data_->qvel, data_->qvel + model_->nv);
+  const std::vector<double> where(data_->qpos, data_->qpos + model_->nq),
+      how_fast(data_->qvel, data_->qvel + model_->nv);
   mj_resetData(model_.get(), data_.get());
   for (std::size_t i = 0; i < std::min(positions.size(), joints_.size()); ++i)
     data_->qpos[joints_[i].position] = positions[i];
@@ -159,7 +162,8 @@ void MujocoRobot::step(std::span<const double> torques, Brakes brakes, Duration 
     const double wanted = i < torques.size() ? torques[i] : 0;
     data_->qfrc_applied[joints_[i].dof] = std::clamp(wanted, -joints_[i].effort, joints_[i].effort);
   }
-  const auto steps = std::max<std::int64_t>(1, std::llround(std::ceil(seconds(span) / MujocoSpec::longest_sub_step_s - 1e-9)));
+  const auto steps =
+      std::max<std::int64_t>(1, std::llround(std::ceil(seconds(span) / MujocoSpec::longest_sub_step_s - 1e-9)));
   model_->opt.timestep = seconds(span) / static_cast<double>(steps);
   for (std::int64_t i = 0; i < steps; ++i) mj_step(model_.get(), data_.get());
   // Once more, for the sensors: what stands there is of a stage within the last sub-step.

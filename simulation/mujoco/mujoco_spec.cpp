@@ -242,7 +242,8 @@ std::expected<void, std::string> MujocoSpec::leave_out_pairs() {
   if (data == nullptr) return std::unexpected{"MuJoCo has no memory for it"};
   for (int joint = 0; joint < model.njnt; ++joint) {
     const double low = model.jnt_range[2 * joint], high = model.jnt_range[2 * joint + 1];
-    data->qpos[model.jnt_qposadr[joint]] = model.jnt_limited[joint] != 0 && low <= high ? std::clamp(0.0, low, high) : 0;
+    data->qpos[model.jnt_qposadr[joint]] =
+        model.jnt_limited[joint] != 0 && low <= high ? std::clamp(0.0, low, high) : 0;
   }
   mj_kinematics(&model, data.get());
   std::set<std::pair<int, int>> pairs;
@@ -256,12 +257,15 @@ std::expected<void, std::string> MujocoSpec::leave_out_pairs() {
     for (int j = i + 1; j < model.ngeom; ++j) {
       const std::pair pair{model.geom_bodyid[i], model.geom_bodyid[j]};
       const int one = model.body_weldid[pair.first], other = model.body_weldid[pair.second];
-      const auto carries = [&](int carrier, int carried) { return model.body_weldid[model.body_parentid[carried]] == carrier; };
+      const auto carries = [&](int carrier, int carried) {
+        return model.body_weldid[model.body_parentid[carried]] == carrier;
+      };
       if (one == other || carries(one, other) || carries(other, one)) continue;
       if (pairs.contains(pair) || mj_geomDistance(&model, data.get(), i, j, 2 * near_m, nullptr) > near_m) continue;
       pairs.insert(pair);
-      left_out_.push_back(fmt::format("contact of links '{}' and '{}', which are at each other where all joints are at 0",
-                                      name_of(model, pair.first), name_of(model, pair.second)));
+      left_out_.push_back(
+          fmt::format("contact of links '{}' and '{}', which are at each other where all joints are at 0",
+                      name_of(model, pair.first), name_of(model, pair.second)));
     }
   for (const auto& [one, other] : pairs) {
     if (model.body_geomnum[one] == 0 || model.body_geomnum[other] == 0) continue;

@@ -26,10 +26,9 @@ struct KindRow {
   std::size_t sizes;
   std::string_view said;
 };
-constexpr std::array kinds{KindRow{ShapeKind::Box, "box", 3, "A,B,C"},
-                           KindRow{ShapeKind::Cylinder, "cylinder", 2, "RADIUS,LENGTH"},
-                           KindRow{ShapeKind::Sphere, "sphere", 1, "RADIUS"},
-                           KindRow{ShapeKind::Plane, "plane", 0, ""}};
+constexpr std::array kinds{
+    KindRow{ShapeKind::Box, "box", 3, "A,B,C"}, KindRow{ShapeKind::Cylinder, "cylinder", 2, "RADIUS,LENGTH"},
+    KindRow{ShapeKind::Sphere, "sphere", 1, "RADIUS"}, KindRow{ShapeKind::Plane, "plane", 0, ""}};
 
 [[nodiscard]] bool good_size(double size) { return size >= smallest_m && size <= largest_m; }
 
@@ -115,8 +114,7 @@ constexpr std::array kinds{KindRow{ShapeKind::Box, "box", 3, "A,B,C"},
   Shape shape;
   if (!read_origin(collision, shape)) return std::unexpected{"its <origin> is not three numbers each"};
   const Element* geometry = child_of(collision, "geometry");
-  if (geometry == nullptr || geometry->children.size() != 1)
-    return std::unexpected{"its <geometry> is not one shape"};
+  if (geometry == nullptr || geometry->children.size() != 1) return std::unexpected{"its <geometry> is not one shape"};
   const Element& element = geometry->children.front();
   return element.name == "mesh" ? read_mesh(element, std::move(shape)) : read_sizes(element, std::move(shape));
 }
@@ -163,8 +161,8 @@ std::expected<Obstacle, std::string> read_obstacle(std::string_view name, std::s
   if (row == kinds.end())
     return std::unexpected{fmt::format("'{}' is no shape of an obstacle: box, cylinder, sphere or plane", shape)};
   Obstacle obstacle{.name = std::string{name}, .shape = {.kind = row->kind}};
-  const std::string usage = fmt::format("write {}{}{} X,Y,Z [FRICTION [ROLL,PITCH,YAW]]", row->name,
-                                        row->sizes > 0 ? " " : "", row->said);
+  const std::string usage =
+      fmt::format("write {}{}{} X,Y,Z [FRICTION [ROLL,PITCH,YAW]]", row->name, row->sizes > 0 ? " " : "", row->said);
   std::size_t at = 1;
   const std::size_t least = row->sizes > 0 ? 3 : 2;
   if (words.size() < least || words.size() > least + 2)

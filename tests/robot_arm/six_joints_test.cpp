@@ -224,7 +224,8 @@ TEST_F(SixJoints, IsStoppedByItsObserverAtAnObstacleThatNobodyToldItOf) {
 TEST_F(SixJoints, IsStoppedByItsTorqueLimitAtAnObstacleThatItMeetsAtFullSpeed) {
   ASSERT_NO_FATAL_FAILURE(fly({post_in_its_way}));
   double most_n = 0;
-  flown->craft().on_cycle([&](std::string_view, TimePoint) { most_n = std::max(most_n, word(arm().truth(), "contact_n")); });
+  flown->craft().on_cycle(
+      [&](std::string_view, TimePoint) { most_n = std::max(most_n, word(arm().truth(), "contact_n")); });
   const auto outcome = move_j(goal);
   EXPECT_EQ(static_cast<std::uint16_t>(outcome.failure.value()), 0x8003) << flown->story().text();
   flown->craft().run(1s);

@@ -64,7 +64,8 @@ class Findings {
   void settings(const descriptor::SimulatedDevice& device, const simulation::MakeDevice& make) {
     // As a flight would make it: what it takes may depend on the files that it is given.
     const auto wanted = simulation::device_arguments(mission_, device);
-    if (!wanted) return add(device.at, "E0407", fmt::format("no simulated device {}: {}", device.name, wanted.error()), "");
+    if (!wanted)
+      return add(device.at, "E0407", fmt::format("no simulated device {}: {}", device.name, wanted.error()), "");
     LocalFlows flows;
     const auto played = make(flows, wanted->address(), wanted->settings);
     if (const auto plugged = played->plug(); !plugged)
