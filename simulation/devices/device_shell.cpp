@@ -235,6 +235,7 @@ int run_device(int argc, char** argv, const char* name, const MakeDevice& make) 
     std::cerr << name << ": " << text_of(ready.error()) << '\n';
     return 1;
   }
+  for (const std::string& remark : device->remarks()) std::cerr << name << ": " << remark << '\n';
   // Both are wishes: without the rights the device runs as well as it can, and its subsystem's limits are announced wider.
   (void)lock_memory();
   (void)(realtime_permitted() ? pin_to_cycle_cpu() : ask_for_short_slices());

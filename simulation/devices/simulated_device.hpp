@@ -138,6 +138,8 @@ class SimulatedDevice {
   [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
   /// Whether its motors did anything in the last cycle.
   [[nodiscard]] virtual bool drives() const noexcept { return active(); }
+  /// What whoever starts it is to be told of its world, once it is plugged in: what of its files has no effect there.
+  [[nodiscard]] virtual std::vector<std::string> remarks() const { return {}; }
   /// World truth as one line of "name=value" words, for people and pages; "world_s" is the time that has passed there, from
   /// which a late host is left out.
   [[nodiscard]] std::string truth() const;

@@ -3,8 +3,8 @@
 #include "simulation/mujoco/mujoco_device.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,6 +15,8 @@ namespace hirosco::simulation {
 namespace {
 
 constexpr const char* model_setting = "MODEL_FILE";
+/// What follows is the obstacle's name.
+constexpr std::string_view obstacle_word = "obstacle_";
 
 }  // namespace
 
@@ -30,7 +32,12 @@ Result<> MujocoDevice::make_world() {
     problem_ = fmt::format("{} {}", named->second, text.error().text);
     return fail(text.error().code, problem_.c_str());
   }
-  auto made = MujocoRobot::make(*text);
+  const std::filesystem::path folder = std::filesystem::path{named->second}.parent_path();
+  auto made = MujocoRobot::make(*text, [&](const std::string& file) -> std::expected<std::string, std::string> {
+    auto octets = descriptor::file_system()((folder / file).lexically_normal());
+    if (!octets) return std::unexpected{octets.error().text};
+    return std::move(*octets);
+  });
   if (!made) {
     problem_ = fmt::format("{}: {}", named->second, made.error());
     return fail(ErrorCode::Malformed, problem_.c_str());
@@ -63,23 +70,47 @@ void MujocoDevice::write_sensors(OctetWriter& payload) noexcept {
     payload.put(robot_->torque(i) + (noise_n_m_ > 0 ? noise_n_m_ * random_.normal() : 0));
 }
 
-/// A,B,...: as many as there are joints.
-Result<std::vector<double>> MujocoDevice::each_joint(std::string_view text) const {
-  std::vector<double> numbers;
-  while (true) {
-    double value = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc{} || !std::isfinite(value))
-      return fail(ErrorCode::InvalidArgument, "not a number", static_cast<std::int64_t>(numbers.size()));
-    numbers.push_back(value);
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    if (text.empty()) break;
-    if (text.front() != ',') return fail(ErrorCode::InvalidArgument, "numbers with commas between them");
-    text.remove_prefix(1);
+std::unexpected<Error> MujocoDevice::refuse(ErrorCode code, std::string why) {
+  problem_ = std::move(why);
+  return fail(code, problem_.c_str());
+}
+
+std::vector<std::string> MujocoDevice::remarks() const {
+  constexpr std::size_t most = 20;
+  std::vector<std::string> remarks;
+  if (!robot_) return remarks;
+  for (const std::string& shape : robot_->left_out()) {
+    if (remarks.size() == most) {
+      remarks.push_back(fmt::format("its world leaves out {} more", robot_->left_out().size() - most));
+      break;
+    }
+    remarks.push_back("its world leaves out " + shape);
   }
-  if (numbers.size() != robot_->joints())
+  return remarks;
+}
+
+/// A,B,...: as many as there are joints.
+Result<std::vector<double>> MujocoDevice::each_joint(std::string_view text) {
+  auto numbers = listed_numbers(text);
+  if (!numbers) return refuse(ErrorCode::InvalidArgument, std::move(numbers.error()));
+  if (numbers->size() != robot_->joints())
     return fail(ErrorCode::InvalidArgument, "another number of joints", static_cast<std::int64_t>(robot_->joints()));
-  return numbers;
+  return std::move(*numbers);
+}
+
+Result<> MujocoDevice::stand_around(const Words& words) {
+  const std::string_view name = words[0].substr(obstacle_word.size());
+  if (name.empty()) return fail(ErrorCode::InvalidArgument, "an obstacle has a name: obstacle_NAME");
+  std::vector<std::string_view> said;
+  for (std::size_t i = 1; i < words.count(); ++i) said.push_back(words[i]);
+  std::expected<void, std::string> done;
+  if (said.size() == 1 && said.front() == "none") {
+    done = robot_->take_away(name);
+  } else {
+    const auto obstacle = read_obstacle(name, said);
+    done = obstacle ? robot_->put(*obstacle) : std::unexpected{obstacle.error()};
+  }
+  return done ? ok() : refuse(ErrorCode::InvalidArgument, std::move(done.error()));
 }
 
 Result<> MujocoDevice::differ(const Words& words) {
@@ -114,6 +145,11 @@ Result<> MujocoDevice::differ(const Words& words) {
     robot_->set_payload(mass_kg);
     return ok();
   }
+  if (what == "softness") {
+    HIROSCO_TRY_LET(const double time_constant_s, words.number(1, 0.001, 0.2));
+    robot_->set_softness(time_constant_s);
+    return ok();
+  }
   if (what == "noise") {
     HIROSCO_TRY_LET(noise_n_m_, words.number(1, 0, 100));
     return ok();
@@ -123,11 +159,15 @@ Result<> MujocoDevice::differ(const Words& words) {
 
 Result<> MujocoDevice::do_fault(const Words& words) {
   if (!robot_) return fail(ErrorCode::Unavailable, "it has no world yet");
+  if (words[0].starts_with(obstacle_word)) return stand_around(words);
   if (words[0] == "posture" || words[0] == "rotors") {
     HIROSCO_TRY(words.expect(2));
     HIROSCO_TRY_LET(const std::vector<double> numbers, each_joint(words[1]));
-    if (words[0] == "posture") robot_->place(numbers);
-    else if (std::ranges::all_of(numbers, [](double inertia) { return inertia >= 0 && inertia < 1e3; }))
+    if (words[0] == "posture") {
+      auto placed = robot_->place(numbers);
+      return placed ? ok() : refuse(ErrorCode::InvalidArgument, std::move(placed.error()));
+    }
+    if (std::ranges::all_of(numbers, [](double inertia) { return inertia >= 0 && inertia < 1e3; }))
       robot_->set_rotors(numbers);
     else return fail(ErrorCode::OutOfRange, "an inertia is from 0 to 1000");
     return ok();
@@ -135,7 +175,7 @@ Result<> MujocoDevice::do_fault(const Words& words) {
   return differ(words);
 }
 
-/// What hangs on it and how heavy it is stays: that is where the world is, no fault.
+/// What hangs on it, how heavy it is and what stands around it stays: that is how the world is, no fault.
 void MujocoDevice::do_heal() noexcept {
   if (!robot_) return;
   robot_->push(0, 0, 0);
@@ -149,8 +189,10 @@ std::string MujocoDevice::do_truth() const {
     text += fmt::format("q{0}={1:.6f} qd{0}={2:.6f} torque_{0}={3:.4f} ", i + 1, robot_->position(i),
                         robot_->velocity(i), robot_->torque(i));
   const auto tip = robot_->tip_m();
-  return text + fmt::format("tip_x={:.6f} tip_y={:.6f} tip_z={:.6f} output={} flags={}", tip[0], tip[1], tip[2],
-                            static_cast<int>(output()), flags());
+  const auto& touched = robot_->touched();
+  return text + fmt::format("tip_x={:.6f} tip_y={:.6f} tip_z={:.6f} contacts={} contact_n={:.3f} output={} flags={}",
+                            tip[0], tip[1], tip[2], touched.contacts, touched.normal_n, static_cast<int>(output()),
+                            flags());
 }
 
 }  // namespace hirosco::simulation

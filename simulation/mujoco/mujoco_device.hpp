@@ -18,7 +18,10 @@ namespace hirosco::simulation {
 /// brakes). From it: TORQUE DOUBLE[n] of the drives.
 /// Without a command the brakes are closed. A controlled stop slows down by brakes that give as much as the drives, then they hold
 /// with twice of it.
+/// Shapes of the file that touch nothing are told at its start (remarks()).
 /// Faults besides the common ones, each also a <Setting> of its mission:
+///   obstacle_NAME SHAPE [SIZES] X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | obstacle_NAME none   (shapes.hpp; 16 at most)
+///   softness SECONDS
 ///   posture Q1,Q2,... | rotors J1,J2,... | mass FACTOR | inertia FACTOR | friction FACTOR [MORE] | payload KG | gravity X Y Z | push X Y Z | noise N_M
 class MujocoDevice final : public SimulatedDevice {
  public:
@@ -28,6 +31,8 @@ class MujocoDevice final : public SimulatedDevice {
       FaultLine{"payload 2", "2 kg at the tip, which nobody was told of"},
       FaultLine{"push 100 0 0", "somebody pushes the tip with 100 N"},
       FaultLine{"push 0 0 0", "nobody pushes the tip"},
+      FaultLine{"obstacle_post cylinder 0.05,1 0.9,0,0.5 0.5", "a post, 0.05 m thick and 1 m high, stands at 0.9 m"},
+      FaultLine{"obstacle_post none", "it is taken away"},
       FaultLine{"noise 0.1", "noise of 0.1 N m in the torque sensors"},
   };
 
@@ -36,6 +41,7 @@ class MujocoDevice final : public SimulatedDevice {
   /// World truth, once it is plugged in.
   [[nodiscard]] const MujocoRobot& robot() const noexcept { return *robot_; }
   [[nodiscard]] bool drives() const noexcept override { return driven_; }
+  [[nodiscard]] std::vector<std::string> remarks() const override;
 
  private:
   [[nodiscard]] Result<> make_world() override;
@@ -46,11 +52,14 @@ class MujocoDevice final : public SimulatedDevice {
   [[nodiscard]] std::string do_truth() const override;
   void do_heal() noexcept override;
   [[nodiscard]] bool can(Stop) const noexcept override { return true; }
-  [[nodiscard]] Result<std::vector<double>> each_joint(std::string_view text) const;
+  /// `why` stays until it refuses again.
+  [[nodiscard]] std::unexpected<Error> refuse(ErrorCode code, std::string why);
+  [[nodiscard]] Result<std::vector<double>> each_joint(std::string_view text);
+  [[nodiscard]] Result<> stand_around(const Words& words);
   [[nodiscard]] Result<> differ(const Words& words);
 
   std::optional<MujocoRobot> robot_;
-  std::string problem_;  ///< why there is no world
+  std::string problem_;  ///< why there is no world, or what it was asked for is not done
   Random random_;
   std::vector<double> commanded_;
   double noise_n_m_{0};

@@ -24,7 +24,10 @@ std::string rods() {
   constexpr const char* swings = R"(<axis xyz="0 1 0"/><limit lower="-3" upper="3" velocity="5" effort="60"/>
     <dynamics damping="0.2" friction="0.5"/>)";
   std::string text = R"(<robot name="rods"><link name="base"/><link name="upper">)";
-  text += std::string{mass} + R"(</link><link name="lower">)" + mass + R"(</link>
+  text += std::string{mass} +
+          R"(<collision><origin xyz="0 0 0.4"/><geometry><sphere radius="0.03"/></geometry></collision></link>
+    <link name="lower">)" +
+          mass + R"(<collision><geometry><mesh filename="lower.stl"/></geometry></collision></link>
     <joint name="one" type="revolute"><parent link="base"/><child link="upper"/>)" +
           swings + R"(</joint>
     <joint name="two" type="revolute"><origin xyz="0 0 0.4"/><parent link="upper"/><child link="lower"/>)" +
@@ -105,8 +108,34 @@ TEST_F(MujocoDeviceTest, GivesNoMoreThanEachJointsEffort) {
 
 TEST_F(MujocoDeviceTest, SaysWhatItDoesNotTake) {
   for (const char* line :
-       {"posture 1", "posture 1,x", "rotors 1,-1", "mass 0", "payload -1", "friction", "gravity 1 2", "dance"})
+       {"posture 1", "posture 1,x", "rotors 1,-1", "mass 0", "payload -1", "friction", "gravity 1 2", "dance",
+        "obstacle_ sphere 1 9,9,9", "obstacle_a", "obstacle_a none", "obstacle_a sphere 1 9,9", "softness 0"})
     EXPECT_FALSE(device.fault(line)) << line;
+}
+
+TEST_F(MujocoDeviceTest, SaysWhatIsWrongWithAnObstacle) {
+  const auto refused = device.fault("obstacle_ball sphere 0.1 9,9 0.5");
+  ASSERT_FALSE(refused);
+  EXPECT_STREQ(refused.error().text,
+               "the place '9,9' has 2 numbers, not 3; write sphere RADIUS X,Y,Z [FRICTION [ROLL,PITCH,YAW]]");
+}
+
+TEST_F(MujocoDeviceTest, IsHeldByAWallThatItsDrivesPressAgainstAndTellsIt) {
+  // The upper rod lies on the floor's edge beside it; the lower one has no shape.
+  ASSERT_TRUE(device.fault("friction 0") && device.fault("gravity 0 0 0") && device.fault("posture 0.5,0"));
+  ASSERT_TRUE(device.fault("softness 0.005"));
+  ASSERT_TRUE(device.fault("obstacle_wall box 0.1,1,1 0.3,0,0 0.3"));
+  for (int i = 0; i < 1500; ++i) ASSERT_NO_FATAL_FAILURE(exchange(DeviceMode::Active, {20, 0}));
+  EXPECT_LT(told[0], 0.8);
+  EXPECT_NE(device.truth().find(" contacts=1 "), std::string::npos) << device.truth();
+  ASSERT_TRUE(device.fault("obstacle_wall none"));
+  for (int i = 0; i < 300; ++i) ASSERT_NO_FATAL_FAILURE(exchange(DeviceMode::Active, {20, 0}));
+  EXPECT_GT(told[0], 1);
+}
+
+TEST_F(MujocoDeviceTest, TellsWhichShapesAreNotInItsWorld) {
+  EXPECT_EQ(device.remarks(),
+            std::vector<std::string>{"its world leaves out a shape of link 'lower': lower.stl does not exist"});
 }
 
 TEST(MujocoDevice, WithoutAFileOrWithOneThatIsNoneIsNotPluggedIn) {

@@ -4,22 +4,25 @@
 
 #include <cstdint>
 #include <expected>
-#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <mujoco/mujoco.h>
 
 #include "hirosco/utilities/time.hpp"
+#include "simulation/mujoco/mujoco_spec.hpp"
 
 namespace hirosco::simulation {
 
-/// A robot of a URDF file as MuJoCo moves it: rigid links on a base that stands, joints with dry friction and brakes that slip. Shapes
-/// are left out, so nothing touches. Joints are numbered as in the file, fixed ones left out.
+/// A robot of a URDF file as MuJoCo moves it: rigid links on a base that stands, joints with dry friction and brakes that slip. Its
+/// collision shapes touch each other (mujoco_spec.hpp) and obstacles that stand around it. Joints are numbered as in the file, fixed
+/// ones left out.
 /// Runge-Kutta of 4th order with sub-steps of at most 0.5 ms: the same bits twice from one version of MuJoCo on one architecture.
-/// Realtime: make() and what changes masses allocate, nothing else. Thread: one.
+/// Realtime: step() and push() do not allocate, what changes the world does. Thread: one.
 class MujocoRobot {
  public:
   enum class Brakes : std::uint8_t {
@@ -28,8 +31,17 @@ class MujocoRobot {
     Closed,  ///< twice as strong
   };
 
-  /// In words why there is none.
-  [[nodiscard]] static std::expected<MujocoRobot, std::string> make(std::string_view urdf);
+  /// What touches, and with how much in all across the surfaces.
+  struct Touched {
+    int contacts{0};
+    double normal_n{0};
+  };
+
+  /// In words why there is none. `meshes`: without it shapes that are meshes are left out.
+  [[nodiscard]] static std::expected<MujocoRobot, std::string> make(std::string_view urdf,
+                                                                    const MeshSource& meshes = {});
+  /// What of the file's shapes does not touch, each in words.
+  [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return spec_.left_out(); }
 
   [[nodiscard]] std::size_t joints() const noexcept { return joints_.size(); }
   [[nodiscard]] double position(std::size_t joint) const noexcept;
@@ -40,10 +52,20 @@ class MujocoRobot {
   /// Of the last link, in the axes of the base, m.
   [[nodiscard]] std::span<const double, 3> tip_m() const noexcept;
 
-  /// Puts it there, at rest.
-  void place(std::span<const double> positions) noexcept;
+  /// At the end of the last step.
+  [[nodiscard]] const Touched& touched() const noexcept { return touched_; }
+
+  /// Puts it there, at rest; in words why not: it would stand in an obstacle.
+  [[nodiscard]] std::expected<void, std::string> place(std::span<const double> positions);
   /// Drives are held to the joints' efforts.
   void step(std::span<const double> torques, Brakes brakes, Duration span) noexcept;
+
+  // --- what stands around it -----------------------------------------------------------------------------------------
+  /// In place of the one of this name, if there is one. In words why not: too many, or the robot stands in it.
+  [[nodiscard]] std::expected<void, std::string> put(const Obstacle& obstacle);
+  [[nodiscard]] std::expected<void, std::string> take_away(std::string_view name);
+  /// The time constant by which all that touches gives way, without swinging; at least two sub-steps.
+  void set_softness(double time_constant_s) noexcept;
 
   // --- how it differs from its file ----------------------------------------------------------------------------------
   void set_mass_factor(double factor) noexcept;
@@ -66,21 +88,23 @@ class MujocoRobot {
     int dof{0};
     double friction{0};  ///< of the file
     double damping{0};
+    double rotor{0};
     double torque{0};
   };
-  struct Free {
-    void operator()(mjModel* model) const noexcept { mj_deleteModel(model); }
-    void operator()(mjData* data) const noexcept { mj_deleteData(data); }
-    void operator()(mjSpec* spec) const noexcept { mj_deleteSpec(spec); }
-  };
-  MujocoRobot() = default;
+  explicit MujocoRobot(MujocoSpec spec) noexcept : spec_{std::move(spec)} {}
+  [[nodiscard]] std::expected<void, std::string> build(std::span<const Obstacle> obstacles);
+  [[nodiscard]] std::expected<void, std::string> surround(std::vector<Obstacle> obstacles);
+  [[nodiscard]] std::optional<std::string> overlap() const;
   void brake(Brakes brakes) noexcept;
   void feel() noexcept;
   void change_inertia() noexcept;
 
+  MujocoSpec spec_;
   std::vector<Joint> joints_;
-  std::unique_ptr<mjModel, Free> model_;
-  std::unique_ptr<mjData, Free> data_;
+  std::vector<Obstacle> obstacles_;
+  MujocoModel model_;
+  MujocoData data_;
+  Touched touched_;
   std::vector<double> mass_, inertia_;  ///< of the file, by bodies
   int tip_{0};
   double mass_factor_{1};
@@ -88,6 +112,8 @@ class MujocoRobot {
   double friction_factor_{1};
   double more_friction_{0};
   double payload_kg_{0};
+  /// Joints of this world do not give way: what gears and skins do stands in here. MuJoCo's own.
+  double softness_s_{0.02};
 };
 
 }  // namespace hirosco::simulation

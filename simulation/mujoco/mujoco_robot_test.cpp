@@ -28,7 +28,7 @@ constexpr std::array none{0.0};
 
 TEST(MujocoRobot, KeepsTheEnergyOfAPendulum) {
   auto robot = MujocoRobot::make(pendulum()).value();
-  robot.place(std::array{1.0});
+  ASSERT_TRUE(robot.place(std::array{1.0}));
   const auto energy = [&] {
     return inertia_kg_m2 * robot.velocity(0) * robot.velocity(0) / 2 - weight_n_m * std::cos(robot.position(0));
   };
@@ -41,7 +41,7 @@ TEST(MujocoRobot, KeepsTheEnergyOfAPendulum) {
 
 TEST(MujocoRobot, SwingsAsLongAsTheEllipticIntegralSays) {
   auto robot = MujocoRobot::make(pendulum()).value();
-  robot.place(std::array{1.0});
+  ASSERT_TRUE(robot.place(std::array{1.0}));
   // Half a period: from rest to rest.
   const double half_s = 2 * std::sqrt(inertia_kg_m2 / weight_n_m) * std::comp_ellint_1(std::sin(0.5));
   int cycles = 0;
@@ -55,7 +55,7 @@ TEST(MujocoRobot, SwingsAsLongAsTheEllipticIntegralSays) {
 TEST(MujocoRobot, HoldsWithClosedBrakesWhatItsDrivesCouldHoldTwice) {
   for (const auto& [payload_kg, holds] : {std::pair{0.0, true}, {5.9, true}, {6.5, false}}) {
     auto robot = MujocoRobot::make(pendulum()).value();
-    robot.place(std::array{std::numbers::pi / 2});
+    ASSERT_TRUE(robot.place(std::array{std::numbers::pi / 2}));
     // The payload hangs at the rod's origin, where it weighs nothing: gravity grows instead.
     robot.set_gravity(0, 0, -9.81 * (1 + payload_kg / 2));
     for (int i = 0; i < 10'000; ++i) robot.step(none, Brakes::Closed, 1ms);
@@ -73,11 +73,11 @@ TEST(MujocoRobot, HasTheDryFrictionOfItsFileAndMoreWhereThatIsWanted) {
   robot.set_gravity(0, 0, 0);
   for (int i = 0; i < 1000; ++i) robot.step(std::array{2.9}, Brakes::Open, 1ms);
   EXPECT_LT(std::abs(robot.position(0)), 1e-3) << "sticks";
-  robot.place(none);
+  ASSERT_TRUE(robot.place(none));
   for (int i = 0; i < 200; ++i) robot.step(std::array{4.0}, Brakes::Open, 1ms);
   EXPECT_NEAR(robot.velocity(0), 1.0 / inertia_kg_m2 * 0.2, 0.01) << "slips";
   EXPECT_NEAR(robot.torque(0), 1.0, 1e-2) << "the sensor is behind friction";
-  robot.place(none);
+  ASSERT_TRUE(robot.place(none));
   robot.set_friction(1, 2);
   for (int i = 0; i < 1000; ++i) robot.step(std::array{4.0}, Brakes::Open, 1ms);
   EXPECT_LT(std::abs(robot.position(0)), 2e-3);
@@ -102,7 +102,7 @@ TEST(MujocoRobot, AcceleratesRotorsBesidesLinksAndFeelsTheLinksAlone) {
 
 TEST(MujocoRobot, IsHeavierWhereThatIsWanted) {
   auto robot = MujocoRobot::make(pendulum()).value();
-  robot.place(std::array{0.5});
+  ASSERT_TRUE(robot.place(std::array{0.5}));
   robot.set_mass_factor(1.1);
   EXPECT_NEAR(robot.position(0), 0.5, 1e-12);
   for (int i = 0; i < 3000; ++i) robot.step(none, Brakes::Closed, 1ms);

@@ -59,6 +59,8 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
       told(plugged.error().text);
       continue;
     }
+    for (const std::string& remark : device->remarks())
+      parts.observer.told(clock_.onboard(), "simulated device " + described.name + ": " + remark);
     // Settings of a simulated device are lines of its fault script: <Setting name="hand" value="wander"/>.
     for (const auto& [name, value, at] : described.settings)
       if (const auto taken = device->fault(name + " " + value); !taken)

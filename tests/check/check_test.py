@@ -69,6 +69,18 @@ class Check(unittest.TestCase):
             self.assertEqual(hirosco(command, mission, "--for", "1s")[0], 3)
         self.assertEqual(hirosco("check", self.mission("rokviss", old='value="hold"', new='value="hold 0 0"'))[0], 0)
 
+    @unittest.skipUnless((HIROSCO.parent / "hirosco-sim-mujoco.so").exists(), "no MuJoCo")
+    def test_a_world_is_made_of_its_files_before_it_is_asked(self):
+        self.expect(self.mission("six_joints"), 1, "error: E0407: no simulated device arm: ", "robot_arm.urdf does not exist")
+        urdf = "subsystems/robot_arm/robot_arm.urdf"
+        shutil.copy(REPOSITORY / urdf, self.folder / urdf)
+        self.expect(self.mission("six_joints"), 0)
+        obstacle = '<Setting name="obstacle_post" value="{}"/>\n    <Setting name="friction"'
+        good, wrong, within = "cylinder 0.05,1.6 0.5,-0.15,0.8", "cylinder 0.05 0.5,-0.15,0.8", "sphere 0.1 0,0.13,0.3"
+        self.expect(self.mission("six_joints", old='<Setting name="friction"', new=obstacle.format(good)), 0)
+        self.expect(self.mission("six_joints", old=good, new=wrong), 1, "E0402", "the size '0.05' has 1 numbers, not 2; write cylinder RADIUS,LENGTH")
+        self.expect(self.mission("six_joints", old=wrong, new=within), 1, "E0402", "stands in obstacle 'post'")
+
     def test_a_setting_that_no_code_reads_is_told_with_its_place_before_and_in_a_flight(self):
         hand = "subsystems/joystick/joystick.xml"
         mission = self.mission("rokviss", hand, old='<Endnode transfer="shared_memory" address="rokviss-joystick"',

@@ -34,7 +34,10 @@ struct SixJoints : ::testing::Test {
                          .subsystems = {},
                          .devices = {},
                          .seed = seed});
-    for (const std::string& line : differs) ASSERT_TRUE(arm().fault(line)) << line;
+    for (const std::string& line : differs) {
+      const auto taken = arm().fault(line);
+      ASSERT_TRUE(taken) << line << ": " << taken.error().text;
+    }
     ASSERT_TRUE(flown->commission()) << flown->story().text();
   }
   simulation::SimulatedDevice& arm() { return *flown->craft().device("arm"); }
@@ -188,6 +191,49 @@ TEST_F(SixJoints, StaysWhereItMeetsSomebody) {
   EXPECT_TRUE(move_j(goal).completed) << flown->story().text();
 }
 
+constexpr const char* post_in_its_way = "obstacle_post cylinder 0.05,1.6 0.5,-0.15,0.8 0.5";
+
+/// Only its world knows of the post, and tells how fast and how hard the arm meets it.
+TEST_F(SixJoints, IsStoppedByItsObserverAtAnObstacleThatNobodyToldItOf) {
+  ASSERT_NO_FATAL_FAILURE(fly({post_in_its_way}));
+  double most_n = 0, met_rad_s = 0;
+  std::optional<double> met_s, stood_s;
+  flown->craft().on_cycle([&, cycles = 0](std::string_view, TimePoint) mutable {
+    const double now_s = 1e-3 * ++cycles, force_n = word(arm().truth(), "contact_n");
+    most_n = std::max(most_n, force_n);
+    if (!met_s && force_n > 0) met_s = now_s;
+    if (!met_s) met_rad_s = fastest();
+    if (met_s && !stood_s && fastest() < 0.05) stood_s = now_s;
+  });
+  const auto outcome = move_j(goal, 0.2);
+  EXPECT_EQ(static_cast<std::uint16_t>(outcome.failure.value()), 0x8004) << flown->story().text();
+  EXPECT_TRUE(flown->story().has("ARM low CONTACT JOINT=turn")) << flown->story().text();
+  flown->craft().run(1s);
+  EXPECT_LT(fastest(), 1e-3);
+  EXPECT_EQ(flown->state("ARM"), State::Operational);
+  EXPECT_EQ(flown->inhibited("ARM"), 0u);
+  ASSERT_TRUE(met_s && stood_s);
+  EXPECT_LT(*stood_s - *met_s, 0.1);
+  std::cout << fmt::format("  met at {:.2f} rad/s, stood {:.0f} ms later, peak {:.0f} N, {:.0f} N then\n", met_rad_s,
+                           1e3 * (*stood_s - *met_s), most_n, word(arm().truth(), "contact_n"));
+  EXPECT_TRUE(move_j(start).completed) << "it may go away\n" << flown->story().text();
+  EXPECT_EQ(word(arm().truth(), "contacts"), 0);
+}
+
+/// What its drives' own masses do in the gears is more than its torque limit, before the observer has seen it.
+TEST_F(SixJoints, IsStoppedByItsTorqueLimitAtAnObstacleThatItMeetsAtFullSpeed) {
+  ASSERT_NO_FATAL_FAILURE(fly({post_in_its_way}));
+  double most_n = 0;
+  flown->craft().on_cycle(
+      [&](std::string_view, TimePoint) { most_n = std::max(most_n, word(arm().truth(), "contact_n")); });
+  const auto outcome = move_j(goal);
+  EXPECT_EQ(static_cast<std::uint16_t>(outcome.failure.value()), 0x8003) << flown->story().text();
+  flown->craft().run(1s);
+  EXPECT_LT(fastest(), 1e-3);
+  EXPECT_FALSE(arm().active());
+  std::cout << fmt::format("  peak {:.0f} N\n", most_n);
+}
+
 TEST(SixJointsWorld, ThatCannotBeMadeIsToldWithItsReason) {
   simulation::Flight flight{{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/six_joints/mission.xml",
                              .edit =
@@ -208,8 +254,10 @@ TEST(SixJointsWorld, ThatCannotBeMadeIsToldWithItsReason) {
 TEST_F(SixJoints, GivesTheSameOctetsTwice) {
   std::array<std::vector<supervisor::LogRecord>, 2> records;
   for (auto& each : records) {
-    fly({"noise 0.1"});
-    EXPECT_TRUE(move_j(goal).completed);
+    ASSERT_NO_FATAL_FAILURE(fly({"noise 0.1", post_in_its_way}));
+    EXPECT_FALSE(move_j(goal, 0.2).completed);
+    flown->craft().run(1s);
+    EXPECT_TRUE(move_j(start).completed);
     each = flown->records();
   }
   EXPECT_GT(records[0].size(), 100u);

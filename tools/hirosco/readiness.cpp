@@ -10,6 +10,7 @@
 
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/utilities/os/installation.hpp"
+#include "simulation/devices/device_arguments.hpp"
 #include "simulation/spacecraft/modules.hpp"
 #include "supervisor/platform/launch/program_image.hpp"
 
@@ -61,9 +62,14 @@ class Findings {
   }
 
   void settings(const descriptor::SimulatedDevice& device, const simulation::MakeDevice& make) {
+    // As a flight would make it: what it takes may depend on the files that it is given.
+    const auto wanted = simulation::device_arguments(mission_, device);
+    if (!wanted)
+      return add(device.at, "E0407", fmt::format("no simulated device {}: {}", device.name, wanted.error()), "");
     LocalFlows flows;
-    const auto played = make(flows, {Transfer::SharedMemory, device.name}, {});
-    if (!played->plug()) return;
+    const auto played = make(flows, wanted->address(), wanted->settings);
+    if (const auto plugged = played->plug(); !plugged)
+      return add(device.at, "E0407", fmt::format("no simulated device {}: {}", device.name, plugged.error().text), "");
     for (const auto& [name, value, at] : device.settings) {
       const auto taken = played->fault(name + " " + value);
       // What is not available in this world may be in the device's own.

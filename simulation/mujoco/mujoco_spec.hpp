@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <expected>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <mujoco/mujoco.h>
+
+#include "simulation/mujoco/shapes.hpp"
+
+namespace hirosco::simulation {
+
+struct MujocoFree {
+  void operator()(mjModel* model) const noexcept { mj_deleteModel(model); }
+  void operator()(mjData* data) const noexcept { mj_deleteData(data); }
+  void operator()(mjSpec* spec) const noexcept { mj_deleteSpec(spec); }
+};
+using MujocoModel = std::unique_ptr<mjModel, MujocoFree>;
+using MujocoData = std::unique_ptr<mjData, MujocoFree>;
+
+/// A joint of the file that moves by itself.
+struct DrivenJoint {
+  std::string name;
+  double effort{0};
+};
+
+/// What MuJoCo is told of a URDF file: links, inertias, joints, what mimics them, and the shapes that touch. Compiled anew whenever
+/// an obstacle comes to it or goes.
+/// Neighbours, which one joint holds together, and links that are at each other where all joints are at 0 (or as near as their ranges let
+/// them) pass through each other; the latter are told.  Realtime: allocates. Thread: one.
+class MujocoSpec {
+ public:
+  static constexpr double longest_sub_step_s = 0.0005;
+  static constexpr double friction_s = 0.001;  ///< time constant by which dry friction and mimics give way
+  static constexpr const char* payload_body = "hirosco_payload";
+
+  /// In words why there is none.
+  [[nodiscard]] static std::expected<MujocoSpec, std::string> make(std::string_view urdf, const MeshSource& meshes);
+
+  /// In the order of the file.
+  [[nodiscard]] const std::vector<DrivenJoint>& joints() const noexcept { return joints_; }
+  [[nodiscard]] std::size_t mimics() const noexcept { return mimics_; }
+  /// What of the file's shapes does not touch, each in words.
+  [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return left_out_; }
+  [[nodiscard]] std::expected<MujocoModel, std::string> compile(std::span<const Obstacle> obstacles) const;
+  /// Name of the obstacle that a geom of such a model is; empty: it is a link's.
+  [[nodiscard]] static std::string_view obstacle_of(const mjModel& model, int geom) noexcept;
+
+ private:
+  MujocoSpec() = default;
+  void add_shapes(const xml::Element& robot, const MeshSource& meshes);
+  [[nodiscard]] std::expected<std::string, std::string> take_mesh(const Shape& shape, const MeshSource& meshes);
+  [[nodiscard]] std::expected<void, std::string> leave_out_pairs();
+
+  std::unique_ptr<mjSpec, MujocoFree> spec_;
+  std::vector<DrivenJoint> joints_;
+  std::size_t mimics_{0};
+  std::size_t pairs_left_out_{0};
+  std::map<std::string, std::string> meshes_;  ///< octets by the names that MuJoCo is told
+  std::vector<std::string> left_out_;
+};
+
+}  // namespace hirosco::simulation
