@@ -191,8 +191,8 @@ void RobotArm::control() noexcept {
   device_.output().torque =
       robot_arm::joints_of(laws_->torque(wanted, measured_, *dynamics_, payload(), bounds_, law_settings()));
   const robot_arm::Impedance& impedance = laws_->impedance();
-  law_values_.store({static_cast<std::uint8_t>(laws_->kind()), impedance.tool_n_m, impedance.tool_n_m_rad,
-                     impedance.damping_ratio});
+  law_values_.store(
+      {static_cast<std::uint8_t>(laws_->kind()), impedance.tool_n_m, impedance.tool_n_m_rad, impedance.damping_ratio});
   joint_stiffness_.store(robot_arm::joints_of(impedance.joint_n_m_rad));
 }
 

@@ -102,8 +102,7 @@ class RobotArm final : public Subsystem {
   Outcome keep_out(const robot_arm::KeepOut& numbers) noexcept;
 
   Parameter<robot_arm::CurrentValues> current_;
-  Parameter<robot_arm::Joints> rotor_inertia_, desired_position_, desired_velocity_, external_torque_,
-      joint_stiffness_;
+  Parameter<robot_arm::Joints> rotor_inertia_, desired_position_, desired_velocity_, external_torque_, joint_stiffness_;
   Parameter<robot_arm::ToolValues> tool_values_;
   Parameter<robot_arm::MotionValues> motion_values_;
   Parameter<robot_arm::PayloadValues> payload_values_;

@@ -33,9 +33,9 @@ constexpr double displacement = 0.01;
 Result<Step> RobotArm::software_init() {
   publish_all();
   use_device(device_name, device_, {model_setting, tip_setting});
-  for (EventPort* event :
-       std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_, &torque_exceeded_,
-                                         &torque_hard_exceeded_, &following_exceeded_, &contact_, &retracted_, &too_near_})
+  for (EventPort* event : std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_,
+                                                            &torque_exceeded_, &torque_hard_exceeded_,
+                                                            &following_exceeded_, &contact_, &retracted_, &too_near_})
     use_event(*event);
   HIROSCO_TRY(read_model());
   bind_functions();
@@ -194,8 +194,7 @@ Result<> RobotArm::check_lengths() noexcept {
       Length{desired_position_.load().size(), joints, "DES_POSITION has another length than the robot has joints"},
       Length{desired_velocity_.load().size(), joints, "DES_VELOCITY has another length than the robot has joints"},
       Length{rotor_inertia_.load().size(), joints, "ROTOR_INERTIA has another length than the robot has joints"},
-      Length{joint_stiffness_.load().size(), joints,
-             "JOINT_STIFFNESS has another length than the robot has joints"},
+      Length{joint_stiffness_.load().size(), joints, "JOINT_STIFFNESS has another length than the robot has joints"},
       Length{external_torque_.load().size(), joints, "EXTERNAL_TORQUE has another length than the robot has joints"},
       Length{device_.input().position.size(), joints, "ARM's POSITION has another length than the robot has joints"},
       Length{device_.input().velocity.size(), joints, "ARM's VELOCITY has another length than the robot has joints"},
@@ -204,7 +203,8 @@ Result<> RobotArm::check_lengths() noexcept {
              "ARM's output TORQUE has another length than the robot has joints"},
       Length{arguments_of("MOVE_J"), joints + 1, "MOVE_J takes a number for each joint, and SPEED"},
       Length{arguments_of("JOG_J"), joints + 1, "JOG_J takes a number for each joint, and SECONDS"},
-      Length{by_joint ? arguments_of("IMPEDANCE_J") : joints + 1, joints + 1, "IMPEDANCE_J takes a number for each joint, and DAMPING"},
+      Length{by_joint ? arguments_of("IMPEDANCE_J") : joints + 1, joints + 1,
+             "IMPEDANCE_J takes a number for each joint, and DAMPING"},
       Length{arguments_of("MOVE_L"), 9, "MOVE_L takes POSITION[3], ORIENTATION[4], SPEED, TURNING"},
       Length{arguments_of("JOG_L"), 7, "JOG_L takes LINEAR[3], ANGULAR[3], SECONDS"},
   };

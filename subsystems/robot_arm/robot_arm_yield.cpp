@@ -83,7 +83,7 @@ void RobotArm::watch_yielding() noexcept {
 /// The setpoint of whoever gave way is elsewhere than the arm: a hard law begins where the arm is, and so does any after it was led.
 void RobotArm::take_law(LawKind kind) noexcept {
   if (floats() || (kind == LawKind::Position && laws_->gives_way()))
-    setpoints_->halt(measured_.position, measured_.velocity);
+    setpoints_->settle(measured_.position, measured_.velocity);
   if (kind == LawKind::Float) setpoints_->begin(measured_.position), retreating_ = false;
   laws_->set(kind, kind == LawKind::Float ? let_go_s : robot_arm::Laws::smooth_s);
   contact_cycles_ = 0;
@@ -100,8 +100,7 @@ Outcome RobotArm::soften(LawKind kind, const robot_arm::Impedance& impedance) no
   if (!moving_) return refused(Trouble::actuators_inhibited);
   if (motion_ || stop_ || !setpoints_->at_rest()) return refused(pus::FailureCode::Busy);
   const robot_arm::Joints rotor = rotor_inertia_.load();
-  if (const auto found =
-          laws_->compliance().too_stiff(kind, impedance, *dynamics_, rotor, bandwidth_rad_s_.load()))
+  if (const auto found = laws_->compliance().too_stiff(kind, impedance, *dynamics_, rotor, bandwidth_rad_s_.load()))
     return refused(Trouble::too_stiff, kind == LawKind::JointImpedance ? "joint" : "of the tool, 1-3 about, 4-6 along",
                    static_cast<std::int64_t>(*found + 1));
   laws_->compliance().set(impedance);

@@ -42,7 +42,8 @@ constexpr double heaviest = 1e3;
   const double brisk = std::max(brisk_share * bounds.motion.velocity, std::abs(wanted.velocity[joint]));
   const double excess = std::abs(speed) - brisk;
   if (excess <= 0) return torque;
-  const double most = std::min(bounds.effort / ((1 - brisk_share) * bounds.motion.velocity), most_damping_per_s * moved);
+  const double most =
+      std::min(bounds.effort / ((1 - brisk_share) * bounds.motion.velocity), most_damping_per_s * moved);
   return torque - std::copysign(most * excess, speed);
 }
 
@@ -127,7 +128,8 @@ JointVector Compliance::torque(const Setpoint& wanted, const Measured& measured,
     const JointBounds& its = bounds[static_cast<std::size_t>(i)];
     const double moved = mass_(i, i), behind = wanted.position[i] - measured.position[i];
     const double slower = wanted.velocity[i] - measured.velocity[i];
-    const double rotor = static_cast<std::size_t>(i) < settings.rotor.size() ? settings.rotor[static_cast<std::size_t>(i)] : 0;
+    const double rotor =
+        static_cast<std::size_t>(i) < settings.rotor.size() ? settings.rotor[static_cast<std::size_t>(i)] : 0;
     torque[i] += rotor * wanted.acceleration[i] + joint.damping * wanted.velocity[i] +
                  joint.friction * std::tanh(wanted.velocity[i] / friction_knee);
     switch (settings.kind) {

@@ -56,6 +56,7 @@ void Setpoints::begin(const JointVector& position) noexcept {
 void Setpoints::come_to_rest() noexcept {
   kind_ = Kind::Rest;
   braking_ = false;
+  tells_acceleration_ = true;
   urgency_ = 1;
   off_line_m_ = 0;
   now_.velocity.setZero(now_.position.size());
@@ -120,7 +121,14 @@ void Setpoints::halt(const JointVector& position, const JointVector& velocity) n
   off_line_m_ = 0;
   kind_ = Kind::JointJog;
   braking_ = true;
+  tells_acceleration_ = true;
   urgency_ = halting;
+}
+
+void Setpoints::settle(const JointVector& position, const JointVector& velocity) noexcept {
+  halt(position, velocity);
+  now_.acceleration.setZero();
+  tells_acceleration_ = false;
 }
 
 void Setpoints::retreat(const JointVector& position, const JointVector& velocity, double distance) noexcept {
@@ -305,7 +313,7 @@ JointVector Setpoints::way_back() noexcept {
 }
 
 void Setpoints::follow(const JointVector& velocity) noexcept {
-  now_.acceleration = (velocity - now_.velocity) / cycle_s_;
+  if (tells_acceleration_) now_.acceleration = (velocity - now_.velocity) / cycle_s_;
   now_.velocity = velocity;
   for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
     const auto i = static_cast<Eigen::Index>(joint);

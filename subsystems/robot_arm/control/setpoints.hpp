@@ -35,6 +35,8 @@ class Setpoints {
   void jog(const Vector6& twist) noexcept;
   /// Comes to rest from here as fast as four times the accelerations permit, whatever way it was on.
   void halt(const JointVector& position, const JointVector& velocity) noexcept;
+  /// As halt(), and tells no accelerations: a law that comes into force makes no step of them.
+  void settle(const JointVector& position, const JointVector& velocity) noexcept;
   /// Goes back by the way it came, with a quarter of the velocities, and rests. `distance`: in rad or m of whatever joint has the
   /// farthest to go, bit by bit; less where the way since begin() is shorter.
   void retreat(const JointVector& position, const JointVector& velocity, double distance) noexcept;
@@ -82,6 +84,7 @@ class Setpoints {
   Setpoint now_;
   Kind kind_{Kind::Rest};
   bool braking_{false};
+  bool tells_acceleration_{true};
   double urgency_{1};  ///< factor of accelerations while it halts
   robotics::PointToPoint path_{};
   robotics::PointToPoint::Sample sample_{};
