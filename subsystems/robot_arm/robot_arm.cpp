@@ -22,8 +22,6 @@ constexpr double patience_s = 3;
 constexpr double longest_motion_s = 60;
 /// Of a line, before it is given up.
 constexpr double most_off_line_m = 0.002;
-/// An external torque has to last for a contact, so many cycles.
-constexpr std::uint32_t contact_after_cycles = 3;
 
 [[nodiscard]] std::int64_t millimetres(double metres) noexcept {
   return static_cast<std::int64_t>(std::clamp(1e3 * metres, -1e6, 1e6));
@@ -103,16 +101,20 @@ void RobotArm::measure(const Cycle& cycle) noexcept {
 
 /// Takes the present position as the reference: entering Operational moves nothing.
 void RobotArm::engage() noexcept {
-  setpoints_->rest(measured_.position);
+  setpoints_->begin(measured_.position);
   clearance_m_.store(clearance_->nearest(measured_.position).distance_m);
-  law_->reset();
+  laws_->reset();
   contact_cycles_ = 0;
+  retreating_ = false;
 }
 
 void RobotArm::advance() noexcept {
   if (jog_left_s_ > 0 && (jog_left_s_ -= cycle_s_) <= 0) setpoints_->brake();
+  if (floats()) setpoints_->begin(measured_.position);
   static_cast<void>(setpoints_->advance());
   watch_clearance();
+  watch_yielding();
+  end_retreat();
   const double progressed = setpoints_->progress();
   motion_values_.store({static_cast<std::uint8_t>(setpoints_->kind()), setpoints_->duration_s(), progressed});
   if (stop_ && setpoints_->at_rest()) {
@@ -133,11 +135,12 @@ void RobotArm::advance() noexcept {
   if (setpoints_->at_rest()) arrive();
 }
 
-/// The end of a path is not yet the goal: a motion is done when it is measured there, and rests.
+/// The end of a path is not yet the goal: a motion is done when it is measured there, and rests. Who gives way is wherever he was
+/// pushed, and done with his path.
 void RobotArm::arrive() noexcept {
   const double tolerance = goal_tolerance_.load();
   const JointVector left = setpoints_->now().position - measured_.position;
-  const bool there = left.cwiseAbs().maxCoeff() <= tolerance;
+  const bool there = laws_->gives_way() || left.cwiseAbs().maxCoeff() <= tolerance;
   settled_s_ = there ? settled_s_ + cycle_s_ : 0;
   waited_s_ += cycle_s_;
   if (settled_s_ >= settled_enough_s) {
@@ -172,12 +175,13 @@ robot_arm::Payload RobotArm::payload() const noexcept {
   return {values.mass_kg, {values.place_m[0], values.place_m[1], values.place_m[2]}};
 }
 
-robot_arm::Law::Settings RobotArm::law_settings() noexcept {
+robot_arm::Laws::Settings RobotArm::law_settings() noexcept {
   const auto gravity = gravity_m_s2_.load();
   rotor_ = rotor_inertia_.load();
-  return {.bandwidth_rad_s = bandwidth_rad_s_.load(),
-          .rotor = rotor_,
-          .gravity_m_s2 = {gravity[0], gravity[1], gravity[2]}};
+  return {.position = {.bandwidth_rad_s = bandwidth_rad_s_.load(),
+                       .rotor = rotor_,
+                       .gravity_m_s2 = {gravity[0], gravity[1], gravity[2]}},
+          .float_damping_per_s = float_damping_.load()};
 }
 
 void RobotArm::control() noexcept {
@@ -185,7 +189,11 @@ void RobotArm::control() noexcept {
   desired_position_.store(robot_arm::joints_of(wanted.position));
   desired_velocity_.store(robot_arm::joints_of(wanted.velocity));
   device_.output().torque =
-      robot_arm::joints_of(law_->torque(wanted, measured_, *dynamics_, payload(), bounds_, law_settings()));
+      robot_arm::joints_of(laws_->torque(wanted, measured_, *dynamics_, payload(), bounds_, law_settings()));
+  const robot_arm::Impedance& impedance = laws_->impedance();
+  law_values_.store(
+      {static_cast<std::uint8_t>(laws_->kind()), impedance.tool_n_m, impedance.tool_n_m_rad, impedance.damping_ratio});
+  joint_stiffness_.store(robot_arm::joints_of(impedance.joint_n_m_rad));
 }
 
 /// Each limit is told once until the next entry into Operational; it stays in force when the actuators are inhibited.
@@ -194,7 +202,8 @@ void RobotArm::watch(bool follows) noexcept {
                                         .torque_share = torque_limit_.load(),
                                         .torque_hard_share = torque_hard_.load(),
                                         .following = following_limit_.load()};
-  const auto found = watch_.update(measured_, follows ? &setpoints_->now().position : nullptr, bounds_, limits);
+  const auto* setpoint = follows && !laws_->gives_way() ? &setpoints_->now().position : nullptr;
+  const auto found = watch_.update(measured_, setpoint, bounds_, limits);
   if (watch_.tripped()) inhibit_actuators();
   if (!found) return;
   const auto& event = found->what == Excess::Position     ? position_exceeded_
@@ -219,29 +228,6 @@ void RobotArm::watch_clearance() noexcept {
   setpoints_->brake();
 }
 
-/// Whoever pushes meets an arm that stands where it was met.
-void RobotArm::watch_contact() noexcept {
-  const robot_arm::ContactValues values = contact_values_.load();
-  if (values.reaction == static_cast<std::uint8_t>(Reaction::None)) return;
-  const JointVector& external = observer_->external();
-  std::size_t worst = 0;
-  double most = 0;
-  for (std::size_t i = 0; i < bounds_.size(); ++i) {
-    const double share = std::abs(external[static_cast<Eigen::Index>(i)]) / bounds_[i].effort;
-    if (share > most) most = share, worst = i;
-  }
-  if (most <= values.limit) {
-    contact_cycles_ = 0;
-    return;
-  }
-  if (++contact_cycles_ != contact_after_cycles) return;
-  raise(contact_, static_cast<std::uint8_t>(worst + 1), external[static_cast<Eigen::Index>(worst)],
-        values.limit * bounds_[worst].effort);
-  if (setpoints_->at_rest() && !motion_) return;
-  end_motion(Trouble::contact);
-  setpoints_->halt(measured_.position, measured_.velocity);
-}
-
 // --- functions ---------------------------------------------------------------------------------------------------------
 
 bool RobotArm::in_range(const JointVector& goal) const noexcept {
@@ -254,6 +240,7 @@ bool RobotArm::in_range(const JointVector& goal) const noexcept {
 
 Outcome RobotArm::may_move() const noexcept {
   if (!moving_) return refused(Trouble::actuators_inhibited);
+  if (floats()) return refused(Trouble::led, "HOLD first");
   if (motion_ || stop_ || !setpoints_->at_rest()) return refused(pus::FailureCode::Busy);
   return running;
 }
@@ -342,14 +329,14 @@ void RobotArm::bind_functions() {
     if (!moving_) return refused(Trouble::actuators_inhibited);
     if (stop_) return refused(pus::FailureCode::Busy);
     end_motion(pus::FailureCode::Aborted);
-    setpoints_->brake();
+    stand();
     return ok();
   });
   on_function("STOP", [this](Call call) -> Outcome {
     if (!moving_) return refused(Trouble::actuators_inhibited);
     if (stop_) return refused(pus::FailureCode::Busy);
     end_motion(pus::FailureCode::Aborted);
-    setpoints_->brake();
+    stand();
     stop_ = call;
     return running;
   });
@@ -369,8 +356,10 @@ void RobotArm::bind_functions() {
     if (motion_ || stop_ || !setpoints_->at_rest()) return refused(pus::FailureCode::Busy);
     tool_place_m_.store(place_m);
     setpoints_->set_tool({robotics::Matrix3::Identity(), {place_m[0], place_m[1], place_m[2]}});
+    laws_->set_tool({place_m[0], place_m[1], place_m[2]});
     return ok();
   });
+  bind_laws();
 }
 
 }  // namespace hirosco

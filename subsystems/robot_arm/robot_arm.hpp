@@ -12,7 +12,7 @@
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "robotics/dynamics/dynamics.hpp"
 #include "subsystems/robot_arm/control/clearance.hpp"
-#include "subsystems/robot_arm/control/law.hpp"
+#include "subsystems/robot_arm/control/laws.hpp"
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
 #include "subsystems/robot_arm/control/watch.hpp"
@@ -36,8 +36,16 @@ class RobotArm final : public Subsystem {
     line_lost = 0x8008,  ///< the joints cannot follow the line
     no_goal = 0x8009,  ///< it is no place, or where it stands already
     too_near = 0x800A,  ///< to itself, or to a volume that it keeps out of
+    too_stiff = 0x800B,  ///< a spring that would swing faster than the law may
+    led = 0x800C,  ///< it gives way to whoever leads it: HOLD first
   };
-  enum class Reaction : std::uint8_t { None, Hold };
+  /// Of a contact.
+  enum class Reaction : std::uint8_t {
+    None,
+    Stop,  ///< stands where it was met
+    Float,  ///< gives way from then on
+    Retreat,  ///< backs off by the way it came, then stands
+  };
 
   RobotArm() = default;
 
@@ -64,6 +72,11 @@ class RobotArm final : public Subsystem {
   void control() noexcept;
   void watch(bool follows) noexcept;
   void watch_contact() noexcept;
+  void react() noexcept;
+  void watch_yielding() noexcept;
+  void take_law(robot_arm::LawKind kind) noexcept;
+  void stand() noexcept;
+  void end_retreat() noexcept;
   void watch_clearance() noexcept;
   void arrive() noexcept;
   template <FailureEnumeration Code>
@@ -71,9 +84,10 @@ class RobotArm final : public Subsystem {
   void drop_calls() noexcept;
   [[nodiscard]] bool in_range(const robot_arm::JointVector& goal) const noexcept;
   [[nodiscard]] Outcome may_move() const noexcept;
+  [[nodiscard]] bool floats() const noexcept { return laws_->kind() == robot_arm::LawKind::Float; }
   [[nodiscard]] Outcome start(const Result<>& planned, const Call& call) noexcept;
   [[nodiscard]] robot_arm::Payload payload() const noexcept;
-  [[nodiscard]] robot_arm::Law::Settings law_settings() noexcept;
+  [[nodiscard]] robot_arm::Laws::Settings law_settings() noexcept;
   [[nodiscard]] Result<> check_sensors() noexcept;
   [[nodiscard]] Result<> check_law(std::size_t joint, double side) noexcept;
 
@@ -81,27 +95,34 @@ class RobotArm final : public Subsystem {
   Outcome move_l(const FunctionValues& values, const Call& call) noexcept;
   Outcome jog_j(const FunctionValues& values, const Call& call) noexcept;
   Outcome jog_l(const FunctionValues& values, const Call& call) noexcept;
+  void bind_laws();
+  Outcome soften(robot_arm::LawKind kind, const robot_arm::Impedance& impedance) noexcept;
+  Outcome harden() noexcept;
   Outcome set_torque_limit(double share) noexcept;
   Outcome keep_out(const robot_arm::KeepOut& numbers) noexcept;
 
   Parameter<robot_arm::CurrentValues> current_;
-  Parameter<robot_arm::Joints> rotor_inertia_, desired_position_, desired_velocity_, external_torque_;
+  Parameter<robot_arm::Joints> rotor_inertia_, desired_position_, desired_velocity_, external_torque_, joint_stiffness_;
   Parameter<robot_arm::ToolValues> tool_values_;
   Parameter<robot_arm::MotionValues> motion_values_;
   Parameter<robot_arm::PayloadValues> payload_values_;
   Parameter<robot_arm::ContactValues> contact_values_;
+  Parameter<robot_arm::LawValues> law_values_;
   Parameter<std::array<double, 3>> gravity_m_s2_, tool_place_m_;
   Parameter<double> bandwidth_rad_s_, acceleration_, jerk_, goal_tolerance_;
   Parameter<double> torque_limit_, torque_hard_, speed_limit_, following_limit_;
   Parameter<double> clearance_limit_m_, clearance_m_;
+  Parameter<double> float_damping_, retract_distance_;
   Parameter<robot_arm::KeepOut> keep_out_;
   Parameter<std::uint8_t> active_;
   Event<> motion_done_{"MOTION_DONE"};
   /// Joint from 1, what was measured, the limit.
   Event<std::uint8_t, double, double> position_exceeded_{"POSITION_LIMIT_EXCEEDED"},
       speed_exceeded_{"SPEED_LIMIT_EXCEEDED"}, torque_exceeded_{"TORQUE_LIMIT_EXCEEDED"},
-      torque_hard_exceeded_{"TORQUE_HARD_EXCEEDED"}, following_exceeded_{"FOLLOWING_LIMIT_EXCEEDED"},
-      contact_{"CONTACT"};
+      torque_hard_exceeded_{"TORQUE_HARD_EXCEEDED"}, following_exceeded_{"FOLLOWING_LIMIT_EXCEEDED"};
+  /// Besides, how it reacts.
+  Event<std::uint8_t, double, double, std::uint8_t> contact_{"CONTACT"};
+  Event<double> retracted_{"RETRACTED"};  ///< how far, rad or m
   Event<double> too_near_{"TOO_NEAR"};  ///< m
   DevicePort<robot_arm::ArmInput, robot_arm::ArmOutput> device_;
 
@@ -110,7 +131,7 @@ class RobotArm final : public Subsystem {
   std::string problem_;  ///< of the URDF file, for whoever reads the refusal
   std::vector<robot_arm::JointBounds> bounds_;
   std::optional<robotics::Dynamics> dynamics_;
-  std::optional<robot_arm::Law> law_;
+  std::optional<robot_arm::Laws> laws_;
   std::optional<robot_arm::MomentumObserver> observer_;
   std::optional<robot_arm::Setpoints> setpoints_;
   robot_arm::Hulls hulls_;
@@ -127,6 +148,7 @@ class RobotArm final : public Subsystem {
   double settled_s_{0};  ///< at the goal
   double jog_left_s_{0};
   std::optional<Call> motion_, stop_;
+  bool retreating_{false};
   bool half_reported_{false};
   bool arrives_{false};  ///< its motion has a goal
   bool moving_{false};

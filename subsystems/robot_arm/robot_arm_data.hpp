@@ -35,6 +35,12 @@ struct ContactValues {
   std::uint8_t reaction;  ///< of REACTIONS
   double limit;  ///< of a joint's effort
 };
+struct LawValues {
+  std::uint8_t kind;  ///< of LAWS
+  double stiffness_n_m;
+  double turning_n_m;
+  double damping;
+};
 /// Of each volume that is kept out of: two points and a radius.
 inline constexpr std::size_t volume_numbers = 7;
 using KeepOut = std::array<double, Clearance::most_volumes * volume_numbers>;

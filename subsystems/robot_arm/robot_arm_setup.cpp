@@ -33,9 +33,9 @@ constexpr double displacement = 0.01;
 Result<Step> RobotArm::software_init() {
   publish_all();
   use_device(device_name, device_, {model_setting, tip_setting});
-  for (EventPort* event :
-       std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_, &torque_exceeded_,
-                                         &torque_hard_exceeded_, &following_exceeded_, &contact_, &too_near_})
+  for (EventPort* event : std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_,
+                                                            &torque_exceeded_, &torque_hard_exceeded_,
+                                                            &following_exceeded_, &contact_, &retracted_, &too_near_})
     use_event(*event);
   HIROSCO_TRY(read_model());
   bind_functions();
@@ -65,6 +65,10 @@ void RobotArm::publish_all() {
   publish("CLEARANCE_LIMIT", clearance_limit_m_);
   publish("CLEARANCE", clearance_m_);
   publish("KEPT_OUT", keep_out_);
+  publish("LAW", law_values_);
+  publish("JOINT_STIFFNESS", joint_stiffness_);
+  publish("FLOAT_DAMPING", float_damping_);
+  publish("RETRACT_DISTANCE", retract_distance_);
   publish("ACTIVE", active_);
 }
 
@@ -150,17 +154,18 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   }
   const int joints = model_->joint_count();
   dynamics_.emplace(*model_, robotics::Base::Fixed);
-  law_.emplace(*model_, tip_, cycle_s_);
+  laws_.emplace(*model_, tip_, cycle_s_);
   observer_.emplace(joints, cycle_s_, observer_gain_per_s);
   setpoints_.emplace(*model_, tip_, bounds_, cycle_s_);
   clearance_.emplace(*model_, hulls_, clearance_limit_m_.load());
   static_cast<void>(keep_out(keep_out_.load()));
   const auto place = tool_place_m_.load();
   setpoints_->set_tool({robotics::Matrix3::Identity(), {place[0], place[1], place[2]}});
+  laws_->set_tool({place[0], place[1], place[2]});
   watch_.arm();
   motion_.reset();
   stop_.reset();
-  moving_ = stopped_ = false;
+  moving_ = stopped_ = retreating_ = false;
   jog_left_s_ = 0;
   return ok();
 }
@@ -181,6 +186,7 @@ Result<> RobotArm::check_lengths() noexcept {
     const char* text;
   };
   const std::size_t joints = bounds_.size();
+  const bool by_joint = own_descriptor().find_function("IMPEDANCE_J") != nullptr;
   const std::array lengths{
       Length{current.position.size(), joints, "CUR_VALUES.POSITION has another length than the robot has joints"},
       Length{current.velocity.size(), joints, "CUR_VALUES.VELOCITY has another length than the robot has joints"},
@@ -188,6 +194,7 @@ Result<> RobotArm::check_lengths() noexcept {
       Length{desired_position_.load().size(), joints, "DES_POSITION has another length than the robot has joints"},
       Length{desired_velocity_.load().size(), joints, "DES_VELOCITY has another length than the robot has joints"},
       Length{rotor_inertia_.load().size(), joints, "ROTOR_INERTIA has another length than the robot has joints"},
+      Length{joint_stiffness_.load().size(), joints, "JOINT_STIFFNESS has another length than the robot has joints"},
       Length{external_torque_.load().size(), joints, "EXTERNAL_TORQUE has another length than the robot has joints"},
       Length{device_.input().position.size(), joints, "ARM's POSITION has another length than the robot has joints"},
       Length{device_.input().velocity.size(), joints, "ARM's VELOCITY has another length than the robot has joints"},
@@ -196,6 +203,8 @@ Result<> RobotArm::check_lengths() noexcept {
              "ARM's output TORQUE has another length than the robot has joints"},
       Length{arguments_of("MOVE_J"), joints + 1, "MOVE_J takes a number for each joint, and SPEED"},
       Length{arguments_of("JOG_J"), joints + 1, "JOG_J takes a number for each joint, and SECONDS"},
+      Length{by_joint ? arguments_of("IMPEDANCE_J") : joints + 1, joints + 1,
+             "IMPEDANCE_J takes a number for each joint, and DAMPING"},
       Length{arguments_of("MOVE_L"), 9, "MOVE_L takes POSITION[3], ORIENTATION[4], SPEED, TURNING"},
       Length{arguments_of("JOG_L"), 7, "JOG_L takes LINEAR[3], ANGULAR[3], SECONDS"},
   };
@@ -239,7 +248,7 @@ Result<> RobotArm::check_law(std::size_t joint, double side) noexcept {
   const auto i = static_cast<Eigen::Index>(joint);
   setpoints_->rest(measured_.position);
   const auto answer = [&](double deviation) {
-    law_->reset();
+    laws_->reset();
     JointVector deviated = measured_.position;
     deviated[i] += deviation;
     setpoints_->rest(deviated);

@@ -234,6 +234,57 @@ TEST_F(SixJoints, IsStoppedByItsTorqueLimitAtAnObstacleThatItMeetsAtFullSpeed) {
   std::cout << fmt::format("  peak {:.0f} N\n", most_n);
 }
 
+/// One push on the way, and what becomes of it.
+TEST_F(SixJoints, FloatsOrBacksOffWhereItMeetsSomebodyAsItWasTold) {
+  for (const auto reaction : {std::uint8_t{2}, std::uint8_t{3}}) {
+    fly();
+    ASSERT_TRUE(flown->craft().command("ARM", "SET_CONTACT", {reaction, 0.3}).completed) << flown->story().text();
+    Joints met{};
+    flown->craft().on_cycle([&, cycles = 0](std::string_view, TimePoint) mutable {
+      ++cycles;
+      if (cycles == 500 || cycles == 900) {
+        ASSERT_TRUE(arm().fault(cycles == 500 ? "push 0 120 0" : "push 0 0 0"));
+      }
+      if (cycles == 500) met = joints();
+    });
+    const auto outcome = move_j(goal);
+    EXPECT_EQ(static_cast<std::uint16_t>(outcome.failure.value()), 0x8004) << flown->story().text();
+    flown->craft().run(3s);
+    EXPECT_LT(fastest(), 0.02);
+    EXPECT_EQ(flown->inhibited("ARM"), 0u) << flown->story().text();
+    std::cout << fmt::format("  reaction {}: {:.3f} rad from where it was met\n", reaction, off(met));
+    if (reaction == 2) {
+      EXPECT_TRUE(flown->story().has("REACTION=Float")) << flown->story().text();
+      EXPECT_GT(off(met), 0.15) << "it was pushed aside";
+      EXPECT_EQ(static_cast<std::uint16_t>(move_j(goal).failure.value()), 0x800c);
+      EXPECT_TRUE(flown->craft().command("ARM", "HOLD", {}).completed);
+    } else {
+      EXPECT_TRUE(flown->story().has("RETRACTED DISTANCE=")) << flown->story().text();
+    }
+    flown->craft().run(1s);
+    EXPECT_LT(fastest(), 1e-3);
+    EXPECT_TRUE(move_j(goal).completed) << flown->story().text();
+  }
+}
+
+TEST_F(SixJoints, IsSoftWhenItIsToldTo) {
+  fly();
+  ASSERT_TRUE(flown->craft().command("ARM", "IMPEDANCE_L", {500.0, 30.0, 0.7}).completed) << flown->story().text();
+  const Place before = tip();
+  ASSERT_TRUE(arm().fault("push 0 0 40"));
+  flown->craft().run(2s);
+  const double aside_m = tip()[2] - before[2];
+  std::cout << fmt::format("  40 N push it {:.1f} mm\n", 1e3 * aside_m);
+  // 80 mm, less what dry friction holds.
+  EXPECT_LT(aside_m, 0.085);
+  EXPECT_GT(aside_m, 0.03);
+  EXPECT_EQ(flown->inhibited("ARM"), 0u) << flown->story().text();
+  ASSERT_TRUE(arm().fault("push 0 0 0"));
+  flown->craft().run(1s);
+  EXPECT_TRUE(flown->craft().command("ARM", "POSITION_CONTROL", {}).completed) << flown->story().text();
+  EXPECT_TRUE(move_j(goal).completed) << flown->story().text();
+}
+
 TEST(SixJointsWorld, ThatCannotBeMadeIsToldWithItsReason) {
   simulation::Flight flight{{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/six_joints/mission.xml",
                              .edit =

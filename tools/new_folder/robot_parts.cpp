@@ -194,6 +194,7 @@ NewParts parts_of(const NewRobot& robot, const NewName& name) {
                     {"@acceleration_unit@", unit(model, "rad/s2", "m/s2")},
                     {"@jerk_unit@", unit(model, "rad/s3", "m/s3")},
                     {"@force_unit@", unit(model, "N m", "N")},
+                    {"@stiffness_unit@", unit(model, "N m/rad", "N/m")},
                     {"@inertia_unit@", unit(model, "kg m2", "kg")}},
           .files = {{"page/newpart.urdf", robot.urdf}, {"page/scene.json", scene_of(robot, name)}}};
 }

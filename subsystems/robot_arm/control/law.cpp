@@ -12,8 +12,6 @@ constexpr double left_alone = 1e-4;
 constexpr double at_rest = 1e-6;
 /// An error this large is a collision or a jump and not the model's: nothing is learnt from it.
 constexpr double not_learnt = 0.05;
-/// Friction changes its sign over this speed.
-constexpr double friction_knee = 0.02;
 
 [[nodiscard]] double rotor_of(const Law::Settings& settings, Eigen::Index joint) noexcept {
   const auto i = static_cast<std::size_t>(joint);
@@ -51,8 +49,8 @@ JointVector Law::torque(const Setpoint& wanted, const Measured& measured, roboti
   const double w = settings.bandwidth_rad_s;
   const JointVector error = wanted.position - measured.position;
   learn(error, wanted, measured, dynamics, bounds, settings);
-  robotics::Coordinates acceleration =
-      wanted.acceleration + 3 * w * (wanted.velocity - measured.velocity) + 3 * w * w * error + w * w * w * integral_;
+  answer_ = 3 * w * (wanted.velocity - measured.velocity) + 3 * w * w * error + w * w * w * integral_;
+  robotics::Coordinates acceleration = wanted.acceleration + answer_;
   robotics::Coordinates force;
   dynamics.inverse(acceleration, force);
   add_payload(payload, tip_, settings.gravity_m_s2, dynamics, acceleration, force);
@@ -70,6 +68,13 @@ JointVector Law::torque(const Setpoint& wanted, const Measured& measured, roboti
     torque[i] = std::clamp(value, -effort, effort);
     saturated_ = saturated_ || torque[i] != value;
   }
+  return torque;
+}
+
+JointVector Law::answer(const Settings& settings) const noexcept {
+  JointVector torque;
+  torque.noalias() = mass_.lazyProduct(answer_);
+  for (Eigen::Index i = 0; i < torque.size(); ++i) torque[i] += rotor_of(settings, i) * answer_[i];
   return torque;
 }
 

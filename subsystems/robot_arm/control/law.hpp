@@ -6,6 +6,9 @@
 
 namespace hirosco::robot_arm {
 
+/// Friction changes its sign over this speed, rad/s or m/s.
+inline constexpr double friction_knee = 0.02;
+
 /// What hangs on the tip besides what the URDF file has: a point with mass.
 struct Payload {
   double mass_kg{0};
@@ -35,6 +38,9 @@ class Law {
   /// Of the last torque(): some joint had no more to give.
   [[nodiscard]] bool saturated() const noexcept { return saturated_; }
 
+  /// What of the last torque() was not the model's, but an answer to errors.
+  [[nodiscard]] JointVector answer(const Settings& settings) const noexcept;
+
   /// What a payload takes when the joints accelerate so.
   static void add_payload(const Payload& payload, robotics::FrameId tip, const Vector3& gravity_m_s2,
                           const robotics::Dynamics& dynamics, const JointVector& acceleration,
@@ -48,6 +54,7 @@ class Law {
   robotics::FrameId tip_;
   double cycle_s_;
   JointVector integral_;  ///< rad s
+  JointVector answer_;  ///< rad/s2
   robotics::MassMatrix mass_;
   bool saturated_{false};
 };

@@ -4,7 +4,7 @@
 
 #include "hirosco/utilities/allocation_guard.hpp"
 #include "subsystems/robot_arm/control/clearance.hpp"
-#include "subsystems/robot_arm/control/law.hpp"
+#include "subsystems/robot_arm/control/laws.hpp"
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
 #include "subsystems/robot_arm/control/watch.hpp"
@@ -22,7 +22,8 @@ TEST(Control, UsesNoHeapInACycle) {
   const auto bounds = testing::bounds_of(model);
   const auto tip = model.find_frame("tool").value();
   robotics::Dynamics dynamics{model, robotics::Base::Fixed};
-  Law law{model, tip, period_s};
+  Laws laws{model, tip, period_s};
+  const Impedance impedance{JointVector::Constant(6, 100), 500, 20, 0.7};
   MomentumObserver observer{6, period_s, 50};
   Setpoints setpoints{model, tip, bounds, period_s};
   Clearance clearance{model, hulls_of(descriptor::file_system()(testing::six_joints).value()), 0.02};
@@ -32,8 +33,8 @@ TEST(Control, UsesNoHeapInACycle) {
   const JointVector zeros = JointVector::Zero(6);
   const Payload payload{2, {0.1, 0, 0}};
   using Kind = Setpoints::Kind;
-  for (const Kind kind : {Kind::JointPath, Kind::Line, Kind::JointJog, Kind::TipJog}) {
-    setpoints.rest(start);
+  for (const Kind kind : {Kind::JointPath, Kind::Line, Kind::JointJog, Kind::TipJog, Kind::Retreat}) {
+    if (kind != Kind::Retreat) setpoints.begin(start);
     const RealtimeScope scope;
     robotics::Pose pose = setpoints.tool();
     pose.position.z() += 0.1;
@@ -43,6 +44,7 @@ TEST(Control, UsesNoHeapInACycle) {
       case Kind::Line: EXPECT_TRUE(setpoints.go_straight(pose, {0.2, 0.5})); break;
       case Kind::JointJog: setpoints.jog(goal); break;
       case Kind::TipJog: setpoints.jog(Vector6{Vector6::Constant(0.05)}); break;
+      case Kind::Retreat: setpoints.retreat(setpoints.now().position, zeros, 0.1); break;
     }
     for (int i = 0; i < 300; ++i) {
       if (i == 200) setpoints.brake();
@@ -55,7 +57,11 @@ TEST(Control, UsesNoHeapInACycle) {
       robotics::Coordinates of_payload = robotics::Coordinates::Zero(6);
       Law::add_payload(payload, tip, {0, 0, -9.81}, dynamics, zeros, of_payload);
       observer.update(measured, dynamics, of_payload);
-      EXPECT_TRUE(law.torque(now, measured, dynamics, payload, bounds, {}).allFinite());
+      if (i % 50 == 0) {
+        laws.set(static_cast<LawKind>(i / 50 % 4), impedance);
+        EXPECT_FALSE(laws.compliance().too_stiff(laws.kind(), impedance, dynamics, {}, 1e3));
+      }
+      EXPECT_TRUE(laws.torque(now, measured, dynamics, payload, bounds, {}).allFinite());
       EXPECT_GT(clearance.nearest(setpoints.braked()).distance_m, 0);
       static_cast<void>(watch.update(measured, &now.position, bounds, {}));
     }

@@ -15,6 +15,12 @@ constexpr double back_to_line_per_s = 50;
 constexpr double ramp_s = 0.4;
 constexpr double ramp_share = 0.25;
 constexpr double no_way = 1e-9;
+/// It goes back with this share of the velocities, until it is so near to its end, and no longer than so.
+constexpr double retreat_share = 0.25;
+constexpr double near_enough = 1e-3;
+constexpr double longest_retreat_s = 10;
+/// As fast as that it may brake, of the accelerations.
+constexpr double halting = 4;
 
 [[nodiscard]] Vector3 rotation_vector(const robotics::Matrix3& rotation) noexcept {
   const Eigen::AngleAxisd turned{rotation};
@@ -31,9 +37,9 @@ Setpoints::Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds
       kinematics_{model, tip, {}} {
   JointVector zeros;
   zeros.setZero(model.joint_count());
-  jog_ = posture_ = zeros;
+  jog_ = posture_ = met_ = end_ = zeros;
   state_.qd = zeros;
-  rest(zeros);
+  begin(zeros);
 }
 
 void Setpoints::rest(const JointVector& position) noexcept {
@@ -41,9 +47,16 @@ void Setpoints::rest(const JointVector& position) noexcept {
   come_to_rest();
 }
 
+void Setpoints::begin(const JointVector& position) noexcept {
+  rest(position);
+  trail_.clear();
+  trail_.record(position);
+}
+
 void Setpoints::come_to_rest() noexcept {
   kind_ = Kind::Rest;
   braking_ = false;
+  tells_acceleration_ = true;
   urgency_ = 1;
   off_line_m_ = 0;
   now_.velocity.setZero(now_.position.size());
@@ -108,7 +121,36 @@ void Setpoints::halt(const JointVector& position, const JointVector& velocity) n
   off_line_m_ = 0;
   kind_ = Kind::JointJog;
   braking_ = true;
-  urgency_ = 4;
+  tells_acceleration_ = true;
+  urgency_ = halting;
+}
+
+void Setpoints::settle(const JointVector& position, const JointVector& velocity) noexcept {
+  halt(position, velocity);
+  now_.acceleration.setZero();
+  tells_acceleration_ = false;
+}
+
+void Setpoints::retreat(const JointVector& position, const JointVector& velocity, double distance) noexcept {
+  halt(position, velocity);
+  // It was pushed off its way: what lies ahead of it is not gone to.
+  while (trail_.size() > 1 && apart(position, trail_.place(1)) <= apart(position, trail_.newest())) trail_.drop();
+  met_ = end_ = position;
+  places_back_ = 0;
+  double gone = 0, length = 0;
+  while (places_back_ < trail_.size() && gone < distance) {
+    const JointVector& next = trail_.place(places_back_);
+    length = apart(end_, next);
+    const double share = gone + length > distance ? (distance - gone) / length : 1;
+    if (share >= 1) ++places_back_;
+    end_ += share * (next - end_);
+    gone += share * length;
+  }
+  left_behind_ = places_back_ > 0 ? gone - apart(met_, trail_.newest()) : 0;
+  retreat_left_s_ = longest_retreat_s;
+  if (gone < near_enough) return;
+  kind_ = Kind::Retreat;
+  braking_ = false;
 }
 
 void Setpoints::brake() noexcept {
@@ -153,7 +195,9 @@ const Setpoint& Setpoints::advance() noexcept {
     case Kind::Line: advance_line(); break;
     case Kind::JointJog: advance_jog(jog_); break;
     case Kind::TipJog: advance_jog(braking_ ? jog_ : tip_rates(twist_)); break;
+    case Kind::Retreat: advance_jog(way_back()); break;
   }
+  if (kind_ != Kind::Rest && kind_ != Kind::Retreat) trail_.record(now_.position);
   return now_;
 }
 
@@ -240,8 +284,36 @@ void Setpoints::advance_jog(const JointVector& wanted) noexcept {
   if (braking_ && !moves) come_to_rest();
 }
 
+/// Towards the place before, so that it can brake where the way back ends.
+JointVector Setpoints::way_back() noexcept {
+  while (places_back_ > 0 && apart(now_.position, trail_.newest()) < Trail::spacing) {
+    const JointVector reached = trail_.newest();
+    trail_.drop();
+    --places_back_;
+    left_behind_ -= apart(reached, places_back_ > 0 ? trail_.newest() : end_);
+  }
+  const JointVector way = (places_back_ > 0 ? trail_.newest() : end_) - now_.position;
+  const double next = apart(way, JointVector::Zero(way.size()));
+  const double left = next + (places_back_ > 0 ? std::max(0.0, left_behind_) : 0.0);
+  retreat_left_s_ -= cycle_s_;
+  if (left < near_enough || retreat_left_s_ <= 0) braking_ = true;
+  if (braking_ || next < no_way) return jog_;
+  double rate = HUGE_VAL;
+  bool turned = true;
+  for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    const double share = std::abs(way[i]) / next;
+    if (share <= no_way) continue;
+    const auto& its = bounds_[joint].motion;
+    rate = std::min({rate, retreat_share * its.velocity / share, std::sqrt(its.acceleration / share * left)});
+    turned = turned && now_.velocity[i] * way[i] >= 0;
+  }
+  if (turned) urgency_ = 1;
+  return way * (rate / next);
+}
+
 void Setpoints::follow(const JointVector& velocity) noexcept {
-  now_.acceleration = (velocity - now_.velocity) / cycle_s_;
+  if (tells_acceleration_) now_.acceleration = (velocity - now_.velocity) / cycle_s_;
   now_.velocity = velocity;
   for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
     const auto i = static_cast<Eigen::Index>(joint);

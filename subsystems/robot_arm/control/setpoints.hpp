@@ -8,6 +8,7 @@
 
 #include "robotics/motion/inverse_kinematics.hpp"
 #include "subsystems/robot_arm/control/joints.hpp"
+#include "subsystems/robot_arm/control/trail.hpp"
 
 namespace hirosco::robot_arm {
 
@@ -15,7 +16,7 @@ namespace hirosco::robot_arm {
 /// rest by brake().
 class Setpoints {
  public:
-  enum class Kind : std::uint8_t { Rest, JointPath, Line, JointJog, TipJog };
+  enum class Kind : std::uint8_t { Rest, JointPath, Line, JointJog, TipJog, Retreat };
 
   Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds bounds, double cycle_s);
 
@@ -34,6 +35,13 @@ class Setpoints {
   void jog(const Vector6& twist) noexcept;
   /// Comes to rest from here as fast as four times the accelerations permit, whatever way it was on.
   void halt(const JointVector& position, const JointVector& velocity) noexcept;
+  /// As halt(), and tells no accelerations: a law that comes into force makes no step of them.
+  void settle(const JointVector& position, const JointVector& velocity) noexcept;
+  /// Goes back by the way it came, with a quarter of the velocities, and rests. `distance`: in rad or m of whatever joint has the
+  /// farthest to go, bit by bit; less where the way since begin() is shorter.
+  void retreat(const JointVector& position, const JointVector& velocity, double distance) noexcept;
+  /// Stands there from now on, as rest(), and came by no way.
+  void begin(const JointVector& position) noexcept;
   /// Comes to rest: on its path, where there is one.
   void brake() noexcept;
 
@@ -47,6 +55,8 @@ class Setpoints {
   [[nodiscard]] JointVector braked() const noexcept;
   /// Of a path: 0 to 1.
   [[nodiscard]] double progress() const noexcept;
+  /// Of the last retreat: how far it went, rad or m.
+  [[nodiscard]] double retreated() const noexcept { return apart(now_.position, met_); }
   [[nodiscard]] double duration_s() const noexcept { return path_.duration_s(); }
   /// How far the setpoint's tool is from where its line has it, m; 0 without one.
   [[nodiscard]] double off_line_m() const noexcept { return off_line_m_; }
@@ -59,6 +69,7 @@ class Setpoints {
   void advance_path() noexcept;
   void advance_line() noexcept;
   void advance_jog(const JointVector& wanted) noexcept;
+  [[nodiscard]] JointVector way_back() noexcept;
   [[nodiscard]] JointVector tip_rates(const Vector6& twist) noexcept;
   void follow(const JointVector& velocity) noexcept;
   void keep_pace(double wanted) noexcept;
@@ -73,6 +84,7 @@ class Setpoints {
   Setpoint now_;
   Kind kind_{Kind::Rest};
   bool braking_{false};
+  bool tells_acceleration_{true};
   double urgency_{1};  ///< factor of accelerations while it halts
   robotics::PointToPoint path_{};
   robotics::PointToPoint::Sample sample_{};
@@ -86,6 +98,11 @@ class Setpoints {
   double off_line_m_{0};
   JointVector posture_;
   JointVector jog_;
+  Trail trail_;
+  JointVector met_, end_;  ///< of a retreat: where it begins and ends
+  std::size_t places_back_{0};  ///< of the trail, before its end
+  double left_behind_{0};  ///< from the next of these places to the end
+  double retreat_left_s_{0};
   Vector6 twist_{Vector6::Zero()};
 };
 

@@ -168,5 +168,52 @@ TEST_F(SetpointsTest, JogsTheToolAlongAnAxis) {
   EXPECT_LT(gone.head<2>().norm(), 0.002);
 }
 
+/// Each joint by another way: up to the goal and on to a second one, so that the way back has a corner.
+TEST_F(SetpointsTest, GoesBackByTheWayItCameSoFarAsItIsAsked) {
+  setpoints.begin(start);
+  JointVector corner = start;
+  corner[0] += 0.3;
+  corner[3] -= 0.2;
+  JointVector goal = corner;
+  goal[1] += 0.1;
+  std::vector<JointVector> came;
+  for (const JointVector& next : {corner, goal}) {
+    ASSERT_TRUE(setpoints.go(next, 1));
+    while (!setpoints.at_rest()) {
+      came.push_back(setpoints.now().position);
+      ASSERT_NO_FATAL_FAILURE(advance());
+    }
+  }
+  setpoints.retreat(goal, JointVector::Zero(6), 0.25);
+  double off = 0;
+  for (int cycles = 0; !setpoints.at_rest() && cycles < 20'000; ++cycles) {
+    // No faster than a quarter of its velocities, and braked within its accelerations.
+    ASSERT_NO_FATAL_FAILURE(advance());
+    ASSERT_LE(std::abs(setpoints.now().velocity[0]), 0.26 * bounds[0].motion.velocity);
+    double nearest = HUGE_VAL;
+    for (const JointVector& place : came) nearest = std::min(nearest, apart(place, setpoints.now().position));
+    off = std::max(off, nearest);
+  }
+  ASSERT_TRUE(setpoints.at_rest());
+  EXPECT_LT(off, 2.5 * Trail::spacing) << "it cuts the corner, within its accelerations";
+  // 0.1 to the corner and 0.15 of 0.3 on from it.
+  EXPECT_LT(apart(setpoints.now().position, corner + 0.5 * (start - corner)), 2e-3);
+  // Asked for more than there is, it ends where it began.
+  setpoints.retreat(setpoints.now().position, JointVector::Zero(6), 5);
+  ASSERT_NO_FATAL_FAILURE(finish());
+  EXPECT_LT(apart(setpoints.now().position, start), 2e-3);
+}
+
+TEST_F(SetpointsTest, GoesBackFromAMotionAndStandsWhereThereIsNoWay) {
+  setpoints.begin(start);
+  JointVector velocity = JointVector::Zero(6);
+  velocity[1] = 1;
+  setpoints.retreat(start, velocity, 0.2);
+  before = start;
+  for (int cycles = 0; !setpoints.at_rest() && cycles < 20'000; ++cycles) ASSERT_NO_FATAL_FAILURE(advance(5));
+  ASSERT_TRUE(setpoints.at_rest());
+  EXPECT_LT(apart(setpoints.now().position, start), 0.05);
+}
+
 }  // namespace
 }  // namespace hirosco::robot_arm

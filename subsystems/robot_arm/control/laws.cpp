@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/control/laws.hpp"
+
+#include <algorithm>
+
+namespace hirosco::robot_arm {
+namespace {
+
+/// So slowly an answer to errors is taken for that to a load: a push of a contact is over before, or has been told.
+constexpr double load_s = 1;
+/// At most so much is, of a joint's effort.
+constexpr double load_share = 0.3;
+
+}  // namespace
+
+Laws::Laws(const robotics::Model& model, robotics::FrameId tip, double cycle_s)
+    : law_{model, tip, cycle_s}, compliance_{model, tip}, cycle_s_{cycle_s} {
+  last_.setZero(model.joint_count());
+  reset();
+}
+
+void Laws::reset() noexcept {
+  kind_ = LawKind::Position;
+  law_.reset();
+  carried_.setZero(last_.size());
+  kept_ = carried_;
+  fading_s_ = 0;
+  changed_ = put_out_ = false;
+}
+
+void Laws::set(LawKind kind, double over_s) noexcept {
+  if (kind == LawKind::Position && kind_ != kind) law_.reset();
+  kind_ = kind;
+  fade_s_ = over_s;
+  changed_ = true;
+}
+
+void Laws::set(LawKind kind, const Impedance& impedance) noexcept {
+  compliance_.set(impedance);
+  set(kind);
+}
+
+void Laws::set_tool(const Vector3& place_m) noexcept {
+  compliance_.set_tool(place_m);
+  fade_s_ = smooth_s;
+  changed_ = true;
+}
+
+void Laws::carry(const JointVector& answer, Bounds bounds) noexcept {
+  if (!answer.allFinite()) return;
+  for (Eigen::Index i = 0; i < answer.size(); ++i) {
+    const double most = load_share * bounds[static_cast<std::size_t>(i)].effort;
+    carried_[i] = std::clamp(carried_[i] + (answer[i] - carried_[i]) * (cycle_s_ / load_s), -most, most);
+  }
+}
+
+JointVector Laws::torque(const Setpoint& wanted, const Measured& measured, robotics::Dynamics& dynamics,
+                         const Payload& payload, Bounds bounds, const Settings& settings) noexcept {
+  JointVector torque;
+  if (kind_ == LawKind::Position) {
+    torque = law_.torque(wanted, measured, dynamics, payload, bounds, settings.position);
+    carry(law_.answer(settings.position), bounds);
+  } else {
+    torque = compliance_.torque(wanted, measured, dynamics, payload, bounds,
+                                {.kind = kind_,
+                                 .float_damping_per_s = settings.float_damping_per_s,
+                                 .rotor = settings.position.rotor,
+                                 .gravity_m_s2 = settings.position.gravity_m_s2}) +
+             carried_;
+  }
+  if (changed_) {
+    changed_ = false;
+    fading_s_ = put_out_ ? fade_s_ : 0;
+    kept_ = last_ - torque;
+    if (!kept_.allFinite()) kept_.setZero();
+  } else {
+    fading_s_ = std::max(0.0, fading_s_ - cycle_s_);
+  }
+  for (Eigen::Index i = 0; i < torque.size(); ++i) {
+    double value = torque[i];
+    if (fading_s_ > 0) value += fading_s_ / fade_s_ * kept_[i];
+    if (!std::isfinite(value)) value = 0;
+    const double effort = bounds[static_cast<std::size_t>(i)].effort;
+    last_[i] = std::clamp(value, -effort, effort);
+  }
+  put_out_ = true;
+  return last_;
+}
+
+}  // namespace hirosco::robot_arm

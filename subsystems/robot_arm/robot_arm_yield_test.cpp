@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "subsystems/robot_arm/testing/flown.hpp"
+
+/// An arm that gives way: reactions to a contact, and soft laws.
+namespace hirosco {
+namespace {
+
+using robot_arm::JointVector;
+using robot_arm::vector_of;
+using robot_arm::testing::Flown;
+using robot_arm::testing::folder;
+using ::testing::StartsWith;
+
+struct RobotArmYields : ::testing::Test {
+  Flown flown{6, std::string{folder} + "robot_arm.urdf"};
+  JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
+  JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
+  std::vector<JointVector> came;
+  const std::vector<double> soft{200, 200, 100, 20, 20, 20, 0.7};
+
+  void SetUp() override {
+    flown.plant.place(start);
+    flown.operate();
+  }
+  JointVector place() const { return flown.plant.measured().position; }
+  std::string asked(const char* function, const std::vector<double>& numbers) {
+    const auto request = flown.ask(function, numbers);
+    flown.cycle(3);
+    return flown.rig.outcome(request);
+  }
+  std::string react_by(std::uint8_t reaction) {
+    const auto request = flown.rig.call_with("SET_CONTACT", {Value{Number{reaction}}, Value{0.3}});
+    flown.cycle(3);
+    return flown.rig.outcome(request);
+  }
+  /// Somebody is in the way of the first joint of a motion. Its outcome.
+  std::string met() {
+    const auto motion = flown.move_j(goal, 0.5);
+    for (int i = 0; i < 100; ++i) {
+      flown.cycle(5);
+      came.push_back(place());
+    }
+    flown.outside[0] = 60;
+    for (int i = 0; i < 200 && flown.rig.events(1025) == 0; ++i) flown.cycle();
+    flown.cycle();
+    return flown.rig.outcome(motion);
+  }
+};
+
+TEST_F(RobotArmYields, FloatsWithWhoeverIsMetUntilItIsToHold) {
+  ASSERT_EQ(react_by(2), "1 3 7");
+  EXPECT_EQ(met(), "1 3 8:8004");
+  const JointVector where = place();
+  flown.outside[0] = 40;
+  flown.cycle(600);
+  EXPECT_GT(place()[0] - where[0], 0.2) << "it is led";
+  EXPECT_EQ(flown.rig.events(1025), 1);
+  const auto refused = flown.move_j(goal);
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(refused), StartsWith("1 4:800c"));
+  flown.outside[0] = 0;
+  flown.cycle(1500);
+  const JointVector left = place();
+  flown.cycle(500);
+  EXPECT_LT(flown.off(left), 0.01) << "nobody leads it";
+  ASSERT_EQ(asked("HOLD", {}), "1 3 7");
+  flown.cycle(500);
+  EXPECT_LT(flown.off(left), 0.02);
+  const auto next = flown.move_j(goal);
+  flown.finish(next);
+  EXPECT_EQ(flown.rig.outcome(next), "1 3 5:0001 7");
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+  EXPECT_LE(flown.largest_share, 1);
+}
+
+TEST_F(RobotArmYields, BacksOffByTheWayItCameAndStands) {
+  ASSERT_EQ(react_by(3), "1 3 7");
+  EXPECT_EQ(met(), "1 3 8:8004");
+  const JointVector where = place();
+  flown.outside[0] = 0;
+  for (int i = 0; i < 300 && flown.rig.events(1027) == 0; ++i) flown.cycle(10);
+  EXPECT_EQ(flown.rig.events(1027), 1);
+  flown.cycle(500);
+  // Where it was before, so far before where it was met.
+  double off = HUGE_VAL;
+  for (const JointVector& each : came) off = std::min(off, flown.off(each));
+  EXPECT_LT(off, 0.01);
+  EXPECT_NEAR(flown.off(where), 0.1, 0.03);
+  const JointVector there = place();
+  flown.cycle(500);
+  EXPECT_LT(flown.off(there), 1e-3);
+  const auto next = flown.move_j(goal);
+  flown.finish(next);
+  EXPECT_EQ(flown.rig.outcome(next), "1 3 5:0001 7");
+}
+
+TEST_F(RobotArmYields, StandsWhenItMeetsSomebodyElseBackingOff) {
+  ASSERT_EQ(react_by(3), "1 3 7");
+  EXPECT_EQ(met(), "1 3 8:8004");
+  flown.outside[0] = 0;
+  flown.cycle(150);
+  flown.outside[0] = -60;
+  flown.cycle(50);
+  EXPECT_EQ(flown.rig.events(1025), 2);
+  flown.outside[0] = 0;
+  flown.cycle(500);
+  const JointVector there = place();
+  flown.cycle(1000);
+  EXPECT_LT(flown.off(there), 1e-3);
+  EXPECT_EQ(flown.rig.events(1027), 1);
+}
+
+TEST_F(RobotArmYields, WhoIsBeingStoppedIsStoppedWhateverItMeets) {
+  ASSERT_EQ(react_by(2), "1 3 7");
+  const auto motion = flown.move_j(goal);
+  flown.cycle(400);
+  const auto stop = flown.rig.call("STOP");
+  flown.outside[0] = 80;
+  flown.finish(stop);
+  EXPECT_EQ(flown.rig.outcome(stop), "1 3 7");
+  EXPECT_EQ(flown.rig.outcome(motion), "1 3 8:0204");
+  flown.cycle(3);
+  EXPECT_EQ(flown.mode, DeviceMode::Off);
+}
+
+TEST_F(RobotArmYields, IsSoftAtItsJointsOrItsToolAndHardAgainWithoutAJump) {
+  ASSERT_EQ(react_by(0), "1 3 7");
+  for (const auto& [function, numbers] :
+       {std::pair{"IMPEDANCE_J", soft}, {"IMPEDANCE_L", std::vector<double>{300, 20, 0.7}}}) {
+    ASSERT_EQ(asked(function, numbers), "1 3 7") << function;
+    const JointVector where = place();
+    flown.outside[0] = 30;
+    flown.cycle(1500);
+    EXPECT_GT(flown.off(where), 0.1) << function << ": and no limit of following";
+    EXPECT_EQ(flown.rig.inhibited(), 0u);
+    // Hard where it was pushed to, as long as somebody pushes and afterwards.
+    const JointVector commanded = flown.commanded, aside = place();
+    ASSERT_EQ(asked("POSITION_CONTROL", {}), "1 3 7");
+    EXPECT_LT((flown.commanded - commanded).cwiseAbs().maxCoeff(), 1) << function;
+    flown.cycle(1000);
+    flown.outside[0] = 0;
+    flown.cycle(1000);
+    EXPECT_LT(flown.off(aside), 0.01) << function;
+    EXPECT_EQ(flown.rig.inhibited(), 0u);
+    const auto motion = flown.move_j(start);
+    flown.finish(motion);
+    EXPECT_EQ(flown.rig.outcome(motion), "1 3 5:0001 7") << function;
+    EXPECT_LE(flown.off(start), 1e-3);
+  }
+  EXPECT_LE(flown.largest_share, 1);
+}
+
+TEST_F(RobotArmYields, MovesWhileItIsSoftAndIsDoneWithItsPath) {
+  ASSERT_EQ(asked("IMPEDANCE_J", soft), "1 3 7");
+  const auto motion = flown.move_j(goal, 0.5);
+  flown.finish(motion);
+  EXPECT_EQ(flown.rig.outcome(motion), "1 3 5:0001 7");
+  flown.cycle(500);
+  EXPECT_LT(flown.off(goal), 0.1);
+  EXPECT_EQ(flown.rig.events(1025), 0);
+}
+
+TEST_F(RobotArmYields, RefusesASpringThatIsTooStiffAndNamesIt) {
+  std::vector<double> hard = soft;
+  hard[4] = 4000;
+  EXPECT_THAT(asked("IMPEDANCE_J", hard), StartsWith("1 4:800b"));
+}
+
+TEST_F(RobotArmYields, StandsBeforeItIsLedIntoItself) {
+  ASSERT_EQ(react_by(2), "1 3 7");
+  EXPECT_EQ(met(), "1 3 8:8004");
+  flown.outside[0] = 0;
+  flown.outside[2] = 40;
+  flown.outside[3] = 8;
+  int cycles = 0;
+  while (flown.rig.events(1026) == 0 && cycles < 6000) flown.cycle(), ++cycles;
+  EXPECT_EQ(flown.rig.events(1026), 1);
+  flown.outside = JointVector::Zero(6);
+  flown.cycle(500);
+  const JointVector there = place();
+  flown.cycle(500);
+  EXPECT_LT(flown.off(there), 1e-3);
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+}
+
+/// What the descriptor leaves out, the arm does not have.
+TEST(RobotArmWithoutImpedance, HasNoneWhereItsDescriptorOffersNone) {
+  std::string text = robot_arm::testing::descriptor_for(6, std::string{folder} + "robot_arm.urdf");
+  for (const char* function : {"IMPEDANCE_J", "IMPEDANCE_L", "POSITION_CONTROL"}) {
+    const auto from = text.find(std::string{"<Function name=\""} + function);
+    ASSERT_NE(from, std::string::npos);
+    const std::string end = "</Function>";
+    text.erase(from, text.find(end, from) + end.size() - from);
+  }
+  robot_arm::testing::replace_all(text, R"(init="1" minimum="0" maximum="3")", R"(init="1" minimum="0" maximum="1")");
+  const auto arm = make_robot_arm();
+  testing::Rig rig{*arm, text};
+  EXPECT_EQ(rig.set_state_now(State::PreOperational), "1 3 7") << ::testing::PrintToString(rig.explanations);
+  EXPECT_EQ(rig.configure_now(1), "1 3 7");
+  const auto* contact = rig.subsystem.descriptor().find_function("SET_CONTACT");
+  EXPECT_TRUE(pus::encode_call(*contact, std::vector{1.0, 0.3}));
+  EXPECT_FALSE(pus::encode_call(*contact, std::vector{2.0, 0.3}));
+}
+
+}  // namespace
+}  // namespace hirosco
