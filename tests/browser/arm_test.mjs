@@ -43,7 +43,7 @@ describe('the page of an arm of six joints', () => {
   const folder = new_folder();
   let browser, served, page, faults;
   before(async () => {
-    browser = await open_browser();
+    browser = await open_browser({calm: true});
     const station = await ground(folder, 'six_joints', await free_port());
     const mission = await (await fetch(`${station.origin}/api/mission`, {headers: {Authorization: `Bearer ${station.token}`}})).json();
     await station.end();

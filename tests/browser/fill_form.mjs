@@ -6,7 +6,7 @@
 import {holds, open_browser, open_page, small} from './browser.mjs';
 
 const [url, subsystem, action, ...given] = process.argv.slice(2);
-const browser = await open_browser();
+const browser = await open_browser({calm: true});
 try {
   const {page, faults} = await open_page(browser.context, url, small);
   await page.waitForSelector(`[data-test=subsystem-${subsystem}]`);

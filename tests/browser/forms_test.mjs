@@ -18,7 +18,7 @@ for (const name of names) {
     const ask = (path, body) => fetch(`${station.origin}${path}`, {headers: {Authorization: `Bearer ${station.token}`, 'Content-Type': 'application/json'},
       ...(body ? {method: 'POST', body: JSON.stringify(body)} : {})});
     before(async () => {
-      browser = await open_browser();
+      browser = await open_browser({calm: true});
       station = await ground(folder, name, await free_port());
       mission = await (await ask('/api/mission')).json();
     });

@@ -12,7 +12,7 @@ describe('an operator with nothing but the page', () => {
   let flight, browser, page;
   before(async () => {
     flight = await fly();
-    browser = await open_browser();
+    browser = await open_browser({calm: true});
     ({page} = await open_page(browser.context, flight.url, small));
     await mode_is('telepresence');
   });

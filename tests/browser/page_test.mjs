@@ -28,7 +28,7 @@ const is_in_sight = (page, what) => page.locator(what).evaluate((node) => {
 const sizes = [[1920, 1080], [1440, 900], [1280, 720], [1024, 768], [910, 700], [720, 1000]];
 
 let browser;
-before(async () => { browser = await open_browser(); });
+before(async () => { browser = await open_browser({calm: true}); });
 after(() => browser.close());
 
 describe('a flight that means well', () => {

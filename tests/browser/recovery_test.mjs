@@ -12,7 +12,7 @@ describe('whatever stopped the craft', () => {
   let flight, browser, page, faults;
   before(async () => {
     flight = await fly();
-    browser = await open_browser();
+    browser = await open_browser({calm: true});
     ({page, faults} = await open_page(browser.context, flight.url, small));
     await go(page, 'subsystems/MANIPULATOR');
     await coupled(page);

@@ -21,7 +21,7 @@ describe('the tour', () => {
     await page.waitForSelector('[data-test=tour]');
   };
   before(async () => {
-    browser = await open_browser();
+    browser = await open_browser({calm: true});
     await open_tour('rokviss');
   });
   after(async () => {

@@ -16,7 +16,7 @@ describe('a visitor', () => {
   before(async () => {
     flight = await fly({more: ['--no-ground'], wait_for: /commissioned/});
     station = await ground(flight.folder, 'rokviss', await free_port());
-    browser = await open_browser();
+    browser = await open_browser({calm: true});
     ({page, faults} = await open_page(browser.context, station.url, {width: 1440, height: 900}));
     await page.waitForSelector('[data-test=robot][data-loaded]');
     await coupled(page);

@@ -109,6 +109,9 @@ struct MortalFlight {
 
 const std::array<const char*, 2> movers{"MANIPULATOR", "JOYSTICK"};
 
+/// From a death until all has come to rest or goes on: 300 ms until another one is there, then the longest way down.
+constexpr Duration settles = 1500ms;
+
 /// Flies `what` again and again, with a death one moment later each time, until none comes any more; the number of flights.
 int at_every_moment(const std::function<void(MortalFlight&)>& begin, const std::function<void(MortalFlight&)>& judge,
                     int every = 1) {
@@ -127,7 +130,7 @@ int at_every_moment(const std::function<void(MortalFlight&)>& begin, const std::
     flight.craft().run(1s);
     mortal.deaths.armed = false;
     const bool died = flight.craft().supervisor_deaths() > 0;
-    flight.craft().run(4s);
+    flight.craft().run(settles);
     ++flights;
     judge(mortal);
     if (::testing::Test::HasFailure()) return flights;
@@ -260,7 +263,7 @@ TEST(SupervisorDeath, AtEveryMomentOfCommissioningNobodyIsLeftMovingAndTheCraftI
       flight.craft().run(100ms);
     mortal.deaths.armed = false;
     const bool died = flight.craft().supervisor_deaths() > 0;
-    flight.craft().run(4s);
+    flight.craft().run(settles);
     ++flights;
     const std::string now = flight.craft().supervisor().mode().name;
     // Between the last step and the word that all are there it has the mode already; then it is stopped in that one.

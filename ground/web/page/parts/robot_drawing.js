@@ -24,7 +24,9 @@ import {module_of, module_places, usual_surroundings} from '../scene/usual.js';
 import {surface_x_m} from './hand.js';
 import {typed} from './typed.js';
 
-const quick_ms = 10, software_period_ms = 47, tick_ms = 1000 / 60;
+const quick_ms = 10, software_period_ms = 47, calm_period_ms = 250, tick_ms = 1000 / 60;
+/// Who asks his system for less motion gets four pictures a second.
+const calm = matchMedia('(prefers-reduced-motion: reduce)');
 const trail_points = 300, trail_step_m2 = 4e-6;
 const least_force_n = 0.5;
 const words_ms = 200, still_after_ms = 250;
@@ -330,6 +332,7 @@ export class RobotView {
     this.nodes.stage.dataset.moving = this.robots.some((robot) => robot.motion.moving()) ? 'yes' : 'no';
     this.nodes.stage.dataset.pose = this.robots.map((robot) => robot.last.map((angle) => angle?.toFixed(6))).join();
     let more = this.still?.draw(this.camera, this.size, began_ms - this.moved_at < still_after_ms - 20) ?? false;
+    this.period_ms = calm.matches && !more ? calm_period_ms : this.software ? software_period_ms : 0;
     if (this.still?.whole && !this.still.wanted) this.nodes.stage.dataset.still = 'whole';
     this.draw_live();
     this.lay_tags(began_ms);
@@ -366,7 +369,7 @@ export class RobotView {
   /// For half as long as a picture took, the page is everybody else's, and without a graphics card half of a processor is.
   rest(took_ms) {
     if (this.closed) return;
-    const pause_ms = took_ms < quick_ms && !this.software ? 0 : this.software ? this.pause_to_period(took_ms) : took_ms / 2;
+    const pause_ms = this.period_ms ? this.pause_to_period(took_ms) : took_ms < quick_ms ? 0 : took_ms / 2;
     this.pause = setTimeout(() => {
       this.resting = false;
       if (!this.wanted_again) return;
@@ -379,8 +382,9 @@ export class RobotView {
   /// 47 ms would come each 50 or 66. What one came late, the next one comes earlier.
   pause_to_period(took_ms) {
     const now_ms = performance.now();
-    this.due_ms = Math.max(now_ms + took_ms / 2, (this.due_ms ?? now_ms) + software_period_ms);
-    if (this.due_ms > now_ms + software_period_ms) this.due_ms = now_ms + Math.max(took_ms / 2, software_period_ms - took_ms);
+    const {period_ms} = this;
+    this.due_ms = Math.max(now_ms + took_ms / 2, (this.due_ms ?? now_ms) + period_ms);
+    if (this.due_ms > now_ms + period_ms) this.due_ms = now_ms + Math.max(took_ms / 2, period_ms - took_ms);
     return Math.max(0, this.due_ms - now_ms - tick_ms / 2);
   }
 
