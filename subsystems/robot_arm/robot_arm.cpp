@@ -105,7 +105,7 @@ void RobotArm::engage() noexcept {
   clearance_m_.store(clearance_->nearest(measured_.position).distance_m);
   laws_->reset();
   contact_cycles_ = 0;
-  retreating_ = false;
+  retracting_ = false;
 }
 
 void RobotArm::advance() noexcept {
@@ -114,7 +114,7 @@ void RobotArm::advance() noexcept {
   static_cast<void>(setpoints_->advance());
   watch_clearance();
   watch_yielding();
-  end_retreat();
+  end_retract();
   const double progressed = setpoints_->progress();
   motion_values_.store({static_cast<std::uint8_t>(setpoints_->kind()), setpoints_->duration_s(), progressed});
   if (stop_ && setpoints_->at_rest()) {

@@ -44,7 +44,7 @@ class RobotArm final : public Subsystem {
     None,
     Stop,  ///< stands where it was met
     Float,  ///< gives way from then on
-    Retreat,  ///< backs off by the way it came, then stands
+    Retract,  ///< backs off by the way it came, then stands
   };
 
   RobotArm() = default;
@@ -76,7 +76,7 @@ class RobotArm final : public Subsystem {
   void watch_yielding() noexcept;
   void take_law(robot_arm::LawKind kind) noexcept;
   void stand() noexcept;
-  void end_retreat() noexcept;
+  void end_retract() noexcept;
   void watch_clearance() noexcept;
   void arrive() noexcept;
   template <FailureEnumeration Code>
@@ -148,7 +148,7 @@ class RobotArm final : public Subsystem {
   double settled_s_{0};  ///< at the goal
   double jog_left_s_{0};
   std::optional<Call> motion_, stop_;
-  bool retreating_{false};
+  bool retracting_{false};
   bool half_reported_{false};
   bool arrives_{false};  ///< its motion has a goal
   bool moving_{false};

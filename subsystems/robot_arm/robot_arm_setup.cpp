@@ -165,7 +165,7 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   watch_.arm();
   motion_.reset();
   stop_.reset();
-  moving_ = stopped_ = retreating_ = false;
+  moving_ = stopped_ = retracting_ = false;
   jog_left_s_ = 0;
   return ok();
 }

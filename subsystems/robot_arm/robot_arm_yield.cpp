@@ -52,18 +52,18 @@ void RobotArm::react() noexcept {
     return;
   }
   if (stood) return;
-  if (reaction == Reaction::Retreat && !stop_ && !retreating_) {
-    setpoints_->retreat(measured_.position, measured_.velocity, retract_distance_.load());
-    retreating_ = true;
+  if (reaction == Reaction::Retract && !stop_ && !retracting_) {
+    setpoints_->retract(measured_.position, measured_.velocity, retract_distance_.load());
+    retracting_ = true;
   } else {
     setpoints_->halt(measured_.position, measured_.velocity);
   }
 }
 
-void RobotArm::end_retreat() noexcept {
-  if (!retreating_ || !setpoints_->at_rest()) return;
-  retreating_ = false;
-  raise(retracted_, setpoints_->retreated());
+void RobotArm::end_retract() noexcept {
+  if (!retracting_ || !setpoints_->at_rest()) return;
+  retracting_ = false;
+  raise(retracted_, setpoints_->retracted_by());
 }
 
 /// Who is led stands where links, or one of them and what it is to keep out of, would meet.
@@ -84,7 +84,7 @@ void RobotArm::watch_yielding() noexcept {
 void RobotArm::take_law(LawKind kind) noexcept {
   if (floats() || (kind == LawKind::Position && laws_->gives_way()))
     setpoints_->settle(measured_.position, measured_.velocity);
-  if (kind == LawKind::Float) setpoints_->begin(measured_.position), retreating_ = false;
+  if (kind == LawKind::Float) setpoints_->begin(measured_.position), retracting_ = false;
   laws_->set(kind, kind == LawKind::Float ? let_go_s : robot_arm::Laws::smooth_s);
   contact_cycles_ = 0;
 }

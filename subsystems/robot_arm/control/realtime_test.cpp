@@ -33,8 +33,8 @@ TEST(Control, UsesNoHeapInACycle) {
   const JointVector zeros = JointVector::Zero(6);
   const Payload payload{2, {0.1, 0, 0}};
   using Kind = Setpoints::Kind;
-  for (const Kind kind : {Kind::JointPath, Kind::Line, Kind::JointJog, Kind::TipJog, Kind::Retreat}) {
-    if (kind != Kind::Retreat) setpoints.begin(start);
+  for (const Kind kind : {Kind::JointPath, Kind::Line, Kind::JointJog, Kind::TipJog, Kind::Retract}) {
+    if (kind != Kind::Retract) setpoints.begin(start);
     const RealtimeScope scope;
     robotics::Pose pose = setpoints.tool();
     pose.position.z() += 0.1;
@@ -44,7 +44,7 @@ TEST(Control, UsesNoHeapInACycle) {
       case Kind::Line: EXPECT_TRUE(setpoints.go_straight(pose, {0.2, 0.5})); break;
       case Kind::JointJog: setpoints.jog(goal); break;
       case Kind::TipJog: setpoints.jog(Vector6{Vector6::Constant(0.05)}); break;
-      case Kind::Retreat: setpoints.retreat(setpoints.now().position, zeros, 0.1); break;
+      case Kind::Retract: setpoints.retract(setpoints.now().position, zeros, 0.1); break;
     }
     for (int i = 0; i < 300; ++i) {
       if (i == 200) setpoints.brake();

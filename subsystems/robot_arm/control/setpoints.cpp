@@ -16,9 +16,9 @@ constexpr double ramp_s = 0.4;
 constexpr double ramp_share = 0.25;
 constexpr double no_way = 1e-9;
 /// It goes back with this share of the velocities, until it is so near to its end, and no longer than so.
-constexpr double retreat_share = 0.25;
+constexpr double retract_share = 0.25;
 constexpr double near_enough = 1e-3;
-constexpr double longest_retreat_s = 10;
+constexpr double longest_retract_s = 10;
 /// As fast as that it may brake, of the accelerations.
 constexpr double halting = 4;
 
@@ -131,7 +131,7 @@ void Setpoints::settle(const JointVector& position, const JointVector& velocity)
   tells_acceleration_ = false;
 }
 
-void Setpoints::retreat(const JointVector& position, const JointVector& velocity, double distance) noexcept {
+void Setpoints::retract(const JointVector& position, const JointVector& velocity, double distance) noexcept {
   halt(position, velocity);
   // It was pushed off its way: what lies ahead of it is not gone to.
   while (trail_.size() > 1 && apart(position, trail_.place(1)) <= apart(position, trail_.newest())) trail_.drop();
@@ -147,9 +147,9 @@ void Setpoints::retreat(const JointVector& position, const JointVector& velocity
     gone += share * length;
   }
   left_behind_ = places_back_ > 0 ? gone - apart(met_, trail_.newest()) : 0;
-  retreat_left_s_ = longest_retreat_s;
+  retract_left_s_ = longest_retract_s;
   if (gone < near_enough) return;
-  kind_ = Kind::Retreat;
+  kind_ = Kind::Retract;
   braking_ = false;
 }
 
@@ -195,9 +195,9 @@ const Setpoint& Setpoints::advance() noexcept {
     case Kind::Line: advance_line(); break;
     case Kind::JointJog: advance_jog(jog_); break;
     case Kind::TipJog: advance_jog(braking_ ? jog_ : tip_rates(twist_)); break;
-    case Kind::Retreat: advance_jog(way_back()); break;
+    case Kind::Retract: advance_jog(way_back()); break;
   }
-  if (kind_ != Kind::Rest && kind_ != Kind::Retreat) trail_.record(now_.position);
+  if (kind_ != Kind::Rest && kind_ != Kind::Retract) trail_.record(now_.position);
   return now_;
 }
 
@@ -295,8 +295,8 @@ JointVector Setpoints::way_back() noexcept {
   const JointVector way = (places_back_ > 0 ? trail_.newest() : end_) - now_.position;
   const double next = apart(way, JointVector::Zero(way.size()));
   const double left = next + (places_back_ > 0 ? std::max(0.0, left_behind_) : 0.0);
-  retreat_left_s_ -= cycle_s_;
-  if (left < near_enough || retreat_left_s_ <= 0) braking_ = true;
+  retract_left_s_ -= cycle_s_;
+  if (left < near_enough || retract_left_s_ <= 0) braking_ = true;
   if (braking_ || next < no_way) return jog_;
   double rate = HUGE_VAL;
   bool turned = true;
@@ -305,7 +305,7 @@ JointVector Setpoints::way_back() noexcept {
     const double share = std::abs(way[i]) / next;
     if (share <= no_way) continue;
     const auto& its = bounds_[joint].motion;
-    rate = std::min({rate, retreat_share * its.velocity / share, std::sqrt(its.acceleration / share * left)});
+    rate = std::min({rate, retract_share * its.velocity / share, std::sqrt(its.acceleration / share * left)});
     turned = turned && now_.velocity[i] * way[i] >= 0;
   }
   if (turned) urgency_ = 1;

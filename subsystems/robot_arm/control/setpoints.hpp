@@ -16,7 +16,7 @@ namespace hirosco::robot_arm {
 /// rest by brake().
 class Setpoints {
  public:
-  enum class Kind : std::uint8_t { Rest, JointPath, Line, JointJog, TipJog, Retreat };
+  enum class Kind : std::uint8_t { Rest, JointPath, Line, JointJog, TipJog, Retract };
 
   Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds bounds, double cycle_s);
 
@@ -39,7 +39,7 @@ class Setpoints {
   void settle(const JointVector& position, const JointVector& velocity) noexcept;
   /// Goes back by the way it came, with a quarter of the velocities, and rests. `distance`: in rad or m of whatever joint has the
   /// farthest to go, bit by bit; less where the way since begin() is shorter.
-  void retreat(const JointVector& position, const JointVector& velocity, double distance) noexcept;
+  void retract(const JointVector& position, const JointVector& velocity, double distance) noexcept;
   /// Stands there from now on, as rest(), and came by no way.
   void begin(const JointVector& position) noexcept;
   /// Comes to rest: on its path, where there is one.
@@ -56,7 +56,7 @@ class Setpoints {
   /// Of a path: 0 to 1.
   [[nodiscard]] double progress() const noexcept;
   /// Of the last retreat: how far it went, rad or m.
-  [[nodiscard]] double retreated() const noexcept { return apart(now_.position, met_); }
+  [[nodiscard]] double retracted_by() const noexcept { return apart(now_.position, met_); }
   [[nodiscard]] double duration_s() const noexcept { return path_.duration_s(); }
   /// How far the setpoint's tool is from where its line has it, m; 0 without one.
   [[nodiscard]] double off_line_m() const noexcept { return off_line_m_; }
@@ -102,7 +102,7 @@ class Setpoints {
   JointVector met_, end_;  ///< of a retreat: where it begins and ends
   std::size_t places_back_{0};  ///< of the trail, before its end
   double left_behind_{0};  ///< from the next of these places to the end
-  double retreat_left_s_{0};
+  double retract_left_s_{0};
   Vector6 twist_{Vector6::Zero()};
 };
 

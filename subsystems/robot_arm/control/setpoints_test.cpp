@@ -184,7 +184,7 @@ TEST_F(SetpointsTest, GoesBackByTheWayItCameSoFarAsItIsAsked) {
       ASSERT_NO_FATAL_FAILURE(advance());
     }
   }
-  setpoints.retreat(goal, JointVector::Zero(6), 0.25);
+  setpoints.retract(goal, JointVector::Zero(6), 0.25);
   double off = 0;
   for (int cycles = 0; !setpoints.at_rest() && cycles < 20'000; ++cycles) {
     // No faster than a quarter of its velocities, and braked within its accelerations.
@@ -199,7 +199,7 @@ TEST_F(SetpointsTest, GoesBackByTheWayItCameSoFarAsItIsAsked) {
   // 0.1 to the corner and 0.15 of 0.3 on from it.
   EXPECT_LT(apart(setpoints.now().position, corner + 0.5 * (start - corner)), 2e-3);
   // Asked for more than there is, it ends where it began.
-  setpoints.retreat(setpoints.now().position, JointVector::Zero(6), 5);
+  setpoints.retract(setpoints.now().position, JointVector::Zero(6), 5);
   ASSERT_NO_FATAL_FAILURE(finish());
   EXPECT_LT(apart(setpoints.now().position, start), 2e-3);
 }
@@ -208,7 +208,7 @@ TEST_F(SetpointsTest, GoesBackFromAMotionAndStandsWhereThereIsNoWay) {
   setpoints.begin(start);
   JointVector velocity = JointVector::Zero(6);
   velocity[1] = 1;
-  setpoints.retreat(start, velocity, 0.2);
+  setpoints.retract(start, velocity, 0.2);
   before = start;
   for (int cycles = 0; !setpoints.at_rest() && cycles < 20'000; ++cycles) ASSERT_NO_FATAL_FAILURE(advance(5));
   ASSERT_TRUE(setpoints.at_rest());
