@@ -168,7 +168,7 @@ TEST_F(LawsTest, KeepARangeAndAVelocityWithWhateverTheyAreLed) {
     JointVector push = zeros;
     push[0] = 60;
     double fastest = 0;
-    for (int i = 0; i < 4000; ++i) {
+    for (int i = 0; i < 3000; ++i) {
       plant.step(torque(plant.measured()), cycle_s, &push);
       fastest = std::max(fastest, plant.measured().velocity[0]);
     }
