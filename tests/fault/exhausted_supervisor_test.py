@@ -19,6 +19,7 @@ import supervisor_kills
 import supervisors
 
 MODE = 3
+SAFE_AFTER_S = 2.0          # supervisor_silence_limit of hirosco/subsystem/author/states.hpp
 ADOPTED_S = 1.0
 # The structures of both machines come every so often, by their cycles' count.
 SAMPLES_S = {4713: 0.05, 4721: 0.25}
@@ -146,22 +147,43 @@ class Exhausted(supervisor_kills.Accounts):
     def test_without_descriptors(self):
         self.starved_of("descriptors")
 
+    def driven_until(self, craft, over):
+        """When the robot's motors were last seen to do anything, looked at in its world until `over()` or its world has ended."""
+        driven = time.monotonic()
+        while not over():
+            try:
+                truth = craft.truth("robot")
+            except (OSError, ValueError, AssertionError):      # its device has ended with the flight
+                break
+            if (truth["motor_1"], truth["motor_2"]) != (0.0, 0.0):
+                driven = time.monotonic()
+        return driven
+
     def test_a_supervisor_that_never_gets_enough_ends_the_flight_in_words_and_leaves_nobody_moving(self):
-        """Limits that its successors inherit, as of the keeper."""
+        """Limits that its successors inherit, as of the keeper, while the robot pushes."""
         before = flight.segments()
         with flight.Flight() as rokviss:
             rokviss.wait_commissioned()
+            self.push(rokviss)
             keeper = rokviss.process.pid
             resource.prlimit(keeper, resource.RLIMIT_AS, (held(keeper)[0],) * 2)
+            begin = rokviss.count()
             rokviss.kill("hirosco-supervisor")
-            end = time.monotonic() + 60.0
-            while rokviss.process.poll() is None and rokviss.wait_line(
-                    lambda l: "goes on for one that died" in l.told, 0.2) is None:
+            killed = time.monotonic()
+            end = killed + 60.0
+
+            def goes_on():
+                return rokviss.wait_line(lambda l: "goes on for one that died" in l.told, 0.005, begin) is not None
+            driven = self.driven_until(rokviss, lambda: goes_on() or time.monotonic() > end)
+            while rokviss.process.poll() is None and not goes_on():
                 self.assertLess(time.monotonic(), end, "the flight goes on or ends")
             if rokviss.process.poll() is None:     # what the keeper has is enough for it
+                flight.measure(f"another one had enough after {time.monotonic() - killed:.3f} s")
                 self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0)
                 self.assertEqual(rokviss.end(), 0, rokviss.errors)
             else:
+                flight.measure(f"with nobody to go on the robot was driven for {driven - killed:.3f} s more, {SAFE_AFTER_S} s at most and its stop")
+                self.assertLess(driven - killed, SAFE_AFTER_S + flight.STOP_S)
                 self.assertNotEqual(rokviss.errors, [], "it says why")
                 self.assertNotIn(rokviss.process.returncode, (0,))
         self.assertEqual(flight.segments(), before)
