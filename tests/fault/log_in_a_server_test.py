@@ -53,8 +53,11 @@ class Server:
             time.sleep(0.1)
 
     def signal(self, number):
-        """To every process of it."""
+        """To every process of it: its first one is still before the others are looked for, or it might begin one meanwhile."""
         pid = self.process.pid
+        os.kill(pid, signal.SIGSTOP)
+        while pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "T":
+            time.sleep(0.001)
         children = pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
         for each in [pid, *map(int, children)]:
             os.kill(each, number)
