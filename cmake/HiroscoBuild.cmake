@@ -120,7 +120,7 @@ function(hirosco_compile_as_test name)
   endif()
   # g++ 12 sees overlong string concatenations where there are none.
   target_compile_options(${name} PRIVATE
-    $<$<CONFIG:Release>:-O0>
+    $<$<CONFIG:Release>:-O1>
     $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow>)
   set_target_properties(${name} PROPERTIES PCH_WARN_INVALID OFF)
   set(headers <gtest/gtest.h> <gmock/gmock.h> <algorithm> <array> <chrono> <expected> <functional> <map> <memory> <optional>

@@ -56,7 +56,7 @@ class Server:
         """To every process of it: its first one is still before the others are looked for, or it might begin one meanwhile."""
         pid = self.process.pid
         os.kill(pid, signal.SIGSTOP)
-        while pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "T":
+        while pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] not in "TZX":
             time.sleep(0.001)
         children = pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
         for each in [pid, *map(int, children)]:
