@@ -33,6 +33,11 @@ template <std::unsigned_integral T>
   else return __builtin_bswap64(value);
 }
 
+/// `to`: at least as long as `from`; they may overlap. g++ 12 makes a loop of single octets of std::ranges::copy.
+inline void copy_octets(Octets from, MutableOctets to) noexcept {
+  if (!from.empty()) std::memmove(to.data(), from.data(), from.size());
+}
+
 /// Writes numbers into a fixed buffer. Overrun is sticky: write all, ask once.
 /// Realtime: wait-free. Thread: one.
 class OctetWriter {
@@ -49,11 +54,12 @@ class OctetWriter {
   }
   OctetWriter& put(Octets octets) noexcept {
     if (octets.empty()) return *this;
-    if (MutableOctets place = take(octets.size()); !place.empty()) std::ranges::copy(octets, place.begin());
+    if (MutableOctets place = take(octets.size()); !place.empty()) copy_octets(octets, place);
     return *this;
   }
   OctetWriter& fill(std::size_t count, std::byte value) noexcept {
-    if (count != 0) std::ranges::fill(take(count), value);
+    if (MutableOctets place = take(count); !place.empty())
+      std::memset(place.data(), std::to_integer<int>(value), place.size());
     return *this;
   }
 

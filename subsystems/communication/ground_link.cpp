@@ -283,8 +283,8 @@ Result<> GroundClients::telemetry(Octets packet) {
       client.dismissed = CloseReason::Slow;
   const std::size_t start = written_ % ring_.size();
   const std::size_t first_part = std::min(packet.size(), ring_.size() - start);
-  std::ranges::copy(packet.first(first_part), ring_.begin() + static_cast<std::ptrdiff_t>(start));
-  std::ranges::copy(packet.subspan(first_part), ring_.begin());
+  copy_octets(packet.first(first_part), MutableOctets{ring_}.subspan(start));
+  copy_octets(packet.subspan(first_part), ring_);
   written_ += packet.size();
   ++counters_.telemetry_packets;
   return ok();

@@ -18,8 +18,8 @@ struct Stored {
 
 /// One direction. Its places are used again and again, and there are some from the start: who speaks through it takes nothing from
 /// the heap but where more wait than ever did.
-struct Queue {
-  explicit Queue(std::size_t limit) : capacity{limit} { grow(); }
+struct OneWay {
+  explicit OneWay(std::size_t limit) : capacity{limit} { grow(); }
   std::mutex mutex;
   const std::size_t capacity;
   bool reader_gone{false};
@@ -38,7 +38,7 @@ struct Queue {
   [[nodiscard]] Message pop(MessageBuffer& buffer) {
     Stored& place = places_[first_];
     Message message = std::exchange(place.message, {});
-    std::ranges::copy(place.packet, buffer.octets.begin());
+    copy_octets(place.packet, buffer.octets);
     message.packet = Octets{buffer.octets}.first(place.packet.size());
     first_ = (first_ + 1) % places_.size();
     --count_;
@@ -65,7 +65,7 @@ struct Queue {
 
 class End final : public Channel {
  public:
-  End(Queue& out, Queue& in) noexcept : out_{out}, in_{in} {}
+  End(OneWay& out, OneWay& in) noexcept : out_{out}, in_{in} {}
 
   [[nodiscard]] Result<> send(const Message& message) override {
     if (message.packet.size() > max_packet_octets)
@@ -98,16 +98,16 @@ class End final : public Channel {
   }
 
  private:
-  Queue& out_;
-  Queue& in_;
+  OneWay& out_;
+  OneWay& in_;
 };
 
 }  // namespace
 
 struct ChannelPair::State {
   explicit State(std::size_t capacity) : down{capacity}, up{capacity} {}
-  Queue down;  ///< to the subsystem
-  Queue up;  ///< to the supervisor
+  OneWay down;  ///< to the subsystem
+  OneWay up;  ///< to the supervisor
   End supervisor{down, up};
   End subsystem{up, down};
 };
@@ -120,7 +120,7 @@ ChannelPair::~ChannelPair() = default;
 Channel& ChannelPair::supervisor_end() noexcept { return state_->supervisor; }
 Channel& ChannelPair::subsystem_end() noexcept { return state_->subsystem; }
 bool ChannelPair::empty() const noexcept {
-  const auto nothing_in = [](Queue& queue) {
+  const auto nothing_in = [](OneWay& queue) {
     const std::scoped_lock lock{queue.mutex};
     return queue.size() == 0;
   };

@@ -56,7 +56,7 @@ Result<Channel::Found> StreamChannel::receive(MessageBuffer& buffer) {
   if (!messages_.empty()) {
     Stored stored = std::move(messages_.front());
     messages_.pop_front();
-    std::ranges::copy(stored.packet, buffer.octets.begin());
+    copy_octets(stored.packet, buffer.octets);
     stored.message.packet = Octets{buffer.octets}.first(stored.packet.size());
     return Found{Flow::New, std::move(stored.message)};
   }

@@ -23,8 +23,8 @@ struct ThreadChannel::Queue {
     slot = message;
     const std::size_t begin = (first_octet + used) % octets.size();
     const std::size_t straight = std::min(message.packet.size(), octets.size() - begin);
-    std::ranges::copy(message.packet.first(straight), octets.begin() + static_cast<std::ptrdiff_t>(begin));
-    std::ranges::copy(message.packet.subspan(straight), octets.begin());
+    copy_octets(message.packet.first(straight), MutableOctets{octets}.subspan(begin));
+    copy_octets(message.packet.subspan(straight), octets);
     slot.packet = Octets{octets}.first(message.packet.size());  // its length; where it begins follows from the order
     used += message.packet.size();
     ++count;
@@ -34,8 +34,8 @@ struct ThreadChannel::Queue {
     const std::size_t size = slot.packet.size();
     const std::size_t straight = std::min(size, octets.size() - first_octet);
     const Octets all{octets};
-    std::ranges::copy(all.subspan(first_octet, straight), buffer.octets.begin());
-    std::ranges::copy(all.first(size - straight), buffer.octets.begin() + static_cast<std::ptrdiff_t>(straight));
+    copy_octets(all.subspan(first_octet, straight), buffer.octets);
+    copy_octets(all.first(size - straight), MutableOctets{buffer.octets}.subspan(straight));
     Message message = std::exchange(slot, {});
     message.packet = Octets{buffer.octets}.first(size);
     first = (first + 1) % most_messages;

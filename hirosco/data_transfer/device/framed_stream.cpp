@@ -43,7 +43,7 @@ Result<> FramedStream::send(int descriptor, Octets frame) noexcept {
   out_begin_ = 0;
   if (framing_ == Framing::Frames) out_end_ = write_streamed(out_, frame).size();
   else {
-    std::ranges::copy(frame, out_.begin());
+    copy_octets(frame, out_);
     out_end_ = frame.size();
   }
   HIROSCO_TRY(flush(descriptor));
@@ -79,7 +79,7 @@ Result<Received> FramedStream::receive(int descriptor, MutableOctets buffer) noe
     while (const auto frame = deframer_.next()) {
       too_long = frame->size() > buffer.size() ? frame->size() : 0;
       if (too_long != 0) continue;
-      std::ranges::copy(*frame, buffer.begin());
+      copy_octets(*frame, buffer);
       newest.flow = Flow::New;
       newest.octets = frame->size();
     }

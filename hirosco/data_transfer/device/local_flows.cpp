@@ -41,7 +41,7 @@ class LocalFlow final : public DataFlow {
     if (frame.size() > max_frame_octets)
       return fail(ErrorCode::OutOfRange, "octets of frame", static_cast<std::int64_t>(frame.size()));
     if (!peer_.open) return fail(ErrorCode::Unavailable, "nobody listens");
-    std::ranges::copy(frame, peer_.frame.begin());
+    copy_octets(frame, peer_.frame);
     peer_.octets = frame.size();
     peer_.fresh = true;
     return ok();
@@ -56,7 +56,7 @@ class LocalFlow final : public DataFlow {
     own_.fresh = false;
     if (own_.octets > buffer.size())
       return fail(ErrorCode::Malformed, "frame is longer than expected", static_cast<std::int64_t>(own_.octets));
-    std::ranges::copy(Octets{own_.frame}.first(own_.octets), buffer.begin());
+    copy_octets(Octets{own_.frame}.first(own_.octets), buffer);
     return Received{Flow::New, own_.octets};
   }
 

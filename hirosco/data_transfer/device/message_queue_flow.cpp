@@ -119,7 +119,7 @@ class MessageQueueFlow final : public DataFlow {
     peer_came_ = true;
     const auto filled = static_cast<std::size_t>(octets);
     if (filled > buffer.size()) return fail(ErrorCode::Malformed, "frame is longer than expected", octets);
-    std::ranges::copy(Octets{frame_}.first(filled), buffer.begin());
+    copy_octets(Octets{frame_}.first(filled), buffer);
     return Received{Flow::New, filled, 0};
   }
 

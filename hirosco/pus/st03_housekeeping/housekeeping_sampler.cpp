@@ -150,7 +150,7 @@ void HousekeepingSampler::deliver(const Slot& slot, const Collection& collection
     lost_reports_.fetch_add(1, std::memory_order_relaxed);
     return;
   }
-  std::ranges::copy(Octets{collection.buffer.get(), octets}, room.begin());
+  copy_octets({collection.buffer.get(), octets}, room);
   sink.commit(slot.layout.id, octets);
 }
 

@@ -15,7 +15,7 @@ bool take_fields(Octets wire, std::span<const NativeField> fields, MutableOctets
     const std::size_t octets = octets_of(field.type);
     for (std::uint32_t element = 0; element < field.count; ++element) {
       const MutableOctets place = object.subspan(field.offset + element * octets, octets);
-      std::ranges::copy(wire.first(octets), place.begin());
+      copy_octets(wire.first(octets), place);
       if constexpr (std::endian::native == std::endian::little) std::ranges::reverse(place);
       if (field.type == Type::Bool) place[0] = place[0] == std::byte{0} ? std::byte{0} : std::byte{1};
       wire = wire.subspan(octets);

@@ -52,16 +52,16 @@ void LogQueue::Ring::push(const Header& header, Octets packet) noexcept {
   headers_[back_++ % headers_.size()] = header;
   const std::size_t start = (first_octet_ + used_octets_) % octets_.size();
   const std::size_t first_part = std::min(packet.size(), octets_.size() - start);
-  std::ranges::copy(packet.first(first_part), octets_.begin() + static_cast<std::ptrdiff_t>(start));
-  std::ranges::copy(packet.subspan(first_part), octets_.begin());
+  copy_octets(packet.first(first_part), MutableOctets{octets_}.subspan(start));
+  copy_octets(packet.subspan(first_part), octets_);
   used_octets_ += packet.size();
 }
 
 void LogQueue::Ring::read_front(MutableOctets packet) const noexcept {
   const std::size_t first_part = std::min(packet.size(), octets_.size() - first_octet_);
   const Octets all{octets_};
-  std::ranges::copy(all.subspan(first_octet_, first_part), packet.begin());
-  std::ranges::copy(all.first(packet.size() - first_part), packet.begin() + static_cast<std::ptrdiff_t>(first_part));
+  copy_octets(all.subspan(first_octet_, first_part), packet);
+  copy_octets(all.first(packet.size() - first_part), MutableOctets{packet}.subspan(first_part));
 }
 
 void LogQueue::Ring::pop() noexcept {
