@@ -11,7 +11,10 @@
 #include <deque>
 #include <fstream>
 #include <set>
+#include <span>
 #include <utility>
+
+#include "hirosco/utilities/crc32.hpp"
 
 namespace hirosco::supervisor {
 
@@ -22,21 +25,7 @@ constexpr std::size_t max_line = 2 * Database::max_packet_octets + 1024;
 constexpr std::size_t checksum_letters = 10;  // " #" and eight digits
 constexpr std::string_view hex_digits = "0123456789abcdef";
 
-constexpr auto crc32_table = [] {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t octet = 0; octet < 256; ++octet) {
-    std::uint32_t crc = octet;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB8'8320U : 0U);
-    table[octet] = crc;
-  }
-  return table;
-}();
-
-std::uint32_t crc32(std::string_view text) {
-  std::uint32_t crc = 0xFFFF'FFFFU;
-  for (char letter : text) crc = (crc >> 8) ^ crc32_table[(crc ^ static_cast<std::uint8_t>(letter)) & 0xFFU];
-  return ~crc;
-}
+std::uint32_t checksum_of(std::string_view text) { return crc32(std::as_bytes(std::span{text})); }
 
 void add_hexadecimal(std::string& line, std::uint32_t value) {
   for (int shift = 28; shift >= 0; shift -= 4) line += hex_digits[(value >> shift) & 0xFU];
@@ -119,7 +108,7 @@ std::string ascii_line(const LogRecord& record) {
     line += hex_digits[std::to_integer<std::size_t>(octet) & 0xFU];
   }
   line.append(" ").append(record.note.view());
-  const std::uint32_t checksum = crc32(line);
+  const std::uint32_t checksum = checksum_of(line);
   line += " #";
   add_hexadecimal(line, checksum);
   return line;
@@ -130,7 +119,7 @@ Result<LogRecord> record_from_ascii(std::string_view line) {
   if (line.size() < checksum_letters) return malformed("log line is cut");
   std::string_view rest = line.substr(0, line.size() - checksum_letters);
   std::string checksum = " #";
-  add_hexadecimal(checksum, crc32(rest));
+  add_hexadecimal(checksum, checksum_of(rest));
   if (line.substr(rest.size()) != checksum) return malformed("log line differs from its checksum");
 
   LogRecord record;
