@@ -13,7 +13,13 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
 
-option(HIROSCO_IN_PIECES "Compile several files at a time; off for tools that want a command for each" ON)
+# One command for each file is for tools that read commands. All of a library takes three fifths of the time of ten, which is for who
+# builds once, and a minute for whatever changes later (docs/adr/0122).
+set(HIROSCO_COMPILE ten CACHE STRING "How many files of a library or program are compiled at a time: one, ten or all")
+set_property(CACHE HIROSCO_COMPILE PROPERTY STRINGS one ten all)
+if(NOT HIROSCO_COMPILE MATCHES "^(one|ten|all)$")
+  message(FATAL_ERROR "HIROSCO_COMPILE is one, ten or all, not '${HIROSCO_COMPILE}'")
+endif()
 set(HIROSCO_SANITIZE "" CACHE STRING "Sanitizers to build with, for example 'address,undefined' or 'thread'")
 
 add_library(hirosco_options INTERFACE)
@@ -45,10 +51,12 @@ if(HIROSCO_SANITIZE)
 endif()
 # Ten files in one piece: half the time to build. A change of one file compiles its piece, some ten seconds. With sanitizers it is the
 # templates that take the time, each of them once in a piece: larger ones take two thirds of the time, for a change of one file twenty seconds.
-if(HIROSCO_IN_PIECES)
+if(NOT HIROSCO_COMPILE STREQUAL "one")
   set(CMAKE_UNITY_BUILD ON)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE 10)
-  if(HIROSCO_SANITIZE)
+  if(HIROSCO_COMPILE STREQUAL "all")
+    set(CMAKE_UNITY_BUILD_BATCH_SIZE 0)
+  elseif(HIROSCO_SANITIZE)
     set(CMAKE_UNITY_BUILD_BATCH_SIZE 20)
   endif()
   # In a piece types of one file may use its anonymous namespace; the second one g++ 12 sees where there is none.
@@ -57,6 +65,12 @@ if(HIROSCO_IN_PIECES)
     $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-free-nonheap-object>>
     # clang tells of a name in the anonymous namespace of another file; `tools/tidy` compiles each file for itself.
     $<$<CXX_COMPILER_ID:Clang>:$<BUILD_INTERFACE:-Wno-shadow>>)
+endif()
+if(HIROSCO_COMPILE STREQUAL "all")
+  # So does g++ here, which sees overlong strings where there are none besides, as in tests. Smaller pieces keep these words.
+  target_compile_options(hirosco_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-shadow>>
+    $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-array-bounds>> $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-restrict>>
+    $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-stringop-overflow>>)
 endif()
 
 # -O3 costs a third more time to compile than it gives back here; bench/ would show it.
@@ -71,7 +85,7 @@ endfunction()
 # What modules share is compiled in another way than the rest, as is what has time, and so are their headers; with sanitizers all is
 # compiled alike.
 function(hirosco_compile_with_headers name)
-  if(NOT HIROSCO_IN_PIECES)
+  if(HIROSCO_COMPILE STREQUAL "one")
     return()
   endif()
   set(headers hirosco_headers)
@@ -111,7 +125,7 @@ endfunction()
 # target must differ.
 # A second word is a header of ours that nearly all of its files include: it is compiled once, too.
 function(hirosco_compile_as_test name)
-  if(HIROSCO_IN_PIECES)
+  if(HIROSCO_COMPILE STREQUAL "ten")
     set(piece 8)
     if(HIROSCO_SANITIZE)
       set(piece 14)
@@ -129,7 +143,7 @@ function(hirosco_compile_as_test name)
     target_precompile_headers(${name} PRIVATE ${headers})
     return()
   endif()
-  if(ARGN AND HIROSCO_SANITIZE AND HIROSCO_IN_PIECES)
+  if(ARGN AND HIROSCO_SANITIZE AND HIROSCO_COMPILE STREQUAL "ten")
     target_precompile_headers(${name} PRIVATE ${headers} ${PROJECT_SOURCE_DIR}/${ARGN})
     return()
   endif()
@@ -153,13 +167,15 @@ add_custom_target(flown)
 add_custom_target(optimised)
 add_dependencies(optimised flown)
 
-# hirosco_test(NAME SOURCES f_test.cpp... DEPENDS targets... [LABELS unit] [COST seconds] [HEADER file])
+# hirosco_test(NAME SOURCES f_test.cpp... DEPENDS targets... [LABELS unit] [COST seconds] [HEADER file] [SLICED])
 # One GoogleTest executable; ctest runs it once as a whole, which keeps the suite fast. Labels: unit (the default) beside
-# the code; concurrency: threads meet, so under TSan; figures: flies simulations, which takes minutes under a sanitizer;
+# the code; concurrency: threads meet, so under TSan; figures: flies simulations, which takes minutes under a sanitizer; tools: of
+# what people use beside a flight, which reads nothing from outside a computer and guards nothing, so its libraries are built with sanitizers in ./check --all only;
 # allocations (whoever counts them): a sanitizer owns the heap functions; endtoend, realtime, fault: real processes, alone on
-# the machine; long: in ./check --all only. COST: of those that take longest, which begin first.
+# the machine; long: in ./check --all only. COST: of those that take longest, which begin first. SLICED: it takes a part of what it could
+# try (hirosco/utilities/testing/slice.hpp); NAME_whole takes all of it and is `long`.
 function(hirosco_test name)
-  cmake_parse_arguments(ARG "" "COST;HEADER" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "SLICED" "COST;HEADER" "SOURCES;DEPENDS;LABELS" ${ARGN})
   if(NOT BUILD_TESTING)
     return()
   endif()
@@ -182,6 +198,10 @@ function(hirosco_test name)
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
   if(ARG_COST)
     set_tests_properties(${name} PROPERTIES COST ${ARG_COST})
+  endif()
+  if(ARG_SLICED)
+    add_test(NAME ${name}_whole COMMAND ${name})
+    set_tests_properties(${name}_whole PROPERTIES LABELS "${ARG_LABELS};long" ENVIRONMENT HIROSCO_SLICE=whole)
   endif()
   if(NOT ARG_LABELS MATCHES "unit|concurrency|long")
     add_dependencies(optimised ${name})

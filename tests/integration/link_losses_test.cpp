@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <stdexcept>
+#include <vector>
 
+#include "hirosco/utilities/testing/slice.hpp"
 #include "simulation/scenarios/flight.hpp"
 #include "tests/integration/flight.hpp"
 
@@ -110,9 +112,11 @@ TEST(LinkLosses, WhoFallsBackNeverActsWithWhatIsLost) {
 }
 
 TEST(LinkLosses, AStopEndsWhatGoesOnHoweverItDoes) {
+  const std::vector<Duration> moments =
+      whole() ? std::vector<Duration>{1ms, 20ms, 40ms, 60ms, 80ms, 100ms, 150ms} : std::vector<Duration>{1ms, 60ms};
   for (const Loss& loss : {Loss{.on_loss = OnLoss::Hold, .hold = 5s}, Loss{.on_loss = OnLoss::Ignore},
                            Loss{.on_loss = OnLoss::Fallback, .fallback = "STANDALONE"}})
-    for (const Duration after : {1ms, 20ms, 40ms, 60ms, 80ms, 100ms, 150ms}) {
+    for (const Duration after : moments) {
       LossFlight flown{loss};
       flown.flight.craft().kill("JOYSTICK");
       flown.flight.craft().run(after);

@@ -4,6 +4,7 @@
 
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/parameter/type.hpp"
+#include "hirosco/utilities/testing/slice.hpp"
 #include "simulation/scenarios/flight.hpp"
 #include "simulation/world/random.hpp"
 #include "tests/integration/flight.hpp"
@@ -128,7 +129,8 @@ TEST_F(RestorationTest, ThePartnerOfTheDeadKeepsItsSettingsToo) {
 TEST_F(RestorationTest, WhoIsKilledAgainOnItsWayComesBackAllTheSame) {
   simulation::Random random{76};
   set_everything();
-  for (int round = 0; round < 12; ++round) {
+  const int rounds = whole() ? 12 : 4;  // four: each after each
+  for (int round = 0; round < rounds; ++round) {
     flight.craft().kill(round % 2 == 0 ? "MANIPULATOR" : "JOYSTICK");
     flight.craft().run(Duration{static_cast<std::int64_t>(random.uniform(0, 400e6))});
     flight.craft().kill(round % 3 == 0 ? "MANIPULATOR" : "JOYSTICK");
@@ -172,7 +174,8 @@ TEST_F(RestorationTest, AfterAStopNobodyComesBackToMove) {
 }
 
 TEST(Restorations, AStopAtWhateverMomentEndsThem) {
-  for (Duration after = 0ms; after < 360ms; after += 15ms) {
+  const Duration apart = whole() ? 15ms : 60ms;
+  for (Duration after = 0ms; after < 360ms; after += apart) {
     Flight flight{{.edit = comes_back(State::Operational)}};
     ASSERT_TRUE(flight.commission());
     flight.craft().kill("MANIPULATOR");
