@@ -24,7 +24,7 @@ using nlohmann::json;
 
 /// What happens within it of the event before belongs to the same story.
 constexpr Duration same_story = 3s;
-constexpr Duration before = 2s;
+constexpr Duration looked_back = 2s;
 /// Two periods of the slowest cycles of a control loop.
 constexpr Duration same_instant = 2ms;
 /// An injected fault is timed by its answer, which may come later than the event that it causes.
@@ -139,7 +139,7 @@ class Teller {
   void tell_faults() {
     std::size_t steps_of_hand = 0;
     std::vector<Line> found;
-    for (const auto& fault : archive_.faults({begin_ - before, begin_ + answer_delay})) {
+    for (const auto& fault : archive_.faults({begin_ - looked_back, begin_ + answer_delay})) {
       if (fault.answer != "ok") continue;
       if (fault.line.starts_with("hand ")) {
         ++steps_of_hand;

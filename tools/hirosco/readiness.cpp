@@ -19,9 +19,9 @@ namespace {
 
 using descriptor::Diagnostic;
 
-class Findings {
+class Lacking {
  public:
-  Findings(const descriptor::Mission& mission, FlownAs flown_as) : mission_{mission}, flown_as_{flown_as} {}
+  Lacking(const descriptor::Mission& mission, FlownAs flown_as) : mission_{mission}, flown_as_{flown_as} {}
 
   /// Why the program cannot be had for such a flight; `missing`: what its module says.
   void subsystem(const std::string& executable, const std::string& user, descriptor::Location at,
@@ -99,7 +99,7 @@ std::vector<Diagnostic> unready(const descriptor::Mission& mission, FlownAs flow
     const auto found = modules.missing.find(executable);
     return found != modules.missing.end() ? found->second : std::string{};
   };
-  Findings findings{mission, flown_as};
+  Lacking findings{mission, flown_as};
   for (const auto& member : mission.subsystems) {
     findings.subsystem(member.executable, "subsystem " + member.subsystem.name, member.at, missing(member.executable));
     if (flown_as == FlownAs::Processes && mission.manifest) findings.listed(member);

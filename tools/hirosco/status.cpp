@@ -52,7 +52,7 @@ template <class Enough>
   return true;
 }
 
-void print_text(const descriptor::Subsystem& subsystem, Listened& listened) {
+void print_newest_text(const descriptor::Subsystem& subsystem, Listened& listened) {
   fmt::print("{} (APID {}): {} packets in {} s\n", subsystem.name, subsystem.id, listened.packets[subsystem.id],
              seconds(listening));
   for (const auto& [name, value] : listened.values[subsystem.id]) {
@@ -62,7 +62,7 @@ void print_text(const descriptor::Subsystem& subsystem, Listened& listened) {
   }
 }
 
-void print_json(const descriptor::Subsystem& subsystem, Listened& listened) {
+void print_newest_json(const descriptor::Subsystem& subsystem, Listened& listened) {
   fmt::print("{{\"subsystem\":\"{}\",\"apid\":{},\"packets\":{},\"values\":{{", subsystem.name, subsystem.id,
              listened.packets[subsystem.id]);
   bool first = true;
@@ -121,7 +121,7 @@ int status(const StatusOptions& options) {
     return exit_environment;
   }
   if (everything) {
-    const auto print = connection.json ? print_json : print_text;
+    const auto print = connection.json ? print_newest_json : print_newest_text;
     print(mission.supervisor, listened);
     for (const auto& member : mission.subsystems) print(member.subsystem, listened);
   }

@@ -32,18 +32,18 @@ TEST(Resources, AreWhatTheDescriptorSaysAndWhatItLeavesOutIsNotLimited) {
   EXPECT_EQ(none.warning_percent, 75U);
 }
 
-std::string with(const std::string& resources) { return changed("<Power", resources + "\n  <Power"); }
+std::string before_power(const std::string& resources) { return changed("<Power", resources + "\n  <Power"); }
 
 TEST(Resources, AMissionThatLimitsOneHasItSaidByEverySubsystem) {
   const auto reading =
-      read_mission(data / "mission.xml", overlay({{"mission.xml", with("<Resources threads=\"9\"/>")}}));
+      read_mission(data / "mission.xml", overlay({{"mission.xml", before_power("<Resources threads=\"9\"/>")}}));
   ASSERT_EQ(reading.problems.size(), 3U);
   for (const auto& found : reading.problems) EXPECT_EQ(found.code, "E0350");
 }
 
 TEST(Isolation, IsDemandedByAMissionThatSaysSo) {
   const auto required = [](const std::string& element) {
-    return read_mission(data / "mission.xml", overlay({{"mission.xml", with(element)}}))
+    return read_mission(data / "mission.xml", overlay({{"mission.xml", before_power(element)}}))
         .value.value()
         .isolation_required;
   };
@@ -53,7 +53,7 @@ TEST(Isolation, IsDemandedByAMissionThatSaysSo) {
 }
 
 TEST(Resources, OfAMissionThatCannotHaveAllAtOnceAreAWarning) {
-  std::map<std::string, std::string> files{{"mission.xml", with("<Resources threads=\"8\"/>")}};
+  std::map<std::string, std::string> files{{"mission.xml", before_power("<Resources threads=\"8\"/>")}};
   const auto source = [&files](const std::filesystem::path& file) -> Result<std::string> {
     const auto changed_one = files.find(file.filename().string());
     std::string text = changed_one != files.end() ? changed_one->second : file_system()(file).value();
@@ -65,7 +65,7 @@ TEST(Resources, OfAMissionThatCannotHaveAllAtOnceAreAWarning) {
   ASSERT_TRUE(reading.value) << rendered(reading.problems, source);
   EXPECT_EQ(amount_of(reading.value->budget, Resource::Threads), 8U);
   EXPECT_EQ(std::ranges::count(reading.warnings, "E0410", &Diagnostic::code), 1);
-  files["mission.xml"] = with("<Resources threads=\"9\"/>");
+  files["mission.xml"] = before_power("<Resources threads=\"9\"/>");
   reading = read_mission(data / "mission.xml", source);
   EXPECT_EQ(std::ranges::count(reading.warnings, "E0410", &Diagnostic::code), 0);
 }

@@ -23,15 +23,15 @@ using testing::probe_descriptor;
 using testing::Rig;
 using ::testing::StartsWith;
 
-[[nodiscard]] std::string changed(const std::string& from, const std::string& to, std::string text = probe_descriptor) {
+[[nodiscard]] std::string edited(const std::string& from, const std::string& to, std::string text = probe_descriptor) {
   const auto at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
 }
 
-const std::string wider = changed(R"(name="KP" id="2" type="DOUBLE" init="3" minimum="0" maximum="100")",
-                                  R"(name="KP" id="2" type="DOUBLE" init="7" minimum="0" maximum="200")");
-const std::string faster = changed(R"(id="4711" interval="500")", R"(id="4711" interval="50")");
+const std::string wider = edited(R"(name="KP" id="2" type="DOUBLE" init="3" minimum="0" maximum="100")",
+                                 R"(name="KP" id="2" type="DOUBLE" init="7" minimum="0" maximum="200")");
+const std::string faster = edited(R"(id="4711" interval="500")", R"(id="4711" interval="50")");
 
 struct DescriptorChanges : ::testing::Test {
   Probe probe;
@@ -99,7 +99,7 @@ TEST_F(DescriptorChanges, AnInitialValueBeginsTheNextSoftwareInit) {
 }
 
 TEST_F(DescriptorChanges, AnInitialValueThatIsGoneIsZero) {
-  EXPECT_EQ(reread(changed(R"(init="3" )", "")), "1 3 7");
+  EXPECT_EQ(reread(edited(R"(init="3" )", "")), "1 3 7");
   rig.set_state_now(State::PreOperational);
   EXPECT_EQ(probe.kp.load(), 0.0);
 }
@@ -118,7 +118,7 @@ TEST_F(DescriptorChanges, HousekeepingIsThatOfTheNextConfigure) {
 
 TEST_F(DescriptorChanges, AnEndnodeIsThatOfTheNextConfigure) {
   const auto device = rig.flows.open({Transfer::SharedMemory, "other"}, FlowSide::Device).value();
-  EXPECT_EQ(reread(changed(R"(address="arm")", R"(address="other")")), "1 3 7");
+  EXPECT_EQ(reread(edited(R"(address="arm")", R"(address="other")")), "1 3 7");
   rig.bring_to(State::SafeOperational, 3);
   rig.cycle(4);
   std::array<std::byte, 256> frame;
@@ -156,11 +156,11 @@ TEST_F(DescriptorChanges, OneThatWasJudgedIsNotTakenWhereControlRunsByThen) {
 
 TEST_F(DescriptorChanges, ABadEditLeavesTheOldOneActiveAndSaysWhere) {
   rig.set_state_now(State::PreOperational);
-  EXPECT_THAT(reread(changed(R"(maximum="100")", R"(maximum="much")")), StartsWith("1 4"));
+  EXPECT_THAT(reread(edited(R"(maximum="100")", R"(maximum="much")")), StartsWith("1 4"));
   ASSERT_THAT(rig.explanations, Not(IsEmpty()));
   EXPECT_THAT(rig.explanations.back(), HasSubstr("PROBE: 9: "));
   EXPECT_THAT(reread("<Subsystem"), StartsWith("1 4"));
-  EXPECT_THAT(reread(changed(R"(name="SET_GOAL")", R"(name="SET_AIM")")), StartsWith("1 4"));
+  EXPECT_THAT(reread(edited(R"(name="SET_GOAL")", R"(name="SET_AIM")")), StartsWith("1 4"));
   EXPECT_THAT(take(), StartsWith("1 4")) << "nothing waits";
   EXPECT_THAT(set(2, 150), StartsWith("1 4"));
   EXPECT_EQ(set(2, 50), "1 3 7");
@@ -179,7 +179,7 @@ TEST_F(DescriptorChanges, OnlySealedMemoryOfTheRightSizeIsRead) {
 TEST_F(DescriptorChanges, AValueThatIsThereIsSetBeforeItsRangeLeavesIt) {
   rig.set_state_now(State::PreOperational);
   ASSERT_EQ(set(2, 90), "1 3 7");
-  const std::string narrower = changed(R"(maximum="100" writable)", R"(maximum="50" writable)");
+  const std::string narrower = edited(R"(maximum="100" writable)", R"(maximum="50" writable)");
   EXPECT_THAT(reread(narrower), StartsWith("1 4"));
   ASSERT_EQ(set(2, 40), "1 3 7");
   EXPECT_EQ(reread(narrower), "1 3 7");
@@ -197,7 +197,7 @@ TEST_F(DescriptorChanges, WhichOneIsInForceIsHousekeeping) {
 
 TEST(PersistentValues, OutliveADescriptorAndKeepItsRangeFromLeavingThem) {
   const std::string with_kd =
-      changed(R"(<ParamRef name="KD" id="3" )", R"(<ParamRef name="KD" id="3" persistent="yes" )");
+      edited(R"(<ParamRef name="KD" id="3" )", R"(<ParamRef name="KD" id="3" persistent="yes" )");
   Probe probe;
   Rig rig{probe, with_kd};
   rig.set_state_now(State::PreOperational);
@@ -214,9 +214,9 @@ TEST(PersistentValues, OutliveADescriptorAndKeepItsRangeFromLeavingThem) {
     rig.settle();
     return rig.outcome(taken);
   };
-  EXPECT_THAT(hand(changed(R"(init="4" minimum="0" maximum="100")", R"(init="4" minimum="0" maximum="50")", with_kd)),
+  EXPECT_THAT(hand(edited(R"(init="4" minimum="0" maximum="100")", R"(init="4" minimum="0" maximum="50")", with_kd)),
               StartsWith("1 4"));
-  EXPECT_EQ(hand(changed(R"(init="4")", R"(init="5")", with_kd)), "1 3 7");
+  EXPECT_EQ(hand(edited(R"(init="4")", R"(init="5")", with_kd)), "1 3 7");
   rig.set_state_now(State::PreOperational);
   EXPECT_EQ(probe.kd.load(), 60.0);
 }

@@ -69,7 +69,7 @@ TEST_F(PersistentTest, WhatCouldNotBeSetIsNotTakenAlong) {
 }
 
 /// Publishes all, and then one that its descriptor does not know.
-struct Mistaken : Probe {
+struct PublishesNobodys : Probe {
   bool mistaken{false};
   Parameter<double> nobodys;
   Result<Step> software_init() override {
@@ -80,7 +80,7 @@ struct Mistaken : Probe {
 };
 
 TEST(Persistent, IsNotTakenFromASoftwareInitThatGaveItNoValueYet) {
-  Mistaken probe;
+  PublishesNobodys probe;
   Rig rig{probe, with_persistent_kd()};
   probe.mistaken = true;
   probe.kd.store(0);

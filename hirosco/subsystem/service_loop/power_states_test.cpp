@@ -18,14 +18,15 @@ using testing::Probe;
 using testing::probe_descriptor;
 using testing::Rig;
 
-std::string with(const std::string& from, const std::string& to) {
+std::string lamp_with(const std::string& from, const std::string& to) {
   std::string text = probe_descriptor;
   return text.replace(text.find(from), from.size(), to);
 }
 
 struct PowerStates : ::testing::Test {
   Probe probe;
-  Rig rig{probe, with("<Device name=\"LAMP\">", "<Device name=\"LAMP\"><Power transfer=\"unix\" address=\"power\"/>")};
+  Rig rig{probe,
+          lamp_with("<Device name=\"LAMP\">", "<Device name=\"LAMP\"><Power transfer=\"unix\" address=\"power\"/>")};
   void bring_up() {
     rig.permit.powered = power_on;
     ASSERT_EQ(rig.set_state_now(State::PreOperational), "1 3 7");
@@ -97,13 +98,13 @@ TEST(WithoutAPowerSwitch, NobodyAsks) {
 struct FallBackStates : ::testing::Test {
   static constexpr auto fell_back = descriptor::framework_event::fell_back(1);
   Probe probe;
-  Rig rig{probe,
-          with("address=\"lamp\"/>", "address=\"lamp\"><FallBack transfer=\"unix\" address=\"lamp2\"/></Endnode>")};
+  Rig rig{probe, lamp_with("address=\"lamp\"/>",
+                           "address=\"lamp\"><FallBack transfer=\"unix\" address=\"lamp2\"/></Endnode>")};
 };
 
 TEST_F(FallBackStates, WhileAFallBackHasNotAnsweredNoSampleGoesOutAndTheActuatorsAreInhibited) {
   std::string text =
-      with("address=\"lamp\"/>", "address=\"lamp\"><FallBack transfer=\"unix\" address=\"lamp2\"/></Endnode>");
+      lamp_with("address=\"lamp\"/>", "address=\"lamp\"><FallBack transfer=\"unix\" address=\"lamp2\"/></Endnode>");
   const std::string link =
       R"(<RealTimeLinkService><Provides name="ARM_STATE"><ParamRef name="SEEN"/></Provides></RealTimeLinkService>)";
   text.insert(text.find("<Device name=\"ARM\" silence"), link);

@@ -211,7 +211,7 @@ TEST_F(Commissioning, EachConfigurationIsAnotherGenerationOfTheCycle) {
 }
 
 /// Leaves out what its descriptor lets it use.
-struct Forgetful final : Probe {
+struct ForgetfulProbe final : Probe {
   bool device{true};
   bool link{true};
 
@@ -234,7 +234,7 @@ struct Forgetful final : Probe {
 
 TEST_F(Commissioning, AConfigurationWithoutThePortsThatItNeedsNeverRuns) {
   for (const bool device : {true, false}) {
-    Forgetful author;
+    ForgetfulProbe author;
     (device ? author.device : author.link) = false;
     Rig forgetful{author, probe_descriptor};
     const std::string up = forgetful.set_state_now(State::PreOperational);

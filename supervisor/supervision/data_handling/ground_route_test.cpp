@@ -12,11 +12,11 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-using Kind = GroundRoute::Kind;
+using Sent = GroundRoute::Kind;
 
 class GroundRouteTest : public ::testing::Test {
  protected:
-  void send(int number, Kind kind, TimePoint now = {}) {
+  void send(int number, Sent kind, TimePoint now = {}) {
     const std::array packet{static_cast<std::byte>(number)};
     route_.send(channels_.supervisor_end(), packet, kind, now);
   }
@@ -38,7 +38,7 @@ class GroundRouteTest : public ::testing::Test {
 };
 
 TEST_F(GroundRouteTest, KeepsTheOrderOfReportsAndHousekeepingWhileTheLinkIsBehind) {
-  for (int i = 1; i <= 6; ++i) send(i, i % 2 == 0 ? Kind::Housekeeping : Kind::Report);
+  for (int i = 1; i <= 6; ++i) send(i, i % 2 == 0 ? Sent::Housekeeping : Sent::Report);
   std::vector<int> got;
   while (got.size() < 6) {
     const auto more = read();
@@ -52,10 +52,10 @@ TEST_F(GroundRouteTest, KeepsTheOrderOfReportsAndHousekeepingWhileTheLinkIsBehin
 }
 
 TEST_F(GroundRouteTest, DropsTheOldestHousekeepingAndNoReport) {
-  send(1, Kind::Report);
-  send(2, Kind::Report);   // the channel is full
-  for (int i = 10; i < 20; ++i) send(i, Kind::Housekeeping);
-  send(3, Kind::Report);
+  send(1, Sent::Report);
+  send(2, Sent::Report);   // the channel is full
+  for (int i = 10; i < 20; ++i) send(i, Sent::Housekeeping);
+  send(3, Sent::Report);
   EXPECT_EQ(route_.lost().housekeeping, 8U);
   EXPECT_EQ(route_.lost().reports, 0U);
   EXPECT_THAT(read(), ElementsAre(1, 2));
@@ -66,9 +66,9 @@ TEST_F(GroundRouteTest, DropsTheOldestHousekeepingAndNoReport) {
 }
 
 TEST_F(GroundRouteTest, ReadsNoTelecommandWhileReportsWaitAndTheLinkTakesSome) {
-  for (int i = 1; i <= 4; ++i) send(i, Kind::Report);
+  for (int i = 1; i <= 4; ++i) send(i, Sent::Report);
   EXPECT_TRUE(route_.takes_telecommands(TimePoint{}));
-  send(5, Kind::Report);
+  send(5, Sent::Report);
   EXPECT_FALSE(route_.takes_telecommands(TimePoint{}));
   read(1);
   flush(TimePoint{50ms});
@@ -76,13 +76,13 @@ TEST_F(GroundRouteTest, ReadsNoTelecommandWhileReportsWaitAndTheLinkTakesSome) {
 }
 
 TEST_F(GroundRouteTest, ReadsOnWhenTheLinkHasTakenNothingForAWhile) {
-  for (int i = 1; i <= 5; ++i) send(i, Kind::Report, TimePoint{1s});
+  for (int i = 1; i <= 5; ++i) send(i, Sent::Report, TimePoint{1s});
   EXPECT_FALSE(route_.takes_telecommands(TimePoint{1s} + 99ms));
   EXPECT_TRUE(route_.takes_telecommands(TimePoint{1s} + 100ms));
 }
 
 TEST_F(GroundRouteTest, CountsEachReportThatALinkThatIsStuckCannotBeKept) {
-  for (int i = 1; i <= 20; ++i) send(i, Kind::Report);
+  for (int i = 1; i <= 20; ++i) send(i, Sent::Report);
   EXPECT_EQ(route_.lost().reports, 20U - 2U - 6U);
   EXPECT_THAT(read(), ElementsAre(1, 2));
   route_.clear();
@@ -98,7 +98,7 @@ TEST_F(GroundRouteTest, ReadsTheTelecommandsOfAStepNowAndThenWhileReportsWaitWho
   for (int step = 0; step < 1000; ++step, now += 1ms) {
     route_.begin_step(now);
     if (step > 10 && route_.takes_telecommands(now)) ++steps_that_read;
-    for (int i = 0; i < 2; ++i) send(i, Kind::Report, now);
+    for (int i = 0; i < 2; ++i) send(i, Sent::Report, now);
     read(1);
     flush(now);
   }

@@ -47,27 +47,27 @@ struct LinkRenewalsTest : ::testing::Test {
   }
   LinkRenewals::Next judge() { return renewals.judge(link, from, to).next; }
 };
-using enum LinkRenewals::Next;
+using Next = LinkRenewals::Next;
 
 TEST_F(LinkRenewalsTest, WaitForAConfigurationInForceAtBothEnds) {
-  EXPECT_EQ(judge(), Wait);
+  EXPECT_EQ(judge(), Next::Wait);
   from.configuration = 2;
   from.settled = false;
-  EXPECT_EQ(judge(), Wait) << "on its way";
+  EXPECT_EQ(judge(), Next::Wait) << "on its way";
   from.settled = true;
-  EXPECT_EQ(judge(), Establish);
+  EXPECT_EQ(judge(), Next::Establish);
 }
 
 TEST_F(LinkRenewalsTest, AreTriedOnceForAPairOfConfigurations) {
   from.configuration = 2;
-  EXPECT_EQ(judge(), Establish);
-  EXPECT_EQ(judge(), Wait);
+  EXPECT_EQ(judge(), Next::Establish);
+  EXPECT_EQ(judge(), Next::Wait);
   from.configuration = 1;
-  EXPECT_EQ(judge(), Establish) << "another one";
+  EXPECT_EQ(judge(), Next::Establish) << "another one";
   from.configuration = 0;
-  EXPECT_EQ(judge(), Wait);
+  EXPECT_EQ(judge(), Next::Wait);
   from.configuration = 1;
-  EXPECT_EQ(judge(), Establish) << "left and taken again";
+  EXPECT_EQ(judge(), Next::Establish) << "left and taken again";
 }
 
 TEST_F(LinkRenewalsTest, AreRefusedWithTheNameOfWhatIsLacking) {
@@ -76,19 +76,19 @@ TEST_F(LinkRenewalsTest, AreRefusedWithTheNameOfWhatIsLacking) {
   from.configuration = 1;
   to.configuration = 3;
   const auto judged = renewals.judge(link, from, to);
-  EXPECT_EQ(judged.next, Refused);
+  EXPECT_EQ(judged.next, Next::Refused);
   EXPECT_EQ(judged.why, "configuration C3 of ARM does not require WANTED");
   to.configuration = 1;
-  EXPECT_EQ(judge(), Establish) << "it waits for a configuration that has it";
+  EXPECT_EQ(judge(), Next::Establish) << "it waits for a configuration that has it";
 }
 
 TEST_F(LinkRenewalsTest, AreOverWhenAnEndIsGoneOrTheLinkIsSomebodyElsesMatter) {
   from.there = false;
-  EXPECT_EQ(judge(), Over);
+  EXPECT_EQ(judge(), Next::Over);
   from.there = true;
   from.configuration = 1;
   renewals.drop(2);
-  EXPECT_EQ(judge(), Wait);
+  EXPECT_EQ(judge(), Next::Wait);
   EXPECT_FALSE(renewals.waits(2));
 }
 

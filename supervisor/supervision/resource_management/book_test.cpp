@@ -10,29 +10,29 @@
 namespace hirosco::supervisor {
 namespace {
 
-constexpr std::uint16_t robot = 10, handle = 11;
+constexpr std::uint16_t crane = 10, stick = 11;
 
 TEST(Book, OfTwoThatFitAloneTheSecondIsRefusedWithTheNumbers) {
   Book book;
   book.set_budget(100);
-  EXPECT_FALSE(book.shortage(robot, 60));
-  book.hold(robot, 60);
-  const auto shortage = book.shortage(handle, 60);
+  EXPECT_FALSE(book.shortage(crane, 60));
+  book.hold(crane, 60);
+  const auto shortage = book.shortage(stick, 60);
   ASSERT_TRUE(shortage);
   EXPECT_EQ(shortage->budget, 100U);
   EXPECT_EQ(shortage->reserved, 60U);
   EXPECT_EQ(shortage->requested, 60U);
-  EXPECT_FALSE(book.shortage(handle, 40));
-  EXPECT_FALSE(book.shortage(robot, 100)) << "what it has would be replaced";
-  book.hold(robot, 0);
-  EXPECT_FALSE(book.shortage(handle, 60)) << "it was given back";
+  EXPECT_FALSE(book.shortage(stick, 40));
+  EXPECT_FALSE(book.shortage(crane, 100)) << "what it has would be replaced";
+  book.hold(crane, 0);
+  EXPECT_FALSE(book.shortage(stick, 60)) << "it was given back";
 }
 
 TEST(Book, WithoutABudgetEverythingFitsAndIsCounted) {
   Book book;
-  book.hold(robot, std::numeric_limits<std::uint32_t>::max());
-  EXPECT_FALSE(book.shortage(handle, 7));
-  book.hold(handle, 7);
+  book.hold(crane, std::numeric_limits<std::uint32_t>::max());
+  EXPECT_FALSE(book.shortage(stick, 7));
+  book.hold(stick, 7);
   EXPECT_EQ(book.reserved(), std::numeric_limits<std::uint32_t>::max()) << "no sum wraps to little";
   EXPECT_FALSE(book.overdrawn());
   book.set_budget(8);

@@ -17,7 +17,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
 using enum descriptor::State;
-using Kind = Outcome::Kind;
+using Came = Outcome::Kind;
 
 struct PlayedReadings final : DescriptorReadings {
   Result<> begin(const descriptor::Mission&, const std::filesystem::path& file) override {
@@ -66,7 +66,7 @@ struct DescriptorsTest : PartsTest {
   }
   /// The newest that is read is judged by the members.
   void is_read(DescriptorReading reading) {
-    ASSERT_EQ(reread().kind, Kind::Running);
+    ASSERT_EQ(reread().kind, Came::Running);
     readings.next = std::move(reading);
     watch();
   }
@@ -137,7 +137,7 @@ TEST_F(DescriptorsTest, OneThatRefusesKeepsAllFromIt) {
   EXPECT_EQ(most(arm), Number{10});
   EXPECT_EQ(text_of(arm), "old");
   EXPECT_TRUE(was_told("HAND does not take it: the value of GAIN is outside its new range"));
-  EXPECT_EQ(reread().kind, Kind::Running) << "and a better one may be tried";
+  EXPECT_EQ(reread().kind, Came::Running) << "and a better one may be tried";
 }
 
 TEST_F(DescriptorsTest, WhoDoesNotSayThatItTookItIsEnded) {
@@ -172,16 +172,16 @@ TEST_F(DescriptorsTest, AreReadInOfflineAndPreOperationalOnly) {
   for (const State state : {SoftwareInit, HardwareInit, SafeOperational, Operational, ErrorOperational, PostOperational,
                             HardwareDeinit, SoftwareDeinit}) {
     set(hand, state);
-    EXPECT_EQ(reread().kind, Kind::Refused) << to_text(state) << ": HAND flies the file, too";
+    EXPECT_EQ(reread().kind, Came::Refused) << to_text(state) << ": HAND flies the file, too";
   }
   set(hand, PreOperational);
-  EXPECT_EQ(reread().kind, Kind::Running);
-  EXPECT_EQ(reread(camera).kind, Kind::Refused) << "one at a time";
-  EXPECT_EQ(descriptors.reread(99, Call{}).kind, Kind::Refused);
+  EXPECT_EQ(reread().kind, Came::Running);
+  EXPECT_EQ(reread(camera).kind, Came::Refused) << "one at a time";
+  EXPECT_EQ(descriptors.reread(99, Call{}).kind, Came::Refused);
 }
 
 TEST_F(DescriptorsTest, WhoHasLeftMeanwhileIsNotAsked) {
-  ASSERT_EQ(reread().kind, Kind::Running);
+  ASSERT_EQ(reread().kind, Came::Running);
   set(arm, SafeOperational);
   readings.next = wider();
   watch();
@@ -240,10 +240,10 @@ TEST_F(DescriptorsTest, WhatTheOldOneWouldJudgeWaitsForTheEnd) {
 }
 
 TEST_F(DescriptorsTest, AFileThatIsNotReadInTimeIsGivenUp) {
-  ASSERT_EQ(reread().kind, Kind::Running);
+  ASSERT_EQ(reread().kind, Came::Running);
   wait(61s);
   watch();
-  ASSERT_EQ(reread().kind, Kind::Running) << "the first is over";
+  ASSERT_EQ(reread().kind, Came::Running) << "the first is over";
 }
 
 TEST_F(DescriptorsTest, TheTextInForceChangesNothing) {

@@ -11,7 +11,7 @@
 namespace hirosco {
 namespace {
 
-[[nodiscard]] Duration monotonic() noexcept {
+[[nodiscard]] Duration now_monotonic() noexcept {
   timespec value{};
   (void)clock_gettime(CLOCK_MONOTONIC, &value);
   return std::chrono::seconds{value.tv_sec} + Duration{value.tv_nsec};
@@ -20,9 +20,9 @@ namespace {
 }  // namespace
 
 bool wait_readable(int descriptor, Duration timeout) noexcept {
-  const Duration end = monotonic() + std::max(timeout, Duration{0});
+  const Duration end = now_monotonic() + std::max(timeout, Duration{0});
   for (;;) {
-    const Duration left = std::max(end - monotonic(), Duration{0});
+    const Duration left = std::max(end - now_monotonic(), Duration{0});
     const auto whole = std::chrono::duration_cast<std::chrono::seconds>(left);
     const timespec rest{static_cast<time_t>(whole.count()), static_cast<long>((left - whole).count())};
     pollfd entry{descriptor, POLLIN, 0};
