@@ -17,7 +17,7 @@ const palette = {dark: ['#6cb0ff', '#ffc06a', '#46d6c8', '#ff8fb8', '#b9a2ff', '
 export const curve_colour = (i, look) => look ? colour(looks[look].colour) : palette[theme.value][i % palette.dark.length];
 const looks = {is: {colour: 'measured', width: 1.7}, set: {colour: 'blue', width: 1.5, dash: [4, 3]}, touched: {colour: 'teal', width: 3.2},
   felt: {colour: 'violet', width: 1.5, dash: [5, 3]}};
-const font = '11px Inter';
+const font = '11px Inter', narrow_px = 200;
 
 const short_name = (name) => name.split('.').slice(1).join('.') || name;
 
@@ -26,7 +26,10 @@ const axis_of_time = (relative) => ({
   stroke: word_stroke, grid: {stroke: line_stroke, width: 1}, ticks: {stroke: line_stroke, width: 1, size: 4}, font,
   space: relative ? 60 : 80, size: relative ? 22 : 26,
   // The label of a tick has as many digits as its step: 2.5 s are not cut to whole seconds.
-  splits: relative ? (plot, _, from, to) => [0, 1, 2, 3].map((i) => to - i * (to - from) / 3).reverse() : undefined,
+  splits: relative ? (plot, _, from, to) => {
+    const parts = plot.width < narrow_px ? 1 : 3;
+    return Array.from({length: parts + 1}, (_, i) => from + i * (to - from) / parts);
+  } : undefined,
   values: relative ? (_, splits) => splits.map((t, i) => i === splits.length - 1 ? 'now' : `−${+(splits.at(-1) - t).toFixed(1)} s`) :
     (_, splits) => splits.map((t) => clock_text(t, splits.length > 1 && (splits[1] - splits[0]) % 1 > 1e-6 ? 1 : 0)),
 });

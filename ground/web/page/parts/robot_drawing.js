@@ -25,7 +25,7 @@ import {StillPicture} from '../scene/still.js';
 import {surface_x_m} from './hand.js';
 import {typed} from './typed.js';
 
-const still_after_ms = 250;
+const still_after_ms = 250, resized_after_ms = 200;
 
 function drawn_by_processor(context) {
   const about = context.getExtension('WEBGL_debug_renderer_info');
@@ -159,7 +159,13 @@ export class RobotView {
     }
     // Back in its place: what stands still does so in its picture, too.
     if (same && this.inset?.box.width === wide_before && this.inset?.box.height === tall_before) return this.draw_soon();
-    this.camera_moved(true);
+    // The picture of before is stretched meanwhile: a window that is dragged has many sizes.
+    if (!this.still?.whole) return this.camera_moved(true);
+    this.still.hold();
+    delete this.nodes.stage.dataset.still;
+    this.draw_soon();
+    clearTimeout(this.size_timer);
+    this.size_timer = setTimeout(() => this.camera_moved(true), resized_after_ms);
   }
 
   camera_moved(at_once = false) {
@@ -230,7 +236,7 @@ export class RobotView {
     this.nodes.stage.dataset.moving = this.robots.some((robot) => robot.motion.moving()) ? 'yes' : 'no';
     this.nodes.stage.dataset.pose = this.robots.map((robot) => robot.last.map((angle) => angle?.toFixed(6))).join();
     const unfinished = this.still?.draw(this.camera, this.size, began_ms - this.moved_at < still_after_ms - 20) ?? false;
-    if (this.still?.whole && !this.still.wanted) this.nodes.stage.dataset.still = 'whole';
+    if (this.still?.whole && !this.still.wanted && !this.still.held) this.nodes.stage.dataset.still = 'whole';
     this.draw_live();
     this.readout.lay(began_ms);
     return {unfinished, moving: this.robots.some((robot) => robot.motion.moving())};
@@ -293,6 +299,7 @@ export class RobotView {
     this.pace.open();
     this.forget();
     this.resize();
+    if (this.still?.held) this.camera_moved(true);
     this.update();
   }
 
@@ -300,6 +307,7 @@ export class RobotView {
   leave() {
     this.pace.close();
     clearTimeout(this.still_timer);
+    clearTimeout(this.size_timer);
     this.readout.close();
     this.window = null;
   }
