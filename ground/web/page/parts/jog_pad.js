@@ -40,7 +40,8 @@ export function JogPad({subsystem, action, jog}) {
     const name = `${turning ? 'about' : 'along'} ${axes[axis]} ${side > 0 ? '+' : '−'}`;
     return html`<button type="button" class=${`chip ${pushing && pushing.turning === turning && pushing.axis === axis && pushing.side === side ? 'on' : ''}`} disabled=${locked} title=${`the tool ${name}, ${pace_words(pace)}`}
       data-test=${`jog-${turning ? 'turn' : 'move'}-${axes[axis]}${side > 0 ? '+' : '-'}`} onPointerDown=${(event) => { if (event.button === 0) push({turning, axis, side}); }} onPointerUp=${release} onPointerLeave=${release} onPointerCancel=${release}
-      onKeyDown=${(event) => { if ([' ', 'Enter'].includes(event.key)) { event.preventDefault(); if (!event.repeat) push({turning, axis, side}); } }} onKeyUp=${release}>${axes[axis]} ${side > 0 ? '+' : '−'}</button>`;
+      onKeyDown=${(event) => { if ([' ', 'Enter'].includes(event.key)) { event.preventDefault(); if (!event.repeat) push({turning, axis, side}); } }} onKeyUp=${release}
+      onClick=${(event) => { if (event.detail === 0) { push({turning, axis, side}); release(); } }}>${axes[axis]} ${side > 0 ? '+' : '−'}</button>`;
   };
   const row = (turning, words) => html`<span>${words}</span>${axes.map((_, axis) => html`${button(turning, axis, -1)}${button(turning, axis, 1)}`)}`;
   return html`<div class="jog" role="group" aria-label="push the tool" data-test="jog">
