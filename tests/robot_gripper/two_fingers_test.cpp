@@ -66,7 +66,7 @@ TEST_F(TwoFingers, ClosesOnALooseBoxAndHoldsItWithTheForceThatItWasToldHoweverMu
   double most_off = 0;
   for (const char* friction : {"friction 0", "friction 1", "friction 3"}) {
     fly({friction});
-    for (const double force_n : {10.0, 30.0, 5.0}) {
+    for (const double force_n : {10.0, 30.0, 8.0}) {
       EXPECT_TRUE(grip(force_n).completed) << flown->story().text();
       flown->craft().run(300ms);
       const double off = std::abs(pressed_n() - force_n) / force_n;
