@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,10 @@ struct Robot {
 /// `file` is used in the diagnostics.  Realtime: allocates.
 [[nodiscard]] descriptor::Reading<Robot> read(const std::filesystem::path& file, std::string_view text);
 [[nodiscard]] descriptor::Reading<Robot> read(const std::filesystem::path& file, const descriptor::FileSource& source);
+
+/// Joints with these names stand still at 0 from now on, and what mimics them with them: what they carry is part of what carries them. Something: the
+/// first name that is no joint that moves by itself; nothing was done.  Realtime: allocates.
+[[nodiscard]] std::optional<std::string> fix(Robot& robot, std::span<const std::string> names);
 
 /// What moves by itself, in file order: the names of the model's coordinates.
 /// Links that are fixed to each other become one body. Every link is a frame; the base's frame is that of the root link.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,11 +18,14 @@ namespace {
 constexpr const char* model_setting = "MODEL_FILE";
 /// What follows is the obstacle's name.
 constexpr std::string_view obstacle_word = "obstacle_";
+constexpr std::string_view body_word = "body_";
+constexpr std::string_view pull_word = "pull_";
+constexpr std::string_view lend_word = "lend_";
 
 }  // namespace
 
 MujocoDevice::MujocoDevice(FlowFactory& flows, FlowAddress address, const Settings& settings)
-    : SimulatedDevice{flows, std::move(address), settings}, random_{settings.seed} {}
+    : SimulatedDevice{flows, std::move(address), settings}, flows_of_worlds_{flows}, random_{settings.seed} {}
 
 Result<> MujocoDevice::make_world() {
   const auto named = settings().files.find(model_setting);
@@ -43,7 +47,9 @@ Result<> MujocoDevice::make_world() {
     return fail(ErrorCode::Malformed, problem_.c_str());
   }
   robot_.emplace(std::move(*made));
-  commanded_.assign(robot_->joints(), 0.0);
+  own_.resize(robot_->joints());
+  std::iota(own_.begin(), own_.end(), std::size_t{0});
+  commanded_.assign(own_.size(), 0.0);
   return ok();
 }
 
@@ -60,13 +66,16 @@ void MujocoDevice::advance(Duration cycle) noexcept {
   using Brakes = MujocoRobot::Brakes;
   driven_ = output() == DeviceOutput::Active;
   const Brakes brakes = driven_ ? Brakes::Open : output() == DeviceOutput::Stopping ? Brakes::Slowing : Brakes::Closed;
-  robot_->step(driven_ ? std::span<const double>{commanded_} : std::span<const double>{}, brakes, cycle);
+  for (std::size_t i = 0; i < own_.size(); ++i) robot_->drive(own_[i], driven_ ? commanded_[i] : 0, brakes);
+  hear_borrowers();
+  robot_->step(cycle);
+  tell_borrowers();
 }
 
 void MujocoDevice::write_sensors(OctetWriter& payload) noexcept {
-  for (std::size_t i = 0; i < robot_->joints(); ++i) payload.put(robot_->position(i));
-  for (std::size_t i = 0; i < robot_->joints(); ++i) payload.put(robot_->velocity(i));
-  for (std::size_t i = 0; i < robot_->joints(); ++i)
+  for (const std::size_t i : own_) payload.put(robot_->position(i));
+  for (const std::size_t i : own_) payload.put(robot_->velocity(i));
+  for (const std::size_t i : own_)
     payload.put(robot_->torque(i) + (noise_n_m_ > 0 ? noise_n_m_ * random_.normal() : 0));
 }
 
@@ -109,6 +118,31 @@ Result<> MujocoDevice::stand_around(const Words& words) {
   } else {
     const auto obstacle = read_obstacle(name, said);
     done = obstacle ? robot_->put(*obstacle) : std::unexpected{obstacle.error()};
+  }
+  return done ? ok() : refuse(ErrorCode::InvalidArgument, std::move(done.error()));
+}
+
+Result<> MujocoDevice::lie_around(const Words& words) {
+  const bool pulls = words[0].starts_with(pull_word);
+  const std::string_view name = words[0].substr((pulls ? pull_word : body_word).size());
+  if (name.empty()) return fail(ErrorCode::InvalidArgument, "a body has a name: body_NAME, pull_NAME");
+  if (pulls) {
+    constexpr double most_n = 1e4;
+    HIROSCO_TRY(words.expect(4));
+    HIROSCO_TRY_LET(const double x, words.number(1, -most_n, most_n));
+    HIROSCO_TRY_LET(const double y, words.number(2, -most_n, most_n));
+    HIROSCO_TRY_LET(const double z, words.number(3, -most_n, most_n));
+    return robot_->pull(name, {x, y, z}) ? ok()
+                                         : refuse(ErrorCode::NotFound, fmt::format("there is no body '{}'", name));
+  }
+  std::vector<std::string_view> said;
+  for (std::size_t i = 1; i < words.count(); ++i) said.push_back(words[i]);
+  std::expected<void, std::string> done;
+  if (said.size() == 1 && said.front() == "none") {
+    done = robot_->take_body_away(name);
+  } else {
+    const auto body = read_body(name, said);
+    done = body ? robot_->lay(*body) : std::unexpected{body.error()};
   }
   return done ? ok() : refuse(ErrorCode::InvalidArgument, std::move(done.error()));
 }
@@ -160,6 +194,8 @@ Result<> MujocoDevice::differ(const Words& words) {
 Result<> MujocoDevice::do_fault(const Words& words) {
   if (!robot_) return fail(ErrorCode::Unavailable, "it has no world yet");
   if (words[0].starts_with(obstacle_word)) return stand_around(words);
+  if (words[0].starts_with(body_word) || words[0].starts_with(pull_word)) return lie_around(words);
+  if (words[0].starts_with(lend_word)) return lend(words);
   if (words[0] == "posture" || words[0] == "rotors") {
     HIROSCO_TRY(words.expect(2));
     HIROSCO_TRY_LET(const std::vector<double> numbers, each_joint(words[1]));
@@ -179,6 +215,7 @@ Result<> MujocoDevice::do_fault(const Words& words) {
 void MujocoDevice::do_heal() noexcept {
   if (!robot_) return;
   robot_->push(0, 0, 0);
+  robot_->let_go_of_bodies();
   noise_n_m_ = 0;
 }
 
@@ -188,6 +225,16 @@ std::string MujocoDevice::do_truth() const {
   for (std::size_t i = 0; i < robot_->joints(); ++i)
     text += fmt::format("q{0}={1:.6f} qd{0}={2:.6f} torque_{0}={3:.4f} ", i + 1, robot_->position(i),
                         robot_->velocity(i), robot_->torque(i));
+  for (std::size_t i = 0; i < robot_->bodies(); ++i) {
+    const auto body = robot_->body(i);
+    const auto& place = body.place_m;
+    const auto& turned = body.turned_wxyz;
+    text += fmt::format(
+        "body_{0}_x={1:.6f} body_{0}_y={2:.6f} body_{0}_z={3:.6f} body_{0}_qw={4:.6f} body_{0}_qx={5:.6f} "
+        "body_{0}_qy={6:.6f} "
+        "body_{0}_qz={7:.6f} body_{0}_pressed_n={8:.3f} ",
+        body.name, place[0], place[1], place[2], turned[0], turned[1], turned[2], turned[3], body.pressed_n);
+  }
   const auto tip = robot_->tip_m();
   const auto& touched = robot_->touched();
   return text + fmt::format("tip_x={:.6f} tip_y={:.6f} tip_z={:.6f} contacts={} contact_n={:.3f} output={} flags={}",

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "simulation/devices/simulated_device.hpp"
+#include "simulation/mujoco/lent_joints.hpp"
 #include "simulation/mujoco/mujoco_robot.hpp"
 #include "simulation/world/random.hpp"
 
@@ -21,6 +22,8 @@ namespace hirosco::simulation {
 /// Shapes of the file that touch nothing are told at its start (remarks()).
 /// Faults besides the common ones, each also a <Setting> of its mission:
 ///   obstacle_NAME SHAPE [SIZES] X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | obstacle_NAME none   (shapes.hpp; 16 at most)
+///   body_NAME SHAPE SIZES MASS X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | body_NAME none | pull_NAME X Y Z   (8 at most)
+///   lend_NAME JOINT,JOINT,...   before it starts: these are another device's (lent_device.hpp), and no longer in this one's frames
 ///   softness SECONDS
 ///   posture Q1,Q2,... | rotors J1,J2,... | mass FACTOR | inertia FACTOR | friction FACTOR [MORE] | payload KG | gravity X Y Z | push X Y Z | noise N_M
 class MujocoDevice final : public SimulatedDevice {
@@ -33,6 +36,9 @@ class MujocoDevice final : public SimulatedDevice {
       FaultLine{"push 0 0 0", "nobody pushes the tip"},
       FaultLine{"obstacle_post cylinder 0.05,1 0.9,0,0.5 0.5", "a post, 0.05 m thick and 1 m high, stands at 0.9 m"},
       FaultLine{"obstacle_post none", "it is taken away"},
+      FaultLine{"body_box box 0.05,0.05,0.05 0.3 0.9,0,0.5 0.5", "a box of 0.3 kg, which falls"},
+      FaultLine{"pull_box 0 0 5", "it is pulled up with 5 N"},
+      FaultLine{"body_box none", "it is taken away"},
       FaultLine{"noise 0.1", "noise of 0.1 N m in the torque sensors"},
   };
 
@@ -56,9 +62,20 @@ class MujocoDevice final : public SimulatedDevice {
   [[nodiscard]] std::unexpected<Error> refuse(ErrorCode code, std::string why);
   [[nodiscard]] Result<std::vector<double>> each_joint(std::string_view text);
   [[nodiscard]] Result<> stand_around(const Words& words);
+  [[nodiscard]] Result<> lend(const Words& words);
+  void hear_borrowers() noexcept;
+  void tell_borrowers() noexcept;
+  [[nodiscard]] Result<> lie_around(const Words& words);
   [[nodiscard]] Result<> differ(const Words& words);
 
+  struct Lent {
+    std::vector<std::size_t> joints;  ///< of the robot
+    Lender to;
+  };
+  FlowFactory& flows_of_worlds_;
   std::optional<MujocoRobot> robot_;
+  std::vector<std::size_t> own_;  ///< joints of the robot that are this device's
+  std::vector<Lent> lent_;
   std::string problem_;  ///< why there is no world, or what it was asked for is not done
   Random random_;
   std::vector<double> commanded_;

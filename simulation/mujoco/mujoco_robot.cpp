@@ -30,18 +30,19 @@ std::expected<MujocoRobot, std::string> MujocoRobot::make(std::string_view urdf,
   MujocoRobot robot{std::move(*spec)};
   for (const DrivenJoint& joint : robot.spec_.joints())
     robot.joints_.push_back({.name = joint.name, .effort = joint.effort});
-  if (auto built = robot.build({}); !built) return std::unexpected{std::move(built.error())};
+  if (auto built = robot.build({}, {}); !built) return std::unexpected{std::move(built.error())};
   return robot;
 }
 
 /// The robot is at rest where its file has it at zero.
-std::expected<void, std::string> MujocoRobot::build(std::span<const Obstacle> obstacles) {
-  auto compiled = spec_.compile(obstacles);
+std::expected<void, std::string> MujocoRobot::build(std::span<const Obstacle> obstacles,
+                                                    std::span<const LooseBody> bodies) {
+  auto compiled = spec_.compile(obstacles, bodies);
   if (!compiled) return std::unexpected{std::move(compiled.error())};
   mjModel& model = **compiled;
   MujocoData data{mj_makeData(&model)};
   if (data == nullptr) return std::unexpected{"MuJoCo has no memory for it"};
-  if (static_cast<std::size_t>(model.nv) != joints_.size() + spec_.mimics())
+  if (static_cast<std::size_t>(model.nv) != joints_.size() + spec_.mimics() + 6 * bodies.size())
     return std::unexpected{"MuJoCo has another number of joints than the file"};
   for (Joint& joint : joints_) {
     const int id = mj_name2id(&model, mjOBJ_JOINT, joint.name.c_str());
@@ -59,31 +60,39 @@ std::expected<void, std::string> MujocoRobot::build(std::span<const Obstacle> ob
   model_ = std::move(*compiled);
   data_ = std::move(data);
   tip_ = std::max(0, mj_name2id(model_.get(), mjOBJ_BODY, MujocoSpec::payload_body));
-  mass_.assign(model_->body_mass, model_->body_mass + model_->nbody);
-  inertia_.assign(model_->body_inertia, model_->body_inertia + 3 * model_->nbody);
-  brake(Brakes::Closed);
+  bodies_.assign(bodies.begin(), bodies.end());
+  pulled_n_.resize(bodies_.size());
+  mass_.assign(model_->body_mass, model_->body_mass + first_body());
+  inertia_.assign(model_->body_inertia, model_->body_inertia + 3 * first_body());
+  for (Joint& joint : joints_) joint.brakes = Brakes::Closed;
+  brake();
   change_inertia();
   return {};
 }
 
-/// The robot goes on where it is, as fast as it is.
-std::expected<void, std::string> MujocoRobot::surround(std::vector<Obstacle> obstacles) {
-  const std::vector<double> where(data_->qpos, data_->qpos + model_->nq),
-      how_fast(data_->qvel, data_->qvel + model_->nv),
-      pushed(data_->xfrc_applied + 6 * tip_, data_->xfrc_applied + 6 * (tip_ + 1));
-  const auto go_on = [&] {
-    std::ranges::copy(where, data_->qpos);
-    std::ranges::copy(how_fast, data_->qvel);
-    std::ranges::copy(pushed, data_->xfrc_applied + 6 * tip_);
-    mj_forward(model_.get(), data_.get());
-    feel();
-  };
-  if (auto built = build(obstacles); !built) return built;
-  go_on();
+/// What moves goes on where it is, as fast as it is.
+std::expected<void, std::string> MujocoRobot::surround(std::vector<Obstacle> obstacles, std::vector<LooseBody> bodies,
+                                                       std::string_view moved) {
+  const std::vector<LooseBody> bodies_before = bodies_;
+  const std::vector<std::array<double, 3>> pulled_before = pulled_n_;
+  const Standing before = standing();
+  Standing after = before;
+  std::erase_if(after.bodies, [&](const Standing::Body& body) { return body.name == moved; });
+  std::vector<std::array<double, 3>> pulled(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto& name = bodies[i].standing.name;
+    const auto known = std::ranges::find(bodies_before, name, [](const LooseBody& body) { return body.standing.name; });
+    if (known != bodies_before.end() && name != moved)
+      pulled[i] = pulled_before[static_cast<std::size_t>(known - bodies_before.begin())];
+  }
+  if (auto built = build(obstacles, bodies); !built) return built;
+  pulled_n_ = std::move(pulled);
+  stand(after);
   if (auto within = overlap()) {
     // What was there before could be made.
-    if (auto built = build(obstacles_); !built) return built;
-    go_on();
+    if (auto built = build(obstacles_, bodies_before); !built) return built;
+    pulled_n_ = pulled_before;
+    stand(before);
     return std::unexpected{*within + ", where the robot is now"};
   }
   obstacles_ = std::move(obstacles);
@@ -96,26 +105,33 @@ std::expected<void, std::string> MujocoRobot::put(const Obstacle& obstacle) {
   if (found != all.end()) *found = obstacle;
   else if (all.size() == most_obstacles) return std::unexpected{fmt::format("there are {} obstacles", most_obstacles)};
   else all.push_back(obstacle);
-  return surround(std::move(all));
+  return surround(std::move(all), bodies_);
 }
 
 std::expected<void, std::string> MujocoRobot::take_away(std::string_view name) {
   std::vector<Obstacle> all = obstacles_;
   if (std::erase_if(all, [&](const Obstacle& each) { return each.name == name; }) == 0)
     return std::unexpected{fmt::format("there is no obstacle '{}'", name)};
-  return surround(std::move(all));
+  return surround(std::move(all), bodies_);
 }
 
-/// What moves and is in an obstacle; in words.
+/// What moves and is in what stands or lies around it; in words.
 std::optional<std::string> MujocoRobot::overlap() const {
   for (int i = 0; i < data_->ncon; ++i) {
     const mjContact& contact = data_->contact[i];
-    for (const auto& [geom, link] : {std::pair{contact.geom[0], contact.geom[1]}, {contact.geom[1], contact.geom[0]}}) {
+    if (contact.dist > -within_m) continue;
+    for (const auto& [geom, other] :
+         {std::pair{contact.geom[0], contact.geom[1]}, {contact.geom[1], contact.geom[0]}}) {
       const std::string_view obstacle = MujocoSpec::obstacle_of(*model_, geom);
-      if (obstacle.empty() || contact.dist > -within_m) continue;
-      return fmt::format("link '{}' stands in obstacle '{}', {:.0f} mm deep",
-                         mj_id2name(model_.get(), mjOBJ_BODY, model_->geom_bodyid[link]), obstacle,
-                         -1e3 * contact.dist);
+      const std::string_view into = obstacle.empty() ? MujocoSpec::loose_body_of(*model_, geom) : obstacle;
+      const std::string_view body = MujocoSpec::loose_body_of(*model_, other);
+      if (into.empty()) continue;
+      const char* link = mj_id2name(model_.get(), mjOBJ_BODY, model_->geom_bodyid[other]);
+      return fmt::format("{} '{}' stands in {} '{}', {:.0f} mm deep", body.empty() ? "link" : "body",
+                         !body.empty()     ? body
+                         : link != nullptr ? std::string_view{link}
+                                           : std::string_view{},
+                         obstacle.empty() ? "body" : "obstacle", into, -1e3 * contact.dist);
     }
   }
   return std::nullopt;
@@ -128,27 +144,40 @@ std::span<const double, 3> MujocoRobot::tip_m() const noexcept {
 }
 
 std::expected<void, std::string> MujocoRobot::place(std::span<const double> positions) {
-  const std::vector<double> where(data_->qpos, data_->qpos + model_->nq),
-      how_fast(data_->qvel, data_->qvel + model_->nv);
+  const Standing before = standing();
   mj_resetData(model_.get(), data_.get());
+  if (!bodies_.empty()) {
+    Standing kept = before;
+    std::ranges::fill(kept.positions, 0.0);
+    std::ranges::fill(kept.velocities, 0.0);
+    std::ranges::fill(kept.pushed, 0.0);
+    stand(kept);
+  }
   for (std::size_t i = 0; i < std::min(positions.size(), joints_.size()); ++i)
     data_->qpos[joints_[i].position] = positions[i];
+  follow();
   mj_forward(model_.get(), data_.get());
   auto within = overlap();
-  if (within) {
-    std::ranges::copy(where, data_->qpos);
-    std::ranges::copy(how_fast, data_->qvel);
-    mj_forward(model_.get(), data_.get());
-  }
+  if (within) stand(before);
   feel();
   if (within) return std::unexpected{std::move(*within)};
   return {};
 }
 
-void MujocoRobot::brake(Brakes brakes) noexcept {
+/// What mimics a joint stands where it follows it to.
+void MujocoRobot::follow() noexcept {
+  for (int i = 0; i < model_->neq; ++i) {
+    if (model_->eq_type[i] != mjEQ_JOINT || model_->eq_obj2id[i] < 0) continue;
+    const mjtNum* numbers = model_->eq_data + mjNEQDATA * i;
+    data_->qpos[model_->jnt_qposadr[model_->eq_obj1id[i]]] =
+        numbers[0] + numbers[1] * data_->qpos[model_->jnt_qposadr[model_->eq_obj2id[i]]];
+  }
+}
+
+void MujocoRobot::brake() noexcept {
   for (const Joint& joint : joints_) {
-    const double held = brakes == Brakes::Open ? 0
-                        : brakes == Brakes::Slowing
+    const double held = joint.brakes == Brakes::Open ? 0
+                        : joint.brakes == Brakes::Slowing
                             ? std::abs(data_->qfrc_bias[joint.dof]) + slowing_share * joint.effort
                             : brake_share * joint.effort;
     model_->dof_frictionloss[joint.dof] = joint.friction * friction_factor_ + more_friction_ + held;
@@ -156,12 +185,26 @@ void MujocoRobot::brake(Brakes brakes) noexcept {
   }
 }
 
+void MujocoRobot::drive(std::size_t joint, double torque, Brakes brakes) noexcept {
+  Joint& its = joints_[joint];
+  its.brakes = brakes;
+  data_->qfrc_applied[its.dof] = std::clamp(torque, -its.effort, its.effort);
+}
+
+std::optional<std::size_t> MujocoRobot::joint(std::string_view name) const noexcept {
+  const auto found =
+      std::ranges::find(joints_, name, [](const Joint& joint) -> std::string_view { return joint.name; });
+  if (found == joints_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - joints_.begin());
+}
+
 void MujocoRobot::step(std::span<const double> torques, Brakes brakes, Duration span) noexcept {
-  brake(brakes);
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const double wanted = i < torques.size() ? torques[i] : 0;
-    data_->qfrc_applied[joints_[i].dof] = std::clamp(wanted, -joints_[i].effort, joints_[i].effort);
-  }
+  for (std::size_t i = 0; i < joints_.size(); ++i) drive(i, i < torques.size() ? torques[i] : 0, brakes);
+  step(span);
+}
+
+void MujocoRobot::step(Duration span) noexcept {
+  brake();
   const auto steps =
       std::max<std::int64_t>(1, std::llround(std::ceil(seconds(span) / MujocoSpec::longest_sub_step_s - 1e-9)));
   model_->opt.timestep = seconds(span) / static_cast<double>(steps);
@@ -182,8 +225,13 @@ void MujocoRobot::feel() noexcept {
     if (found != joints_.end()) found->torque += data_->efc_force[i];
   }
   touched_ = {};
+  const int first_loose = first_body();
+  const auto of_robot = [&](int geom) {
+    return model_->geom_bodyid[geom] < first_loose && model_->body_weldid[model_->geom_bodyid[geom]] != 0;
+  };
   for (int i = 0; i < data_->ncon; ++i) {
     if (data_->contact[i].efc_address < 0) continue;
+    if (!bodies_.empty() && !of_robot(data_->contact[i].geom[0]) && !of_robot(data_->contact[i].geom[1])) continue;
     std::array<mjtNum, 6> wrench{};
     mj_contactForce(model_.get(), data_.get(), i, wrench.data());
     ++touched_.contacts;
@@ -192,7 +240,7 @@ void MujocoRobot::feel() noexcept {
 }
 
 void MujocoRobot::change_inertia() noexcept {
-  for (int body = 0; body < model_->nbody; ++body) {
+  for (int body = 0; body < first_body(); ++body) {
     const auto i = static_cast<std::size_t>(body);
     model_->body_mass[body] = mass_[i] * mass_factor_;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -206,7 +254,7 @@ void MujocoRobot::change_inertia() noexcept {
   // How softly a contact gives way MuJoCo reckons from what a link's centre resists in the first posture: of a link that turns about its
   // own centre that is beyond all bounds, and so would be its contacts.
   const double heaviest_kg = heaviest_share * std::accumulate(mass_.begin(), mass_.end(), 0.0) * mass_factor_;
-  for (int body = 0; body < model_->nbody; ++body)
+  for (int body = 0; body < first_body(); ++body)
     if (model_->body_weldid[body] != 0 && heaviest_kg > 0)
       model_->body_invweight0[2 * body] = std::max(model_->body_invweight0[2 * body], 1 / heaviest_kg);
   std::ranges::copy(where, data_->qpos);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <expected>
 #include <optional>
@@ -19,7 +20,7 @@
 namespace hirosco::simulation {
 
 /// A robot of a URDF file as MuJoCo moves it: rigid links on a base that stands, joints with dry friction and brakes that slip. Its
-/// collision shapes touch each other (mujoco_spec.hpp) and obstacles that stand around it. Joints are numbered as in the file, fixed
+/// collision shapes touch each other (mujoco_spec.hpp), obstacles that stand around it and bodies that move by themselves. Joints are numbered as in the file, fixed
 /// ones left out.
 /// Runge-Kutta of 4th order with sub-steps of at most 0.5 ms: the same bits twice from one version of MuJoCo on one architecture.
 /// Realtime: step() and push() do not allocate, what changes the world does. Thread: one.
@@ -31,7 +32,7 @@ class MujocoRobot {
     Closed,  ///< twice as strong
   };
 
-  /// What touches, and with how much in all across the surfaces.
+  /// What of the robot touches, and with how much in all across the surfaces.
   struct Touched {
     int contacts{0};
     double normal_n{0};
@@ -57,8 +58,13 @@ class MujocoRobot {
 
   /// Puts it there, at rest; in words why not: it would stand in an obstacle.
   [[nodiscard]] std::expected<void, std::string> place(std::span<const double> positions);
-  /// Drives are held to the joints' efforts.
+  /// What a joint's drive does from the next step on, held to its effort.
+  void drive(std::size_t joint, double torque, Brakes brakes) noexcept;
+  void step(Duration span) noexcept;
+  /// All joints alike.
   void step(std::span<const double> torques, Brakes brakes, Duration span) noexcept;
+  /// The joint of this name, where it moves by itself.
+  [[nodiscard]] std::optional<std::size_t> joint(std::string_view name) const noexcept;
 
   // --- what stands around it -----------------------------------------------------------------------------------------
   /// In place of the one of this name, if there is one. In words why not: too many, or the robot stands in it.
@@ -66,6 +72,24 @@ class MujocoRobot {
   [[nodiscard]] std::expected<void, std::string> take_away(std::string_view name);
   /// The time constant by which all that touches gives way, without swinging; at least two sub-steps.
   void set_softness(double time_constant_s) noexcept;
+
+  // --- what lies around it (mujoco_bodies.cpp) -------------------------------------------------------------------------
+  /// Of a body that moves by itself; in the axes of the base.
+  struct BodyTruth {
+    std::string_view name;
+    std::array<double, 3> place_m{};  ///< of its centre
+    std::array<double, 4> turned_wxyz{};
+    std::array<double, 3> velocity_m_s{};
+    double pressed_n{0};  ///< by links of the robot, in all across the surfaces
+  };
+  /// At rest, in place of the one of this name, if there is one. In words why not: too many, or something is there already.
+  [[nodiscard]] std::expected<void, std::string> lay(const LooseBody& body);
+  [[nodiscard]] std::expected<void, std::string> take_body_away(std::string_view name);
+  /// A force at its centre, N, in the axes of the base, until it is another. False: there is no such body.
+  [[nodiscard]] bool pull(std::string_view name, std::array<double, 3> force_n) noexcept;
+  void let_go_of_bodies() noexcept;
+  [[nodiscard]] std::size_t bodies() const noexcept { return bodies_.size(); }
+  [[nodiscard]] BodyTruth body(std::size_t index) const noexcept;
 
   // --- how it differs from its file ----------------------------------------------------------------------------------
   void set_mass_factor(double factor) noexcept;
@@ -90,18 +114,43 @@ class MujocoRobot {
     double damping{0};
     double rotor{0};
     double torque{0};
+    Brakes brakes{Brakes::Closed};
   };
   explicit MujocoRobot(MujocoSpec spec) noexcept : spec_{std::move(spec)} {}
-  [[nodiscard]] std::expected<void, std::string> build(std::span<const Obstacle> obstacles);
-  [[nodiscard]] std::expected<void, std::string> surround(std::vector<Obstacle> obstacles);
+  /// How what moves stands, so that it goes on in another model of the same robot.
+  struct Standing {
+    struct Body {
+      std::string name{};
+      std::array<double, 7> pose{};
+      std::array<double, 6> velocity{};
+    };
+    std::vector<double> positions{}, velocities{};  ///< of the robot
+    std::array<double, 6> pushed{};
+    std::vector<Body> bodies{};
+  };
+  [[nodiscard]] Standing standing() const;
+  /// Whatever body is not in it stays where it is.
+  void stand(const Standing& standing) noexcept;
+  [[nodiscard]] int first_body() const noexcept {
+    return static_cast<int>(model_->nbody) - static_cast<int>(bodies_.size());
+  }
+  void pull_bodies() noexcept;
+  [[nodiscard]] std::expected<void, std::string> build(std::span<const Obstacle> obstacles,
+                                                       std::span<const LooseBody> bodies);
+  /// `moved`: name of the body that is put somewhere, where there is one.
+  [[nodiscard]] std::expected<void, std::string> surround(std::vector<Obstacle> obstacles,
+                                                          std::vector<LooseBody> bodies, std::string_view moved = {});
   [[nodiscard]] std::optional<std::string> overlap() const;
-  void brake(Brakes brakes) noexcept;
+  void follow() noexcept;
+  void brake() noexcept;
   void feel() noexcept;
   void change_inertia() noexcept;
 
   MujocoSpec spec_;
   std::vector<Joint> joints_;
   std::vector<Obstacle> obstacles_;
+  std::vector<LooseBody> bodies_;
+  std::vector<std::array<double, 3>> pulled_n_;  ///< each of them
   MujocoModel model_;
   MujocoData data_;
   Touched touched_;

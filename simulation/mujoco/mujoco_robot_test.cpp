@@ -131,6 +131,10 @@ TEST(MujocoRobot, MovesWhatMimicsAJointWithIt) {
   robot->set_gravity(0, 0, 0);
   for (int i = 0; i < 500; ++i) robot->step(std::array{5.0}, Brakes::Open, 1ms);
   EXPECT_NEAR(robot->velocity(0), 0.5, 0.01);
+  // Put somewhere, it stands there with what follows it: nothing pulls it back.
+  ASSERT_TRUE(robot->place(std::array{1.0}));
+  for (int i = 0; i < 100; ++i) robot->step(none, Brakes::Open, 1ms);
+  EXPECT_NEAR(robot->position(0), 1, 1e-9);
 }
 
 TEST(MujocoRobot, TakesTheOrderOfJointsFromTheFile) {

@@ -20,11 +20,14 @@ using xml::Element;
 constexpr double default_effort = 100;
 /// How much stiffer friction of a contact is than its normal direction: what stands on a slope creeps by less.
 constexpr double friction_stiffness = 10;
+/// Where bodies are held by friction alone: without these what is held creeps by tenths of a millimetre a second.
+constexpr int no_slip_iterations = 10;
 /// Links that are nearer to each other where all joints are at 0 are built that way.
 constexpr double near_m = 0.01;
 /// Of link on link. What touches an obstacle has the obstacle's.
 constexpr double link_friction = 0.5;
 constexpr const char* obstacle_mark = "obstacle ";
+constexpr const char* loose_mark = "loose ";
 
 /// What MuJoCo's reader is given of a file: what moves and has mass. Shapes are read by ourselves: it takes or leaves them in silence.
 constexpr std::array known{"robot", "link",   "inertial", "origin", "mass",  "inertia",
@@ -84,7 +87,7 @@ void add(const Mimic& mimic, mjSpec& spec) {
   equal.solref[0] = MujocoSpec::friction_s;
 }
 
-void add(const Shape& shape, double friction, int priority, mjsBody& body, const std::string& name = {}) {
+mjsGeom& add(const Shape& shape, double friction, int priority, mjsBody& body, const std::string& name = {}) {
   mjsGeom& geom = *mjs_addGeom(&body, nullptr);
   if (!name.empty()) mjs_setName(geom.element, name.c_str());
   const auto& sizes = shape.sizes;
@@ -109,6 +112,20 @@ void add(const Shape& shape, double friction, int priority, mjsBody& body, const
   geom.condim = friction > 0 ? 3 : 1;
   geom.priority = priority;
   geom.friction[0] = friction;
+  return geom;
+}
+
+/// Its friction goes before that of whatever it touches.
+void add(const LooseBody& loose, mjSpec& spec) {
+  const Obstacle& standing = loose.standing;
+  mjsBody& body = *mjs_addBody(mjs_findBody(&spec, "world"), nullptr);
+  std::ranges::copy(standing.shape.place_m, body.pos);
+  mju_euler2Quat(body.quat, standing.shape.turned_rad.data(), "XYZ");
+  mjs_addFreeJoint(&body);
+  Shape shape = standing.shape;
+  shape.place_m = shape.turned_rad = {};
+  mjsGeom& geom = add(shape, standing.friction, 2, body, loose_mark + standing.name);
+  geom.mass = loose.mass_kg;
 }
 
 void add_mesh(const std::string& name, const std::array<double, 3>& scale, mjSpec& spec) {
@@ -277,13 +294,16 @@ std::expected<void, std::string> MujocoSpec::leave_out_pairs() {
   return {};
 }
 
-std::expected<MujocoModel, std::string> MujocoSpec::compile(std::span<const Obstacle> obstacles) const {
+std::expected<MujocoModel, std::string> MujocoSpec::compile(std::span<const Obstacle> obstacles,
+                                                            std::span<const LooseBody> bodies) const {
   const std::unique_ptr<mjSpec, MujocoFree> spec{mj_copySpec(spec_.get())};
   if (spec == nullptr) return std::unexpected{"MuJoCo does not copy the robot"};
   // Each is a body of its own: the base is no neighbour of what stands around it.
   for (const Obstacle& obstacle : obstacles)
     add(obstacle.shape, obstacle.friction, 1, *mjs_addBody(mjs_findBody(spec.get(), "world"), nullptr),
         obstacle_mark + obstacle.name);
+  for (const LooseBody& body : bodies) add(body, *spec);
+  if (!bodies.empty()) spec->option.noslip_iterations = no_slip_iterations;
   MujocoModel model{mj_compile(spec.get(), Files{meshes_}.get())};
   if (model == nullptr) return std::unexpected{std::string{"MuJoCo: "} + one_line(mjs_getError(spec.get()))};
   if (static_cast<std::size_t>(model->neq) != mimics_ || static_cast<std::size_t>(model->nexclude) != pairs_left_out_)
@@ -291,10 +311,22 @@ std::expected<MujocoModel, std::string> MujocoSpec::compile(std::span<const Obst
   return model;
 }
 
-std::string_view MujocoSpec::obstacle_of(const mjModel& model, int geom) noexcept {
+namespace {
+
+[[nodiscard]] std::string_view marked(const mjModel& model, int geom, std::string_view mark) noexcept {
   const char* name = mj_id2name(&model, mjOBJ_GEOM, geom);
   const std::string_view text = name != nullptr ? name : "";
-  return text.starts_with(obstacle_mark) ? text.substr(std::string_view{obstacle_mark}.size()) : std::string_view{};
+  return text.starts_with(mark) ? text.substr(mark.size()) : std::string_view{};
+}
+
+}  // namespace
+
+std::string_view MujocoSpec::obstacle_of(const mjModel& model, int geom) noexcept {
+  return marked(model, geom, obstacle_mark);
+}
+
+std::string_view MujocoSpec::loose_body_of(const mjModel& model, int geom) noexcept {
+  return marked(model, geom, loose_mark);
 }
 
 }  // namespace hirosco::simulation

@@ -31,7 +31,7 @@ struct DrivenJoint {
 };
 
 /// What MuJoCo is told of a URDF file: links, inertias, joints, what mimics them, and the shapes that touch. Compiled anew whenever
-/// an obstacle comes to it or goes.
+/// an obstacle or a loose body comes to it or goes.
 /// Neighbours, which one joint holds together, and links that are at each other where all joints are at 0 (or as near as their ranges let
 /// them) pass through each other; the latter are told.  Realtime: allocates. Thread: one.
 class MujocoSpec {
@@ -48,9 +48,13 @@ class MujocoSpec {
   [[nodiscard]] std::size_t mimics() const noexcept { return mimics_; }
   /// What of the file's shapes does not touch, each in words.
   [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return left_out_; }
-  [[nodiscard]] std::expected<MujocoModel, std::string> compile(std::span<const Obstacle> obstacles) const;
+  /// Loose bodies are the last of the model's bodies and joints, in their order here.
+  [[nodiscard]] std::expected<MujocoModel, std::string> compile(std::span<const Obstacle> obstacles,
+                                                                std::span<const LooseBody> bodies = {}) const;
   /// Name of the obstacle that a geom of such a model is; empty: it is a link's.
   [[nodiscard]] static std::string_view obstacle_of(const mjModel& model, int geom) noexcept;
+  /// The same for a loose body.
+  [[nodiscard]] static std::string_view loose_body_of(const mjModel& model, int geom) noexcept;
 
  private:
   MujocoSpec() = default;

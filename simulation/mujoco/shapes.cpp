@@ -18,6 +18,7 @@ using xml::Element;
 
 constexpr double smallest_m = 1e-4, largest_m = 1000;
 constexpr double most_friction = 10;
+constexpr double lightest_kg = 1e-3, heaviest_kg = 1e4;
 
 /// How a kind is called, how many sizes it has, and what they are.
 struct KindRow {
@@ -155,16 +156,23 @@ std::expected<std::vector<double>, std::string> listed_numbers(std::string_view 
   }
 }
 
-std::expected<Obstacle, std::string> read_obstacle(std::string_view name, std::span<const std::string_view> words) {
+namespace {
+
+/// `mass_kg` null: it stands, and has none.
+[[nodiscard]] std::expected<Obstacle, std::string> read_standing(std::string_view name,
+                                                                 std::span<const std::string_view> words,
+                                                                 double* mass_kg) {
   const std::string_view shape = words.empty() ? std::string_view{} : words.front();
   const auto row = std::ranges::find(kinds, shape, &KindRow::name);
-  if (row == kinds.end())
-    return std::unexpected{fmt::format("'{}' is no shape of an obstacle: box, cylinder, sphere or plane", shape)};
+  if (row == kinds.end() || (mass_kg != nullptr && row->kind == ShapeKind::Plane))
+    return std::unexpected{mass_kg != nullptr
+                               ? fmt::format("'{}' is no shape of a body: box, cylinder or sphere", shape)
+                               : fmt::format("'{}' is no shape of an obstacle: box, cylinder, sphere or plane", shape)};
   Obstacle obstacle{.name = std::string{name}, .shape = {.kind = row->kind}};
-  const std::string usage =
-      fmt::format("write {}{}{} X,Y,Z [FRICTION [ROLL,PITCH,YAW]]", row->name, row->sizes > 0 ? " " : "", row->said);
+  const std::string usage = fmt::format("write {}{}{}{} X,Y,Z [FRICTION [ROLL,PITCH,YAW]]", row->name,
+                                        row->sizes > 0 ? " " : "", row->said, mass_kg != nullptr ? " MASS" : "");
   std::size_t at = 1;
-  const std::size_t least = row->sizes > 0 ? 3 : 2;
+  const std::size_t least = (row->sizes > 0 ? 3U : 2U) + (mass_kg != nullptr ? 1U : 0U);
   if (words.size() < least || words.size() > least + 2)
     return std::unexpected{fmt::format("{} words are not those of a {}: {}", words.size(), row->name, usage)};
   const auto take = [&](std::size_t count, std::array<double, 3>& to, double low, double high,
@@ -182,6 +190,11 @@ std::expected<Obstacle, std::string> read_obstacle(std::string_view name, std::s
   if (row->sizes > 0)
     if (auto wrong = take(row->sizes, obstacle.shape.sizes, smallest_m, largest_m, "the size"))
       return std::unexpected{*wrong};
+  if (mass_kg != nullptr) {
+    std::array<double, 3> mass{};
+    if (auto wrong = take(1, mass, lightest_kg, heaviest_kg, "the mass")) return std::unexpected{*wrong};
+    *mass_kg = mass[0];
+  }
   if (auto wrong = take(3, obstacle.shape.place_m, -largest_m, largest_m, "the place")) return std::unexpected{*wrong};
   if (at < words.size()) {
     std::array<double, 3> friction{};
@@ -193,6 +206,20 @@ std::expected<Obstacle, std::string> read_obstacle(std::string_view name, std::s
     if (auto wrong = take(3, obstacle.shape.turned_rad, -whole_turn, whole_turn, "the turn"))
       return std::unexpected{*wrong};
   return obstacle;
+}
+
+}  // namespace
+
+std::expected<Obstacle, std::string> read_obstacle(std::string_view name, std::span<const std::string_view> words) {
+  return read_standing(name, words, nullptr);
+}
+
+std::expected<LooseBody, std::string> read_body(std::string_view name, std::span<const std::string_view> words) {
+  LooseBody body;
+  auto standing = read_standing(name, words, &body.mass_kg);
+  if (!standing) return std::unexpected{std::move(standing.error())};
+  body.standing = std::move(*standing);
+  return body;
 }
 
 std::expected<std::string, std::string> mesh_file(std::string_view named) {

@@ -60,6 +60,17 @@ inline constexpr std::size_t most_obstacles = 16;
 [[nodiscard]] std::expected<Obstacle, std::string> read_obstacle(std::string_view name,
                                                                  std::span<const std::string_view> words);
 
+/// Falls, slides, is held: moves by itself. `standing` says where it begins, and its shape is no plane.
+struct LooseBody {
+  Obstacle standing;
+  double mass_kg{1};
+};
+inline constexpr std::size_t most_bodies = 8;
+
+/// `words`: SHAPE SIZES MASS X,Y,Z [FRICTION [ROLL,PITCH,YAW]], as of an obstacle; MASS in kg. In words what is wrong.  Realtime: allocates.
+[[nodiscard]] std::expected<LooseBody, std::string> read_body(std::string_view name,
+                                                              std::span<const std::string_view> words);
+
 /// A,B,...: finite numbers with commas between them, as many as there are. Nothing: it is no such list.  Realtime: allocates.
 [[nodiscard]] std::expected<std::vector<double>, std::string> listed_numbers(std::string_view text);
 

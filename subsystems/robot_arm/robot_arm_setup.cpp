@@ -21,6 +21,8 @@ namespace {
 constexpr std::string_view device_name = "ARM";
 constexpr std::string_view model_setting = "MODEL_FILE";
 constexpr std::string_view tip_setting = "TIP";
+/// Joints of the file that are somebody else's, with commas between them: they stand at 0 in the arm's model.
+constexpr std::string_view fixed_setting = "FIXED";
 /// Of the filter of what acts from outside.
 constexpr double observer_gain_per_s = 50;
 
@@ -28,11 +30,21 @@ constexpr double rest_rad_s = 0.02;
 constexpr double past_end = 0.05;
 constexpr double displacement = 0.01;
 
+/// A,B,...
+[[nodiscard]] std::vector<std::string> listed(std::string_view text) {
+  std::vector<std::string> names;
+  while (!text.empty()) {
+    names.emplace_back(text.substr(0, text.find(',')));
+    text.remove_prefix(std::min(text.size(), names.back().size() + 1));
+  }
+  return names;
+}
+
 }  // namespace
 
 Result<Step> RobotArm::software_init() {
   publish_all();
-  use_device(device_name, device_, {model_setting, tip_setting});
+  use_device(device_name, device_, {model_setting, tip_setting, fixed_setting});
   for (EventPort* event : std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_,
                                                             &torque_exceeded_, &torque_hard_exceeded_,
                                                             &following_exceeded_, &contact_, &retracted_, &too_near_})
@@ -92,6 +104,7 @@ Result<std::string> RobotArm::setting_of_all(std::string_view name) const {
 Result<> RobotArm::read_model() {
   HIROSCO_TRY_LET(const std::string named, setting_of_all(model_setting));
   HIROSCO_TRY_LET(const std::string tip, setting_of_all(tip_setting));
+  HIROSCO_TRY_LET(const std::string fixed, setting_of_all(fixed_setting));
   if (named.empty()) return fail(ErrorCode::NotFound, "no configuration names a URDF file: setting MODEL_FILE of ARM");
   const auto file = descriptor::file_of(own_descriptor(), named);
   const auto text = descriptor::file_system()(file);
@@ -99,12 +112,16 @@ Result<> RobotArm::read_model() {
     problem_ = fmt::format("{} {}", file.string(), text.error().text);
     return fail(text.error().code, problem_.c_str());
   }
-  const auto reading = robotics::urdf::read(file, *text);
+  auto reading = robotics::urdf::read(file, *text);
   if (!reading.value) {
     const auto& first = reading.problems.front();
     problem_ = fmt::format("{}:{}:{}: {}: {}", file.filename().string(), first.at.line, first.at.column, first.code,
                            first.message);
     return fail(ErrorCode::Malformed, problem_.c_str(), static_cast<std::int64_t>(reading.problems.size()));
+  }
+  if (const auto unknown = robotics::urdf::fix(*reading.value, listed(fixed))) {
+    problem_ = fmt::format("FIXED of ARM: the robot has no joint '{}' that moves by itself", *unknown);
+    return fail(ErrorCode::NotFound, problem_.c_str());
   }
   auto made = robotics::Model::make(robotics::urdf::describe(*reading.value));
   if (!made) return fail(made.error());
