@@ -245,6 +245,7 @@ std::optional<SimulatedDevice::Settings> settings_of(const Options& options) {
 
 int run_device(int argc, char** argv, const char* name, const MakeDevice& make) {
   say_last_words(name);
+  SystemFlowFactory flows;
   std::vector<Played> all;
   for (int begin = 1; begin <= argc;) {
     int end = begin;
@@ -257,7 +258,6 @@ int run_device(int argc, char** argv, const char* name, const MakeDevice& make) 
     begin = end + 1;
   }
   hold_back_ending_signals();
-  SystemFlowFactory flows;
   for (Played& each : all) {
     auto settings = settings_of(each.options);
     if (!settings) {
