@@ -81,6 +81,10 @@ Findings fly_tumble(const ServicerSettings& settings) {
       return findings;
     }
     const auto begun = robot->base().momentum(robot->model(), robot->data());
+    // The design tells it about the inertial origin; MuJoCo's world has nothing else in it.
+    Vector about_origin;
+    mju_cross(about_origin.data(), robot->data().subtree_com, begun.linear_n_s.data());
+    for (std::size_t i = 0; i < about_origin.size(); ++i) about_origin[i] += begun.angular_n_m_s[i];
     const double energy_j = robot->kinetic_energy_j();
     double angular = 0, linear = 0, energy = 0;
     constexpr int cycles = 60'000, look_every = 100;
@@ -93,7 +97,7 @@ Findings fly_tumble(const ServicerSettings& settings) {
       linear = std::max(linear, apart(now.linear_n_s, begun.linear_n_s) / length(begun.linear_n_s));
       energy = std::max(energy, std::abs(robot->kinetic_energy_j() - energy_j) / energy_j);
     }
-    findings.figures["SV1-angular-n-m-s"] = length(begun.angular_n_m_s);
+    findings.figures["SV1-angular-n-m-s"] = length(about_origin);
     findings.figures["SV1-energy-j"] = energy_j;
     findings.figures["SV1-angular"] = angular;
     findings.figures["SV1-linear"] = linear;
