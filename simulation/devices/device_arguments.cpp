@@ -196,4 +196,20 @@ std::expected<DeviceArguments, std::string> device_arguments(const descriptor::M
   return made;
 }
 
+std::expected<const descriptor::SimulatedDevice*, std::string> whose_world(const descriptor::Mission& mission,
+                                                                           const descriptor::SimulatedDevice& device) {
+  const auto said = std::ranges::find(device.settings, world_setting, &descriptor::Setting::name);
+  if (said == device.settings.end()) return nullptr;
+  for (const descriptor::SimulatedDevice& other : mission.devices) {
+    if (other.name == device.name) break;
+    const bool own =
+        std::ranges::find(other.settings, world_setting, &descriptor::Setting::name) == other.settings.end();
+    if (other.name == said->value && other.executable == device.executable && own) return &other;
+  }
+  return std::unexpected{fmt::format(
+      "world '{}' is none: it names a simulated device that stands before this one, has the same executable "
+      "and a world of its own",
+      said->value)};
+}
+
 }  // namespace hirosco::simulation

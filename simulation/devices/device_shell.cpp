@@ -13,7 +13,10 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -31,6 +34,7 @@ namespace {
 
 constexpr int priority = 85;         // above every cycle: a device does not wait for those whom it serves
 constexpr Duration control_period = std::chrono::milliseconds{10};
+constexpr std::string_view beside = "--beside";
 
 std::map<std::string, Transfer> transfers() {
   std::map<std::string, Transfer> found;
@@ -183,39 +187,47 @@ bool input_closed() noexcept {
   return ::read(STDIN_FILENO, ignored.data(), ignored.size()) == 0;
 }
 
-void run(SimulatedDevice& device, ControlSocket& control, const std::string& control_path) {
+/// A device with its way in.
+struct Played {
+  Options options;
+  std::unique_ptr<SimulatedDevice> device{};
+  std::unique_ptr<ControlSocket> control{};
+};
+
+/// Frames of others than the first are looked for after each rest: it is so long at most.
+constexpr Duration longest_unseen = std::chrono::milliseconds{1};
+
+void run(std::span<Played> all) {
   const SystemClock clock;
   const bool watch_input = input_tells_of_starter();
   TimePoint look_at = clock.now();
+  SimulatedDevice& first = *all.front().device;
   while (true) {
-    const TimePoint wake = std::min(device.next_wake(), look_at);
-    if (const Duration rest = wake - clock.now(); rest > Duration::zero() && !device.wait(rest)) sleep_until(wake);
-    device.step(clock.now());
+    TimePoint wake = look_at;
+    for (const Played& each : all) wake = std::min(wake, each.device->next_wake());
+    if (all.size() > 1) wake = std::min(wake, clock.now() + longest_unseen);
+    if (const Duration rest = wake - clock.now(); rest > Duration::zero() && !first.wait(rest)) sleep_until(wake);
+    for (const Played& each : all) each.device->step(clock.now());
     if (clock.now() < look_at) continue;
     look_at = clock.now() + control_period;
     if (signalled_to_end() || (watch_input && input_closed())) return;
-    control.serve([&](std::string_view line) { return answer(device, line, control_path); });
+    for (const Played& each : all)
+      each.control->serve([&](std::string_view line) { return answer(*each.device, line, each.options.control); });
   }
 }
 
-Result<> prepare(SimulatedDevice& device, ControlSocket& control, const Options& options) {
-  HIROSCO_TRY(device.plug());
-  if (!options.control.empty()) HIROSCO_TRY(control.listen(options.control));
-  for (std::string line : options.settings) {
+Result<> prepare(Played& played) {
+  HIROSCO_TRY(played.device->plug());
+  if (!played.options.control.empty()) HIROSCO_TRY(played.control->listen(played.options.control));
+  for (std::string line : played.options.settings) {
     std::ranges::replace(line, '=', ' ');
-    HIROSCO_TRY(device.fault(line));
+    HIROSCO_TRY(played.device->fault(line));
   }
   return ok();
 }
 
-}  // namespace
-
-int run_device(int argc, char** argv, const char* name, const MakeDevice& make) {
-  say_last_words(name);
-  Options options;
-  if (const auto code = read_options(argc, argv, name, options)) return *code;
-  hold_back_ending_signals();
-  SystemFlowFactory flows;
+/// Empty: an endnode of its is none.
+std::optional<SimulatedDevice::Settings> settings_of(const Options& options) {
   SimulatedDevice::Settings settings{.cycle = std::chrono::microseconds{options.cycle_us},
                                      .byte_order = options.byte_order,
                                      .seed = options.seed,
@@ -225,22 +237,47 @@ int run_device(int argc, char** argv, const char* name, const MakeDevice& make) 
   if (!realtime_permitted()) settings.enable_limit = enable_limit_reduced;
   for (const std::string& text : options.files)
     settings.files[text.substr(0, text.find('='))] = text.substr(std::min(text.size(), text.find('=') + 1));
-  if (!add_endnodes(options, settings)) {
-    std::cerr << name << ": an endnode is TRANSFER=ADDRESS\n";
-    return 1;
+  if (!add_endnodes(options, settings)) return std::nullopt;
+  return settings;
+}
+
+}  // namespace
+
+int run_device(int argc, char** argv, const char* name, const MakeDevice& make) {
+  say_last_words(name);
+  SystemFlowFactory flows;
+  std::vector<Played> all;
+  for (int begin = 1; begin <= argc;) {
+    int end = begin;
+    while (end < argc && std::string_view{argv[end]} != beside) ++end;
+    std::vector<char*> words{argv[0]};
+    words.insert(words.end(), argv + begin, argv + end);
+    all.emplace_back();
+    if (const auto code = read_options(static_cast<int>(words.size()), words.data(), name, all.back().options))
+      return *code;
+    begin = end + 1;
   }
-  const auto device = make(flows, {options.transfer, options.address}, settings);
-  ControlSocket control;
-  if (const auto ready = prepare(*device, control, options); !ready) {
-    std::cerr << name << ": " << text_of(ready.error()) << '\n';
-    return 1;
+  hold_back_ending_signals();
+  for (Played& each : all) {
+    auto settings = settings_of(each.options);
+    if (!settings) {
+      std::cerr << name << ": an endnode is TRANSFER=ADDRESS\n";
+      return 1;
+    }
+    if (&each != &all.front()) settings->in_world_of = all.front().device.get();
+    each.device = make(flows, {each.options.transfer, each.options.address}, *settings);
+    each.control = std::make_unique<ControlSocket>();
+    if (const auto ready = prepare(each); !ready) {
+      std::cerr << name << ": " << text_of(ready.error()) << '\n';
+      return 1;
+    }
+    for (const std::string& remark : each.device->remarks()) std::cerr << name << ": " << remark << '\n';
   }
-  for (const std::string& remark : device->remarks()) std::cerr << name << ": " << remark << '\n';
   // Both are wishes: without the rights the device runs as well as it can, and its subsystem's limits are announced wider.
   (void)lock_memory();
   (void)(realtime_permitted() ? pin_to_cycle_cpu() : ask_for_short_slices());
   (void)set_fifo_priority(priority);
-  run(*device, control, options.control);
+  run(all);
   return 0;
 }
 

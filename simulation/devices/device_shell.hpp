@@ -20,6 +20,7 @@ using MakeDevice =
 ///   [--byte-order little|big] [--stop drop|controlled|hold] [--stop-within-ms N]
 ///   [--enable-transfer TRANSFER --enable-address NAME] [--fall-back TRANSFER=ADDRESS]... [--power TRANSFER=ADDRESS]
 ///   [--endnode NAME] [--further NAME,little|big,TRANSFER=ADDRESS...]...
+///   [--beside ...]: the same words for another device in the first one's world
 /// Each setting is carried out as the line "NAME VALUE" of SimulatedDevice::fault at the start.
 [[nodiscard]] int run_device(int argc, char** argv, const char* name, const MakeDevice& make);
 

@@ -196,6 +196,12 @@ Result<> MujocoDevice::do_fault(const Words& words) {
   if (words[0].starts_with(obstacle_word)) return stand_around(words);
   if (words[0].starts_with(body_word) || words[0].starts_with(pull_word)) return lie_around(words);
   if (words[0].starts_with(lend_word)) return lend(words);
+  if (words[0] == "base") {
+    if (words.count() != 2 || words[1] != "free")
+      return fail(ErrorCode::InvalidArgument, "a base stands, or it is free: base free");
+    auto floats = robot_->let_float();
+    return floats ? ok() : refuse(ErrorCode::InvalidArgument, std::move(floats.error()));
+  }
   if (words[0] == "posture" || words[0] == "rotors") {
     HIROSCO_TRY(words.expect(2));
     HIROSCO_TRY_LET(const std::vector<double> numbers, each_joint(words[1]));
@@ -237,6 +243,11 @@ std::string MujocoDevice::do_truth() const {
   }
   const auto tip = robot_->tip_m();
   const auto& touched = robot_->touched();
+  if (robot_->base().floats()) {
+    const auto turned = robot_->tip_orientation();
+    text += fmt::format("tip_qw={:.9f} tip_qx={:.9f} tip_qy={:.9f} tip_qz={:.9f} ", turned[0], turned[1], turned[2],
+                        turned[3]);
+  }
   return text + fmt::format("tip_x={:.6f} tip_y={:.6f} tip_z={:.6f} contacts={} contact_n={:.3f} output={} flags={}",
                             tip[0], tip[1], tip[2], touched.contacts, touched.normal_n, static_cast<int>(output()),
                             flags());

@@ -21,6 +21,7 @@ namespace hirosco::simulation {
 /// with twice of it.
 /// Shapes of the file that touch nothing are told at its start (remarks()).
 /// Faults besides the common ones, each also a <Setting> of its mission:
+///   base free   (before all that says where it is; floating_base.hpp)
 ///   obstacle_NAME SHAPE [SIZES] X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | obstacle_NAME none   (shapes.hpp; 16 at most)
 ///   body_NAME SHAPE SIZES MASS X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | body_NAME none | pull_NAME X Y Z   (8 at most)
 ///   lend_NAME JOINT,JOINT,...   before it starts: these are another device's (lent_device.hpp), and no longer in this one's frames
@@ -46,6 +47,9 @@ class MujocoDevice final : public SimulatedDevice {
 
   /// World truth, once it is plugged in.
   [[nodiscard]] const MujocoRobot& robot() const noexcept { return *robot_; }
+  /// For whoever is in the same world.
+  [[nodiscard]] MujocoRobot& robot() noexcept { return *robot_; }
+  [[nodiscard]] bool has_world() const noexcept { return robot_.has_value(); }
   [[nodiscard]] bool drives() const noexcept override { return driven_; }
   [[nodiscard]] std::vector<std::string> remarks() const override;
 

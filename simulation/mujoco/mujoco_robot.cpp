@@ -42,7 +42,8 @@ std::expected<void, std::string> MujocoRobot::build(std::span<const Obstacle> ob
   mjModel& model = **compiled;
   MujocoData data{mj_makeData(&model)};
   if (data == nullptr) return std::unexpected{"MuJoCo has no memory for it"};
-  if (static_cast<std::size_t>(model.nv) != joints_.size() + spec_.mimics() + 6 * bodies.size())
+  const std::size_t of_base = spec_.floats() ? FloatingBase::dofs : 0;
+  if (static_cast<std::size_t>(model.nv) != joints_.size() + spec_.mimics() + of_base + 6 * bodies.size())
     return std::unexpected{"MuJoCo has another number of joints than the file"};
   for (Joint& joint : joints_) {
     const int id = mj_name2id(&model, mjOBJ_JOINT, joint.name.c_str());
@@ -57,6 +58,7 @@ std::expected<void, std::string> MujocoRobot::build(std::span<const Obstacle> ob
   }
   if (model_ != nullptr) std::ranges::copy_n(model_->opt.gravity, 3, model.opt.gravity);
   for (int geom = 0; geom < model.ngeom; ++geom) model.geom_solref[mjNREF * geom] = softness_s_;
+  if (spec_.floats()) base_.find(model, spec_.root());
   model_ = std::move(*compiled);
   data_ = std::move(data);
   tip_ = std::max(0, mj_name2id(model_.get(), mjOBJ_BODY, MujocoSpec::payload_body));
@@ -143,14 +145,36 @@ std::span<const double, 3> MujocoRobot::tip_m() const noexcept {
   return std::span<const double, 3>{data_->xpos + 3 * tip_, 3};
 }
 
+std::span<const double, 4> MujocoRobot::tip_orientation() const noexcept {
+  return std::span<const double, 4>{data_->xquat + 4 * tip_, 4};
+}
+
+std::expected<void, std::string> MujocoRobot::let_float() {
+  if (auto done = spec_.let_float(); !done) return done;
+  const std::vector<LooseBody> bodies = bodies_;
+  return build(obstacles_, bodies);
+}
+
+void MujocoRobot::set_in_motion(const std::array<double, 6>& base_twist, std::span<const double> velocities) noexcept {
+  if (base_.floats()) base_.set_twist(*data_, base_twist);
+  for (std::size_t i = 0; i < std::min(velocities.size(), joints_.size()); ++i)
+    data_->qvel[joints_[i].dof] = velocities[i];
+  if (base_.floats()) base_.set_wheels(*data_, {});
+  mj_forward(model_.get(), data_.get());
+}
+
+double MujocoRobot::kinetic_energy_j() const {
+  std::vector<double> momentum(static_cast<std::size_t>(model_->nv));
+  mj_mulM(model_.get(), data_.get(), momentum.data(), data_->qvel);
+  return mju_dot(momentum.data(), data_->qvel, static_cast<int>(model_->nv)) / 2;
+}
+
 std::expected<void, std::string> MujocoRobot::place(std::span<const double> positions) {
   const Standing before = standing();
   mj_resetData(model_.get(), data_.get());
   if (!bodies_.empty()) {
-    Standing kept = before;
-    std::ranges::fill(kept.positions, 0.0);
-    std::ranges::fill(kept.velocities, 0.0);
-    std::ranges::fill(kept.pushed, 0.0);
+    Standing kept = standing();
+    kept.bodies = before.bodies;
     stand(kept);
   }
   for (std::size_t i = 0; i < std::min(positions.size(), joints_.size()); ++i)
@@ -205,6 +229,7 @@ void MujocoRobot::step(std::span<const double> torques, Brakes brakes, Duration 
 
 void MujocoRobot::step(Duration span) noexcept {
   brake();
+  if (base_.floats()) base_.apply(*data_);
   const auto steps =
       std::max<std::int64_t>(1, std::llround(std::ceil(seconds(span) / MujocoSpec::longest_sub_step_s - 1e-9)));
   model_->opt.timestep = seconds(span) / static_cast<double>(steps);

@@ -19,7 +19,7 @@
 
 namespace hirosco::simulation {
 
-/// A robot of a URDF file as MuJoCo moves it: rigid links on a base that stands, joints with dry friction and brakes that slip. Its
+/// A robot of a URDF file as MuJoCo moves it: rigid links on a base that stands or floats, joints with dry friction and brakes that slip. Its
 /// collision shapes touch each other (mujoco_spec.hpp), obstacles that stand around it and bodies that move by themselves. Joints are numbered as in the file, fixed
 /// ones left out.
 /// Runge-Kutta of 4th order with sub-steps of at most 0.5 ms: the same bits twice from one version of MuJoCo on one architecture.
@@ -50,11 +50,24 @@ class MujocoRobot {
   /// What the drive and the brake give to the link: behind friction and rotor, which are theirs.
   [[nodiscard]] double torque(std::size_t joint) const noexcept { return joints_[joint].torque; }
   [[nodiscard]] double effort(std::size_t joint) const noexcept { return joints_[joint].effort; }
-  /// Of the last link, in the axes of the base, m.
+  /// Of the last link, in the axes of the base, of one that floats in inertial ones, m.
   [[nodiscard]] std::span<const double, 3> tip_m() const noexcept;
+  /// w x y z.
+  [[nodiscard]] std::span<const double, 4> tip_orientation() const noexcept;
 
   /// At the end of the last step.
   [[nodiscard]] const Touched& touched() const noexcept { return touched_; }
+
+  /// Nothing holds its root link any more: it is at rest at the inertial origin, with all joints at 0. In words why not.
+  [[nodiscard]] std::expected<void, std::string> let_float();
+  /// What floats, and the state that its functions want.
+  [[nodiscard]] const FloatingBase& base() const noexcept { return base_; }
+  [[nodiscard]] FloatingBase& base() noexcept { return base_; }
+  [[nodiscard]] const mjModel& model() const noexcept { return *model_; }
+  [[nodiscard]] mjData& data() const noexcept { return *data_; }
+  /// It goes on from where it is with these: [rate; velocity] of its base, where that floats, and of its joints.
+  void set_in_motion(const std::array<double, 6>& base_twist, std::span<const double> velocities) noexcept;
+  [[nodiscard]] double kinetic_energy_j() const;
 
   /// Puts it there, at rest; in words why not: it would stand in an obstacle.
   [[nodiscard]] std::expected<void, std::string> place(std::span<const double> positions);
@@ -153,6 +166,7 @@ class MujocoRobot {
   std::vector<std::array<double, 3>> pulled_n_;  ///< each of them
   MujocoModel model_;
   MujocoData data_;
+  FloatingBase base_;
   Touched touched_;
   std::vector<double> mass_, inertia_;  ///< of the file, by bodies
   int tip_{0};

@@ -183,6 +183,10 @@ std::expected<MujocoSpec, std::string> MujocoSpec::make(std::string_view urdf, c
   }
   const auto leaf = std::ranges::find_if(
       carried, [&](const std::string& link) { return std::ranges::find(carrying, link) == carrying.end(); });
+  for (const Element& element : tree->children)
+    if (const std::string link = attribute(element, "name");
+        element.name == "link" && std::ranges::find(carried, link) == carried.end())
+      made.root_ = body_name(link);
   std::string text;
   write(*tree, text);
   std::array<char, 1000> why{};
@@ -204,6 +208,13 @@ std::expected<MujocoSpec, std::string> MujocoSpec::make(std::string_view urdf, c
   made.add_shapes(*tree, meshes);
   if (auto done = made.leave_out_pairs(); !done) return std::unexpected{std::move(done.error())};
   return made;
+}
+
+std::expected<void, std::string> MujocoSpec::let_float() {
+  if (floats_) return {};
+  if (auto done = FloatingBase::add_to(*spec_, root_); !done) return done;
+  floats_ = true;
+  return {};
 }
 
 void MujocoSpec::add_shapes(const Element& robot, const MeshSource& meshes) {

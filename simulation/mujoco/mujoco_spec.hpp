@@ -12,6 +12,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include "simulation/mujoco/floating_base.hpp"
 #include "simulation/mujoco/shapes.hpp"
 
 namespace hirosco::simulation {
@@ -46,6 +47,10 @@ class MujocoSpec {
   /// In the order of the file.
   [[nodiscard]] const std::vector<DrivenJoint>& joints() const noexcept { return joints_; }
   [[nodiscard]] std::size_t mimics() const noexcept { return mimics_; }
+  /// From now on nothing holds the root link (floating_base.hpp). In words why not.
+  [[nodiscard]] std::expected<void, std::string> let_float();
+  [[nodiscard]] bool floats() const noexcept { return floats_; }
+  [[nodiscard]] const std::string& root() const noexcept { return root_; }  ///< as MuJoCo calls it
   /// What of the file's shapes does not touch, each in words.
   [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return left_out_; }
   /// Loose bodies are the last of the model's bodies and joints, in their order here.
@@ -64,6 +69,8 @@ class MujocoSpec {
 
   std::unique_ptr<mjSpec, MujocoFree> spec_;
   std::vector<DrivenJoint> joints_;
+  std::string root_;
+  bool floats_{false};
   std::size_t mimics_{0};
   std::size_t pairs_left_out_{0};
   std::map<std::string, std::string> meshes_;  ///< octets by the names that MuJoCo is told

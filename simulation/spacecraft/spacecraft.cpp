@@ -52,21 +52,27 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
       told(wanted.error());
       continue;
     }
+    const auto world = whose_world(parts.mission, described);
+    if (world && *world != nullptr) wanted->settings.in_world_of = device((*world)->name);
+    if (!world || (*world != nullptr && wanted->settings.in_world_of == nullptr)) {
+      told(world ? "its world is not there" : world.error());
+      continue;
+    }
     wanted->settings.seed = described.seed * 1000 + parts.seed;
     if (!parts.realtime) wanted->settings.enable_limit = enable_limit_reduced;
-    auto device = make->second(flows_, wanted->address(), wanted->settings);
-    if (const auto plugged = device->plug(); !plugged) {
+    auto made = make->second(flows_, wanted->address(), wanted->settings);
+    if (const auto plugged = made->plug(); !plugged) {
       told(plugged.error().text);
       continue;
     }
-    for (const std::string& remark : device->remarks())
+    for (const std::string& remark : made->remarks())
       parts.observer.told(clock_.onboard(), "simulated device " + described.name + ": " + remark);
     // Settings of a simulated device are lines of its fault script: <Setting name="hand" value="wander"/>.
     for (const auto& [name, value, at] : described.settings)
-      if (const auto taken = device->fault(name + " " + value); !taken)
+      if (const auto taken = name == world_setting ? ok() : made->fault(name + " " + value); !taken)
         parts.observer.told(clock_.onboard(), "simulated device " + described.name + " does not take '" + name + " " +
                                                   value + "': " + taken.error().text);
-    devices_.push_back({&described, std::move(device)});
+    devices_.push_back({&described, std::move(made)});
   }
   if (parts.revives_after) {
     constexpr std::size_t octets = std::size_t{256} << 10;

@@ -61,16 +61,25 @@ class Lacking {
           hint);
   }
 
+  /// As a flight would make it: what it takes may depend on the files that it is given, and on what else is in its world.
   void settings(const descriptor::SimulatedDevice& device, const simulation::MakeDevice& make) {
-    // As a flight would make it: what it takes may depend on the files that it is given.
-    const auto wanted = simulation::device_arguments(mission_, device);
-    if (!wanted)
-      return add(device.at, "E0407", fmt::format("no simulated device {}: {}", device.name, wanted.error()), "");
     LocalFlows flows;
+    const auto none = [&](std::string_view why) {
+      add(device.at, "E0407", fmt::format("no simulated device {}: {}", device.name, why), "");
+    };
+    const auto world = simulation::whose_world(mission_, device);
+    if (!world) return none(world.error());
+    // What is wrong with the other one is told by itself.
+    const auto other = *world != nullptr ? made(**world, make, flows) : nullptr;
+    if (other)
+      for (const auto& setting : (*world)->settings) (void)other->fault(setting.name + " " + setting.value);
+    auto wanted = simulation::device_arguments(mission_, device);
+    if (!wanted) return none(wanted.error());
+    wanted->settings.in_world_of = other.get();
     const auto played = make(flows, wanted->address(), wanted->settings);
-    if (const auto plugged = played->plug(); !plugged)
-      return add(device.at, "E0407", fmt::format("no simulated device {}: {}", device.name, plugged.error().text), "");
+    if (const auto plugged = played->plug(); !plugged) return none(plugged.error().text);
     for (const auto& [name, value, at] : device.settings) {
+      if (name == simulation::world_setting) continue;
       const auto taken = played->fault(name + " " + value);
       // What is not available in this world may be in the device's own.
       if (taken || (flown_as_ != FlownAs::Simulation && taken.error().code == ErrorCode::Unavailable)) continue;
@@ -82,6 +91,16 @@ class Lacking {
   [[nodiscard]] std::vector<Diagnostic> take() { return std::move(found_); }
 
  private:
+  /// Null: it cannot be.
+  [[nodiscard]] std::unique_ptr<simulation::SimulatedDevice> made(const descriptor::SimulatedDevice& device,
+                                                                  const simulation::MakeDevice& make,
+                                                                  FlowFactory& flows) const {
+    auto wanted = simulation::device_arguments(mission_, device);
+    if (!wanted) return nullptr;
+    auto device_made = make(flows, wanted->address(), wanted->settings);
+    return device_made->plug() ? std::move(device_made) : nullptr;
+  }
+
   void add(descriptor::Location at, const char* code, std::string message, std::string hint) {
     found_.push_back({mission_.file, at, code, std::move(message), std::move(hint), 1});
   }

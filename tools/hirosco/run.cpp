@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
@@ -155,8 +156,32 @@ struct Locks {
   start.arguments.insert(start.arguments.end(),
                          {"--seed", std::to_string(device.seed), "--control", (folder / device.name).string()});
   for (const auto& [name, value, at] : device.settings)
-    start.arguments.insert(start.arguments.end(), {"--set", name + "=" + value});
+    if (name != simulation::world_setting) start.arguments.insert(start.arguments.end(), {"--set", name + "=" + value});
   return start;
+}
+
+/// One process for each world, with all that are in it. False: one cannot be, which was printed.
+[[nodiscard]] bool start_devices(const descriptor::Mission& mission, const std::filesystem::path& folder,
+                                 std::vector<ProcessStart>& starts) {
+  std::map<std::string_view, std::size_t> worlds;
+  for (const auto& device : mission.devices) {
+    auto start = device_start(mission, device, folder);
+    if (!start) return false;
+    const auto world = simulation::whose_world(mission, device);
+    if (!world) {
+      fmt::print(stderr, "hirosco run: no simulated device {}: {}\n", device.name, world.error());
+      return false;
+    }
+    if (*world != nullptr) {
+      auto& together = starts[worlds.at((*world)->name)].arguments;
+      together.emplace_back(simulation::beside_word);
+      together.insert(together.end(), start->arguments.begin(), start->arguments.end());
+      continue;
+    }
+    worlds[device.name] = starts.size();
+    starts.push_back(std::move(*start));
+  }
+  return true;
 }
 
 }  // namespace
@@ -190,11 +215,7 @@ int run(const RunOptions& options) {
   fix_epoch();
   supervisor::KeeperPlan plan;
   plan.run_for = options.run_for;
-  for (const auto& device : mission->devices) {
-    auto start = device_start(*mission, device, folder);
-    if (!start) return exit_environment;
-    plan.devices.push_back(std::move(*start));
-  }
+  if (!start_devices(*mission, folder, plan.devices)) return exit_environment;
   const bool wants_screen = !options.plain && !options.json && !options.quiet &&
                             !find_program("hirosco-screen").empty() && terminal::FlightScreen::possible();
   // Not everybody builds it, and no flight needs it but the tour.

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "robotics/dynamics/dynamics.hpp"
+#include "subsystems/robot_arm/control/joints.hpp"
+
+namespace hirosco::robot_arm {
+
+/// What a robot that floats without momentum does when its joints move: the base gives way, so that momentum stays nothing. Columns are
+/// joints; what is told of the tool has inertial axes, of the base its own.
+/// Realtime: wait-free after construction. Thread: one.
+class FloatingModel {
+ public:
+  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, max_joints>;
+  using Twists = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, max_joints>;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_joints, max_joints>;
+
+  /// `model` must outlive this.
+  FloatingModel(const robotics::Model& model, robotics::FrameId tip);
+
+  /// Where the base is, and the joints. OutOfRange: the robot as a whole has no inertia against a rotation.
+  [[nodiscard]] Result<> update(const robotics::Pose& base, const JointVector& position) noexcept;
+
+  [[nodiscard]] const robotics::Pose& tool() const noexcept { return tool_; }
+  /// Generalised Jacobian: from joint velocities to the tool's twist [ω; v] when nothing holds the base.
+  [[nodiscard]] const Twists& tool_of_free() const noexcept { return free_; }
+  /// The tool's Jacobian of a base that stands.
+  [[nodiscard]] const Twists& tool_of_fixed() const noexcept { return fixed_; }
+  /// From joint velocities to the base's twist [ω; v] of its origin, in its axes.
+  [[nodiscard]] const Twists& base() const noexcept { return base_; }
+  /// What torques make what accelerations of the joints when nothing holds the base.
+  [[nodiscard]] const Square& inertia() const noexcept { return inertia_; }
+  /// How well joints can move the tool and leave the base unturned: the smallest singular value of both together, base rates counted tenfold.
+  [[nodiscard]] double conditioning() const noexcept;
+
+ private:
+  const robotics::Model* model_;
+  robotics::FrameId tip_;
+  robotics::Dynamics dynamics_;
+  robotics::State state_;
+  robotics::MassMatrix mass_;
+  robotics::Jacobian jacobian_;
+  robotics::Pose tool_;
+  Twists free_, fixed_, base_;
+  Square inertia_;
+};
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/floating/tool_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+namespace hirosco::robot_arm {
+namespace {
+
+constexpr double error_per_s = 1;  ///< of the tool
+constexpr double attitude_per_s = 0.5;  ///< of the base
+constexpr double velocity_per_s = 40;  ///< of joints
+/// Damping of least squares: of a matrix without base rates, and with them, whose rows are small.
+constexpr double tool_damping = 1e-3, base_damping = 1e-4;
+
+[[nodiscard]] JointVector least_squares(const FloatingModel::Twists& rows, const Vector6& wanted,
+                                        double damping) noexcept {
+  robotics::Matrix6 square;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) square(i, j) = rows.row(i).dot(rows.row(j)) + (i == j ? damping * damping : 0);
+  const Vector6 weights = Eigen::LDLT<robotics::Matrix6>{square}.solve(wanted);
+  JointVector rates = JointVector::Zero(rows.cols());
+  for (int i = 0; i < 6; ++i) rates += weights[i] * rows.row(i).transpose();
+  return rates;
+}
+
+}  // namespace
+
+Vector3 rotation_between(const robotics::Matrix3& is, const robotics::Matrix3& wanted) noexcept {
+  robotics::Quaternion off{robotics::Matrix3{wanted * is.transpose()}};
+  if (off.w() < 0) off.coeffs() = -off.coeffs();
+  const double sine = off.vec().norm();
+  if (sine < 1e-12) return 2 * off.vec();
+  return 2 * std::atan2(sine, off.w()) / sine * off.vec();
+}
+
+JointVector tool_rates(ToolLaw law, const FloatingModel& model, const ToolGoal& goal, const robotics::Matrix3& base,
+                       const robotics::Matrix3& base_kept) noexcept {
+  Vector6 wanted;
+  wanted.tail<3>() = goal.velocity_m_s + error_per_s * (goal.pose.position - model.tool().position);
+  wanted.head<3>() = error_per_s * rotation_between(model.tool().rotation, goal.pose.rotation);
+  if (law != ToolLaw::AttitudeHold)
+    return least_squares(law == ToolLaw::FixedBase ? model.tool_of_fixed() : model.tool_of_free(), wanted,
+                         tool_damping);
+  FloatingModel::Twists both = model.tool_of_free();
+  both.topRows<3>() = model.base().topRows<3>();
+  wanted.head<3>() = attitude_per_s * (base.transpose() * rotation_between(base, base_kept));
+  return least_squares(both, wanted, base_damping);
+}
+
+void slow_down(JointVector& rates, Bounds bounds) noexcept {
+  double share = 1;
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const double rate = std::abs(rates[static_cast<Eigen::Index>(i)]);
+    if (rate > bounds[i].motion.velocity) share = std::min(share, bounds[i].motion.velocity / rate);
+  }
+  if (rates.allFinite()) rates *= share;
+  else rates.setZero();
+}
+
+JointVector joint_torque(const FloatingModel& model, const JointVector& wanted_rates, const JointVector& rates,
+                         Bounds bounds) noexcept {
+  const JointVector off = velocity_per_s * (wanted_rates - rates);
+  JointVector torque = JointVector::Zero(off.size());
+  for (Eigen::Index i = 0; i < off.size(); ++i) {
+    const double value = model.inertia().row(i).dot(off);
+    const double effort = bounds[static_cast<std::size_t>(i)].effort;
+    torque[i] = std::isfinite(value) ? std::clamp(value, -effort, effort) : 0;
+  }
+  return torque;
+}
+
+Course course(double t_s, double duration_s) noexcept {
+  if (!(t_s < duration_s)) return {};
+  const double x = std::max(0.0, t_s / duration_s);
+  return {x * x * x * (10 + x * (6 * x - 15)), 30 * x * x * (1 - x) * (1 - x) / duration_s};
+}
+
+}  // namespace hirosco::robot_arm

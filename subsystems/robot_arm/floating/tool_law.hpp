@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "subsystems/robot_arm/floating/floating_model.hpp"
+
+namespace hirosco::robot_arm {
+
+/// What the joints of an arm on a base that floats keep to.
+enum class ToolLaw : std::uint8_t {
+  FixedBase,  ///< nothing of the tool; a line of the tool counts on a base that stands
+  InertialTrack,  ///< the tool's pose in inertial axes; the base turns as it will
+  AttitudeHold,  ///< the tool's place, and no rotation of the base
+};
+
+/// Below it AttitudeHold is refused: joints would have to run.
+inline constexpr double least_conditioning = 0.05;
+
+/// Where the tool is to be, and how fast, in inertial axes.
+struct ToolGoal {
+  robotics::Pose pose;
+  Vector3 velocity_m_s{Vector3::Zero()};
+};
+
+/// By which rotation, rad, `is` is behind `wanted`, in the axes in which both stand.
+[[nodiscard]] Vector3 rotation_between(const robotics::Matrix3& is, const robotics::Matrix3& wanted) noexcept;
+
+/// Joint velocities by damped least squares. `base_kept`: the attitude that AttitudeHold keeps, `base`: the one that is.
+/// Realtime: wait-free.
+[[nodiscard]] JointVector tool_rates(ToolLaw law, const FloatingModel& model, const ToolGoal& goal,
+                                     const robotics::Matrix3& base, const robotics::Matrix3& base_kept) noexcept;
+
+/// All slower by one factor, so that none is faster than its own. What is no number becomes a stop.
+void slow_down(JointVector& rates, Bounds bounds) noexcept;
+
+/// What makes joints as fast as that, held to their efforts.
+[[nodiscard]] JointVector joint_torque(const FloatingModel& model, const JointVector& wanted_rates,
+                                       const JointVector& rates, Bounds bounds) noexcept;
+
+/// From rest to rest in so long, without a step in acceleration: share of the way, and its rate.
+struct Course {
+  double share{1};
+  double per_s{0};
+};
+[[nodiscard]] Course course(double t_s, double duration_s) noexcept;
+/// The fastest rate of a course.
+inline constexpr double fastest_of_course = 1.875;
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "hirosco/descriptor/read/read.hpp"
+#include "missions/servicer/scenarios/servicer_craft.hpp"
+
+/// The mission servicer on virtual time, judged by what its world tells. Its figures are the report's (`hirosco report servicer`); here
+/// is what must not break between two of them.
+namespace hirosco::simulation {
+namespace {
+
+const std::filesystem::path mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/servicer/mission.xml";
+
+constexpr double away_m = 0.02, within_s = 2;
+
+[[nodiscard]] double distance(const ServicerCraft::Place& one, const ServicerCraft::Place& other) {
+  return std::hypot(one[0] - other[0], one[1] - other[1], one[2] - other[2]);
+}
+
+TEST(ServicerPage, ShowsTheRobotThatFlies) {
+  const auto text = [](const char* file) {
+    return descriptor::file_system()(std::filesystem::path{HIROSCO_SOURCE_DIR} / file).value();
+  };
+  EXPECT_EQ(text("missions/servicer/page/servicer.urdf"), text("subsystems/robot_arm/floating/servicer.urdf"));
+}
+
+/// Wheels and joints are never commanded together, whatever the ground asks for.
+TEST(ServicerModes, NeverHaveWheelsAndJointsTogetherAndLetNobodyBringUpEitherByHand) {
+  const auto reading = descriptor::read_mission(mission, descriptor::file_system());
+  ASSERT_TRUE(reading.value);
+  for (const auto& mode : reading.value->modes) {
+    const auto has = [&](std::string_view subsystem, std::string_view configuration) {
+      return std::ranges::any_of(mode.commission, [&](const auto& each) {
+        return each.subsystem == subsystem && (configuration.empty() || each.configuration == configuration);
+      });
+    };
+    EXPECT_FALSE(has("AOCS", "STATION_KEEPING") && has("MCS", "")) << mode.name;
+    for (const auto& permit : mode.permits)
+      for (const char* function : {"SET_STATE", "CONFIGURE", "ENTER_MODE"})
+        EXPECT_EQ(std::ranges::count(permit.functions, std::string{function}), 0) << mode.name << ' ' << function;
+  }
+}
+
+TEST(Servicer, TheSupervisorRefusesWhoeverWouldActBesideTheOther) {
+  ServicerCraft craft{{.mission = mission, .mode = "track"}};
+  for (const char* function : {"CONFIGURE", "SET_STATE"}) {
+    const auto outcome = craft.craft().command("AOCS", function, {1.0});
+    EXPECT_FALSE(outcome.completed) << function;
+  }
+  EXPECT_EQ(craft.flight().state("AOCS"), State::Operational);
+  EXPECT_EQ(craft.craft().vital("AOCS")->configuration, 2) << "FREE_FLOAT";
+  // The whole craft may be brought there: then the arm is gone before the wheels act.
+  bool both = false;
+  craft.craft().on_cycle([&](std::string_view, TimePoint) {
+    const bool wheels =
+        craft.flight().state("AOCS") == State::Operational && craft.craft().vital("AOCS")->configuration == 1;
+    both = both || (wheels && craft.flight().state("MCS") == State::Operational);
+  });
+  EXPECT_TRUE(craft.flight().set_mode("coast").completed) << craft.flight().story().text();
+  EXPECT_FALSE(both);
+  EXPECT_EQ(craft.flight().state("MCS"), State::Offline);
+}
+
+TEST(Servicer, MovesItsToolInInertialAxesWhileItsBaseGivesWay) {
+  ServicerCraft craft{{.mission = mission, .mode = "track"}};
+  const auto from = craft.tool_m();
+  auto goal = from;
+  goal[0] += away_m;
+  const auto outcome = craft.craft().command("MCS", "MOVE_TOOL", {away_m, 0.0, 0.0, within_s}, 20s);
+  EXPECT_TRUE(outcome.completed) << craft.flight().story().text();
+  std::cout << "  off its goal: " << 1e3 * distance(craft.tool_m(), goal) << " mm, base turned by " << craft.base_deg()
+            << " deg\n";
+  EXPECT_LT(distance(craft.tool_m(), goal), 1.5e-3);
+  EXPECT_GT(craft.base_deg(), 0.1);
+  EXPECT_LT(craft.momentum_n_m_s(), 1e-6);
+}
+
+TEST(Servicer, MovesItsToolAndLeavesItsBaseUnturned) {
+  ServicerCraft craft{{.mission = mission, .mode = "approach"}};
+  const auto from = craft.tool_m();
+  EXPECT_TRUE(craft.craft().command("MCS", "MOVE_TOOL", {0.0, 0.0, -away_m, within_s}, 20s).completed);
+  EXPECT_NEAR(distance(craft.tool_m(), from), away_m, 2e-3);
+  EXPECT_LT(craft.base_deg(), 0.01);
+}
+
+/// The design's own stretched pose: the smallest singular value is 0.014.
+TEST(Servicer, DoesNotHoldItsAttitudeFromAStretchedPosture) {
+  ServicerCraft craft{{.mission = mission, .mode = "approach", .posture = "0.3,0.35,0.2,1.1,-0.3,0.5,0.1"}};
+  craft.run(0.1);
+  EXPECT_NE(craft.flight().inhibited("MCS"), 0u);
+  EXPECT_TRUE(craft.flight().story().has("CONDITIONING_LOW"));
+  EXPECT_FALSE(craft.craft().command("MCS", "MOVE_TOOL", {away_m, 0.0, 0.0, within_s}).completed);
+}
+
+TEST(Servicer, HandsItsStationOverWhenTheArmsControlDiesInMotion) {
+  ServicerCraft craft{{.mission = mission, .mode = "track"}};
+  craft.begin("MOVE_TOOL", {away_m, 0.0, 0.0, within_s});
+  craft.run(1);
+  craft.craft().kill("MCS");
+  EXPECT_TRUE(craft.craft().run_until(
+      [&] {
+        return craft.flight().state("AOCS") == State::Operational && craft.craft().vital("AOCS")->configuration == 1;
+      },
+      1s))
+      << craft.flight().story().text();
+  EXPECT_LT(craft.fastest_joint_rad_s(), 1e-3) << "brakes";
+  const double turned = craft.base_deg();
+  craft.run(10);
+  EXPECT_LT(craft.base_deg(), turned);
+  EXPECT_EQ(craft.flight().inhibited("AOCS"), 0u);
+  EXPECT_LT(craft.momentum_n_m_s(), 1e-6) << "the wheels have what the base gave";
+}
+
+TEST(Servicer, FliesTheSameOctetsFromTheSameSeed) {
+  const auto flown = [](std::uint64_t seed) {
+    ServicerCraft craft{{.mission = mission, .seed = seed, .mode = "track"}};
+    craft.begin("MOVE_TOOL", {away_m, 0.0, 0.0, within_s});
+    craft.run(1);
+    const auto& robot = craft.robot();
+    std::vector<double> all(robot.data().qpos, robot.data().qpos + robot.model().nq);
+    all.insert(all.end(), robot.data().qvel, robot.data().qvel + robot.model().nv);
+    return all;
+  };
+  const auto first = flown(1);
+  EXPECT_EQ(flown(1), first);
+  EXPECT_NE(flown(2), first) << "noise of the star tracker";
+}
+
+}  // namespace
+}  // namespace hirosco::simulation
