@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // An array that leads joints, one row for each: its name, its own range with where it stands, where it is wanted by a slider or as a number.
+import {useState} from 'preact/hooks';
 import {fixed_text} from '../format.js';
 import {html} from '../html.js';
 import {slow, values} from '../store.js';
+import {number_in} from './numbers.js';
 
 const digits = 3;
 const within = ({lower, upper}, value) => Math.max(lower, Math.min(upper, value));
@@ -29,6 +31,13 @@ function Track({joint, wanted}) {
 
 export function JointRows({argument, joints, text, on_text}) {
   slow.value;
+  // What is being typed stays while values come: each would draw the number anew.
+  const [typing, set_typing] = useState(null);
+  const take = (i, typed) => {
+    set_typing(null);
+    const value = number_in(typed);
+    if (Number.isFinite(value)) set(i, value);
+  };
   const wanted = wanted_of(joints, text), empty = String(text ?? '').trim() === '';
   const set = (i, value) => on_text(wanted.map((other, k) => k === i ? value : other).join(' '));
   return html`<div class="joints" role="group" aria-label=${`${argument.name} by joints`}>
@@ -37,8 +46,8 @@ export function JointRows({argument, joints, text, on_text}) {
       return html`<div class=${`joint ${beyond ? 'wrong' : empty ? 'none' : ''}`} key=${joint.name} title=${`${joint.name}: ${fixed_text(joint.lower, 2)} … ${fixed_text(joint.upper, 2)}`}>
         <span>${joint.name}</span><span class="slide"><${Track} joint=${joint} wanted=${wanted[i]} /><input type="range" data-test=${`slide-${argument.name}-${i}`} aria-label=${`${joint.name} by slider`} min=${joint.lower} max=${joint.upper}
           step="any" value=${within(joint, wanted[i])} onInput=${(event) => set(i, rounded(joint, Number(event.currentTarget.value)))} /></span>
-        <input type="text" inputmode="decimal" data-test=${`joint-${argument.name}-${i}`} aria-label=${joint.name} aria-invalid=${beyond} autocomplete="off" value=${empty ? '' : String(wanted[i])}
-          placeholder=${fixed_text(wanted[i], digits)} onChange=${(event) => { const value = Number.parseFloat(event.currentTarget.value.replace('−', '-').replace(',', '.')); if (Number.isFinite(value)) set(i, value); }} />
+        <input type="text" inputmode="decimal" data-test=${`joint-${argument.name}-${i}`} aria-label=${joint.name} aria-invalid=${beyond} autocomplete="off" value=${typing?.i === i ? typing.text : empty ? '' : String(wanted[i])}
+          placeholder=${fixed_text(wanted[i], digits)} onInput=${(event) => set_typing({i, text: event.currentTarget.value})} onChange=${(event) => take(i, event.currentTarget.value)} onBlur=${() => set_typing(null)} />
         ${beyond ? html`<em>beyond its limits, ${fixed_text(joint.lower, 2)} … ${fixed_text(joint.upper, 2)}</em>` : null}</div>`;
     })}
     <p class="all">${joints[0].parameter ? html`<button type="button" class="link" data-test=${`here-${argument.name}`} onClick=${() => on_text(joints.map((joint) => rounded(joint, stands(joint) ?? 0)).join(' '))}>where it stands</button>` : null}
