@@ -54,12 +54,12 @@ TEST(Servicer, TheSupervisorRefusesWhoeverWouldActBesideTheOther) {
     EXPECT_FALSE(outcome.completed) << function;
   }
   EXPECT_EQ(craft.flight().state("AOCS"), State::Operational);
-  EXPECT_EQ(craft.craft().vital("AOCS")->configuration, 2) << "FREE_FLOAT";
+  EXPECT_EQ(craft.craft().vital("AOCS")->configuration.load(), 2u) << "FREE_FLOAT";
   // The whole craft may be brought there: then the arm is gone before the wheels act.
   bool both = false;
   craft.craft().on_cycle([&](std::string_view, TimePoint) {
     const bool wheels =
-        craft.flight().state("AOCS") == State::Operational && craft.craft().vital("AOCS")->configuration == 1;
+        craft.flight().state("AOCS") == State::Operational && craft.craft().vital("AOCS")->configuration.load() == 1;
     both = both || (wheels && craft.flight().state("MCS") == State::Operational);
   });
   EXPECT_TRUE(craft.flight().set_mode("coast").completed) << craft.flight().story().text();
@@ -105,7 +105,8 @@ TEST(Servicer, HandsItsStationOverWhenTheArmsControlDiesInMotion) {
   craft.craft().kill("MCS");
   EXPECT_TRUE(craft.craft().run_until(
       [&] {
-        return craft.flight().state("AOCS") == State::Operational && craft.craft().vital("AOCS")->configuration == 1;
+        return craft.flight().state("AOCS") == State::Operational &&
+               craft.craft().vital("AOCS")->configuration.load() == 1;
       },
       1s))
       << craft.flight().story().text();

@@ -261,7 +261,7 @@ struct HandedOver {
     const double now_s = craft.time_s() - died_s;
     if (brakes) seen.stood_deg = std::max(seen.stood_deg, craft.base_deg());
     if (seen.taken_s == never && craft.flight().state("AOCS") == State::Operational &&
-        craft.craft().vital("AOCS")->configuration == 1) {
+        craft.craft().vital("AOCS")->configuration.load() == 1) {
       seen.taken_s = now_s;
       brakes = false;
     }

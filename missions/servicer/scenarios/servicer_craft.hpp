@@ -29,7 +29,7 @@ class ServicerCraft {
   [[nodiscard]] Flight& flight() noexcept { return flight_; }
   [[nodiscard]] Spacecraft& craft() noexcept { return flight_.craft(); }
   void run(double seconds);
-  [[nodiscard]] double time_s() { return seconds(craft().now()); }
+  [[nodiscard]] double time_s() { return seconds(craft().now() - TimePoint{}); }
   /// From ground; returns when it is under way, with the time of that. Throws std::runtime_error when it does not begin within a second.
   double begin(std::string_view function, const std::vector<Value>& arguments);
   /// After each millisecond of the arm's control; where its process is gone, of nobody's.
