@@ -39,7 +39,7 @@ void LentDevice::write_sensors(OctetWriter& payload) noexcept {
 }
 
 Result<> LentDevice::do_fault(const Words& words) {
-  if (words[0] != "world")
+  if (words[0] != "borrow")
     return fail(ErrorCode::InvalidArgument, "not known here: its world is that of the device that lends it its joints");
   HIROSCO_TRY(words.expect(3));
   HIROSCO_TRY_LET(const double joints, words.number(2, 1, static_cast<double>(most_lent_joints)));

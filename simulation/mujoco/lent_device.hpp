@@ -16,7 +16,7 @@ namespace hirosco::simulation {
 /// numbers, which stops whoever looks at them.
 /// Frames as of the device with the world: POSITION, VELOCITY, TORQUE DOUBLE[n] to the subsystem, TORQUE DOUBLE[n] from it.
 /// Setting, needed:
-///   world NAME JOINTS   joints that the other device's line lend_NAME names, as many
+///   borrow NAME JOINTS   joints that the other device's line lend_NAME names, as many
 class LentDevice final : public SimulatedDevice {
  public:
   LentDevice(FlowFactory& flows, FlowAddress address, const Settings& settings = {});

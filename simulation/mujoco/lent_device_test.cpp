@@ -28,7 +28,7 @@ struct LentDeviceTest : ::testing::Test {
 
   void SetUp() override {
     ASSERT_TRUE(device.plug());
-    ASSERT_TRUE(device.fault("world part 2"));
+    ASSERT_TRUE(device.fault("borrow part 2"));
     flow = flows.open(address, FlowSide::Subsystem).value();
   }
   void world_tells(double position) { world.tell({.position = {position, 2}, .velocity = {3, 4}, .torque = {5, 6}}); }
@@ -89,7 +89,7 @@ TEST_F(LentDeviceTest, ItsOwnWatchdogStopsItsJoints) {
 }
 
 TEST_F(LentDeviceTest, HasOneWorldAndSaysWhatItDoesNotTake) {
-  for (const char* line : {"world part 2", "world", "world part 0", "world part 17", "posture 1,2"})
+  for (const char* line : {"borrow part 2", "borrow", "borrow part 0", "borrow part 17", "posture 1,2"})
     EXPECT_FALSE(device.fault(line)) << line;
 }
 

@@ -87,7 +87,7 @@ TEST(InterfacePages, VitalPage) {
                                  {inhibited_by_author, "author"},
                                  {inhibited_by_failure, "failure"},
                                  {inhibited_by_supervisor, "supervisor"},
-                                 {inhibited_by_fall_back, "fall_back"}});
+                                 {inhibited_while_awaited, "fall_back"}});
   const CheckedWord three{3};
   std::uint32_t raw;
   std::memcpy(&raw, &three, sizeof raw);

@@ -89,6 +89,13 @@ void LinkInputSlot::attach(AttachedLink* link) noexcept {
   jitter_ns_ = 0.0;
 }
 
+bool LinkInputSlot::awaits_first(bool controlling) noexcept {
+  came_ = controlling && (came_ || port_->valid_);
+  if (!controlling) awaited_cycles_ = 0;
+  if (!controlling || came_ || link_ == nullptr || link_->producer_cycles_per_sample <= 1) return false;
+  return awaited_cycles_++ < age_limit_ * link_->producer_cycles_per_sample;
+}
+
 void AttachedLink::count_in(Duration consumer_period) noexcept {
   const auto ratio = agreement.producer_period / std::max(consumer_period, Duration{1});
   producer_cycles_per_sample = static_cast<std::uint32_t>(std::max<std::int64_t>(ratio, 1));

@@ -79,6 +79,9 @@ class LinkInputSlot {
   }
   /// Too old, reported faulty or absent: what a required set must not be while actuators move.
   [[nodiscard]] bool stale() const noexcept { return !port_->valid_; }
+  /// A slower producer has not had its turn yet since control began: no good sample came, and for no longer than one may be old.
+  /// Once in each cycle, after read().
+  [[nodiscard]] bool awaits_first(bool controlling) noexcept;
   /// Its producer or the supervisor has ended it in order: no reason for an alarm.
   [[nodiscard]] bool ended() const noexcept { return link_ == nullptr || port_->status_ == LinkStatus::Stopping; }
 
@@ -90,6 +93,8 @@ class LinkInputSlot {
   const descriptor::Requires* terms_;
   LinkInputPort* port_;
   std::uint32_t age_limit_;
+  std::uint32_t awaited_cycles_{0};
+  bool came_{false};  ///< a good one, since control began
   AttachedLink* link_{nullptr};
   std::optional<Duration> newest_latency_;
   Duration latency_before_{};

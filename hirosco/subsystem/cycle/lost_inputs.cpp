@@ -14,25 +14,30 @@
 namespace hirosco {
 
 void CycleLoop::read_inputs(TimePoint started, bool counts) noexcept {
+  // Passes by itself: with the first answer of a fall-back, or the first good sample of a slower producer, which are no old data.
+  inhibited_ &= ~static_cast<std::uint32_t>(inhibited_while_awaited);
   for (std::size_t i = 0; i < plan_.inputs.size(); ++i) {
     LinkInputSlot& input = plan_.inputs[i];
     input.read(started, counts);
+    const bool inhibits = input.terms().missing == descriptor::MissingPolicy::Inhibit;
+    if (input.awaits_first(controlling())) {
+      if (inhibits) inhibit(inhibited_while_awaited);
+      continue;
+    }
     const bool stale = controlling() && input.stale() && (input.attached() || input.terms().required);
-    if (stale && input.terms().missing == descriptor::MissingPolicy::Inhibit) inhibit(inhibited_by_link);
+    if (stale && inhibits) inhibit(inhibited_by_link);
     if (stale && !input.ended() && input_was_stale_[i] == 0) {
       const double age = input.port()->age_cycles();
       raise(plan_.input_stale_events[i], {&age, 1});
     }
     input_was_stale_[i] = stale ? 1 : 0;
   }
-  // Passes by itself: with the first answer of the fall-back, which is no old data.
-  inhibited_ &= ~static_cast<std::uint32_t>(inhibited_by_fall_back);
   awaits_fall_back_ = false;
   for (std::size_t i = 0; i < plan_.devices.size(); ++i) {
     DeviceSlot& device = plan_.devices[i];
     device.read(controlling(), counts);
     awaits_fall_back_ = awaits_fall_back_ || device.awaits();
-    if (device.holds_back()) inhibit(inhibited_by_fall_back);
+    if (device.holds_back()) inhibit(inhibited_while_awaited);
     else if (!device.alive() && controlling()) inhibit(inhibited_by_device);
     if (device.just_fell_back()) {
       const std::array arguments{static_cast<double>(device.loss().reason), static_cast<double>(device.left()),

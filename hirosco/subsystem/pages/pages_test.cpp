@@ -60,9 +60,9 @@ TEST(VitalPage, AsItIsMadeTellsOfNothing) {
 }
 
 TEST(VitalPage, HasABitOfItsOwnForEachReasonToInhibit) {
-  constexpr std::array reasons{inhibited_by_stop,     inhibited_by_link,    inhibited_by_device,
-                               inhibited_by_author,   inhibited_by_failure, inhibited_by_supervisor,
-                               inhibited_by_fall_back};
+  constexpr std::array reasons{inhibited_by_stop,      inhibited_by_link,    inhibited_by_device,
+                               inhibited_by_author,    inhibited_by_failure, inhibited_by_supervisor,
+                               inhibited_while_awaited};
   for (std::size_t i = 0; i < reasons.size(); ++i) EXPECT_EQ(reasons[i], 1u << i) << "ground reads them as numbers";
 }
 

@@ -147,7 +147,7 @@ TEST_F(FallBackStates, WhileAFallBackHasNotAnsweredNoSampleGoesOutAndTheActuator
   lamp_speaks = false;
   int sent = 0;
   while (craft.inhibited() == 0 && sent < 50) sent += cycle() ? 1 : 0;
-  EXPECT_EQ(craft.inhibited(), inhibited_by_fall_back);
+  EXPECT_EQ(craft.inhibited(), inhibited_while_awaited);
   EXPECT_EQ(craft.heard(fell_back), 0) << "told with the next step of the service loop";
   EXPECT_FALSE(cycle());
   EXPECT_EQ(craft.heard(fell_back), 1);

@@ -61,7 +61,12 @@ using Vector = FloatingBase::Vector;
   const auto file = settings.mission.parent_path() / "page/servicer.urdf";
   const auto text = descriptor::file_system()(file);
   if (!text) return std::unexpected{file.string() + " " + text.error().text};
-  auto robot = MujocoRobot::make(*text);
+  // In a minute joints turn farther than their ranges: the design's tumble has no stops, which would take energy.
+  std::string without_stops = *text;
+  constexpr std::string_view with_range = "type=\"revolute\"";
+  for (auto at = without_stops.find(with_range); at != std::string::npos; at = without_stops.find(with_range, at))
+    without_stops.replace(at, with_range.size(), "type=\"continuous\"");
+  auto robot = MujocoRobot::make(without_stops);
   if (!robot) return robot;
   robot->set_gravity(0, 0, 0);
   if (auto floats = robot->let_float(); !floats) return std::unexpected{floats.error()};

@@ -118,15 +118,15 @@ void FloatingArm::engage() noexcept {
   joints_goal_ = joints_from_ = measured_.position;
   tool_goal_ = {floating_->tool(), Vector3::Zero()};
   base_kept_ = base_orientation_.toRotationMatrix();
+  mean_left_m_.setZero();
   error_m_ = 0;
 }
 
-double FloatingArm::tool_error_m() const noexcept {
-  return (tool_goal_.pose.position - floating_->tool().position).norm();
-}
-
 void FloatingArm::advance() noexcept {
-  error_m_ += (tool_error_m() - error_m_) * (cycle_s_ / error_filter_s);
+  // The mean of the way that is left, not of its length: noise of the base's place has no direction.
+  const Vector3 left = tool_goal_.pose.position - floating_->tool().position;
+  mean_left_m_ += (left - mean_left_m_) * (cycle_s_ / error_filter_s);
+  error_m_ = mean_left_m_.norm();
   if (phase_ == Phase::Holds) {
     tool_goal_.velocity_m_s.setZero();
     return;

@@ -92,7 +92,6 @@ class FloatingArm final : public Subsystem {
   Outcome move_joint(const FunctionValues& values, const Call& call) noexcept;
   Outcome move_tool(const std::array<double, 3>& offset_m, double duration_s, const Call& call) noexcept;
   [[nodiscard]] bool tracks() const noexcept { return law_ != robot_arm::ToolLaw::FixedBase; }
-  [[nodiscard]] double tool_error_m() const noexcept;
 
   Parameter<CurrentValues> current_;
   Parameter<PoseValues> tool_values_, base_values_;
@@ -129,6 +128,7 @@ class FloatingArm final : public Subsystem {
   robot_arm::ToolGoal tool_goal_;
   robotics::Vector3 tool_from_{robotics::Vector3::Zero()}, tool_offset_{robotics::Vector3::Zero()};
   robotics::Matrix3 base_kept_{robotics::Matrix3::Identity()};
+  robotics::Vector3 mean_left_m_{robotics::Vector3::Zero()};
   double error_m_{0};  ///< of the tool, without the noise of single samples
   bool moving_{false};  ///< what is put out reaches the joints
   bool braked_{false};  ///< by BRAKE or a finding, until the next entry into Operational
