@@ -12,7 +12,7 @@ namespace {
 const std::string mass =
     R"(<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>)";
 const std::string limit = R"(<limit lower="0" upper="1" velocity="1" effort="1"/>)";
-/// An arm of one joint with two fingers, the second of which follows the first and is 0.2 m ahead.
+/// An arm of one joint with a pair of fingers, the second of which follows the first and is 0.2 m ahead.
 const std::string fingers =
     R"(<robot name="f"><link name="base"/><link name="arm">)" + mass + R"(<link name="left">)" + mass +
     R"(<link name="right">)" + mass + R"(<joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>)" +

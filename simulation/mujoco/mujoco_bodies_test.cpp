@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 using Brakes = MujocoRobot::Brakes;
 
-/// Two fingers of 0.2 kg that close along x towards each other: 0 is closed, at 0.1 each pad is 0.1 m from the middle.
+/// A pair of fingers of 0.2 kg that close along x towards each other: 0 is closed, at 0.1 each pad is 0.1 m from the middle.
 std::string fingers() {
   const auto finger = [](const char* name, const char* axis, const char* pad) {
     return std::string{"<link name='"} + name +
@@ -54,7 +54,7 @@ TEST(MujocoBodies, ABodyFallsFreelyAndRestsOnAPlane) {
   EXPECT_EQ(robot.touched().contacts, 0) << "what lies on the floor is nothing that touches the robot";
 }
 
-TEST(MujocoBodies, TwoFingersHoldABodyWithTheForceOfTheirDrivesWhileFrictionCarriesIt) {
+TEST(MujocoBodies, APairOfFingersHoldsABodyWithTheForceOfTheirDrivesWhileFrictionCarriesIt) {
   auto robot = MujocoRobot::make(fingers()).value();
   robot.set_gravity(0, 0, 0);
   ASSERT_TRUE(robot.place(open));

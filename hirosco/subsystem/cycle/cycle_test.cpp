@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "hirosco/subsystem/testing/probe.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
 
@@ -98,6 +100,64 @@ TEST(CycleInputs, ThatMayBeHeldWhenMissingAreReportedAndInhibitNothing) {
   EXPECT_EQ(rig.heard(hand_stale), 1);
   EXPECT_FALSE(probe.hand.valid());
   EXPECT_EQ(rig.inhibited(), 0u);
+}
+
+/// HAND at 100 Hz in a cycle of 1 ms: a sample may be 30 cycles old.
+struct SlowerHand : ::testing::Test {
+  Probe probe;
+  Rig rig{probe, probe_descriptor};
+  std::optional<Rig::Partner> hand;
+  const std::array<std::byte, 9> payload{};
+  void SetUp() override {
+    rig.bring_to(State::PreOperational, 2);
+    hand.emplace(rig.attach(1, Role::Consumer, "HAND", hand_set, nullptr, 10ms));
+  }
+  void come_under_control() {
+    ASSERT_EQ(rig.set_state_now(State::SafeOperational), "1 3 7");
+    ASSERT_EQ(rig.set_state_now(State::Operational), "1 3 7");
+  }
+};
+
+TEST_F(SlowerHand, HasItsTurnBeforeItIsMissedAndUntilThenNothingActs) {
+  come_under_control();
+  rig.cycle(5);
+  rig.service();
+  EXPECT_EQ(rig.inhibited(), inhibited_while_awaited);
+  EXPECT_EQ(rig.heard(hand_stale), 0);
+  hand->writer.write(payload, rig.clock.now(), LinkStatus::Valid);
+  rig.cycle(1);
+  rig.service();
+  EXPECT_EQ(rig.inhibited(), 0u);
+}
+
+TEST_F(SlowerHand, IsAwaitedTooWhereItsLastSampleIsOfBeforeItWasToBeReliedOn) {
+  hand->writer.write(payload, rig.clock.now(), LinkStatus::None);
+  rig.cycle(1);
+  come_under_control();
+  rig.cycle(5);
+  rig.service();
+  EXPECT_EQ(rig.inhibited(), inhibited_while_awaited);
+  EXPECT_EQ(rig.heard(hand_stale), 0);
+}
+
+TEST_F(SlowerHand, IsMissedWhenItsTurnHasPassed) {
+  come_under_control();
+  rig.cycle(31);
+  rig.service();
+  EXPECT_EQ(rig.inhibited(), inhibited_by_link);
+  EXPECT_EQ(rig.heard(hand_stale), 1);
+}
+
+TEST_F(SlowerHand, IsMissedAtOnceWhenItWasThereAndSaysThatItFails) {
+  hand->writer.write(payload, rig.clock.now(), LinkStatus::Valid);
+  rig.cycle(1);
+  come_under_control();
+  rig.cycle(1);
+  hand->writer.write(payload, rig.clock.now(), LinkStatus::Fault);
+  rig.cycle(1);
+  rig.service();
+  EXPECT_EQ(rig.inhibited(), inhibited_by_link);
+  EXPECT_EQ(rig.heard(hand_stale), 1);
 }
 
 TEST(CycleInputs, ThatAreNotRequiredInhibitOnlyOnceTheyAreAttached) {
