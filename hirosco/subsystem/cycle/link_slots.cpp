@@ -89,11 +89,13 @@ void LinkInputSlot::attach(AttachedLink* link) noexcept {
   jitter_ns_ = 0.0;
 }
 
-bool LinkInputSlot::awaits_first(bool controlling) noexcept {
+bool LinkInputSlot::awaits_first(bool controlling, bool counts) noexcept {
   came_ = controlling && (came_ || port_->valid_);
   if (!controlling) awaited_cycles_ = 0;
   if (!controlling || came_ || link_ == nullptr || link_->producer_cycles_per_sample <= 1) return false;
-  return awaited_cycles_++ < age_limit_ * link_->producer_cycles_per_sample;
+  if (awaited_cycles_ >= age_limit_ * link_->producer_cycles_per_sample) return false;
+  if (counts) ++awaited_cycles_;
+  return true;
 }
 
 void AttachedLink::count_in(Duration consumer_period) noexcept {

@@ -80,8 +80,8 @@ class LinkInputSlot {
   /// Too old, reported faulty or absent: what a required set must not be while actuators move.
   [[nodiscard]] bool stale() const noexcept { return !port_->valid_; }
   /// A slower producer has not had its turn yet since control began: no good sample came, and for no longer than one may be old.
-  /// Once in each cycle, after read().
-  [[nodiscard]] bool awaits_first(bool controlling) noexcept;
+  /// Once in each cycle, after read(); `counts` as there.
+  [[nodiscard]] bool awaits_first(bool controlling, bool counts) noexcept;
   /// Its producer or the supervisor has ended it in order: no reason for an alarm.
   [[nodiscard]] bool ended() const noexcept { return link_ == nullptr || port_->status_ == LinkStatus::Stopping; }
 

@@ -20,7 +20,7 @@ void CycleLoop::read_inputs(TimePoint started, bool counts) noexcept {
     LinkInputSlot& input = plan_.inputs[i];
     input.read(started, counts);
     const bool inhibits = input.terms().missing == descriptor::MissingPolicy::Inhibit;
-    if (input.awaits_first(controlling())) {
+    if (input.awaits_first(controlling(), counts)) {
       if (inhibits) inhibit(inhibited_while_awaited);
       continue;
     }
