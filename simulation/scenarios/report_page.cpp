@@ -91,6 +91,18 @@ std::string text_of(const Chapter& chapter) {
   return text;
 }
 
+std::string verdict_line(const std::vector<Chapter>& chapters) {
+  std::size_t rows = 0, holding = 0;
+  std::string failing;
+  for (const Chapter& chapter : chapters)
+    for (const Row& row : chapter.rows) {
+      ++rows;
+      if (row.holds) ++holding;
+      else failing += " " + row.expected.name;
+    }
+  return fmt::format("\n{} of {} figures hold{}{}\n", holding, rows, failing.empty() ? "" : "; these do not:", failing);
+}
+
 Result<> write_page(const std::filesystem::path& folder, const std::string& heading, const std::string& subtitle,
                     const std::vector<Chapter>& chapters) {
   std::error_code failed;

@@ -34,6 +34,8 @@ struct Chapter {
 
 /// The rows of a chapter as aligned lines, its problems and notes.
 [[nodiscard]] std::string text_of(const Chapter& chapter);
+/// How many of all rows hold and the names of those that do not, as a line of its own.
+[[nodiscard]] std::string verdict_line(const std::vector<Chapter>& chapters);
 /// Writes FOLDER/index.html and FOLDER/NAME.svg for every plot. SystemFailure: `value` is errno.
 [[nodiscard]] Result<> write_page(const std::filesystem::path& folder, const std::string& heading,
                                   const std::string& subtitle, const std::vector<Chapter>& chapters);

@@ -94,19 +94,8 @@ using tools::exit_usage;
 }
 
 [[nodiscard]] int verdict(const std::vector<Chapter>& chapters) {
-  std::size_t rows = 0, holding = 0;
-  std::string failing;
-  bool all = true;
-  for (const Chapter& chapter : chapters) {
-    all = all && chapter.holds();
-    for (const auto& row : chapter.rows) {
-      ++rows;
-      if (row.holds) ++holding;
-      else failing += " " + row.expected.name;
-    }
-  }
-  fmt::print("\n{} of {} figures hold{}{}\n", holding, rows, failing.empty() ? "" : "; these do not:", failing);
-  return all ? exit_ok : exit_finding;
+  fmt::print("{}", simulation::verdict_line(chapters));
+  return std::ranges::all_of(chapters, &Chapter::holds) ? exit_ok : exit_finding;
 }
 
 /// "limits=100" among what is planted: the limits that the manipulator's law keeps to.

@@ -17,19 +17,8 @@ namespace {
 using simulation::Chapter;
 
 [[nodiscard]] int verdict(const std::vector<Chapter>& chapters) {
-  std::size_t rows = 0, holding = 0;
-  std::string failing;
-  bool all = true;
-  for (const Chapter& chapter : chapters) {
-    all = all && chapter.holds();
-    for (const auto& row : chapter.rows) {
-      ++rows;
-      if (row.holds) ++holding;
-      else failing += " " + row.expected.name;
-    }
-  }
-  fmt::print("\n{} of {} figures hold{}{}\n", holding, rows, failing.empty() ? "" : "; these do not:", failing);
-  return all ? tools::exit_ok : tools::exit_finding;
+  fmt::print("{}", simulation::verdict_line(chapters));
+  return std::ranges::all_of(chapters, &Chapter::holds) ? tools::exit_ok : tools::exit_finding;
 }
 
 }  // namespace
