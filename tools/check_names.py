@@ -21,7 +21,6 @@ OUTSIDE = {"node_modules", "__pycache__", "build", "dist"}
 ALLOWED = {
     ("simulation/spacecraft/simulated_ground.hpp", "communication"): "the other end of the ground link (adr 0050)",
     ("tools/hirosco/run.cpp", "communication"): "the variables that tell the ground link its addresses (adr 0054)",
-    ("supervisor/supervision/procedures/steps/hand_over.hpp", "aocs"): "the paper's own example (4.3, adr 0099)",
     ("tools/threads/main.cpp", "communication"): "the ground link is no module, so this program brings it along (adr 0097)",
 }
 # This tool has to name whom it allows.

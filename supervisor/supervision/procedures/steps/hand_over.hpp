@@ -15,7 +15,7 @@ void hand_over(const ProcedureStep& step, const Means& means, const CommandDone&
 [[nodiscard]] std::string against(const ProcedureStep& step, const Means& means);
 }  // namespace task
 
-/// What its subject does somebody else does from now on (paper 4.3: station keeping to the AOCS): its subject is fenced and stops, the
+/// What its subject does somebody else does from now on (paper 4.3: station keeping to the attitude control): its subject is fenced and stops, the
 /// receiver, by its APID, comes from where it is to Operational in a configuration, by its id, with the links that this needs.
 /// Whoever was stopped since the ground or a mode let it go last receives nothing (E0370).
 inline constexpr StepKind hand_over{
