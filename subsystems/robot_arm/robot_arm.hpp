@@ -61,7 +61,6 @@ class RobotArm final : public Subsystem {
   void publish_all();
   void bind_functions();
   [[nodiscard]] Result<> read_model();
-  [[nodiscard]] Result<std::string> setting_of_all(std::string_view name) const;
   [[nodiscard]] Result<> find_tip(const std::string& named);
   [[nodiscard]] Result<> take_bounds();
   [[nodiscard]] Result<> check_lengths() noexcept;

@@ -9,6 +9,7 @@
 #include "hirosco/descriptor/model/setting_files.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "robotics/urdf/robot.hpp"
+#include "subsystems/robot_arm/control/bounds.hpp"
 #include "subsystems/robot_arm/robot_arm.hpp"
 
 /// What an arm is told by its URDF file and its descriptor, and how it tries itself.
@@ -84,27 +85,10 @@ void RobotArm::publish_all() {
   publish("ACTIVE", active_);
 }
 
-/// What every configuration says of the device with this setting; empty: none says anything.
-Result<std::string> RobotArm::setting_of_all(std::string_view name) const {
-  const descriptor::Subsystem& own = own_descriptor();
-  const std::string* found = nullptr;
-  for (const auto& configuration : own.configurations)
-    for (const auto& use : configuration.devices) {
-      if (own.devices[use.device].name != device_name) continue;
-      for (const auto& setting : use.settings) {
-        if (setting.name != name) continue;
-        if (found != nullptr && *found != setting.value)
-          return fail(ErrorCode::Mismatch, "configurations name different robots, and the arm is one");
-        found = &setting.value;
-      }
-    }
-  return found != nullptr ? *found : std::string{};
-}
-
 Result<> RobotArm::read_model() {
-  HIROSCO_TRY_LET(const std::string named, setting_of_all(model_setting));
-  HIROSCO_TRY_LET(const std::string tip, setting_of_all(tip_setting));
-  HIROSCO_TRY_LET(const std::string fixed, setting_of_all(fixed_setting));
+  HIROSCO_TRY_LET(const std::string named, descriptor::setting_of_all(own_descriptor(), device_name, model_setting));
+  HIROSCO_TRY_LET(const std::string tip, descriptor::setting_of_all(own_descriptor(), device_name, tip_setting));
+  HIROSCO_TRY_LET(const std::string fixed, descriptor::setting_of_all(own_descriptor(), device_name, fixed_setting));
   if (named.empty()) return fail(ErrorCode::NotFound, "no configuration names a URDF file: setting MODEL_FILE of ARM");
   const auto file = descriptor::file_of(own_descriptor(), named);
   const auto text = descriptor::file_system()(file);
@@ -147,18 +131,12 @@ Result<> RobotArm::find_tip(const std::string& named) {
 
 /// Limits of the URDF file; those that a joint must have are asked for by name.
 Result<> RobotArm::take_bounds() {
-  bounds_.clear();
-  for (const auto& joint : model_->joints()) {
-    const auto& limits = joint.limits;
-    if (!limits.effort || !(*limits.effort > 0) || !limits.velocity || !(*limits.velocity > 0)) {
-      problem_ = fmt::format("joint '{}' has no effort or velocity above 0, and the arm keeps both", joint.name);
-      return fail(ErrorCode::InvalidArgument, problem_.c_str());
-    }
-    bounds_.push_back({.lowest = limits.lower.value_or(-HUGE_VAL),
-                       .highest = limits.upper.value_or(HUGE_VAL),
-                       .effort = *limits.effort,
-                       .motion = {.velocity = *limits.velocity, .acceleration = 0, .jerk = 0}});
+  auto bounds = robot_arm::bounds_of(*model_);
+  if (!bounds) {
+    problem_ = std::move(bounds.error());
+    return fail(ErrorCode::InvalidArgument, problem_.c_str());
   }
+  bounds_ = std::move(*bounds);
   return ok();
 }
 

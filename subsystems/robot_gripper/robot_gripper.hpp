@@ -51,7 +51,6 @@ class RobotGripper final : public Subsystem {
   void publish_all();
   void bind_functions();
   [[nodiscard]] Result<> read_model();
-  [[nodiscard]] Result<std::string> setting_of_all(std::string_view name) const;
   [[nodiscard]] Result<> find_fingers(std::string_view named);
   [[nodiscard]] Result<robot_gripper::Fingers> fingers_now();
   [[nodiscard]] Result<> check_lengths() noexcept;

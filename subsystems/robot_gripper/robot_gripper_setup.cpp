@@ -64,27 +64,11 @@ void RobotGripper::publish_all() {
   publish("ACTIVE", active_);
 }
 
-/// What every configuration says of the device with this setting; empty: none says anything.
-Result<std::string> RobotGripper::setting_of_all(std::string_view name) const {
-  const descriptor::Subsystem& own = own_descriptor();
-  const std::string* found = nullptr;
-  for (const auto& configuration : own.configurations)
-    for (const auto& use : configuration.devices) {
-      if (own.devices[use.device].name != device_name) continue;
-      for (const auto& setting : use.settings) {
-        if (setting.name != name) continue;
-        if (found != nullptr && *found != setting.value)
-          return fail(ErrorCode::Mismatch, "configurations name different grippers, and this is one");
-        found = &setting.value;
-      }
-    }
-  return found != nullptr ? *found : std::string{};
-}
-
 Result<> RobotGripper::read_model() {
-  HIROSCO_TRY_LET(const std::string named, setting_of_all(model_setting));
-  HIROSCO_TRY_LET(const std::string fingers, setting_of_all(fingers_setting));
-  HIROSCO_TRY_LET(const std::string closed, setting_of_all(closed_setting));
+  HIROSCO_TRY_LET(const std::string named, descriptor::setting_of_all(own_descriptor(), device_name, model_setting));
+  HIROSCO_TRY_LET(const std::string fingers,
+                  descriptor::setting_of_all(own_descriptor(), device_name, fingers_setting));
+  HIROSCO_TRY_LET(const std::string closed, descriptor::setting_of_all(own_descriptor(), device_name, closed_setting));
   if (named.empty())
     return fail(ErrorCode::NotFound, "no configuration names a URDF file: setting MODEL_FILE of GRIPPER");
   if (!closed.empty() && closed != "lower" && closed != "upper") {

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "hirosco/descriptor/model/subsystem.hpp"
+#include "hirosco/utilities/result.hpp"
 
-/// Files that settings of devices name (docs/adr/0110): read by the subsystem and by what stands in for its device, and by nobody else.
+/// Settings of devices that hold for a subsystem as a whole, and files that they name (docs/adr/0110): read by the subsystem and by what
+/// stands in for its device, and by nobody else.
 namespace hirosco::descriptor {
 
 /// A device's setting with such a name names a file.
@@ -18,6 +21,24 @@ inline constexpr std::string_view file_setting_ending = "_FILE";
 [[nodiscard]] inline std::filesystem::path file_of(const Subsystem& subsystem, std::string_view value) {
   if (value.starts_with('@')) return value;
   return (subsystem.file.parent_path() / value).lexically_normal();
+}
+
+/// What every configuration that says this setting of that device says; empty: none says anything. Mismatch: they say different things, of what
+/// is one whatever the configuration.  Realtime: allocates.
+[[nodiscard]] inline Result<std::string> setting_of_all(const Subsystem& subsystem, std::string_view device,
+                                                        std::string_view name) {
+  const std::string* found = nullptr;
+  for (const auto& configuration : subsystem.configurations)
+    for (const auto& use : configuration.devices) {
+      if (subsystem.devices[use.device].name != device) continue;
+      for (const auto& setting : use.settings) {
+        if (setting.name != name) continue;
+        if (found != nullptr && *found != setting.value)
+          return fail(ErrorCode::Mismatch, "configurations say different things of a device that is one");
+        found = &setting.value;
+      }
+    }
+  return found != nullptr ? *found : std::string{};
 }
 
 }  // namespace hirosco::descriptor

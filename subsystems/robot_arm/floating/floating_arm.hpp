@@ -75,7 +75,6 @@ class FloatingArm final : public Subsystem {
   [[nodiscard]] Result<> read_model();
   [[nodiscard]] Result<> take_bounds();
   [[nodiscard]] Result<> check_lengths() noexcept;
-  [[nodiscard]] std::string setting(std::string_view name) const;
 
   void measure(const Cycle& cycle) noexcept;
   void follow_base() noexcept;

@@ -8,6 +8,7 @@
 #include "hirosco/descriptor/model/setting_files.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "robotics/urdf/robot.hpp"
+#include "subsystems/robot_arm/control/bounds.hpp"
 #include "subsystems/robot_arm/floating/floating_arm.hpp"
 
 /// What an arm on a base that floats is told by its URDF file and its descriptor.
@@ -48,17 +49,9 @@ void FloatingArm::publish_all() {
   publish("ACTIVE", active_);
 }
 
-/// Of the device, as the first configuration that says it; empty: none does.
-std::string FloatingArm::setting(std::string_view name) const {
-  for (const auto& configuration : own_descriptor().configurations)
-    for (const auto& use : configuration.devices)
-      for (const auto& each : use.settings)
-        if (own_descriptor().devices[use.device].name == device_name && each.name == name) return each.value;
-  return {};
-}
-
 Result<> FloatingArm::read_model() {
-  const std::string named = setting(model_setting);
+  HIROSCO_TRY_LET(const std::string named, descriptor::setting_of_all(own_descriptor(), device_name, model_setting));
+  HIROSCO_TRY_LET(std::string tip, descriptor::setting_of_all(own_descriptor(), device_name, tip_setting));
   if (named.empty()) return fail(ErrorCode::NotFound, "no configuration names a URDF file: setting MODEL_FILE of ARM");
   const auto file = descriptor::file_of(own_descriptor(), named);
   const auto reading = robotics::urdf::read(file, descriptor::file_system());
@@ -72,7 +65,6 @@ Result<> FloatingArm::read_model() {
   if (!made) return fail(made.error());
   model_ = std::move(*made);
   const auto tips = robotics::urdf::tips(*reading.value);
-  std::string tip = setting(tip_setting);
   if (tip.empty()) {
     if (tips.size() != 1)
       return fail(ErrorCode::InvalidArgument, "the robot has several ends: setting TIP of ARM names the link",
@@ -89,18 +81,12 @@ Result<> FloatingArm::read_model() {
 }
 
 Result<> FloatingArm::take_bounds() {
-  bounds_.clear();
-  for (const auto& joint : model_->joints()) {
-    const auto& limits = joint.limits;
-    if (!limits.effort || !(*limits.effort > 0) || !limits.velocity || !(*limits.velocity > 0)) {
-      problem_ = fmt::format("joint '{}' has no effort or velocity above 0, and the arm keeps both", joint.name);
-      return fail(ErrorCode::InvalidArgument, problem_.c_str());
-    }
-    bounds_.push_back({.lowest = limits.lower.value_or(-HUGE_VAL),
-                       .highest = limits.upper.value_or(HUGE_VAL),
-                       .effort = *limits.effort,
-                       .motion = {.velocity = *limits.velocity, .acceleration = 0, .jerk = 0}});
+  auto bounds = robot_arm::bounds_of(*model_);
+  if (!bounds) {
+    problem_ = std::move(bounds.error());
+    return fail(ErrorCode::InvalidArgument, problem_.c_str());
   }
+  bounds_ = std::move(*bounds);
   return ok();
 }
 
