@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hirosco/utilities/allocation_guard.hpp"
+#include "hirosco/utilities/testing/slice.hpp"
 
 namespace hirosco {
 namespace {
@@ -179,7 +180,7 @@ TYPED_TEST(Pool, IsNeverRefusedIn1e7MixedOperationsAt95PercentWhileBlocksAreFree
     for (std::uint32_t i = 0; i < blocks_each * 95 / 100; ++i) take(pool);
 
   const RealtimeScope scope;
-  constexpr int pairs = 5'000'000;
+  const int pairs = 5'000'000 / hirosco::testing::one_in(10);
   for (int i = 0; i < pairs && !this->HasFatalFailure(); ++i) {
     const std::size_t pool = random() % pool_count;
     void*& victim = held[pool][random() % held[pool].size()];
