@@ -16,7 +16,7 @@ namespace hirosco {
 namespace {
 
 template <class Pools>
-class Pool : public testing::Test {
+class Pool : public ::testing::Test {
  protected:
   static std::unique_ptr<Pools> make(std::vector<PoolSpec> specs, PoolNotices notices = {}) {
     auto made = Pools::create(specs, std::move(notices));
@@ -24,7 +24,7 @@ class Pool : public testing::Test {
     return made ? std::move(*made) : nullptr;
   }
 };
-using BothPools = testing::Types<BlockPools, LocalBlockPools>;
+using BothPools = ::testing::Types<BlockPools, LocalBlockPools>;
 TYPED_TEST_SUITE(Pool, BothPools);
 
 TYPED_TEST(Pool, TakesTheSmallestBlockThatFits) {

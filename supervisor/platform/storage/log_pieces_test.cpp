@@ -20,9 +20,9 @@ namespace hirosco::supervisor {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
-class LogPieces : public testing::TestWithParam<DatabaseStrategy> {
+class LogPieces : public ::testing::TestWithParam<DatabaseStrategy> {
  protected:
   [[nodiscard]] fs::path log() const { return folder_.path() / "log.db"; }
   [[nodiscard]] LogPage page(std::size_t last = 100'000) const { return *read_log(log(), {.last = last}); }
@@ -194,7 +194,7 @@ TEST_P(LogPieces, ThatGoWhileTheDiskIsFullAreAGap) {
   EXPECT_EQ(page().records.front().lost, 5U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Strategies, LogPieces, testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii),
+INSTANTIATE_TEST_SUITE_P(Strategies, LogPieces, ::testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii),
                          [](const auto& strategy) { return std::string{to_text(strategy.param)}; });
 
 TEST(PieceNames, AreThoseOfTheLogWhicheverOfThemIsGiven) {

@@ -21,10 +21,10 @@
 namespace hirosco::supervisor {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// A real server, to which all that happens that happens to servers.
-class PostgresqlLog : public testing::Test {
+class PostgresqlLog : public ::testing::Test {
  protected:
   void SetUp() override {
     ASSERT_TRUE(PostgresqlServer::installed()) << "`testing/with_server` does not come here without one";
