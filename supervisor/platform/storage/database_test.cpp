@@ -183,7 +183,7 @@ TEST_P(DatabasesOnDisk, ReportAFolderThatDoesNotExist) {
 const auto strategy_name = [](const auto& strategy) { return std::string{to_text(strategy.param)}; };
 INSTANTIATE_TEST_SUITE_P(Strategies, Databases,
                          ::testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii, DatabaseStrategy::Memory,
-                                         DatabaseStrategy::Postgresql),
+                                           DatabaseStrategy::Postgresql),
                          strategy_name);
 INSTANTIATE_TEST_SUITE_P(Strategies, DatabasesOnDisk,
                          ::testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii), strategy_name);

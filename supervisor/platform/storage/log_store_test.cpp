@@ -71,7 +71,8 @@ TEST_P(EveryLogStore, StoresNothingWhileItsFolderIsGoneAndNotWritableAndResumesB
   EXPECT_EQ(covered(*read_log(inner / "log.sqlite", {})), 4U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Strategies, EveryLogStore, ::testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii),
+INSTANTIATE_TEST_SUITE_P(Strategies, EveryLogStore,
+                         ::testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii),
                          [](const auto& strategy) { return std::string{to_text(strategy.param)}; });
 
 /// A disk whose answers are written down: each append takes the next error, none = it works.
