@@ -35,14 +35,22 @@ export async function judge_forms(page, mission) {
           continue;
         }
         const {good, bad} = cases_of(argument);
-        const taken = () => field.evaluate((node) => node.value !== '' && node.getAttribute('aria-invalid') !== 'true');
-        for (const [texts, wanted] of [[bad, false], [good, true]]) {
+        const cases = [...bad.map((text) => [text, false]), ...good.map((text) => [text, true])];
+        // As fast as the page follows, not as a hand types: there are thousands.
+        const judged = await field.evaluate(async (node, texts) => {
+          const answers = [], set = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set;
           for (const text of texts) {
-            ++found.cases;
-            await field.fill(text);
-            if (await taken() !== wanted) found.wrong.push(`${where}: ${wanted ? 'rejects' : 'takes'} "${text}"`);
+            set.call(node, text);
+            node.dispatchEvent(new InputEvent('input', {bubbles: true}));
+            // What is drawn anew is so after the page's own turn.
+            await new Promise((resolve) => setTimeout(resolve));
+            await new Promise((resolve) => setTimeout(resolve));
+            answers.push(node.isConnected && node.value !== '' && node.getAttribute('aria-invalid') !== 'true');
           }
-        }
+          return answers;
+        }, cases.map(([text]) => text));
+        found.cases += cases.length;
+        cases.forEach(([text, wanted], k) => { if (judged[k] !== wanted) found.wrong.push(`${where}: ${wanted ? 'rejects' : 'takes'} "${text}"`); });
       }
     }
   }

@@ -190,6 +190,7 @@ export class Phantom {
     this.body = parsed_urdf(text);
     dress(this.body, parts, null, true);
     this.tip = about.tip;
+    this.tip_link = this.body.links[about.tip];
     for (const joint of Object.values(this.body.joints)) joint.ignoreLimits = true;
   }
 
