@@ -5,7 +5,6 @@
 // own joint alone. What comes of it stands in the form, whose ranges say what cannot be.
 import {Plane, Vector3} from 'three';
 import {fill_goal} from '../parts/goal_form.js';
-import {reach} from './reach.js';
 
 /// A finger's width about the ball.
 const ball_px = 16;
@@ -50,20 +49,13 @@ export class GoalDrag {
   }
 
   #reach(grip) {
-    const {robot, link, local, names, at} = grip, {phantom} = robot.goal;
-    const place_of = (angles) => {
-      phantom.stand(Object.fromEntries(robot.names.map((name, i) => [name, angles[i]])));
-      return link.localToWorld(local.clone()).toArray();
-    };
-    const joints = robot.names.map((name) => ({...limits_of(robot.body.joints[name]), free: names.includes(name)}));
-    const found = reach(place_of, joints, robot.names.map((name) => grip.angles[name]), at.toArray(), robot.size);
-    grip.angles = Object.fromEntries(robot.names.map((name, i) => [name, found[i]]));
+    const {robot, names, at} = grip;
+    grip.angles = robot.goal.phantom.reached(grip, at, grip.angles, robot, names);
     fill_goal(robot.about, grip.angles);
     this.view.draw_soon();
   }
 }
 
-const limits_of = ({limit: {lower, upper}}) => ({lower, upper});
 function above(node, is_it) {
   for (let one = node; one; one = one.parent) if (is_it(one)) return one;
   return null;

@@ -6,11 +6,12 @@
 import {Box3, BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Plane, Raycaster, Vector2, Vector3} from 'three';
 import {fault} from '../commanding.js';
 import {GoalDrag} from './goal_drag.js';
-import {angles_of_offset, before_wall, target_line, within_range} from '../parts/hand.js';
+import {before_wall, target_line, within_range} from '../parts/hand.js';
 
 const hand_period_ms = 60;
 const lever_m = 0.109;
 const band_from_m = 0.006;
+const named = (names, list) => Object.fromEntries(names.map((name, i) => [name, list[i]]));
 
 export class Grips {
   /// `view`: {canvas, controls, robots, description, may(), eye_at(event), draw_soon(), frames, values, scene_of(robot)}
@@ -92,9 +93,7 @@ export class Grips {
     this.dragging.at = at;
     let turned;
     if (what === 'tip') {
-      const start = this.dragging.tip ??= robot.tip.clone();
-      const [x, y] = before_wall(contour, [start.x + at.x - from.x, start.y + at.y - from.y]);
-      turned = angles_of_offset(hand, [x - start.x, y - start.y]);
+      turned = this.#turned_to(this.dragging, at, contour);
     } else {
       const pivot = robot.body.position;
       const angle = (x) => Math.atan2(x, lever_m);
@@ -102,6 +101,15 @@ export class Grips {
     }
     this.#lead(within_range(hand, [angles[0] + turned[0], angles[1] + turned[1]]));
     this.stretch();
+  }
+
+  /// How far the joints must turn for the tip to go as the pointer did, by the robot's own lengths: each axis of the handle turns one of them.
+  #turned_to(grip, at, contour) {
+    const {robot, from} = grip, {names, reckoning} = robot;
+    grip.start ??= {tip: robot.tip.clone(), angles: named(names, robot.last)};
+    const {tip, angles} = grip.start, [x, y] = before_wall(contour, [tip.x + at.x - from.x, tip.y + at.y - from.y]);
+    grip.reached = reckoning.reached({link: reckoning.tip_link, local: new Vector3()}, new Vector3(x, y, tip.z), grip.reached ?? angles, robot);
+    return names.map((name) => grip.reached[name] - angles[name]);
   }
 
   /// The band from what is held to the pointer: the hand goes slower than a mouse, and gives way at the rail.
