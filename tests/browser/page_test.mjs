@@ -55,6 +55,15 @@ describe('a flight that means well', () => {
     await holds(page, () => Number(document.querySelector('[data-test=robot]')?.dataset.frames) > 10);
   });
 
+  it('goes on to draw it in whichever view it is taken along to', async () => {
+    for (const view of ['timeline', 'overview', 'timeline', 'overview']) {
+      await go(page, view);
+      const frames = () => page.evaluate(() => Number(document.querySelector('main [data-test=robot]')?.dataset.frames));
+      const first = await frames();
+      await until(`it moves in ${view}`, async () => await frames() > first + 1);
+    }
+  });
+
   for (const [what, from, to] of [['the handle of the joystick', 0, 0.21], ['the fingertip', 0.55, 0.78]]) {
     it(`moves the simulated hand when ${what} is dragged`, async () => {
       await go(page, 'overview');

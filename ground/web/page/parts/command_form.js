@@ -3,7 +3,7 @@
 //
 // A telecommand from its descriptor: one field for each argument, judged while it is typed, the octets and the supervisor's
 // answer to "permitted now?" before sending, the chain of verdicts after.
-import {useEffect, useRef, useState} from 'preact/hooks';
+import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import {copy, preview, send, send_and_say, state_name} from '../commanding.js';
 import {brief_text, clock_text, hex_text, number_text, state_text, unit_text} from '../format.js';
 import {html} from '../html.js';
@@ -230,7 +230,8 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
     const numbers = () => Object.fromEntries(list.map((argument) => [argument.name, numbers_in(text_of(argument), argument.count ?? 1)]));
     typed.value = {subsystem, action: action.name, values: touched ? sent_values : null, numbers: touched ? numbers() : null};
   }, [key, JSON.stringify(texts), JSON.stringify(sent_values)]);
-  useEffect(() => () => { typed.value = null; }, []);
+  // With the form, not after a picture: by then another one may stand there.
+  useLayoutEffect(() => () => { typed.value = null; }, []);
 
   const submit = async (event) => {
     event.preventDefault();

@@ -77,7 +77,7 @@ function picture_of(description) {
   kept?.view?.close();
   const nodes = {still: node('canvas', {class: 'still', 'aria-hidden': 'true'}), stage: node('div', {class: 'stage', 'data-test': 'robot'}), shade: node('div', {class: 'shade'}),
     leads: node('svg', {class: 'leads', 'aria-hidden': 'true'}, 'http://www.w3.org/2000/svg'), tags: node('div', {class: 'readout'})};
-  const picture = kept = {description, nodes, view: null, ready: null};
+  const picture = kept = {description, nodes, view: null, ready: null, entered: null, leave: null};
   picture.ready = drawing_code().then(async ({RobotView}) => {
     picture.view = new RobotView(nodes, mission_folder, description);
     picture.entered?.();
@@ -106,6 +106,8 @@ export function Robot() {
     if (!description) return;
     let over = false;
     const picture = picture_of(description), {nodes} = picture;
+    // A view of before may be told that it is over only after this one has begun.
+    picture.leave?.();
     home.current.append(nodes.still, nodes.stage, nodes.shade, nodes.leads, nodes.tags);
     stage.current = nodes.stage;
     picture.entered = () => {
@@ -114,13 +116,15 @@ export function Robot() {
     };
     if (picture.view) picture.entered();
     picture.ready.then(() => over || set_loaded(true), (error) => over || set_problem(`No 3D here: ${error.message}`));
-    return () => {
+    const leave = () => {
       over = true;
-      picture.entered = null;
-      picture.view?.leave();
       view.current = null;
+      if (picture.leave !== leave) return;
+      picture.leave = picture.entered = null;
+      picture.view?.leave();
       home.current?.replaceChildren();
     };
+    return picture.leave = leave;
   }, [description]);
   useEffect(() => fast.subscribe(() => view.current?.update()), []);
   useEffect(() => replay.subscribe(() => view.current?.forget()), []);
