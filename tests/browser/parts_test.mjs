@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes.
+// What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, when the
+// next picture is drawn.
 import assert from 'node:assert/strict';
 import {join} from 'node:path';
 import {describe, it} from 'node:test';
@@ -95,5 +96,29 @@ describe('the pushes of a tool', () => {
     assert.deepEqual(push_of(jog, {turning: false, axis: 1, side: -1}, fine), {LINEAR: [0, -0.005, 0], ANGULAR: [0, 0, 0], SECONDS: 0.4});
     assert.deepEqual(push_of(jog, {turning: true, axis: 2, side: 1}, fine), {LINEAR: [0, 0, 0], ANGULAR: [0, 0, 0.05], SECONDS: 0.4});
     assert.deepEqual(push_of(jog, {turning: false, axis: 0, side: 1}, coarse).LINEAR, [0.03, 0, 0]);
+  });
+});
+
+describe('the next picture', () => {
+  it('waits its turn also when drawing itself asks for it, and comes after a picture that failed', async () => {
+    const asked = [];
+    Object.assign(globalThis, {matchMedia: () => ({matches: false}), requestAnimationFrame: (draw) => asked.push(draw), cancelAnimationFrame: () => {}});
+    const {Pace} = await of_page('scene/pace.js');
+    let drawn = 0;
+    const pace = new Pace(() => {
+      pace.soon();
+      if (++drawn === 2) throw new Error('of the picture');
+      return {unfinished: true, moving: true};
+    }, false);
+    const again = async () => { while (!asked.length) await new Promise((resolve) => setImmediate(resolve)); };
+    pace.soon();
+    asked.shift()();
+    assert.equal(asked.length, 0);
+    await again();
+    assert.throws(asked.shift(), /of the picture/);
+    await again();
+    asked.shift()();
+    assert.equal(drawn, 3);
+    pace.close();
   });
 });

@@ -100,7 +100,7 @@ export class Grips {
       turned = [angle(at.x - pivot.x) - angle(from.x - pivot.x), angle(at.y - pivot.y) - angle(from.y - pivot.y)];
     }
     this.#lead(within_range(hand, [angles[0] + turned[0], angles[1] + turned[1]]));
-    this.stretch();
+    this.view.draw_soon();
   }
 
   /// How far the joints must turn for the tip to go as the pointer did, by the robot's own lengths: each axis of the handle turns one of them.
@@ -122,7 +122,6 @@ export class Grips {
     position.setXYZ(0, from.x, from.y, from.z);
     position.setXYZ(1, at.x, at.y, at.z);
     position.needsUpdate = true;
-    this.view.draw_soon();
   }
 
   /// At most one line in 60 ms, the last one always.

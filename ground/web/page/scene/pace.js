@@ -39,17 +39,19 @@ export class Pace {
 
   #now() {
     this.#waiting = 0;
-    const began_ms = performance.now(), {unfinished, moving} = this.draw(began_ms);
-    const period_ms = calm.matches && !unfinished ? calm_period_ms : this.software ? software_period_ms : 0;
-    // Told when the browser is through with the picture: without a graphics card the page waits until the processor has drawn it.
+    // What drawing itself asks for waits its turn, too: a band that is held would be drawn without a pause.
     this.#resting = true;
+    const began_ms = performance.now();
+    let drawn = {unfinished: false, moving: false};
+    // Told when the browser is through with the picture: without a graphics card the page waits until the processor has drawn it.
     const through = new MessageChannel();
     through.port1.onmessage = () => {
       through.port1.close();
-      this.#rest(performance.now() - began_ms, period_ms);
+      this.#rest(performance.now() - began_ms, calm.matches && !drawn.unfinished ? calm_period_ms : this.software ? software_period_ms : 0);
     };
     through.port2.postMessage(null);
-    if (unfinished || moving) this.soon();
+    drawn = this.draw(began_ms);
+    if (drawn.unfinished || drawn.moving) this.soon();
   }
 
   /// For half as long as a picture took, the page is everybody else's.
