@@ -387,7 +387,7 @@ describe('a page slower than the telemetry', () => {
     });
     await page.goto(at_view(served.url, 'links'));
     // As many would stand there by now if each were kept.
-    await holds(page, () => window.batches >= 30);
+    await holds(page, () => window.batches >= 15);
     const batches = await page.evaluate(async () => {
       const answer = await fetch('/api/status', {headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}});
       const {t} = await answer.json();
