@@ -27,6 +27,12 @@ const is_in_sight = (page, what) => page.locator(what).evaluate((node) => {
 });
 const sizes = [[1920, 1080], [1440, 900], [1280, 720], [1024, 768], [910, 700], [720, 1000]];
 
+const tour_title = async (page) => (await page.textContent('[data-test=tour] h3')).replace('✓', '').trim();
+async function end_tour(page) {
+  await page.click('[aria-label="end the tour"]');
+  await page.waitForSelector('[data-test=tour]', {state: 'detached'});
+}
+
 let browser;
 before(async () => { browser = await open_browser({calm: true}); });
 after(() => browser.close());
@@ -35,10 +41,23 @@ describe('a flight that means well', () => {
   let served, page, faults;
   before(async () => {
     served = await serve('synthetic');
-    ({page, faults} = await open_page(browser.context, served.url, small));
+    ({page, faults} = await open_page(browser.context, `${served.url}&tour`, small));
     await page.waitForSelector('[data-test=subsystem-MANIPULATOR]');
   });
   after(() => served.end());
+
+  it('shows its mission by tour and 3D from the folder of that', async () => {
+    await page.waitForSelector('[data-test=tour] h3');
+    assert.equal(await tour_title(page), 'Move it');
+    assert.equal(await page.locator('[data-test=tour] .dots i').count(), 8);
+    await page.waitForSelector('[data-test=robot][data-loaded]');
+    await page.click('[data-test=tour-next]');
+    assert.equal(await tour_title(page), 'Couple two machines');
+    await page.click('a[title=Help]');
+    await page.waitForSelector('.tour_list li:nth-child(8)');
+    await end_tour(page);
+    assert.deepEqual(faults, []);
+  });
 
   it('shows every view at its own address, with no error and no request to another host', async () => {
     for (const view of views) {
@@ -310,10 +329,21 @@ describe('a flight that does not', () => {
   let served, page, faults;
   before(async () => {
     served = await serve('hostile');
-    ({page, faults} = await open_page(browser.context, served.url, small));
+    ({page, faults} = await open_page(browser.context, `${served.url}&tour`, small));
     await page.waitForSelector('[data-test=subsystem-MANIPULATOR]');
   });
   after(() => served.end());
+
+  it('has a general tour and a spacecraft with a module for each subsystem where its mission has no folder, and asks for no file in vain', async () => {
+    await page.waitForSelector('[data-test=tour] h3');
+    assert.equal(await tour_title(page), 'Look around');
+    assert.equal(await page.locator('[data-test=tour] .dots i').count(), 3);
+    await go(page, 'overview');
+    await page.waitForSelector('[data-test=robot][data-loaded]');
+    await holds(page, (count) => [...document.querySelectorAll('.readout .tag b')].filter((one) => one.textContent).length === count, 3);
+    await end_tour(page);
+    assert.deepEqual(faults, []);
+  });
 
   it('runs no markup of names, texts and values, in any view', async () => {
     for (const view of views) {
@@ -387,7 +417,7 @@ describe('a page slower than the telemetry', () => {
     });
     await page.goto(at_view(served.url, 'links'));
     // As many would stand there by now if each were kept.
-    await holds(page, () => window.batches >= 15);
+    await holds(page, () => window.batches >= 30);
     const batches = await page.evaluate(async () => {
       const answer = await fetch('/api/status', {headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}});
       const {t} = await answer.json();
@@ -416,42 +446,5 @@ describe('the bundle', () => {
     const html_text = readFileSync(join(page_folder, 'index.html'), 'utf8');
     assert.doesNotMatch(html_text, /https?:\/\//);
     assert.doesNotMatch(html_text, /<script(?![^>]*src=)/);
-  });
-});
-
-describe('what a mission shows of itself', () => {
-  const tour_of = async (recording) => {
-    const served = await serve(recording);
-    const {page, faults} = await open_page(browser.context, `${served.url}&tour`, small);
-    await page.waitForSelector('[data-test=tour] h3');
-    return {page, faults, close: async () => {
-      await page.close();
-      served.end();
-    }};
-  };
-  const title = async (page) => (await page.textContent('[data-test=tour] h3')).replace('✓', '').trim();
-
-  it('is its tour and its 3D, from its folder', async () => {
-    const {page, faults, close} = await tour_of('synthetic');
-    assert.equal(await title(page), 'Move it');
-    assert.equal(await page.locator('[data-test=tour] .dots i').count(), 8);
-    await page.waitForSelector('[data-test=robot][data-loaded]');
-    await page.click('[data-test=tour-next]');
-    assert.equal(await title(page), 'Couple two machines');
-    await page.click('a[title=Help]');
-    await page.waitForSelector('.tour_list li:nth-child(8)');
-    assert.deepEqual(faults, []);
-    await close();
-  });
-
-  it('is a general tour and a spacecraft with a module for each subsystem where it has no folder, and no file is asked for in vain', async () => {
-    const {page, faults, close} = await tour_of('hostile');
-    assert.equal(await title(page), 'Look around');
-    assert.equal(await page.locator('[data-test=tour] .dots i').count(), 3);
-    await go(page, 'overview');
-    await page.waitForSelector('[data-test=robot][data-loaded]');
-    await holds(page, (count) => [...document.querySelectorAll('.readout .tag b')].filter((one) => one.textContent).length === count, 3);
-    assert.deepEqual(faults, []);
-    await close();
   });
 });
