@@ -39,7 +39,7 @@ export function tour(page) {
 
   return [
     {title: 'Move it', view: '#/overview',
-      text: 'Drag the blue handle of the joystick, or the fingertip of the robot, in the 3D view: your mouse is the hand at the joystick, and the robot follows. Solid is what is measured, the blue ghost what is commanded.',
+      text: 'Drag the violet handle of the joystick, or the fingertip of the robot, in the 3D view: your mouse is the hand at the joystick, and the robot follows. White is measured, teal touched, violet what the hand feels; a blue ghost is the goal of a telecommand.',
       act: ['Let the hand wander', () => fault('joystick', 'hand wander')],
       done: () => injections.value.some((one) => one.line?.startsWith('hand'))},
     {title: 'Couple two machines', view: '#/subsystems/MANIPULATOR',
@@ -48,7 +48,7 @@ export function tour(page) {
       act_3: ['Home, and couple', home_and_couple],
       done: () => is_coupled() && sent('LINK', 'completed')},
     {title: 'Feel the wall', view: '#/overview',
-      text: 'Press the fingertip against the rail, by mouse or by the button. The red arrow is the contact force; the torque plot shows what the joystick gives back to the hand.',
+      text: 'Press the fingertip against the rail, by mouse or by the button. The teal arrow is the contact force; the torque plot shows what the joystick gives back to the hand.',
       act: ['Press with 43 N', () => fault('joystick', 'hand cartesian 0.0226 0 1')], done: () => force_n() > 10},
     {title: 'Unplug the joystick', view: '#/overview',
       text: 'The test of the paper: the joystick loses its cable. Both machines must stop by themselves, at once and in order, without the ground: watch the ten lamps of each.',
