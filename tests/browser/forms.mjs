@@ -30,9 +30,11 @@ export function unseen_of(mission, seen) {
 /// texts it takes.
 async function fill_fields({address, fields}) {
   const turn = () => new Promise((resolve) => setTimeout(resolve));
-  const there = new Promise((resolve) => addEventListener('hashchange', resolve, {once: true}));
-  location.hash = address;
-  await there;
+  if (location.hash !== address) {
+    const there = new Promise((resolve) => addEventListener('hashchange', resolve, {once: true}));
+    location.hash = address;
+    await there;
+  }
   const answers = [];
   for (const {name, texts} of fields) {
     // What is drawn anew is so after the page's own turn.
