@@ -9,14 +9,17 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <fstream>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -194,26 +197,51 @@ struct Played {
   std::unique_ptr<ControlSocket> control{};
 };
 
-/// Frames of others than the first are looked for after each rest: it is so long at most.
-constexpr Duration longest_unseen = std::chrono::milliseconds{1};
+/// One world with all that are in it: each waits for its own frames in a thread of its own, and is stepped while no other one is.
+struct World {
+  std::vector<Played> all{};
+  std::mutex stepping{};
+  std::atomic<bool> ended{false};
+};
 
-void run(std::span<Played> all) {
+/// Both are wishes: without the rights the device runs as well as it can, and its subsystem's limits are announced wider.
+void take_priority() noexcept {
+  (void)(realtime_permitted() ? pin_to_cycle_cpu() : ask_for_short_slices());
+  (void)set_fifo_priority(priority);
+}
+
+void run(Played& played, World& world) {
+  take_priority();
   const SystemClock clock;
   const bool watch_input = input_tells_of_starter();
   TimePoint look_at = clock.now();
-  SimulatedDevice& first = *all.front().device;
-  while (true) {
-    TimePoint wake = look_at;
-    for (const Played& each : all) wake = std::min(wake, each.device->next_wake());
-    if (all.size() > 1) wake = std::min(wake, clock.now() + longest_unseen);
-    if (const Duration rest = wake - clock.now(); rest > Duration::zero() && !first.wait(rest)) sleep_until(wake);
-    for (const Played& each : all) each.device->step(clock.now());
+  SimulatedDevice& device = *played.device;
+  while (!world.ended) {
+    const TimePoint wake = std::min(look_at, device.next_wake());
+    if (const Duration rest = wake - clock.now(); rest > Duration::zero() && !device.wait(rest)) sleep_until(wake);
+    const std::scoped_lock alone{world.stepping};
+    device.step(clock.now());
     if (clock.now() < look_at) continue;
     look_at = clock.now() + control_period;
-    if (signalled_to_end() || (watch_input && input_closed())) return;
-    for (const Played& each : all)
-      each.control->serve([&](std::string_view line) { return answer(*each.device, line, each.options.control); });
+    if (signalled_to_end() || (watch_input && input_closed())) world.ended = true;
+    else played.control->serve([&](std::string_view line) { return answer(device, line, played.options.control); });
   }
+}
+
+/// The first one, whose world it is, in this thread. Returns when all have ended.
+Result<> run(World& world) {
+  constexpr std::size_t stack_octets = std::size_t{1} << 20;
+  std::vector<Thread> others;
+  for (Played& each : std::span{world.all}.subspan(1)) {
+    auto started = Thread::start("in-world", [&each, &world] { run(each, world); }, stack_octets);
+    if (!started) {
+      world.ended = true;
+      return fail(started.error());
+    }
+    others.push_back(std::move(*started));
+  }
+  run(world.all.front(), world);
+  return ok();
 }
 
 Result<> prepare(Played& played) {
@@ -246,7 +274,8 @@ std::optional<SimulatedDevice::Settings> settings_of(const Options& options) {
 int run_device(int argc, char** argv, const char* name, const MakeDevice& make) {
   say_last_words(name);
   SystemFlowFactory flows;
-  std::vector<Played> all;
+  World world;
+  std::vector<Played>& all = world.all;
   for (int begin = 1; begin <= argc;) {
     int end = begin;
     while (end < argc && std::string_view{argv[end]} != beside) ++end;
@@ -273,11 +302,11 @@ int run_device(int argc, char** argv, const char* name, const MakeDevice& make) 
     }
     for (const std::string& remark : each.device->remarks()) std::cerr << name << ": " << remark << '\n';
   }
-  // Both are wishes: without the rights the device runs as well as it can, and its subsystem's limits are announced wider.
   (void)lock_memory();
-  (void)(realtime_permitted() ? pin_to_cycle_cpu() : ask_for_short_slices());
-  (void)set_fifo_priority(priority);
-  run(all);
+  if (const auto ran = run(world); !ran) {
+    std::cerr << name << ": " << text_of(ran.error()) << '\n';
+    return 1;
+  }
   return 0;
 }
 

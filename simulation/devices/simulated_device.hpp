@@ -81,8 +81,8 @@ class SimulatedDevice {
     std::optional<FlowAddress> power{};  ///< endnode of its power switch; none: it has power always
     /// Files that settings of the device name, by the settings' names: where each is, as file_system() takes it.
     std::map<std::string, std::string> files{};
-    /// In whose world it is (docs/adr/0120): plugged in before it, and there as long as it is stepped; null: in one of its own. Both are
-    /// stepped by one thread.
+    /// In whose world it is (docs/adr/0120): plugged in before it, and there as long as it is stepped; null: in one of its own.
+    /// Whoever steps them steps one at a time.
     SimulatedDevice* in_world_of{nullptr};
   };
   struct Injection {

@@ -6,6 +6,7 @@
 #include "simulation/devices/module.hpp"
 #include "simulation/mujoco/base_device.hpp"
 #include "simulation/mujoco/mujoco_device.hpp"
+#include "simulation/mujoco/part_device.hpp"
 
 namespace {
 
@@ -22,11 +23,12 @@ constexpr auto lines = [] {
   return all;
 }();
 
-/// Joints have a world; who is in one is its base.
+/// Joints have a world. Who is in one is its base, which has endnodes by their names, or some of its joints, which have one.
 std::unique_ptr<SimulatedDevice> make(hirosco::FlowFactory& flows, const hirosco::FlowAddress& address,
                                       const SimulatedDevice::Settings& settings) {
-  if (settings.in_world_of != nullptr) return make_device<BaseDevice>(flows, address, settings);
-  return make_device<MujocoDevice>(flows, address, settings);
+  if (settings.in_world_of == nullptr) return make_device<MujocoDevice>(flows, address, settings);
+  if (settings.endnode.empty()) return make_device<PartDevice>(flows, address, settings);
+  return make_device<BaseDevice>(flows, address, settings);
 }
 
 constexpr DeviceModule content{make, lines};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -20,12 +21,11 @@ constexpr const char* model_setting = "MODEL_FILE";
 constexpr std::string_view obstacle_word = "obstacle_";
 constexpr std::string_view body_word = "body_";
 constexpr std::string_view pull_word = "pull_";
-constexpr std::string_view lend_word = "lend_";
 
 }  // namespace
 
 MujocoDevice::MujocoDevice(FlowFactory& flows, FlowAddress address, const Settings& settings)
-    : SimulatedDevice{flows, std::move(address), settings}, flows_of_worlds_{flows}, random_{settings.seed} {}
+    : SimulatedDevice{flows, std::move(address), settings}, bus_{settings.seed} {}
 
 Result<> MujocoDevice::make_world() {
   const auto named = settings().files.find(model_setting);
@@ -47,36 +47,38 @@ Result<> MujocoDevice::make_world() {
     return fail(ErrorCode::Malformed, problem_.c_str());
   }
   robot_.emplace(std::move(*made));
-  own_.resize(robot_->joints());
-  std::iota(own_.begin(), own_.end(), std::size_t{0});
-  commanded_.assign(own_.size(), 0.0);
-  return ok();
-}
-
-Result<> MujocoDevice::take(OctetReader payload) noexcept {
-  for (double& torque : commanded_) {
-    torque = payload.get<double>();
-    if (!std::isfinite(torque)) torque = 0;
-  }
-  if (!payload.exhausted()) return fail(ErrorCode::Malformed, "torque command size");
+  std::vector<std::size_t> all(robot_->joints());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  bus_.connect(std::move(all));
   return ok();
 }
 
 void MujocoDevice::advance(Duration cycle) noexcept {
-  using Brakes = MujocoRobot::Brakes;
   driven_ = output() == DeviceOutput::Active;
-  const Brakes brakes = driven_ ? Brakes::Open : output() == DeviceOutput::Stopping ? Brakes::Slowing : Brakes::Closed;
-  for (std::size_t i = 0; i < own_.size(); ++i) robot_->drive(own_[i], driven_ ? commanded_[i] : 0, brakes);
-  hear_borrowers();
+  bus_.drive(*robot_, output());
   robot_->step(cycle);
-  tell_borrowers();
 }
 
-void MujocoDevice::write_sensors(OctetWriter& payload) noexcept {
-  for (const std::size_t i : own_) payload.put(robot_->position(i));
-  for (const std::size_t i : own_) payload.put(robot_->velocity(i));
-  for (const std::size_t i : own_)
-    payload.put(robot_->torque(i) + (noise_n_m_ > 0 ? noise_n_m_ * random_.normal() : 0));
+Result<std::vector<std::size_t>> MujocoDevice::hand_over(std::string_view names) {
+  if (cycles() > 0) return fail(ErrorCode::NotPermitted, "joints are handed over before the device starts");
+  const auto own = bus_.joints();
+  std::vector<std::size_t> joints;
+  while (!names.empty()) {
+    const std::string_view name = names.substr(0, std::min(names.find(','), names.size()));
+    names.remove_prefix(std::min(names.size(), name.size() + 1));
+    const auto found = robot_->joint(name);
+    if (!found || std::ranges::find(own, *found) == own.end() || std::ranges::find(joints, *found) != joints.end())
+      return refuse(ErrorCode::NotFound,
+                    fmt::format("there is no joint '{}' that moves by itself and is its own", name));
+    joints.push_back(*found);
+  }
+  if (joints.empty() || joints.size() >= own.size())
+    return fail(ErrorCode::InvalidArgument, "another device has some of its joints, not all");
+  std::ranges::sort(joints);
+  std::vector<std::size_t> left;
+  std::ranges::set_difference(own, joints, std::back_inserter(left));
+  bus_.connect(std::move(left));
+  return joints;
 }
 
 std::unexpected<Error> MujocoDevice::refuse(ErrorCode code, std::string why) {
@@ -185,7 +187,8 @@ Result<> MujocoDevice::differ(const Words& words) {
     return ok();
   }
   if (what == "noise") {
-    HIROSCO_TRY_LET(noise_n_m_, words.number(1, 0, 100));
+    HIROSCO_TRY_LET(const double noise_n_m, words.number(1, 0, 100));
+    bus_.set_noise(noise_n_m);
     return ok();
   }
   return fail(ErrorCode::InvalidArgument, "unknown fault");
@@ -195,7 +198,6 @@ Result<> MujocoDevice::do_fault(const Words& words) {
   if (!robot_) return fail(ErrorCode::Unavailable, "it has no world yet");
   if (words[0].starts_with(obstacle_word)) return stand_around(words);
   if (words[0].starts_with(body_word) || words[0].starts_with(pull_word)) return lie_around(words);
-  if (words[0].starts_with(lend_word)) return lend(words);
   if (words[0] == "base") {
     if (words.count() != 2 || words[1] != "free")
       return fail(ErrorCode::InvalidArgument, "a base stands, or it is free: base free");
@@ -222,7 +224,7 @@ void MujocoDevice::do_heal() noexcept {
   if (!robot_) return;
   robot_->push(0, 0, 0);
   robot_->let_go_of_bodies();
-  noise_n_m_ = 0;
+  bus_.set_noise(0);
 }
 
 std::string MujocoDevice::do_truth() const {

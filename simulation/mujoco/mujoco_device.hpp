@@ -4,17 +4,17 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "simulation/devices/simulated_device.hpp"
-#include "simulation/mujoco/lent_joints.hpp"
+#include "simulation/mujoco/joint_bus.hpp"
 #include "simulation/mujoco/mujoco_robot.hpp"
-#include "simulation/world/random.hpp"
 
 namespace hirosco::simulation {
 
 /// The joints of any robot that has a URDF file, behind one bus. The file is the one that the setting MODEL_FILE of the device names
-/// in its subsystem's descriptor; the world reads it by itself.
+/// in its subsystem's descriptor; the world reads it by itself. Joints that a device in its world has (part_device.hpp) are not in its frames.
 /// To the subsystem: POSITION, VELOCITY, TORQUE DOUBLE[n], n joints in the order of the file (rad or m; behind gears, friction and
 /// brakes). From it: TORQUE DOUBLE[n] of the drives.
 /// Without a command the brakes are closed. A controlled stop slows down by brakes that give as much as the drives, then they hold
@@ -24,7 +24,6 @@ namespace hirosco::simulation {
 ///   base free   (before all that says where it is; floating_base.hpp)
 ///   obstacle_NAME SHAPE [SIZES] X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | obstacle_NAME none   (shapes.hpp; 16 at most)
 ///   body_NAME SHAPE SIZES MASS X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | body_NAME none | pull_NAME X Y Z   (8 at most)
-///   lend_NAME JOINT,JOINT,...   before it starts: these are another device's (lent_device.hpp), and no longer in this one's frames
 ///   softness SECONDS
 ///   posture Q1,Q2,... | rotors J1,J2,... | mass FACTOR | inertia FACTOR | friction FACTOR [MORE] | payload KG | gravity X Y Z | push X Y Z | noise N_M
 class MujocoDevice final : public SimulatedDevice {
@@ -50,14 +49,17 @@ class MujocoDevice final : public SimulatedDevice {
   /// For whoever is in the same world.
   [[nodiscard]] MujocoRobot& robot() noexcept { return *robot_; }
   [[nodiscard]] bool has_world() const noexcept { return robot_.has_value(); }
+  /// From now on these joints (NAME,NAME,...) are another device's, in the order of the file. NotPermitted: it runs already. NotFound,
+  /// InvalidArgument: one does not move by itself or is not its own, or none would be left.
+  [[nodiscard]] Result<std::vector<std::size_t>> hand_over(std::string_view names);
   [[nodiscard]] bool drives() const noexcept override { return driven_; }
   [[nodiscard]] std::vector<std::string> remarks() const override;
 
  private:
   [[nodiscard]] Result<> make_world() override;
   void advance(Duration cycle) noexcept override;
-  [[nodiscard]] Result<> take(OctetReader payload) noexcept override;
-  void write_sensors(OctetWriter& payload) noexcept override;
+  [[nodiscard]] Result<> take(OctetReader payload) noexcept override { return bus_.take(payload); }
+  void write_sensors(OctetWriter& payload) noexcept override { bus_.write_sensors(*robot_, payload); }
   [[nodiscard]] Result<> do_fault(const Words& words) override;
   [[nodiscard]] std::string do_truth() const override;
   void do_heal() noexcept override;
@@ -66,24 +68,12 @@ class MujocoDevice final : public SimulatedDevice {
   [[nodiscard]] std::unexpected<Error> refuse(ErrorCode code, std::string why);
   [[nodiscard]] Result<std::vector<double>> each_joint(std::string_view text);
   [[nodiscard]] Result<> stand_around(const Words& words);
-  [[nodiscard]] Result<> lend(const Words& words);
-  void hear_borrowers() noexcept;
-  void tell_borrowers() noexcept;
   [[nodiscard]] Result<> lie_around(const Words& words);
   [[nodiscard]] Result<> differ(const Words& words);
 
-  struct Lent {
-    std::vector<std::size_t> joints;  ///< of the robot
-    Lender to;
-  };
-  FlowFactory& flows_of_worlds_;
   std::optional<MujocoRobot> robot_;
-  std::vector<std::size_t> own_;  ///< joints of the robot that are this device's
-  std::vector<Lent> lent_;
+  JointBus bus_;
   std::string problem_;  ///< why there is no world, or what it was asked for is not done
-  Random random_;
-  std::vector<double> commanded_;
-  double noise_n_m_{0};
   bool driven_{false};
 };
 

@@ -65,13 +65,13 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
       told(plugged.error().text);
       continue;
     }
-    for (const std::string& remark : made->remarks())
-      parts.observer.told(clock_.onboard(), "simulated device " + described.name + ": " + remark);
     // Settings of a simulated device are lines of its fault script: <Setting name="hand" value="wander"/>.
     for (const auto& [name, value, at] : described.settings)
       if (const auto taken = name == world_setting ? ok() : made->fault(name + " " + value); !taken)
         parts.observer.told(clock_.onboard(), "simulated device " + described.name + " does not take '" + name + " " +
                                                   value + "': " + taken.error().text);
+    for (const std::string& remark : made->remarks())
+      parts.observer.told(clock_.onboard(), "simulated device " + described.name + ": " + remark);
     devices_.push_back({&described, std::move(made)});
   }
   if (parts.revives_after) {

@@ -39,7 +39,7 @@ Result<> RobotArm::pre_operational(const Cycle& cycle) noexcept {
 /// The law runs on the present position: what would be put out is visible, nothing moves.
 Result<> RobotArm::safe_operational(const Cycle& cycle) noexcept {
   measure(cycle);
-  if (cycle.first) drop_calls();
+  if (cycle.first) drop_calls(watch_.tripped().has_value());
   engage();
   control();
   watch(false);
@@ -53,7 +53,7 @@ Result<> RobotArm::operational(const Cycle& cycle) noexcept {
     stopped_ = false;
   }
   if (cycle.first || !cycle.active) {
-    if (!cycle.active) drop_calls();  // inhibited it could never end
+    if (!cycle.active) drop_calls(watch_.tripped().has_value());  // inhibited it could never end
     engage();
   } else {
     advance();
@@ -69,7 +69,7 @@ Result<> RobotArm::operational(const Cycle& cycle) noexcept {
 
 Result<> RobotArm::error_operational(const Cycle& cycle) noexcept {
   measure(cycle);
-  if (cycle.first) drop_calls();
+  if (cycle.first) drop_calls(watch_.tripped().has_value());
   device_.output().torque = Joints::zeros(bounds_.size());
   return ok();
 }
@@ -117,11 +117,7 @@ void RobotArm::advance() noexcept {
   end_retract();
   const double progressed = setpoints_->progress();
   motion_values_.store({static_cast<std::uint8_t>(setpoints_->kind()), setpoints_->duration_s(), progressed});
-  if (stop_ && setpoints_->at_rest()) {
-    finish(*stop_);
-    stop_.reset();
-    stopped_ = true;
-  }
+  if (setpoints_->at_rest()) at_rest_for_stop();
   if (!motion_) return;
   if (setpoints_->off_line_m() > most_off_line_m) {
     end_motion(Trouble::line_lost);
@@ -150,22 +146,6 @@ void RobotArm::arrive() noexcept {
   } else if (waited_s_ > patience_s) {
     end_motion(Trouble::goal_not_reached);
   }
-}
-
-template <FailureEnumeration Code>
-void RobotArm::end_motion(Code why) noexcept {
-  if (motion_) abort(*motion_, why);
-  motion_.reset();
-  jog_left_s_ = 0;
-}
-
-/// The actuators were taken away from whatever runs.
-void RobotArm::drop_calls() noexcept {
-  const auto tripped = static_cast<pus::FailureCode>(Trouble::limit_tripped);
-  const auto why = watch_.tripped() ? tripped : pus::FailureCode::Aborted;
-  end_motion(why);
-  if (stop_) abort(*stop_, why);
-  stop_.reset();
 }
 
 // --- the law and its guards --------------------------------------------------------------------------------------------
@@ -325,21 +305,7 @@ void RobotArm::bind_functions() {
   on_function("MOVE_L", [this](const FunctionValues& values, Call call) { return move_l(values, call); });
   on_function("JOG_J", [this](const FunctionValues& values, Call call) { return jog_j(values, call); });
   on_function("JOG_L", [this](const FunctionValues& values, Call call) { return jog_l(values, call); });
-  on_function("HOLD", [this]() -> Outcome {
-    if (!moving_) return refused(Trouble::actuators_inhibited);
-    if (stop_) return refused(pus::FailureCode::Busy);
-    end_motion(pus::FailureCode::Aborted);
-    stand();
-    return ok();
-  });
-  on_function("STOP", [this](Call call) -> Outcome {
-    if (!moving_) return refused(Trouble::actuators_inhibited);
-    if (stop_) return refused(pus::FailureCode::Busy);
-    end_motion(pus::FailureCode::Aborted);
-    stand();
-    stop_ = call;
-    return running;
-  });
+  bind_hold_and_stop();
   on_function("SET_TORQUE_LIMIT", [this](double share) { return set_torque_limit(share); });
   on_function("KEEP_OUT", [this](const robot_arm::KeepOut& numbers) { return keep_out(numbers); });
   on_function("SET_CONTACT", [this](std::uint8_t reaction, double limit) -> Outcome {

@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/subsystem/author/subsystem.hpp"
 #include "robotics/dynamics/dynamics.hpp"
+#include "robotics/subsystem/moving_subsystem.hpp"
+#include "robotics/urdf/named_robot.hpp"
 #include "subsystems/robot_arm/control/clearance.hpp"
 #include "subsystems/robot_arm/control/laws.hpp"
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
@@ -22,7 +23,7 @@ namespace hirosco {
 
 /// An arm of 1 to 16 joints whose device takes torques: all that it knows of the robot it reads from the URDF file that the setting
 /// MODEL_FILE of its device names, and from its descriptor.
-class RobotArm final : public Subsystem {
+class RobotArm final : public robotics::MovingSubsystem {
  public:
   /// Author's failure codes: why a function was refused or ended without its effect.
   enum class Trouble : std::uint16_t {
@@ -47,7 +48,9 @@ class RobotArm final : public Subsystem {
     Retract,  ///< backs off by the way it came, then stands
   };
 
-  RobotArm() = default;
+  RobotArm() noexcept
+      : MovingSubsystem{{.inhibited = static_cast<pus::FailureCode>(Trouble::actuators_inhibited),
+                         .limit_tripped = static_cast<pus::FailureCode>(Trouble::limit_tripped)}} {}
 
  private:
   Result<Step> software_init() override;
@@ -61,7 +64,6 @@ class RobotArm final : public Subsystem {
   void publish_all();
   void bind_functions();
   [[nodiscard]] Result<> read_model();
-  [[nodiscard]] Result<> find_tip(const std::string& named);
   [[nodiscard]] Result<> take_bounds();
   [[nodiscard]] Result<> check_lengths() noexcept;
 
@@ -74,13 +76,11 @@ class RobotArm final : public Subsystem {
   void react() noexcept;
   void watch_yielding() noexcept;
   void take_law(robot_arm::LawKind kind) noexcept;
-  void stand() noexcept;
+  void stand() noexcept override;
+  void motion_ended() noexcept override { jog_left_s_ = 0; }
   void end_retract() noexcept;
   void watch_clearance() noexcept;
   void arrive() noexcept;
-  template <FailureEnumeration Code>
-  void end_motion(Code why) noexcept;
-  void drop_calls() noexcept;
   [[nodiscard]] bool in_range(const robot_arm::JointVector& goal) const noexcept;
   [[nodiscard]] Outcome may_move() const noexcept;
   [[nodiscard]] bool floats() const noexcept { return laws_->kind() == robot_arm::LawKind::Float; }
@@ -127,7 +127,7 @@ class RobotArm final : public Subsystem {
 
   std::optional<robotics::Model> model_;
   robotics::FrameId tip_;
-  std::string problem_;  ///< of the URDF file, for whoever reads the refusal
+  robotics::urdf::NotRead not_read_;  ///< of its file or settings, for whoever reads the refusal
   std::vector<robot_arm::JointBounds> bounds_;
   std::optional<robotics::Dynamics> dynamics_;
   std::optional<robot_arm::Laws> laws_;
@@ -146,12 +146,9 @@ class RobotArm final : public Subsystem {
   double waited_s_{0};  ///< behind the end of a path
   double settled_s_{0};  ///< at the goal
   double jog_left_s_{0};
-  std::optional<Call> motion_, stop_;
   bool retracting_{false};
   bool half_reported_{false};
   bool arrives_{false};  ///< its motion has a goal
-  bool moving_{false};
-  bool stopped_{false};  ///< by STOP, until the next entry into Operational
 };
 
 [[nodiscard]] std::unique_ptr<Subsystem> make_robot_arm();

@@ -4,11 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
-
-#include "hirosco/descriptor/model/setting_files.hpp"
-#include "hirosco/descriptor/read/read.hpp"
-#include "robotics/urdf/robot.hpp"
 #include "subsystems/robot_arm/control/bounds.hpp"
 #include "subsystems/robot_arm/robot_arm.hpp"
 
@@ -20,10 +15,6 @@ using robot_arm::JointVector;
 namespace {
 
 constexpr std::string_view device_name = "ARM";
-constexpr std::string_view model_setting = "MODEL_FILE";
-constexpr std::string_view tip_setting = "TIP";
-/// Joints of the file that are somebody else's, with commas between them: they stand at 0 in the arm's model.
-constexpr std::string_view fixed_setting = "FIXED";
 /// Of the filter of what acts from outside.
 constexpr double observer_gain_per_s = 50;
 
@@ -31,20 +22,11 @@ constexpr double rest_rad_s = 0.02;
 constexpr double past_end = 0.05;
 constexpr double displacement = 0.01;
 
-/// A,B,...
-[[nodiscard]] std::vector<std::string> listed(std::string_view text) {
-  std::vector<std::string> names;
-  while (!text.empty()) {
-    names.emplace_back(text.substr(0, text.find(',')));
-    text.remove_prefix(std::min(text.size(), names.back().size() + 1));
-  }
-  return names;
-}
-
 }  // namespace
 
 Result<Step> RobotArm::software_init() {
   publish_all();
+  using namespace robotics::urdf;
   use_device(device_name, device_, {model_setting, tip_setting, fixed_setting});
   for (EventPort* event : std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_,
                                                             &torque_exceeded_, &torque_hard_exceeded_,
@@ -86,55 +68,22 @@ void RobotArm::publish_all() {
 }
 
 Result<> RobotArm::read_model() {
-  HIROSCO_TRY_LET(const std::string named, descriptor::setting_of_all(own_descriptor(), device_name, model_setting));
-  HIROSCO_TRY_LET(const std::string tip, descriptor::setting_of_all(own_descriptor(), device_name, tip_setting));
-  HIROSCO_TRY_LET(const std::string fixed, descriptor::setting_of_all(own_descriptor(), device_name, fixed_setting));
-  if (named.empty()) return fail(ErrorCode::NotFound, "no configuration names a URDF file: setting MODEL_FILE of ARM");
-  const auto file = descriptor::file_of(own_descriptor(), named);
-  const auto text = descriptor::file_system()(file);
-  if (!text) {
-    problem_ = fmt::format("{} {}", file.string(), text.error().text);
-    return fail(text.error().code, problem_.c_str());
-  }
-  auto reading = robotics::urdf::read(file, *text);
-  if (!reading.value) {
-    const auto& first = reading.problems.front();
-    problem_ = fmt::format("{}:{}:{}: {}: {}", file.filename().string(), first.at.line, first.at.column, first.code,
-                           first.message);
-    return fail(ErrorCode::Malformed, problem_.c_str(), static_cast<std::int64_t>(reading.problems.size()));
-  }
-  if (const auto unknown = robotics::urdf::fix(*reading.value, listed(fixed))) {
-    problem_ = fmt::format("FIXED of ARM: the robot has no joint '{}' that moves by itself", *unknown);
-    return fail(ErrorCode::NotFound, problem_.c_str());
-  }
-  auto made = robotics::Model::make(robotics::urdf::describe(*reading.value));
-  if (!made) return fail(made.error());
-  model_ = std::move(*made);
-  hulls_ = robot_arm::hulls_of(*text);
-  const auto tips = robotics::urdf::tips(*reading.value);
-  if (tip.empty() && tips.size() != 1)
-    return fail(ErrorCode::InvalidArgument, "the robot has several ends: setting TIP of ARM names the link",
-                static_cast<std::int64_t>(tips.size()));
-  HIROSCO_TRY(find_tip(tip.empty() ? tips.front() : tip));
+  auto named = robotics::urdf::read_named(own_descriptor(), device_name);
+  if (!named) return (not_read_ = std::move(named.error())).error();
+  const auto tip = robotics::urdf::named_tip(own_descriptor(), device_name, *named);
+  if (!tip) return (not_read_ = tip.error()).error();
+  tip_ = *tip;
+  model_ = std::move(named->model);
+  hulls_ = robot_arm::hulls_of(named->text);
   return take_bounds();
-}
-
-Result<> RobotArm::find_tip(const std::string& named) {
-  const auto found = model_->find_frame(named);
-  if (!found) {
-    problem_ = fmt::format("TIP of ARM: the robot has no link '{}'", named);
-    return fail(ErrorCode::NotFound, problem_.c_str());
-  }
-  tip_ = *found;
-  return ok();
 }
 
 /// Limits of the URDF file; those that a joint must have are asked for by name.
 Result<> RobotArm::take_bounds() {
   auto bounds = robot_arm::bounds_of(*model_);
   if (!bounds) {
-    problem_ = std::move(bounds.error());
-    return fail(ErrorCode::InvalidArgument, problem_.c_str());
+    not_read_ = {ErrorCode::InvalidArgument, std::move(bounds.error())};
+    return not_read_.error();
   }
   bounds_ = std::move(*bounds);
   return ok();
@@ -158,9 +107,8 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   setpoints_->set_tool({robotics::Matrix3::Identity(), {place[0], place[1], place[2]}});
   laws_->set_tool({place[0], place[1], place[2]});
   watch_.arm();
-  motion_.reset();
-  stop_.reset();
-  moving_ = stopped_ = retracting_ = false;
+  forget_motion();
+  retracting_ = false;
   jog_left_s_ = 0;
   return ok();
 }

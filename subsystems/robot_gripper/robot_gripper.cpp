@@ -45,7 +45,7 @@ Result<> RobotGripper::pre_operational(const Cycle& cycle) noexcept {
 Result<> RobotGripper::safe_operational(const Cycle& cycle) noexcept {
   measure(cycle);
   if (cycle.first) {
-    drop_calls();
+    drop_calls(watch_.tripped());
     recognise();
   }
   watch_held();
@@ -64,7 +64,7 @@ Result<> RobotGripper::operational(const Cycle& cycle) noexcept {
   }
   watch_held();
   if (cycle.first || !cycle.active) {
-    if (!cycle.active) drop_calls();  // inhibited it could never end
+    if (!cycle.active) drop_calls(watch_.tripped());  // inhibited it could never end
     engage();
   } else {
     advance();
@@ -79,7 +79,7 @@ Result<> RobotGripper::operational(const Cycle& cycle) noexcept {
 
 Result<> RobotGripper::error_operational(const Cycle& cycle) noexcept {
   measure(cycle);
-  if (cycle.first) drop_calls();
+  if (cycle.first) drop_calls(watch_.tripped());
   tell_gap();
   device_.output().torque = Joints::zeros(fingers_.count());
   return ok();
@@ -128,10 +128,7 @@ void RobotGripper::advance() noexcept {
   opening_.advance();
   if (grip_.law() == Law::Width) follow_path();
   else follow_grip();
-  if (!stop_ || !opening_.at_rest() || std::abs(speed_m_s_) > rest_m_s) return;
-  finish(*stop_);
-  stop_.reset();
-  stopped_ = true;
+  if (opening_.at_rest() && !(std::abs(speed_m_s_) > rest_m_s)) at_rest_for_stop();
 }
 
 /// A motion is done when it is measured at its goal, and rests.
@@ -195,21 +192,6 @@ void RobotGripper::follow_grip() noexcept {
   waited_s_ = presses ? waited_s_ + cycle_s_ : 0;
   // It goes on pressing: there may be something.
   if (waited_s_ > patience_s) end_motion(Trouble::force_not_reached);
-}
-
-template <FailureEnumeration Code>
-void RobotGripper::end_motion(Code why) noexcept {
-  if (motion_) abort(*motion_, why);
-  motion_.reset();
-}
-
-/// The actuators were taken away from whatever runs.
-void RobotGripper::drop_calls() noexcept {
-  const auto tripped = static_cast<pus::FailureCode>(Trouble::limit_tripped);
-  const auto why = watch_.tripped() ? tripped : pus::FailureCode::Aborted;
-  end_motion(why);
-  if (stop_) abort(*stop_, why);
-  stop_.reset();
 }
 
 // --- the law and its guards ------------------------------------------------------------------------------------------------
@@ -307,21 +289,7 @@ void RobotGripper::bind_functions() {
   on_function("OPEN",
               [this](double speed_m_s, Call call) { return move_to(fingers_.full_width_m(), speed_m_s, call); });
   on_function("GRIP", [this](double force_n, double speed_m_s, Call call) { return grip(force_n, speed_m_s, call); });
-  on_function("HOLD", [this]() -> Outcome {
-    if (!moving_) return refused(Trouble::actuators_inhibited);
-    if (stop_) return refused(pus::FailureCode::Busy);
-    end_motion(pus::FailureCode::Aborted);
-    stand();
-    return ok();
-  });
-  on_function("STOP", [this](Call call) -> Outcome {
-    if (!moving_) return refused(Trouble::actuators_inhibited);
-    if (stop_) return refused(pus::FailureCode::Busy);
-    end_motion(pus::FailureCode::Aborted);
-    stand();
-    stop_ = call;
-    return running;
-  });
+  bind_hold_and_stop();
 }
 
 }  // namespace hirosco

@@ -9,8 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/subsystem/author/subsystem.hpp"
 #include "robotics/dynamics/model.hpp"
+#include "robotics/subsystem/moving_subsystem.hpp"
+#include "robotics/urdf/named_robot.hpp"
 #include "subsystems/robot_gripper/control/grip.hpp"
 #include "subsystems/robot_gripper/control/opening.hpp"
 #include "subsystems/robot_gripper/control/watch.hpp"
@@ -20,7 +21,7 @@ namespace hirosco {
 
 /// A gripper of 1 to 4 driven finger joints whose device takes torques: all that it knows of them it reads from the URDF file that the
 /// setting MODEL_FILE of its device names, and from its descriptor. What it holds it lets go of when it is told to open, and at nothing else.
-class RobotGripper final : public Subsystem {
+class RobotGripper final : public robotics::MovingSubsystem {
  public:
   /// Author's failure codes: why a function was refused or ended without its effect.
   enum class Trouble : std::uint16_t {
@@ -37,7 +38,9 @@ class RobotGripper final : public Subsystem {
     object_lost = 0x800B,
   };
 
-  RobotGripper() = default;
+  RobotGripper() noexcept
+      : MovingSubsystem{{.inhibited = static_cast<pus::FailureCode>(Trouble::actuators_inhibited),
+                         .limit_tripped = static_cast<pus::FailureCode>(Trouble::limit_tripped)}} {}
 
  private:
   Result<Step> software_init() override;
@@ -51,7 +54,8 @@ class RobotGripper final : public Subsystem {
   void publish_all();
   void bind_functions();
   [[nodiscard]] Result<> read_model();
-  [[nodiscard]] Result<> find_fingers(std::string_view named);
+  [[nodiscard]] Result<> find_fingers(std::vector<std::string> wanted);
+  [[nodiscard]] std::unexpected<Error> refuse(ErrorCode code, std::string why);
   [[nodiscard]] Result<robot_gripper::Fingers> fingers_now();
   [[nodiscard]] Result<> check_lengths() noexcept;
   [[nodiscard]] Result<> check_sensors() noexcept;
@@ -68,10 +72,7 @@ class RobotGripper final : public Subsystem {
   void tell_gap() noexcept;
   void watch() noexcept;
   void watch_held() noexcept;
-  void stand() noexcept;
-  template <FailureEnumeration Code>
-  void end_motion(Code why) noexcept;
-  void drop_calls() noexcept;
+  void stand() noexcept override;
   [[nodiscard]] Outcome may_move() const noexcept;
   [[nodiscard]] double most_force_n() const noexcept;
   Outcome move_to(double width_m, double speed_m_s, const Call& call) noexcept;
@@ -96,7 +97,7 @@ class RobotGripper final : public Subsystem {
   std::optional<robotics::Model> model_;
   std::vector<std::size_t> finger_joints_;  ///< of the model, in its order
   bool closed_is_upper_{false};
-  std::string problem_;  ///< of the URDF file, for whoever reads the refusal
+  robotics::urdf::NotRead not_read_;  ///< of its file or settings, for whoever reads the refusal
   robot_gripper::Fingers fingers_;
   robot_gripper::Opening opening_;
   robot_gripper::Grip grip_;
@@ -110,10 +111,7 @@ class RobotGripper final : public Subsystem {
   double waited_s_{0};  ///< behind the end of a path, or pressing
   double settled_s_{0};  ///< at the goal
   double behind_s_{0};  ///< farther behind than it may be
-  std::optional<Call> motion_, stop_;
   bool reported_{false};
-  bool moving_{false};
-  bool stopped_{false};  ///< by STOP, until the next entry into Operational
   std::size_t tried_{0};
 };
 

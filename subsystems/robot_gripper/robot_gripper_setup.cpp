@@ -7,9 +7,7 @@
 #include <fmt/format.h>
 
 #include "hirosco/descriptor/model/setting_files.hpp"
-#include "hirosco/descriptor/read/read.hpp"
 #include "robotics/dynamics/dynamics.hpp"
-#include "robotics/urdf/robot.hpp"
 #include "subsystems/robot_gripper/robot_gripper.hpp"
 
 /// What a gripper is told by its URDF file and its descriptor, and how it tries itself.
@@ -21,7 +19,6 @@ using robot_gripper::Fingers;
 namespace {
 
 constexpr std::string_view device_name = "GRIPPER";
-constexpr std::string_view model_setting = "MODEL_FILE";
 /// Names of the joints that drive fingers, with commas between them; none: all that the file has.
 constexpr std::string_view fingers_setting = "FINGERS";
 /// At which end of their ranges the fingers are closed: lower, or upper.
@@ -34,7 +31,7 @@ constexpr double displacement_m = 0.0005;
 
 Result<Step> RobotGripper::software_init() {
   publish_all();
-  use_device(device_name, device_, {model_setting, fingers_setting, closed_setting});
+  use_device(device_name, device_, {robotics::urdf::model_setting, fingers_setting, closed_setting});
   for (EventPort* event :
        std::initializer_list<EventPort*>{&motion_done_, &held_told_, &lost_told_, &released_, &nothing_met_,
                                          &position_exceeded_, &speed_exceeded_, &force_exceeded_})
@@ -65,62 +62,42 @@ void RobotGripper::publish_all() {
 }
 
 Result<> RobotGripper::read_model() {
-  HIROSCO_TRY_LET(const std::string named, descriptor::setting_of_all(own_descriptor(), device_name, model_setting));
   HIROSCO_TRY_LET(const std::string fingers,
                   descriptor::setting_of_all(own_descriptor(), device_name, fingers_setting));
   HIROSCO_TRY_LET(const std::string closed, descriptor::setting_of_all(own_descriptor(), device_name, closed_setting));
-  if (named.empty())
-    return fail(ErrorCode::NotFound, "no configuration names a URDF file: setting MODEL_FILE of GRIPPER");
-  if (!closed.empty() && closed != "lower" && closed != "upper") {
-    problem_ = fmt::format("CLOSED of GRIPPER is '{}', and fingers are closed at 'lower' or 'upper'", closed);
-    return fail(ErrorCode::InvalidArgument, problem_.c_str());
-  }
+  if (!closed.empty() && closed != "lower" && closed != "upper")
+    return refuse(ErrorCode::InvalidArgument,
+                  fmt::format("CLOSED of GRIPPER is '{}', and fingers are closed at 'lower' or 'upper'", closed));
   closed_is_upper_ = closed == "upper";
-  const auto file = descriptor::file_of(own_descriptor(), named);
-  const auto text = descriptor::file_system()(file);
-  if (!text) {
-    problem_ = fmt::format("{} {}", file.string(), text.error().text);
-    return fail(text.error().code, problem_.c_str());
-  }
-  const auto reading = robotics::urdf::read(file, *text);
-  if (!reading.value) {
-    const auto& first = reading.problems.front();
-    problem_ = fmt::format("{}:{}:{}: {}: {}", file.filename().string(), first.at.line, first.at.column, first.code,
-                           first.message);
-    return fail(ErrorCode::Malformed, problem_.c_str(), static_cast<std::int64_t>(reading.problems.size()));
-  }
-  auto made = robotics::Model::make(robotics::urdf::describe(*reading.value));
-  if (!made) return fail(made.error());
-  model_ = std::move(*made);
-  return find_fingers(fingers);
+  auto named = robotics::urdf::read_named(own_descriptor(), device_name);
+  if (!named) return (not_read_ = std::move(named.error())).error();
+  model_ = std::move(named->model);
+  return find_fingers(robotics::urdf::listed_names(fingers));
+}
+
+std::unexpected<Error> RobotGripper::refuse(ErrorCode code, std::string why) {
+  not_read_ = {code, std::move(why)};
+  return not_read_.error();
 }
 
 /// In the order of the file, whatever the order of the names. What a finger must have is asked for by name.
-Result<> RobotGripper::find_fingers(std::string_view named) {
-  std::vector<std::string_view> wanted;
-  while (!named.empty()) {
-    const auto comma = std::min(named.find(','), named.size());
-    wanted.push_back(named.substr(0, comma));
-    named.remove_prefix(std::min(named.size(), comma + 1));
-  }
+Result<> RobotGripper::find_fingers(std::vector<std::string> wanted) {
   const bool all = wanted.empty();
   finger_joints_.clear();
   for (std::size_t i = 0; i < model_->joints().size(); ++i) {
     const auto& joint = model_->joints()[i];
-    if (!all && std::erase(wanted, std::string_view{joint.name}) == 0) continue;
+    if (!all && std::erase(wanted, joint.name) == 0) continue;
     const auto& limits = joint.limits;
     if (!limits.lower || !limits.upper || !(*limits.upper > *limits.lower) || !limits.effort || !(*limits.effort > 0) ||
-        !limits.velocity || !(*limits.velocity > 0)) {
-      problem_ =
-          fmt::format("finger joint '{}' has no range, effort and velocity above 0, and all are kept", joint.name);
-      return fail(ErrorCode::InvalidArgument, problem_.c_str());
-    }
+        !limits.velocity || !(*limits.velocity > 0))
+      return refuse(
+          ErrorCode::InvalidArgument,
+          fmt::format("finger joint '{}' has no range, effort and velocity above 0, and all are kept", joint.name));
     finger_joints_.push_back(i);
   }
-  if (!wanted.empty()) {
-    problem_ = fmt::format("FINGERS of GRIPPER: the file has no joint '{}' that moves by itself", wanted.front());
-    return fail(ErrorCode::NotFound, problem_.c_str());
-  }
+  if (!wanted.empty())
+    return refuse(ErrorCode::NotFound,
+                  fmt::format("FINGERS of GRIPPER: the file has no joint '{}' that moves by itself", wanted.front()));
   if (finger_joints_.size() > robot_gripper::max_fingers)
     return fail(ErrorCode::OutOfRange, "more joints than fingers are driven by: setting FINGERS of GRIPPER names them",
                 static_cast<std::int64_t>(finger_joints_.size()));
@@ -153,10 +130,9 @@ Result<Fingers> RobotGripper::fingers_now() {
                        .velocity = *its.limits.velocity,
                        .moved = mass(row, row) + rotor[i],
                        .friction = its.friction});
-    if (!(fingers.back().moved > 0)) {
-      problem_ = fmt::format("finger joint '{}' moves nothing that has mass: ROTOR_INERTIA", its.name);
-      return fail(ErrorCode::InvalidArgument, problem_.c_str());
-    }
+    if (!(fingers.back().moved > 0))
+      return refuse(ErrorCode::InvalidArgument,
+                    fmt::format("finger joint '{}' moves nothing that has mass: ROTOR_INERTIA", its.name));
     if (its.kind != robotics::JointKind::Prismatic) travel_m = HUGE_VAL;
     for (const auto& body : model_->bodies())
       if (&body != &model_->bodies().front() && body.coordinate == static_cast<int>(joint))
@@ -181,9 +157,7 @@ Result<> RobotGripper::configure(const descriptor::Configuration& configuration)
   grip_.set_tolerance(force_tolerance_.load());
   held_ = {};
   watch_.arm();
-  motion_.reset();
-  stop_.reset();
-  moving_ = stopped_ = false;
+  forget_motion();
   return ok();
 }
 

@@ -5,14 +5,13 @@
 
 #include <array>
 #include <cmath>
-#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/descriptor/read/read.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/driven.hpp"
 #include "subsystems/robot_gripper/robot_gripper.hpp"
 #include "subsystems/robot_gripper/testing/plant.hpp"
 
@@ -39,60 +38,20 @@ std::string descriptor_with(const std::string& from = "", const std::string& to 
   return text;
 }
 
-struct RobotGripperTest : ::testing::Test {
-  std::unique_ptr<Subsystem> gripper = make_robot_gripper();
-  hirosco::testing::Rig rig{*gripper, descriptor_with()};
-  std::unique_ptr<DataFlow> device =
-      std::move(rig.flows.open({Transfer::SharedMemory, "robot-gripper"}, FlowSide::Device)).value();
+struct RobotGripperTest : ::testing::Test, hirosco::testing::Driven {
   /// As the file says, with 2 kg of rotor.
   Fingers fingers{
       std::array{Finger{.closed = 0, .open = 0.05, .effort = 80, .velocity = 0.1, .moved = 2.3, .friction = 1}}, 0.1};
   robot_gripper::testing::Plant plant{fingers};
-  DeviceMode mode{};
-  Joints commanded = Joints::zeros(1);
   std::optional<robot_gripper::Measured> told;  ///< in place of the truth
-  double hardest_n{0};
 
-  void cycle(int count = 1) {
-    for (int i = 0; i < count; ++i) {
-      rig.service();
-      rig.cycle();
-      exchange();
-    }
-    rig.service();
-  }
-  void exchange() {
-    std::array<std::byte, max_device_frame_octets> frame{};
-    const auto found = device->receive(frame);
-    if (!found || found->flow != Flow::New) return;
-    const auto command = read_command(Octets{frame}.first(found->octets)).value();
-    mode = command.mode;
-    OctetReader reader{command.payload, std::endian::little};
-    commanded[0] = reader.get<double>();
-    hardest_n = std::max(hardest_n, std::abs(commanded[0]));
+  RobotGripperTest() : Driven{make_robot_gripper(), descriptor_with(), "robot-gripper"} {}
+  std::vector<double> play(std::span<const double> forces) override {
+    Joints commanded = Joints::zeros(1);
+    commanded[0] = forces[0];
     if (mode == DeviceMode::Active) plant.step(commanded, 0.001);
-    std::vector<std::byte> payload(24);
-    OctetWriter writer{payload, std::endian::little};
     const robot_gripper::Measured& measured = told ? *told : plant.measured();
-    for (const Joints* numbers : {&measured.position, &measured.velocity, &measured.torque}) writer.put((*numbers)[0]);
-    std::array<std::byte, max_device_frame_octets> answer{};
-    const auto status = write_status(answer, {.epoch = 1, .sequence = command.sequence, .payload = payload});
-    static_cast<void>(device->send(status.value()));
-  }
-  void command(State state) {
-    const auto request = rig.set_state(state);
-    cycle(5);
-    ASSERT_EQ(rig.outcome(request), "1 3 7") << to_text(state) << ": " << ::testing::PrintToString(rig.explanations);
-  }
-  void operate() {
-    rig.bring_to(State::PreOperational, 1);
-    cycle(5);
-    command(State::SafeOperational);
-    command(State::Operational);
-    ASSERT_EQ(mode, DeviceMode::Active);
-  }
-  void finish(hirosco::testing::Sent request, int most = 15'000) {
-    for (int i = 0; i < most && rig.outcome(request).find_first_of("78") == std::string::npos; i += 10) cycle(10);
+    return {measured.position[0], measured.velocity[0], measured.torque[0]};
   }
   std::string done(const char* function, std::initializer_list<double> arguments) {
     const auto request = rig.call(function, arguments);

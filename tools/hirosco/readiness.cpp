@@ -69,8 +69,9 @@ class Lacking {
     };
     const auto world = simulation::whose_world(mission_, device);
     if (!world) return none(world.error());
-    // What is wrong with the other one is told by itself.
     const auto other = *world != nullptr ? made(**world, make, flows) : nullptr;
+    // What is wrong with the other one is told by itself.
+    if (*world != nullptr && !other) return;
     if (other)
       for (const auto& setting : (*world)->settings) (void)other->fault(setting.name + " " + setting.value);
     auto wanted = simulation::device_arguments(mission_, device);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hirosco/subsystem/author/subsystem.hpp"
+#include "robotics/urdf/named_robot.hpp"
 #include "subsystems/robot_arm/control/watch.hpp"
 #include "subsystems/robot_arm/floating/tool_law.hpp"
 
@@ -110,7 +111,7 @@ class FloatingArm final : public Subsystem {
 
   std::optional<robotics::Model> model_;
   robotics::FrameId tip_;
-  std::string problem_;  ///< for whoever reads the refusal
+  robotics::urdf::NotRead not_read_;  ///< of its file or settings, for whoever reads the refusal
   std::vector<robot_arm::JointBounds> bounds_;
   std::optional<robot_arm::FloatingModel> floating_;
   robot_arm::ToolLaw law_{robot_arm::ToolLaw::FixedBase};

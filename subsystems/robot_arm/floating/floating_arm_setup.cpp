@@ -3,11 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
-
-#include "hirosco/descriptor/model/setting_files.hpp"
-#include "hirosco/descriptor/read/read.hpp"
-#include "robotics/urdf/robot.hpp"
 #include "subsystems/robot_arm/control/bounds.hpp"
 #include "subsystems/robot_arm/floating/floating_arm.hpp"
 
@@ -16,15 +11,13 @@ namespace hirosco {
 namespace {
 
 constexpr std::string_view device_name = "ARM";
-constexpr std::string_view model_setting = "MODEL_FILE";
-constexpr std::string_view tip_setting = "TIP";
 constexpr std::string_view hold_configuration = "ATTITUDE_HOLD";
 
 }  // namespace
 
 Result<Step> FloatingArm::software_init() {
   publish_all();
-  use_device(device_name, device_, {model_setting, tip_setting});
+  use_device(device_name, device_, {robotics::urdf::model_setting, robotics::urdf::tip_setting});
   require_link("POSE", pose_);
   for (EventPort* event : std::initializer_list<EventPort*>{&motion_done_, &conditioning_low_, &base_held_,
                                                             &limit_exceeded_, &hard_exceeded_})
@@ -50,41 +43,20 @@ void FloatingArm::publish_all() {
 }
 
 Result<> FloatingArm::read_model() {
-  HIROSCO_TRY_LET(const std::string named, descriptor::setting_of_all(own_descriptor(), device_name, model_setting));
-  HIROSCO_TRY_LET(std::string tip, descriptor::setting_of_all(own_descriptor(), device_name, tip_setting));
-  if (named.empty()) return fail(ErrorCode::NotFound, "no configuration names a URDF file: setting MODEL_FILE of ARM");
-  const auto file = descriptor::file_of(own_descriptor(), named);
-  const auto reading = robotics::urdf::read(file, descriptor::file_system());
-  if (!reading.value) {
-    const auto& first = reading.problems.front();
-    problem_ = fmt::format("{}:{}:{}: {}: {}", file.filename().string(), first.at.line, first.at.column, first.code,
-                           first.message);
-    return fail(ErrorCode::Malformed, problem_.c_str(), static_cast<std::int64_t>(reading.problems.size()));
-  }
-  auto made = robotics::Model::make(robotics::urdf::describe(*reading.value));
-  if (!made) return fail(made.error());
-  model_ = std::move(*made);
-  const auto tips = robotics::urdf::tips(*reading.value);
-  if (tip.empty()) {
-    if (tips.size() != 1)
-      return fail(ErrorCode::InvalidArgument, "the robot has several ends: setting TIP of ARM names the link",
-                  static_cast<std::int64_t>(tips.size()));
-    tip = tips.front();
-  }
-  const auto found = model_->find_frame(tip);
-  if (!found) {
-    problem_ = fmt::format("TIP of ARM: the robot has no link '{}'", tip);
-    return fail(ErrorCode::NotFound, problem_.c_str());
-  }
-  tip_ = *found;
+  auto named = robotics::urdf::read_named(own_descriptor(), device_name);
+  if (!named) return (not_read_ = std::move(named.error())).error();
+  const auto tip = robotics::urdf::named_tip(own_descriptor(), device_name, *named);
+  if (!tip) return (not_read_ = tip.error()).error();
+  tip_ = *tip;
+  model_ = std::move(named->model);
   return take_bounds();
 }
 
 Result<> FloatingArm::take_bounds() {
   auto bounds = robot_arm::bounds_of(*model_);
   if (!bounds) {
-    problem_ = std::move(bounds.error());
-    return fail(ErrorCode::InvalidArgument, problem_.c_str());
+    not_read_ = {ErrorCode::InvalidArgument, std::move(bounds.error())};
+    return not_read_.error();
   }
   bounds_ = std::move(*bounds);
   return ok();

@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/device/device_frame.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/driven.hpp"
 #include "subsystems/robot_arm/robot_arm.hpp"
 #include "subsystems/robot_arm/testing/plant.hpp"
 
@@ -70,70 +69,34 @@ inline std::string file_with(const std::string& name, const std::string& text) {
 }
 
 /// The test plays the device: the robot itself, brakes that hold it, and whatever is done to it.
-struct Flown {
+struct Flown : hirosco::testing::Driven {
   std::size_t n;
-  std::string file;
-  std::unique_ptr<Subsystem> arm = make_robot_arm();
-  hirosco::testing::Rig rig{*arm, descriptor_for(n, file)};
-  std::unique_ptr<DataFlow> device =
-      std::move(rig.flows.open({Transfer::SharedMemory, "robot-arm"}, FlowSide::Device)).value();
   robotics::Model model;
   Plant plant{model};
   JointVector commanded, outside;
-  DeviceMode mode{};
   double fastest{0}, largest_share{0};
   std::optional<robot_arm::Measured> told;  ///< in place of the truth
 
-  Flown(std::size_t joints, std::string urdf, double mass_factor = 1)
-      : n{joints}, file{std::move(urdf)}, model{model_of(file, mass_factor)} {
+  Flown(std::size_t joints, const std::string& file, double mass_factor = 1)
+      : Driven{make_robot_arm(), descriptor_for(joints, file), "robot-arm"},
+        n{joints},
+        model{model_of(file, mass_factor)} {
     plant.rotor = 0.1;
     commanded = outside = JointVector::Zero(static_cast<Eigen::Index>(n));
   }
-  void cycle(int count = 1) {
-    for (int i = 0; i < count; ++i) {
-      rig.service();
-      rig.cycle();
-      exchange();
-    }
-    rig.service();
-  }
-  void exchange() {
-    std::array<std::byte, max_device_frame_octets> frame{};
-    const auto found = device->receive(frame);
-    if (!found || found->flow != Flow::New) return;
-    const auto command = read_command(Octets{frame}.first(found->octets)).value();
-    mode = command.mode;
-    ASSERT_EQ(command.payload.size(), 8 * n);
-    OctetReader reader{command.payload, std::endian::little};
-    for (Eigen::Index i = 0; i < commanded.size(); ++i) {
-      commanded[i] = reader.get<double>();
-      largest_share = std::max(
-          largest_share, std::abs(commanded[i]) / model.joints()[static_cast<std::size_t>(i)].limits.effort.value());
-    }
+  std::vector<double> play(std::span<const double> torques) override {
+    EXPECT_EQ(torques.size(), n);
+    commanded = vector_of(torques);
+    for (std::size_t i = 0; i < torques.size(); ++i)
+      largest_share = std::max(largest_share, std::abs(torques[i]) / model.joints()[i].limits.effort.value());
     if (mode == DeviceMode::Active) plant.step(commanded, 0.001, &outside);
     else plant.place(plant.measured().position);
     fastest = std::max(fastest, plant.measured().velocity.cwiseAbs().maxCoeff());
-    std::vector<std::byte> payload(24 * n);
-    OctetWriter writer{payload, std::endian::little};
     const robot_arm::Measured& measured = told ? *told : plant.measured();
-    for (const auto* numbers : {&measured.position, &measured.velocity, &measured.torque})
-      for (const double number : *numbers) writer.put(number);
-    std::array<std::byte, max_device_frame_octets> answer{};
-    const auto status = write_status(answer, {.epoch = 1, .sequence = command.sequence, .payload = payload});
-    static_cast<void>(device->send(status.value()));
-  }
-  void command(State state) {
-    const auto request = rig.set_state(state);
-    cycle(5);
-    ASSERT_EQ(rig.outcome(request), "1 3 7") << to_text(state) << ": " << ::testing::PrintToString(rig.explanations);
-  }
-  void operate() {
-    rig.bring_to(State::PreOperational, 1);
-    cycle(5);
-    command(State::SafeOperational);
-    command(State::Operational);
-    ASSERT_EQ(rig.inhibited(), 0u);
-    ASSERT_EQ(mode, DeviceMode::Active);
+    std::vector<double> numbers;
+    for (const auto* each : {&measured.position, &measured.velocity, &measured.torque})
+      numbers.insert(numbers.end(), each->begin(), each->end());
+    return numbers;
   }
   hirosco::testing::Sent ask(const char* function, std::vector<double> numbers) {
     const auto data = pus::encode_call(*rig.subsystem.descriptor().find_function(function), numbers).value();
@@ -147,12 +110,6 @@ struct Flown {
   }
   [[nodiscard]] double off(const JointVector& goal) const {
     return (plant.measured().position - goal).cwiseAbs().maxCoeff();
-  }
-  /// Cycles until a request has ended.
-  int finish(hirosco::testing::Sent request, int most = 30'000) {
-    int cycles = 0;
-    while (rig.outcome(request).find_first_of("78") == std::string::npos && cycles < most) cycle(10), cycles += 10;
-    return cycles;
   }
 };
 
