@@ -46,7 +46,8 @@ export function tour(page) {
       text: 'Two processes at 2 kHz, joined by two real-time links. Take them apart, send the arm somewhere by telecommand, and couple them again: each step of the commissioning is a telecommand that the supervisor permits and logs.',
       act: ['Take apart', () => couple('standalone')], act_2: ['MOVE_TO −1.0 1.9 in 2 s', () => send_and_say('MANIPULATOR', 'MOVE_TO', {Q1: -1.0, Q2: 1.9, DURATION: 2.0})],
       act_3: ['Home, and couple', home_and_couple],
-      done: () => is_coupled() && sent('LINK', 'completed')},
+      // An arm that is coupled takes no MOVE_TO: it was apart. How it was coupled again is the visitor's.
+      done: () => is_coupled() && sent('MOVE_TO', 'completed')},
     {title: 'Feel the wall', view: '#/overview',
       text: 'Press the fingertip against the rail, by mouse or by the button. The teal arrow is the contact force; the torque plot shows what the joystick gives back to the hand.',
       act: ['Press with 43 N', () => fault('joystick', 'hand cartesian 0.0226 0 1')], done: () => force_n() > 10},
