@@ -32,12 +32,12 @@ FileSource measured_by(const std::string& power, const std::string& array = arra
                                    changed(first, first + R"(<Subsystem executable="array" descriptor="array.xml"/>)"));
   return overlay({{"mission.xml", text}, {"array.xml", array}});
 }
-std::string first_problem(const FileSource& source) {
+std::string first_words(const FileSource& source) {
   const auto reading = read_mission(data / "mission.xml", source);
   return reading.problems.empty() ? std::string{}
                                   : reading.problems.front().code + " " + reading.problems.front().message;
 }
-std::string problem_of(const std::string& power) { return first_problem(measured_by(power)); }
+std::string problem_of(const std::string& power) { return first_words(measured_by(power)); }
 
 TEST(MeasuredPower, HasItsPlaceInTheReportsOfWhoMeasures) {
   const auto source = measured_by(R"(budget_W="150" measured="ARRAY.STATE.BUDGET" age_ms="300" least_W="20.5")");
@@ -77,7 +77,7 @@ TEST(MeasuredPower, ThatNobodyTellsIsRefusedWithTheReason) {
 
 TEST(MeasuredPower, IsReportedAlikeInEveryConfigurationWithoutATelecommand) {
   const std::string good = R"(budget_W="150" measured="ARRAY.STATE.BUDGET" age_ms="500")";
-  const auto with = [&](const std::string& array) { return first_problem(measured_by(good, array)).substr(0, 5); };
+  const auto with = [&](const std::string& array) { return first_words(measured_by(good, array)).substr(0, 5); };
   const std::string structure =
       R"(<HKService id="4801" interval="100"><SampledOnce><ParamRef name="ANGLE"/><ParamRef name="STATE"/></SampledOnce></HKService>)";
   const std::string other = changed(R"(<ParamRef name="ANGLE"/>)", "", structure);
