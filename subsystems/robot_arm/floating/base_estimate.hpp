@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "robotics/dynamics/spatial.hpp"
@@ -28,12 +29,14 @@ class BaseEstimate {
     orientation_.setIdentity();
   }
 
-  /// A sample; of a quaternion that is none only the place is taken.
+  /// A sample. One that is no place and attitude is passed over: a mean would never forget it.
   void take(const robotics::Vector3& position_m, const robotics::Quaternion& orientation) noexcept {
+    const double norm = orientation.norm();
+    if (!position_m.allFinite() || !std::isfinite(norm) || norm <= 0.5) return;
     samples_ = std::min(samples_ + 1, most_samples);
     const double weight = 1.0 / samples_;
     position_m_ += weight * (position_m - position_m_);
-    if (orientation.norm() > 0.5) orientation_ = orientation_.slerp(weight, orientation.normalized());
+    orientation_ = orientation_.slerp(weight, orientation.normalized());
   }
   /// Each cycle, before its sample if there is one: `twist` in the base's own axes, rad/s and m/s.
   void go_on(const robotics::Vector6& twist, double cycle_s) noexcept {

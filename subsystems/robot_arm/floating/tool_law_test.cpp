@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -56,9 +57,24 @@ TEST(BaseEstimate, IsAMeanFromItsFirstSamplesOnAndKeepsASixthOfTheNoise) {
   }
   EXPECT_NEAR(std::sqrt(square), 1e-3 / std::sqrt(2.0 * BaseEstimate::most_samples - 1), 0.2e-4);
   base.forget();
-  base.take({0, 0, 0}, {0, 0, 0, 0});
+  base.take({0, 0, 0}, turned);
   EXPECT_EQ(base.position_m(), robotics::Vector3::Zero()) << "after a silence, too";
-  EXPECT_NEAR(base.orientation().angularDistance(turned), 0, 1e-9) << "no attitude, none taken";
+}
+
+TEST(BaseEstimate, PassesOverSamplesThatAreNoPlaceOrNoAttitude) {
+  BaseEstimate base;
+  const robotics::Quaternion turned{std::cos(0.1), std::sin(0.1), 0, 0};
+  base.take({1, 2, 3}, turned);
+  const double none = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
+  for (const double bad : {none, endless, -endless}) {
+    base.take({1, bad, 3}, turned);
+    base.take({5, 5, 5}, {1, bad, 0, 0});
+  }
+  base.take({5, 5, 5}, {0, 0, 0, 0});
+  EXPECT_EQ(base.position_m(), robotics::Vector3(1, 2, 3));
+  EXPECT_NEAR(base.orientation().angularDistance(turned), 0, 1e-9);
+  base.take({2, 2, 3}, turned);
+  EXPECT_EQ(base.position_m(), robotics::Vector3(1.5, 2, 3)) << "the second sample: those between do not count";
 }
 
 TEST(BaseEstimate, GoesOnBetweenSamplesAsTheBaseMovesByItself) {
