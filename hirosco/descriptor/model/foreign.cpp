@@ -90,10 +90,6 @@ namespace {
   return "none of the structures that are heard of it has it";
 }
 
-}  // namespace
-
-namespace {
-
 /// Of its reports, with the id in front.
 [[nodiscard]] std::size_t octets_of(const HousekeepingStructure& structure, const Subsystem& subsystem) {
   const auto octets = [&](const std::vector<ParameterRef>& references) {
@@ -116,8 +112,8 @@ namespace {
 }
 
 /// Where it stands, if it is the same and often enough in every configuration.
-[[nodiscard]] std::optional<ReportedAt> find_in(const Subsystem& subsystem, std::uint16_t id, const ParameterRef& place,
-                                                Duration age) {
+[[nodiscard]] std::optional<ReportedAt> find_reported_in(const Subsystem& subsystem, std::uint16_t id,
+                                                         const ParameterRef& place, Duration age) {
   std::optional<ReportedAt> found;
   for (const Configuration& configuration : subsystem.configurations) {
     const HousekeepingStructure* structure = find_enabled(subsystem, configuration, id);
@@ -138,7 +134,7 @@ std::expected<ReportedAt, std::string> find_reported(const Subsystem& subsystem,
   if (!subsystem.configurations.empty())
     for (const auto* structures : {&subsystem.housekeeping, &subsystem.configurations.front().housekeeping})
       for (const HousekeepingStructure& each : *structures)
-        if (const auto found = find_in(subsystem, each.id, place, age)) return *found;
+        if (const auto found = find_reported_in(subsystem, each.id, place, age)) return *found;
   return std::unexpected{"no structure reports it in every configuration, alike and at least each " +
                          std::to_string(age / std::chrono::milliseconds{1}) + " ms"};
 }
