@@ -94,7 +94,6 @@ TEST(WithoutAPowerSwitch, NobodyAsks) {
   EXPECT_EQ(rig.set_state_now(State::Offline), "1 3 7");
 }
 
-constexpr auto arm_lost = descriptor::framework_event::device_lost(0);
 constexpr auto fell_back = descriptor::framework_event::fell_back(1);
 
 /// The lamp by two ways; somebody else may have them.
@@ -199,7 +198,7 @@ TEST_F(LinkedDevices, ADeviceThatNeverAnswersIsToldAsLostWhenItsTimeAndWhatItMay
   arm_speaks = true;
   for (int i = 0; i < 4; ++i) cycle();
   EXPECT_EQ(craft.inhibited(), inhibited_by_device);
-  EXPECT_EQ(craft.heard(arm_lost), 1);
+  EXPECT_EQ(craft.heard(testing::arm_lost), 1);
 }
 
 TEST_F(LinkedDevices, WhileAFallBackHasNotAnsweredNoSampleGoesOutAndTheActuatorsAreInhibited) {
