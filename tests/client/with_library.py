@@ -7,6 +7,7 @@ environment in the build folder, which is made with pip when it is needed for th
     with_library.py FOLDER SCRIPT [ARGUMENTS...]
 
 Exit code 77: the library is neither here nor to be had."""
+import fcntl
 import os
 import pathlib
 import subprocess
@@ -18,27 +19,35 @@ NEEDED = "import spacepackets, fastcrc"
 
 
 def works(python, needed):
-    return subprocess.run([python, "-c", needed], capture_output=True, check=False).returncode == 0
+    try:
+        return subprocess.run([python, "-c", needed], capture_output=True, check=False).returncode == 0
+    except OSError:
+        return False
 
 
 def interpreter(folder, needed=NEEDED, requirements=REQUIREMENTS, seconds=120):
-    """(path of an interpreter that has the library, "") or (None, why there is none)."""
+    """(path of an interpreter that has the library, "") or (None, why there is none). All tests share one `folder`: to make it takes
+    longer than most libraries do."""
     if works(sys.executable, needed):
         return sys.executable, ""
     folder = pathlib.Path(folder)
     python = folder / "bin" / "python"
-    if python.exists() and works(str(python), needed):
-        return str(python), ""
-    steps = ([sys.executable, "-m", "venv", "--clear", str(folder)],
-             [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", str(requirements)])
-    for step in steps:
-        try:
-            done = subprocess.run(step, capture_output=True, text=True, timeout=seconds, check=False)
-        except (OSError, subprocess.TimeoutExpired) as error:
-            return None, str(error)
-        if done.returncode != 0:
-            lines = (done.stderr or done.stdout).strip().splitlines() or ["no reason given"]
-            return None, f"{' '.join(step[:4])}: {lines[-1]}"
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with open(f"{folder}.lock", "w", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if python.exists() and works(str(python), needed):
+            return str(python), ""
+        steps = [[str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile", "-r", str(requirements)]]
+        if not works(str(python), "import pip"):
+            steps.insert(0, [sys.executable, "-m", "venv", "--clear", str(folder)])
+        for step in steps:
+            try:
+                done = subprocess.run(step, capture_output=True, text=True, timeout=seconds, check=False)
+            except (OSError, subprocess.TimeoutExpired) as error:
+                return None, str(error)
+            if done.returncode != 0:
+                lines = (done.stderr or done.stdout).strip().splitlines() or ["no reason given"]
+                return None, f"{' '.join(step[:4])}: {lines[-1]}"
     return str(python), ""
 
 

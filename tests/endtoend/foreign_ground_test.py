@@ -33,7 +33,7 @@ class ForeignGround(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    python, reason = with_library.interpreter(pathlib.Path(flight.BINARIES).parent / "foreign_client")
+    python, reason = with_library.interpreter(pathlib.Path(flight.BINARIES).parent / "python_judges")
     if python is None:
         flight.skip("no-package-index-of-python", reason)
     flight.main()
