@@ -66,6 +66,7 @@ struct TcpTraits {
 struct SerialTraits {
   using Factory = SystemFlowFactory;
   static constexpr bool knows_its_peer = true;
+  static constexpr bool hands_on_in_pieces = true;
   static FlowAddress address() { return {Transfer::Serial, "/tmp/hirosco-" + unique_name()}; }
 };
 struct MessageQueueTraits {
