@@ -13,7 +13,7 @@ import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ["HIROSCO_BIN"]).parent
-NAMES = {"hirosco", "hirosco-ground", "hirosco-world", "libhirosco-dev", "hirosco-doc"}
+NAMES = {"hirosco", "hirosco-ground", "hirosco-world", "hirosco-world-mujoco", "libhirosco-dev", "hirosco-doc"}
 
 
 def said(*words):
@@ -52,9 +52,12 @@ class Packages(unittest.TestCase):
                            ("usr/share/hirosco/missions/rokviss/mission.xml", "hirosco"), ("usr/share/man/man1/hirosco.1.gz", "hirosco"),
                            ("usr/lib/hirosco/hirosco-ground", "hirosco-ground"), ("usr/share/hirosco/page/index.html", "hirosco-ground"),
                            ("usr/lib/hirosco/hirosco-sim-robot.so", "hirosco-world"), ("usr/lib/hirosco/hirosco-mission-rokviss", "hirosco-world"),
+                           ("usr/lib/hirosco/hirosco-sim-mujoco.so", "hirosco-world-mujoco"),
+                           ("usr/share/hirosco/missions/six_joints/mission.xml", "hirosco-world-mujoco"),
                            ("usr/lib/cmake/hirosco/hirosco-config.cmake", "libhirosco-dev"),
                            ("usr/share/hirosco/templates/subsystem/newpart.cpp", "libhirosco-dev")):
             self.assertEqual(owners.get(path), [name], path)
+        self.assertEqual([path for path in owners if "libmujoco" in path], [], "it is fetched")
         # That nothing which is installed is in none of them dh_missing sees.
 
     def test_what_they_depend_on_is_what_they_are_linked_with(self):
@@ -83,4 +86,6 @@ if __name__ == "__main__":
     for tool, reason in (("dh", "no-debhelper"), ("lintian", "no-lintian")):
         if not shutil.which(tool):
             sys.exit(subprocess.run([REPOSITORY / "tools/skip_reason", reason], check=False).returncode)
+    if not (BUILD / "bin/hirosco-sim-mujoco").exists():
+        sys.exit(subprocess.run([REPOSITORY / "tools/skip_reason", "no-mujoco", REPOSITORY / "build/mujoco"], check=False).returncode)
     unittest.main()

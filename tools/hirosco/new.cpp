@@ -59,8 +59,9 @@ constexpr const char* world_program = "hirosco-sim-mujoco";
 void say_what_is_missing() {
   if (!find_program(world_program).empty()) return;
   fmt::print(
-      "\nIts world, {}, is not here. It is built with HIROSCO's sources once tools/fetch_mujoco has\n"
-      "fetched MuJoCo (10 MB, judged by hash); until then the mission can be checked, but not flown.\n",
+      "\nIts world, {}, is not here: the package hirosco-world-mujoco has it. It is built with HIROSCO's sources once\n"
+      "tools/fetch_mujoco has fetched MuJoCo (10 MB, judged by hash); until then the mission can be checked, but not "
+      "flown.\n",
       world_program);
 }
 
