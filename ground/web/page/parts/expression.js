@@ -27,7 +27,6 @@ const token_pattern = /\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)
 
 function tokens_of(text) {
   const found = [];
-  token_pattern.lastIndex = 0;
   for (let at = 0; at < text.length;) {
     if (!text.slice(at).trim()) break;
     token_pattern.lastIndex = at;
@@ -65,8 +64,9 @@ export function nearest(wrong, names) {
 
 const same_unit = (a, b) => a === b ? a : a === '' || b === '' ? a || b : null;
 
-/// What `text` says: {inputs: [parameter names], unit, at(values)}. `known(name)` answers {unit, words} of a parameter, `words` when its values are
-/// no numbers, and undefined where there is none; `names` are those that a guess may be of. Throws ExpressionError.
+/// What `text` says: {inputs: [parameter names], unit, at(values)}; without a unit where units that differ are added or multiplied. `known(name)`
+/// answers {unit, words} of a parameter, `words` when its values are no numbers, and undefined where there is none; `names` are those that a
+/// guess may be of. Throws ExpressionError.
 export function parse(text, known, names = []) {
   if (text.length > longest_text) throw new ExpressionError(`an expression has at most ${longest_text} characters`, longest_text);
   const tokens = tokens_of(text), inputs = [];
@@ -101,7 +101,7 @@ export function parse(text, known, names = []) {
     do given.push(sum(depth + 1)); while (takes(','));
     expect(')', `“)” after what ${name} is of`);
     if (given.length < least || (given.length > least && !more)) throw new ExpressionError(`${name} is of ${least} ${least === 1 ? 'value' : 'values'}${more ? ' or more' : ''}, not of ${given.length}`, at);
-    const unit = unit_kept.has(name) ? given.map((one) => one.unit).reduce((a, b) => a === null || b === null ? null : same_unit(a, b)) : '';
+    const unit = name === 'deg' ? 'deg' : unit_kept.has(name) ? given.map((one) => one.unit).reduce((a, b) => a === null || b === null ? null : same_unit(a, b)) : '';
     return made({unit, of: (values) => reckon(...given.map((one) => one.of(values)))});
   }
 
@@ -158,7 +158,6 @@ export function parse(text, known, names = []) {
     for (let sign = takes('+', '-'); sign; sign = takes('+', '-')) {
       const one = left, other = product(depth);
       const unit = one.unit === null || other.unit === null ? null : same_unit(one.unit, other.unit);
-      if (unit === null && one.unit && other.unit) throw new ExpressionError(`${one.unit} and ${other.unit} cannot be ${sign.sign === '+' ? 'added' : 'subtracted'}; a factor of 1 / 1 ${other.unit} is not known here`, sign.at);
       left = made({unit, of: sign.sign === '+' ? (values) => one.of(values) + other.of(values) : (values) => one.of(values) - other.of(values)});
     }
     return left;

@@ -6,6 +6,7 @@ import {EventTable} from '../parts/event_list.js';
 import {wanted_form} from '../parts/goal_form.js';
 import {Lanes} from '../parts/lanes.js';
 import {LinkRows, links_hint} from '../parts/link_rows.js';
+import {is_reckoned, of_flight} from '../parts/curves.js';
 import {Panel} from '../parts/panel.js';
 import {Legend, TimePlot} from '../parts/plot.js';
 import {Robot} from '../parts/robot.js';
@@ -53,7 +54,8 @@ function told_by(plot) {
 export const plot_title = (names) => {
   const known = (scene_of_mission.value?.plots ?? []).find((plot) => plot.title && plot_names(plot).join() === names.join());
   if (known) return known.title;
-  const base = (names.at(-1) ?? '').replace(/\[\d+\]$/, '').split('.');
+  if (names.some(is_reckoned)) return names.find(is_reckoned).slice(1);
+  const base = of_flight(names.at(-1) ?? '')[0].replace(/\[\d+\]$/, '').split('.');
   const words = base.slice(base.length > 2 ? 2 : 1).join('.').replaceAll('_', ' ').toLowerCase();
   // Of several elements of arrays what they have in common is which one.
   const [place, ...others] = new Set(names.map((name) => /\[\d+\]$/.exec(name)?.[0] ?? ''));
