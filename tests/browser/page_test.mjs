@@ -218,6 +218,22 @@ describe('a flight that means well', () => {
     await page.click('[data-test=pause]');
   });
 
+  it('plots an expression, written with clicked names, beside the same of another flight, and says what is wrong with one', async () => {
+    await page.click('[data-test=expression-open]');
+    await page.fill('[data-test=expression]', '2 * MANIPULATOR.DES_POSITON[0]');
+    await page.keyboard.press('Enter');
+    assert.match(await page.textContent('[data-test=expression-wrong]'), /did you mean MANIPULATOR\.DES_POSITION\[0\]\?, at character 5/);
+    await page.fill('[data-test=expression]', '2 * ');
+    await page.click('.plots .group button:has-text("DES_POSITION[0]")');
+    await holds(page, () => document.querySelector('[data-test=expression]').value === '2 * MANIPULATOR.DES_POSITION[0]');
+    await page.selectOption('[data-test=compare]', {index: 1});
+    await page.click('[data-test=expression-plot]');
+    const told = () => page.evaluate(() => [...document.querySelectorAll('[data-test=legend] > span')].map((one) => [one.title, Number(one.querySelector('b').textContent.replace('−', '-')), one.querySelector('.statistics')?.textContent]));
+    await until('three curves with samples', async () => { const all = await told(); return all.length === 3 && all.every(([, value, between]) => Number.isFinite(value) && between); });
+    assert.deepEqual((await told()).map(([name]) => name), ['MANIPULATOR.CUR_VALUES.POSITION[0]', 'MANIPULATOR.CUR_VALUES.POSITION[0]@1', '=2 * MANIPULATOR.DES_POSITION[0]']);
+    await page.selectOption('[data-test=compare]', '');
+  });
+
   it('shows what has names for its values as words, not as heights', async () => {
     await go(page, 'plots?p=MANIPULATOR.PHASE&w=60');
     await holds(page, () => /REST/.test(document.querySelector('[data-test=state-lanes]')?.textContent));

@@ -224,7 +224,7 @@ export function Legend({names, brief, on_remove, about = nothing, window = null}
 /// When, how far apart, and what happened there: for all plots of a view.
 export function Cursors() {
   const at = cursor_t.value, [first, last] = pins.value;
-  if (at === null && first === undefined) return html`<span class="cursors">click: a cursor, a second one: what lies between; drag: zoom, wheel: heights, double click: all</span>`;
+  if (at === null && first === undefined) return html`<span class="cursors">click: cursor, drag: zoom, wheel: heights, double click: all</span>`;
   const near = at === null ? null : marks_in(at - 0.15, at + 0.15).sort((a, b) => Math.abs(a.t - at) - Math.abs(b.t - at))[0];
   return html`<span class="cursors" data-test="cursors">${at !== null ? clock_text(at, 3) : ''}${first !== undefined ? html` from <b>${clock_text(first, 3)}</b>` : null}${
     last !== undefined ? html` to <b>${clock_text(last, 3)}</b>, ${(last - first).toFixed(3)} s` : null}${near ? html` · ${near.words}` : null}

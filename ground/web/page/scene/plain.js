@@ -80,7 +80,7 @@ export function coarse(geometry, cell_m) {
   return new BufferGeometry().setAttribute('position', new Float32BufferAttribute(places, 3)).setIndex(index);
 }
 
-const hiding_cell = 0.012;
+const hiding_cell = 0.02;
 /// The parts of `whole` (kit.js merged()) as one mesh of a material that asks for no more than where it is.
 export function one_mesh(whole, material) {
   const geometries = whole.children.filter((part) => part.isMesh).map(({geometry}) => {

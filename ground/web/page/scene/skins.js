@@ -81,6 +81,8 @@ const least_shadow_m = 0.045;
 export function cast_on_plane(robot, sun, z) {
   const material = shadow_skin(new Vector3().copy(sun).normalize(), z, 0.42);
   for (const part of meshes_of(robot)) {
+    // Dials and frames are drawn upon the picture: they stand nowhere.
+    if (part.material.isMeshBasicMaterial) continue;
     part.geometry.computeBoundingSphere();
     const {radius} = part.geometry.boundingSphere;
     if (radius > least_shadow_m) wrapped(part, material, -2, coarse(part.geometry, radius * shadow_cell));
