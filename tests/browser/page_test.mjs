@@ -74,6 +74,17 @@ describe('a flight that means well', () => {
     await holds(page, () => Number(document.querySelector('[data-test=robot]')?.dataset.frames) > 10);
   });
 
+  it('shows what stands around the robot, and not in black', async () => {
+    await holds(page, () => document.querySelector('[data-test=robot]')?.dataset.still === 'whole');
+    const bright = await page.evaluate(() => {
+      const {width, height} = document.querySelector('canvas.still'), half = document.createElement('canvas');
+      [half.width, half.height] = [40, 20];
+      half.getContext('2d').drawImage(document.querySelector('canvas.still'), 0, height / 2, width, height / 2, 0, 0, 40, 20);
+      return half.getContext('2d').getImageData(0, 0, 40, 20).data.filter((value, i) => i % 4 === 0 && value > 40).length / 800;
+    });
+    assert.ok(bright > 0.4, `${bright} of its lower half`);
+  });
+
   it('goes on to draw it in whichever view it is taken along to', async () => {
     for (const view of ['timeline', 'overview', 'timeline', 'overview']) {
       await go(page, view);
