@@ -97,11 +97,13 @@ function* until(t) {
       if (first_t + by + length_s > t) return;
       at = 0;
       ++lap;
-      states.clear();
+      if (state === 'normal') states.clear();
       continue;
     }
     if (list[at].t + by > t) return;
-    yield shifted(list[at++], by);
+    const one = list[at++];
+    // Who is looked at while all is well does not start anew with each lap.
+    if (lap === 0 || state === 'normal' || one.name !== 'STATE_CHANGED') yield shifted(one, by);
   }
 }
 

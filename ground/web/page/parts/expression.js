@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// Expressions of parameters, as `MANIPULATOR.TIP_FORCE[0] * 2 - abs(JOYSTICK.CUR_VALUES.TORQUE[1])`: read by a parser of our own, so that
+// Expressions of parameters, as `ARM.FORCE[0] * 2 - abs(HAND.TORQUE[1])`: read by a parser of our own, so that
 // an address that somebody sends can reckon and do nothing else. Everything is bounded. Without browser and archive: who calls brings the samples.
 
 export const longest_text = 300;
