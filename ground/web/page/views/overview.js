@@ -27,14 +27,17 @@ function worth(name) {
 }
 
 /// What a mission without a scene shows first: the first arrays and numbers of its housekeeping.
+const is_plotted = (column) => column.type !== 'TEXT' && !column.enumeration?.length && !/CYCLE_STATS|COUNTS|REJECTIONS/.test(column.name);
 export function first_plots() {
   // Not known yet: plots that go again at once would ask the archive in vain.
   if (scene_of_mission.value === undefined) return [];
   const described = scene_of_mission.value?.plots;
   if (described) return described.map((plot) => told_by(plot)).filter((plot) => plot.names.length);
-  const by_parameter = new Map();
-  for (const column of columns.value.values()) {
-    if (column.type === 'TEXT' || column.enumeration?.length || /CYCLE_STATS|COUNTS|REJECTIONS/.test(column.name)) continue;
+  const by_parameter = new Map(), own = (column) => (mission.value?.subsystems.find((one) => one.name === column.subsystem)?.id ?? 0) >= 10;
+  // What the mission is about, where it has numbers; what every mission has, else.
+  const all = [...columns.value.values()], of_mission = all.filter(own);
+  for (const column of of_mission.some(is_plotted) ? of_mission : all) {
+    if (!is_plotted(column)) continue;
     if (scene_of_mission.value === null && column.subsystem === 'SUPERVISOR') continue;
     const base = column.name.replace(/\[\d+\]$/, '');
     by_parameter.set(base, [...(by_parameter.get(base) ?? []), column.name]);

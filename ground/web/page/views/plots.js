@@ -150,15 +150,15 @@ function Picker({on_pick: pick}) {
   // The mission's own subsystems before those that every mission has.
   const own = mission.value?.subsystems.filter((one) => one.id >= 10) ?? [], common = mission.value?.subsystems.filter((one) => one.id < 10) ?? [];
   const groups = [...own, ...common].map(({name}) => [name, by_base(found.filter((column) => column.subsystem === name))]).filter(([, list]) => list.length);
-  const button = (column, name) => html`<button class="action" onClick=${(event) => on_pick(column.name, event.shiftKey)}>${
-    column.name.slice(name.length + 1)}<small>${unit_text(column.unit)}</small></button>`;
+  const button = (column, name) => html`<button class="action" title=${column.name} onClick=${(event) => on_pick(column.name, event.shiftKey)}><span>${
+    column.name.slice(name.length + 1)}</span><small>${unit_text(column.unit)}</small></button>`;
   return html`<${Panel} title="Parameters" hint=${text === null ? 'Shift: a new plot' : 'a click writes its name'}
     tools=${text === null ? html`<button class="chip" title="plot what is reckoned of parameters" data-test="expression-open" onClick=${() => set_text('')}>f(x)</button>` : null}>
     ${text === null ? null : html`<${Writer} text=${text} set_text=${set_text} node=${node} on_pick=${pick} />`}
     <input class="search" type="search" placeholder="search  /" aria-label="search parameters" data-search value=${search} onInput=${(event) => set_search(event.currentTarget.value)} />
     ${groups.map(([name, list]) => html`<div class="group" key=${name}><h3>${name}</h3>${list.map(([base, elements]) =>
       elements.length < long_array || words.length ? elements.map((column) => button(column, name)) :
-      html`<details><summary class="action">${base.slice(name.length + 1)}<small>${elements.length}×</small></summary>${elements.map((column) => button(column, name))}</details>`)}</div>`)}
+      html`<details><summary class="action" title=${base}><span>${base.slice(name.length + 1)}</span><small>${elements.length}×</small></summary>${elements.map((column) => button(column, name))}</details>`)}</div>`)}
   </${Panel}>`;
 }
 
