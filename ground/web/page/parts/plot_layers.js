@@ -104,7 +104,7 @@ export const bare = {hooks: {draw: ({bare: is_bare, ctx, bbox}) => {
   ctx.fillStyle = colour('faint');
   ctx.font = `${12 * (devicePixelRatio || 1)}px Inter`;
   ctx.textAlign = 'center';
-  ctx.fillText('no samples here', bbox.left + bbox.width / 2, bbox.top + bbox.height / 2);
+  ctx.fillText(bbox.width < 130 * (devicePixelRatio || 1) ? 'no samples' : 'no samples here', bbox.left + bbox.width / 2, bbox.top + bbox.height / 2);
   ctx.restore();
 }}};
 
