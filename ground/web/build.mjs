@@ -34,12 +34,14 @@ const entry = (source) => made.find((one) => one.entry === source).name;
 // The 3D part comes while the rest starts: most visits begin with the robot, and its code is most of the octets.
 const drawing = made.find(({name}) => /^robot_drawing-.*\.js$/.test(name)).name;
 const font_files = made.filter(({name}) => name.endsWith('.woff2')).map(({name}) => name).sort();
+// What the page begins with is asked for at once, and not when the file that needs it has come.
+const needed = Object.entries(metafile.outputs).find(([, {entryPoint}]) => entryPoint === 'page/main.js')[1].imports.filter(({kind}) => kind === 'import-statement').map(({path}) => basename(path));
 // Octets and log lines alone are in the other typeface: it comes when they are seen.
 const wanted_at_once = font_files.filter((name) => name.startsWith('inter'));
 writeFileSync(join(out, 'index.html'), readFileSync(join(sources, 'page/index.html'), 'utf8')
     .replace('style.css', entry('page/style.css')).replace('main.js', entry('page/main.js'))
     .replace('</head>', `${wanted_at_once.map((name) => `  <link rel="preload" as="font" type="font/woff2" crossorigin href="${name}">\n`).join('')}` +
-        `  <link rel="modulepreload" href="${drawing}">\n</head>`));
+        [...needed, drawing].map((name) => `  <link rel="modulepreload" href="${name}">\n`).join('') + '</head>'));
 cpSync(join(sources, 'page/icon.svg'), join(out, 'icon.svg'));
 
 /// Notices of what is bundled: each licence asks to be carried along.

@@ -47,12 +47,12 @@ export async function open_page(context, url, size = {width: 1600, height: 900})
   page.setDefaultTimeout(patience_ms);
   await page.setViewportSize(size);
   const faults = [];
-  const own = new URL(url).origin;
+  const own = new URL(url).host;
   page.on('console', (message) => message.type() === 'error' && faults.push(`console: ${message.text()}`));
   page.on('pageerror', (error) => faults.push(`exception: ${error.message}`));
   page.on('request', (request) => {
     const target = new URL(request.url());
-    if (!['blob:', 'data:'].includes(target.protocol) && target.host !== new URL(own).host) faults.push(`request to ${target.host}`);
+    if (!['blob:', 'data:'].includes(target.protocol) && target.host !== own) faults.push(`request to ${target.host}`);
   });
   await page.goto(url);
   return {page, faults};

@@ -83,7 +83,7 @@ function measure_sizes() {
 /// A browser that has never seen the page.
 async function measure_opening(station) {
   const browser = await open_browser();
-  const {page} = await open_page(browser.context, 'about:blank');
+  const {page} = await open_page(browser.context, 'about:blank', {width: 1440, height: 900});
   const network = await page.context().newCDPSession(page);
   let transferred = 0;
   await network.send('Network.enable');
@@ -316,7 +316,7 @@ async function measure() {
     await hand(station, 'hand sine 1 0.1 0.5');
     await sleep(2000);
     await measure_opening(station);
-    const {page, faults} = await open_page(browser.context, station.url);
+    const {page, faults} = await open_page(browser.context, station.url, {width: 1440, height: 900});
     await couple_again(page, station);
     await measure_frames(page, 10);
     await measure_accessibility(page);

@@ -74,6 +74,17 @@ describe('a flight that means well', () => {
     await holds(page, () => Number(document.querySelector('[data-test=robot]')?.dataset.frames) > 10);
   });
 
+  it('shows what stands around the robot, and not in black', async () => {
+    await holds(page, () => document.querySelector('[data-test=robot]')?.dataset.still === 'whole');
+    const bright = await page.evaluate(() => {
+      const {width, height} = document.querySelector('canvas.still'), half = document.createElement('canvas');
+      [half.width, half.height] = [40, 20];
+      half.getContext('2d').drawImage(document.querySelector('canvas.still'), 0, height / 2, width, height / 2, 0, 0, 40, 20);
+      return half.getContext('2d').getImageData(0, 0, 40, 20).data.filter((value, i) => i % 4 === 0 && value > 40).length / 800;
+    });
+    assert.ok(bright > 0.4, `${bright} of its lower half`);
+  });
+
   it('goes on to draw it in whichever view it is taken along to', async () => {
     for (const view of ['timeline', 'overview', 'timeline', 'overview']) {
       await go(page, view);
@@ -216,6 +227,22 @@ describe('a flight that means well', () => {
     await until('another picture', async () => await picture() !== before);
     await page.mouse.dblclick(box.x + box.width / 2, box.y + box.height / 2);
     await page.click('[data-test=pause]');
+  });
+
+  it('plots an expression, written with clicked names, beside the same of another flight, and says what is wrong with one', async () => {
+    await page.click('[data-test=expression-open]');
+    await page.fill('[data-test=expression]', '2 * MANIPULATOR.DES_POSITON[0]');
+    await page.keyboard.press('Enter');
+    assert.match(await page.textContent('[data-test=expression-wrong]'), /did you mean MANIPULATOR\.DES_POSITION\[0\]\?, at character 5/);
+    await page.fill('[data-test=expression]', '2 * ');
+    await page.click('.plots .group button:has-text("DES_POSITION[0]")');
+    await holds(page, () => document.querySelector('[data-test=expression]').value === '2 * MANIPULATOR.DES_POSITION[0]');
+    await page.selectOption('[data-test=compare]', {index: 1});
+    await page.click('[data-test=expression-plot]');
+    const told = () => page.evaluate(() => [...document.querySelectorAll('[data-test=legend] > span')].map((one) => [one.title, Number(one.querySelector('b').textContent.replace('−', '-')), one.querySelector('.statistics')?.textContent]));
+    await until('three curves with samples', async () => { const all = await told(); return all.length === 3 && all.every(([, value, between]) => Number.isFinite(value) && between); });
+    assert.deepEqual((await told()).map(([name]) => name), ['MANIPULATOR.CUR_VALUES.POSITION[0]', 'MANIPULATOR.CUR_VALUES.POSITION[0]@1', '=2 * MANIPULATOR.DES_POSITION[0]']);
+    await page.selectOption('[data-test=compare]', '');
   });
 
   it('shows what has names for its values as words, not as heights', async () => {

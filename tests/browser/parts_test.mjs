@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, when the
-// next picture is drawn.
+// What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, expressions
+// of parameters, when the next picture is drawn.
 import assert from 'node:assert/strict';
 import {join} from 'node:path';
 import {describe, it} from 'node:test';
@@ -13,6 +13,7 @@ const {beyond_rad, reach} = await of_page('scene/reach.js');
 const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numbers.js');
 const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
 const {ticks_text} = await of_page('format.js');
+const {parse, reckon} = await of_page('parts/expression.js');
 
 const near = (one, other, what = '') => assert.ok(Math.hypot(...one.map((value, i) => value - other[i])) < 1e-4, `${what} ${one} instead of ${other}`);
 
@@ -96,6 +97,46 @@ describe('the pushes of a tool', () => {
     assert.deepEqual(push_of(jog, {turning: false, axis: 1, side: -1}, fine), {LINEAR: [0, -0.005, 0], ANGULAR: [0, 0, 0], SECONDS: 0.4});
     assert.deepEqual(push_of(jog, {turning: true, axis: 2, side: 1}, fine), {LINEAR: [0, 0, 0], ANGULAR: [0, 0, 0.05], SECONDS: 0.4});
     assert.deepEqual(push_of(jog, {turning: false, axis: 0, side: 1}, coarse).LINEAR, [0.03, 0, 0]);
+  });
+});
+
+describe('an expression of parameters', () => {
+  const columns = {'ARM.FORCE[0]': {unit: 'N'}, 'ARM.FORCE[1]': {unit: 'N'}, 'ARM.Q': {unit: 'rad'}, 'ARM.MODE': {unit: '', words: true}};
+  const read = (text) => parse(text, (name) => new Map(Object.entries(columns)).get(name.replace(/@\d+$/, '')), Object.keys(columns));
+  const value = (text, ...values) => read(text).at(values);
+  const problem = (text) => { try { read(text); } catch (error) { return error.message; } return 'none'; };
+
+  it('reckons as it is written: powers before products before sums, from the left', () => {
+    for (const [text, expected] of [['ARM.Q*0 + 2 + 3 * 4', 14], ['ARM.Q*0+2 - 3 - 4', -5], ['-2^2 + ARM.Q*0', -4], ['2^3^2+0*ARM.Q', 512], ['12/3/2 +0*ARM.Q', 2], ['(1 + 2) * 3+ARM.Q*0', 9],
+      ['max(1, 3, 2) - hypot(3, 4) + 0 * ARM.Q', -2], ['1.5e2 + .5 + 0*ARM.Q', 150.5], ['atan2(1, 1) * 4 - pi + 0 * ARM.Q', 0], ['- -2 + ARM.Q*0', 2]]) assert.equal(value(text, 1), expected, text);
+    assert.equal(value('ARM.FORCE[0] * 2 - abs(ARM.FORCE[1])', 3, -4), 2);
+    assert.deepEqual(read('ARM.FORCE[0] - ARM.FORCE[0]@3').inputs, ['ARM.FORCE[0]', 'ARM.FORCE[0]@3']);
+  });
+
+  it('has the unit that follows from those of its parameters, and none where they do not agree', () => {
+    for (const [text, unit] of [['ARM.FORCE[0] * 2 - 1', 'N'], ['hypot(ARM.FORCE[0], ARM.FORCE[1])', 'N'], ['ARM.FORCE[0] / ARM.FORCE[1]', ''], ['ARM.FORCE[0] + ARM.Q', ''], ['deg(ARM.Q)', 'deg'], ['sin(ARM.Q)', '']]) {
+      assert.equal(read(text).unit, unit, text);
+    }
+  });
+
+  it('says what is wrong, where, and what may have been meant', () => {
+    for (const [text, words] of [['ARM.FORCE[0', /“\[” is neither/], ['ARM.FROCE[0] * 2', /no parameter “ARM.FROCE\[0\]”, did you mean ARM.FORCE\[0\]\?, at character 1/], ['2 * (ARM.Q', /“\)” is missing, at character 11/],
+      ['ARM.Q +', /ends where a number/], ['ARM.Q ARM.Q', /“ARM.Q” follows/], ['abss(ARM.Q)', /no function “abss”, did you mean abs\?/], ['sqrt(ARM.Q, 2)', /sqrt is of 1 value, not of 2/], ['1 + 2', /no parameter is in it/],
+      ['ARM.MODE * 2', /words for values/], ['', /nothing is written/], ['ARM.Q; alert(1)', /“;” is neither/], ['constructor(ARM.Q)', /no function/], ['__proto__', /no parameter/], ['* 2', /not “\*”/]]) assert.match(problem(text), words, text);
+  });
+
+  it('is bounded, whatever is sent as an address', () => {
+    assert.match(problem(`${'('.repeat(100)}ARM.Q${')'.repeat(100)}`), /nested deeper/);
+    assert.match(problem('-'.repeat(200) + 'ARM.Q'), /nested deeper/);
+    assert.match(problem(Array(75).fill('1').join('+') + '+ARM.Q'), /more than 120/);
+    assert.match(problem('1'.repeat(301)), /at most 300/);
+  });
+
+  it('has a value at each sample of any parameter, and none where one has been silent for too long', () => {
+    const program = read('ARM.FORCE[0] / ARM.FORCE[1]');
+    const {t, v} = reckon(program, [{t: [1, 2, 3, 9], v: [10, 20, null, 30]}, {t: [1.5, 2, 4, 8.5], v: [2, 4, 0, 5]}], [2, 2]);
+    assert.deepEqual(t, [1, 1.5, 2, 3, 4, 8.5, 9]);
+    assert.deepEqual(v, [null, 5, 5, null, null, null, 6]);
   });
 });
 

@@ -45,6 +45,7 @@ let next_id = 1;
 const authority = {holder: null, asking: null};
 const acts = new Map();
 let seen_until = null, marks = [];
+const earlier_t = first_t - 4000;
 const flight_of_now = {id: 2, from: first_t};
 
 function alarms() {
@@ -96,11 +97,13 @@ function* until(t) {
       if (first_t + by + length_s > t) return;
       at = 0;
       ++lap;
-      states.clear();
+      if (state === 'normal') states.clear();
       continue;
     }
     if (list[at].t + by > t) return;
-    yield shifted(list[at++], by);
+    const one = list[at++];
+    // Who is looked at while all is well does not start anew with each lap.
+    if (lap === 0 || state === 'normal' || one.name !== 'STATE_CHANGED') yield shifted(one, by);
   }
 }
 
@@ -135,7 +138,9 @@ function answer(response, code, body) {
 
 function history(query) {
   const name = query.get('parameter'), from = +query.get('from'), to = +query.get('to');
-  const samples = archive.filter((one) => one.type === 'values' && name in one.set && one.t >= from && one.t <= to).map((one) => one.set[name]);
+  // The flight of before was as this one, as far as it goes.
+  const known = to < first_t ? [0, 1, 2, 3, 4, 5].flatMap((before) => list.map((one) => shifted(one, earlier_t - first_t + before * length_s))) : archive;
+  const samples = known.filter((one) => one.type === 'values' && name in one.set && one.t >= from && one.t <= to).map((one) => one.set[name]);
   return {parameter: name, unit: '', t: samples.map(([, t]) => t), v: samples.map(([v]) => v), gaps: []};
 }
 
@@ -198,7 +203,7 @@ const server = createServer(async (request, response) => {
     '/api/authority': () => request.method === 'POST' ? act_on_authority(body) : authority,
     '/api/marks': () => ({marks}),
     '/api/flights': () => request.method === 'POST' ? {flight: body.flight, name: body.name} : {flights: state === 'fresh' ? [] : [{id: 2, from: first_t, to: now, name: '', named_by: '', high: 0, medium: 0, commands: commands.length},
-      {id: 1, from: first_t - 4000, to: first_t - 600, name: 'first light', named_by: 'anna', high: 2, medium: 1, commands: 14}]},
+      {id: 1, from: earlier_t, to: first_t - 600, name: 'first light', named_by: 'anna', high: 2, medium: 1, commands: 14}]},
     '/api/log': () => {
       const lines = archive.filter((one) => one.type === 'event').reverse().map((one, i) => ({number: archive.length - i, t: one.t, apid: one.apid,
         subsystem: one.subsystem, service: 5, subtype: 1, text: `TM[5,1] ${one.subsystem} ${one.name} ${one.text}`}));

@@ -46,7 +46,7 @@ export function number_text(value) {
 }
 
 /// Digits after the point by the unit: a number that changes keeps its width, and what is below the resolution of its parameter is 0.
-const digits_of_unit = {rad: 3, deg: 2, mm: 1, m: 4, N: 1, 'N m': 2, Nm: 2, 'rad/s': 3, s: 3, ms: 1, us: 1, 'µs': 1, degC: 1, 'rad|m': 4, 'rad/s|m/s': 3, 'N m|N': 2, W: 1, V: 2, A: 2, '%': 1, Hz: 1};
+const digits_of_unit = {rad: 3, deg: 2, mm: 1, m: 4, N: 1, 'N m': 2, Nm: 2, 'N m s': 3, 'rad/s': 3, s: 3, ms: 1, us: 1, 'µs': 1, degC: 1, 'rad|m': 4, 'rad/s|m/s': 3, 'N m|N': 2, W: 1, V: 2, A: 2, '%': 1, Hz: 1};
 export function quantity_text(value, unit) {
   const digits = digits_of_unit[unit];
   if (typeof value !== 'number' || !Number.isFinite(value) || digits === undefined || Math.abs(value) >= 1e6) return number_text(value);

@@ -17,12 +17,27 @@ import {switch_theme, theme} from './theme.js';
 import {Tour, tour_from_url} from './tour.js';
 import {Commands} from './views/commands.js';
 import {Events} from './views/events.js';
-import {Help} from './views/help.js';
-import {Links} from './views/links.js';
 import {Overview} from './views/overview.js';
-import {Plots} from './views/plots.js';
-import {Subsystems} from './views/subsystems.js';
-import {Timeline} from './views/timeline.js';
+
+/// What is in views/later.js, once it is here: by itself when the page has had time to start, or when somebody asks for it.
+const others = signal(null);
+let coming = null;
+const fetch_others = () => {
+  coming ??= import('./views/later.js').then((found) => { others.value = found; }, () => {
+    coming = null;
+    setTimeout(fetch_others, retry_ms);
+  });
+};
+const retry_ms = 1000, started_ms = 8000;
+setTimeout(fetch_others, started_ms);
+function later(name) {
+  return (props) => {
+    if (others.value) return html`<${others.value[name]} ...${props} />`;
+    fetch_others();
+    return html`<main class="starting">Waiting for the gateway …</main>`;
+  };
+}
+const [Help, Links, Plots, Subsystems, Timeline] = ['Help', 'Links', 'Plots', 'Subsystems', 'Timeline'].map(later);
 
 const views = {
   overview: ['Overview', Overview, 'o'], subsystems: ['Subsystems', Subsystems, 's'], plots: ['Plots', Plots, 'p'],

@@ -1,13 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// Samples of the parameters that are drawn: the past from the archive, then what the feed brings. Shared between plots.
+// Samples of the parameters that are drawn: the past from the archive, then what the feed brings; the same of another flight, and what is
+// reckoned of them. Shared between plots.
 import {get} from './api.js';
-import {flight, gateway, newest_s, now_s, on_values, replay} from './store.js';
+import {is_reckoned, of_flight, reckoned} from './parts/curves.js';
+import {reckon} from './parts/expression.js';
+import {columns, flight, flights, freshness, gateway, newest_s, now_s, on_values, replay, values} from './store.js';
 
 const most_samples = 40000;
 const longest_window_s = 3600;
-const backlog_points = 3000;
+/// A sample of an expression's parameter holds for three of its periods, for this long at least.
+const least_held_s = 2;
+const backlog_points = 3000, flight_points = 20000;
 
 const known = new Map();
 
@@ -70,9 +75,75 @@ class Series {
   }
 }
 
+/// A parameter as it was in another flight, as if that had begun when the one that is shown began: fetched once, and nothing comes to it.
+class PastSeries extends Series {
+  constructor(name) {
+    super(name);
+    [this.parameter, this.id] = of_flight(name);
+  }
+
+  push() {}
+
+  async fetch() {
+    const other = flights.value.find((one) => one.id === this.id), began = began_s();
+    if (!other || !Number.isFinite(began) || this.from === began) return;
+    this.from = began;
+    try {
+      const answer = await get('/api/history', {parameter: this.parameter, from: other.from, to: Math.min(other.to, other.from + longest_window_s), points: flight_points});
+      const number = (value) => Number.isFinite(value) ? value : null;
+      this.t = answer.t.map((t) => t - other.from + began);
+      this.v = (answer.v ?? answer.min.map((low, i) => (low + answer.max[i]) / 2)).map(number);
+      [this.low, this.high] = [answer.min, answer.max].map((list) => list ? list.map(number) : this.t.map(() => null));
+      ++this.version;
+    } catch {
+      this.from = Infinity;
+    }
+  }
+}
+
+/// When the flight that is shown began: that of now, or the one that is replayed.
+function began_s() {
+  const at = replay.peek()?.at;
+  return at === undefined ? flight.peek()?.from : flights.peek().find((one) => one.from <= at)?.from;
+}
+
+/// An expression at the times of its parameters' samples.
+class ReckonedSeries {
+  uses = 0;
+  #of = -1;
+  #made = {t: [], v: [], none: []};
+
+  constructor(name, window_s) {
+    this.name = name;
+    this.program = reckoned(name);
+    this.inputs = this.program.inputs.map((input) => use_series(input, window_s));
+  }
+
+  get t() { return this.#now().t; }
+  get v() { return this.#now().v; }
+  get low() { return this.#now().none; }
+  get high() { return this.#now().none; }
+  fetch(from) { for (const one of this.inputs) one.fetch(from); }
+  push() {}
+  forget() {}
+  close() { this.inputs.forEach(drop_series); }
+
+  #now() {
+    // Every change of a series counts: together they have had as many.
+    let of = 0;
+    for (const one of this.inputs) of += one.version;
+    if (of !== this.#of) {
+      this.#of = of;
+      const {t, v} = reckon(this.program, this.inputs, this.inputs.map((one) => Math.max(least_held_s, 3 * (columns.peek().get(of_flight(one.name)[0])?.period_s ?? 1))));
+      this.#made = {t, v, none: t.map(() => null)};
+    }
+    return this.#made;
+  }
+}
+
 export function use_series(name, window_s) {
   let series = known.get(name);
-  if (!series) known.set(name, series = new Series(name));
+  if (!series) known.set(name, series = is_reckoned(name) ? new ReckonedSeries(name, window_s) : of_flight(name)[1] !== null ? new PastSeries(name) : new Series(name));
   ++series.uses;
   extend(series, window_s);
   return series;
@@ -86,7 +157,9 @@ export function extend(series, window_s) {
 }
 
 export function drop_series(series) {
-  if (--series.uses <= 0) known.delete(series.name);
+  if (--series.uses > 0) return;
+  known.delete(series.name);
+  series.close?.();
 }
 
 on_values((set) => {
@@ -112,6 +185,9 @@ gateway.subscribe(({connected}) => {
   }
   was_connected = connected;
 });
+
+// An address may name a flight before the page knows which there are.
+flights.subscribe(() => { for (const series of known.values()) if (series instanceof PastSeries) series.fetch(); });
 
 let flown = null;
 flight.subscribe((value) => {
@@ -169,6 +245,13 @@ export function value_at(name, t) {
     if (series.t[middle] <= t) low = middle + 1; else high = middle;
   }
   return low > 0 ? series.v[low - 1] ?? undefined : undefined;
+}
+
+/// What a curve shows now: {v, stale}.
+export function newest_of(name) {
+  if (!is_reckoned(name) && of_flight(name)[1] === null) return {v: values.get(name)?.v, stale: freshness(name).stale};
+  const stale = is_reckoned(name) && reckoned(name).inputs.some((input) => of_flight(input)[1] === null && freshness(input).stale);
+  return {v: value_at(name, now_s()), stale};
 }
 
 /// {count, min, mean, max} of the samples in [from, to]; null where there are none. Of buckets their own ends count.

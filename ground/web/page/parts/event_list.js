@@ -5,6 +5,9 @@ import {html} from '../html.js';
 import {subsystem_of} from '../store.js';
 import {Severity} from './icons.js';
 
+/// A name of the flight software may go on in the next line after each of its words, and nowhere else.
+const breakable = (name) => String(name).split('_').map((word, i) => i ? html`_<wbr />${word}` : word);
+
 /// Text as the gateway tells it, else arguments by name.
 export function event_text(event) {
   if (event.name === 'STATE_CHANGED' || event.name === 'STATE_FAILED') {
@@ -24,7 +27,7 @@ export const EventRow = ({event, wide}) => html`<tr class=${event.severity}>
   <td class="time">${clock_text(event.t, wide ? 3 : 1)}</td>
   <td><${Severity} severity=${event.severity} word=${wide} /></td>
   ${wide ? html`<td class="who">${event.subsystem}</td><td class="name">${event.name}</td><td class="words">${event_text(event)}</td>` :
-    html`<td class="words"><span class="who">${event.subsystem}</span> <b>${event.name}</b> ${event_text(event)}</td>`}
+    html`<td class="words"><span class="who">${event.subsystem}</span> <b>${breakable(event.name)}</b> ${event_text(event)}</td>`}
 </tr>`;
 
 export const EventTable = ({list, wide = false, most = 200}) => html`

@@ -4,9 +4,10 @@ import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import uPlot from 'uplot';
 import {brief_text, clock_text, quantity_text, ticks_text, unit_text, value_text} from '../format.js';
 import {html} from '../html.js';
-import {aligned, drop_series, extend, has_samples, statistics, use_series, value_at} from '../series.js';
-import {columns, freshness, now_s, replay, slow, values} from '../store.js';
+import {aligned, drop_series, extend, has_samples, newest_of, statistics, use_series, value_at} from '../series.js';
+import {columns, now_s, replay, slow} from '../store.js';
 import {colour, theme} from '../theme.js';
+import {column_of, curve_words, is_reckoned, of_flight, reckoned} from './curves.js';
 import {cursor_t, look_at, pin, pins, unpin} from './plot_cursor.js';
 import {bare, event_marks, gap_shade, gauge, limit_bands, marks_in, pinned_cursors, stop_mark} from './plot_layers.js';
 import {is_named, StateLanes} from './state_lanes.js';
@@ -19,7 +20,10 @@ const looks = {is: {colour: 'measured', width: 1.7}, set: {colour: 'blue', width
   felt: {colour: 'violet', width: 1.5, dash: [5, 3]}};
 const font = '11px Inter', narrow_px = 200;
 
-const short_name = (name) => name.split('.').slice(1).join('.') || name;
+const short_name = (name) => curve_words(name)[1];
+/// What was is thin and dotted beside what is.
+const past_look = {width: 1.2, dash: [2, 3]};
+const look_of = (name, look) => looks[look] ?? (of_flight(name)[1] !== null ? past_look : undefined);
 
 const line_stroke = () => colour('line'), word_stroke = () => colour('faint');
 const axis_of_time = (relative) => ({
@@ -67,13 +71,13 @@ function zoomable(scales) {
 }
 
 function options_of(names, size, on_zoom, about) {
-  const scale_of = (name, i) => about.times?.[i] ? `times ${about.times[i]}` : columns.peek().get(name)?.unit ?? '';
+  const scale_of = (name, i) => about.times?.[i] ? `times ${about.times[i]}` : column_of(name)?.unit ?? '';
   const units = [...new Set(names.map(scale_of))];
   const series = [{}];
   const bands = [];
   names.forEach((name, i) => {
-    const scale = scale_of(name, i), look = looks[about.looks?.[i]];
-    const stepped = Boolean(columns.peek().get(name)?.enumeration?.length) || columns.peek().get(name)?.type === 'BOOL';
+    const scale = scale_of(name, i), look = look_of(name, about.looks?.[i]);
+    const stepped = Boolean(column_of(name)?.enumeration?.length) || column_of(name)?.type === 'BOOL';
     const stroke = () => curve_colour(i, about.looks?.[i]);
     series.push({label: name, scale, stroke, width: look?.width ?? 1.4, dash: look?.dash, points: {show: false}, spanGaps: false,
       paths: stepped ? uPlot.paths.stepped({align: 1}) : undefined},
@@ -202,16 +206,15 @@ export function Legend({names, brief, on_remove, about = nothing, window = null}
   const curves = names.filter((name) => !is_named(name));
   return html`<div class=${`legend ${brief ? 'brief' : ''}`} data-test="legend">${names.map((name, place) => {
     const i = is_named(name) ? place : curves.indexOf(name);
-    const column = columns.value.get(name);
-    const {stale} = freshness(name);
-    const look = looks[about.looks?.[i]];
+    const column = column_of(name), newest = newest_of(name), [before, own] = curve_words(name);
+    const look = look_of(name, about.looks?.[i]), problem = is_reckoned(name) ? reckoned(name).problem : null;
     const words = (value) => is_named(name) ? value_text(column?.type === 'BOOL' ? value === 1 || value === true : value, column) : quantity_text(value, column?.unit);
     const under = at === null ? undefined : value_at(name, at);
     const told = span && !brief && !is_named(name) ? statistics(name, ...span) : null;
     const apart = last !== undefined && !is_named(name) ? value_at(name, last) - value_at(name, first) : NaN;
-    return html`<span class=${under !== undefined ? 'at' : stale ? 'stale' : ''} title=${name}><svg viewBox="0 0 12 6" aria-hidden="true"><path d="M0 3h12" stroke=${curve_colour(i, about.looks?.[i])}
-      stroke-width="2" stroke-dasharray=${look?.dash ? '3 2' : undefined} /></svg>${about.labels?.[i] ?? (brief ? name.split('.').at(-1) : html`<small>${name.split('.')[0]}</small> ${short_name(name)}`)} <b>${
-      words(under ?? values.get(name)?.v)}</b>${brief ? null : html` <small>${unit_text(column?.unit)}</small>`}
+    return html`<span class=${under !== undefined ? 'at' : newest.stale ? 'stale' : ''} title=${name}><svg viewBox="0 0 12 6" aria-hidden="true"><path d="M0 3h12" stroke=${curve_colour(i, about.looks?.[i])}
+      stroke-width="2" stroke-dasharray=${look?.dash ? '3 2' : undefined} /></svg>${about.labels?.[i] ?? (brief ? name.split('.').at(-1) : html`<small>${before}</small> ${own}`)} <b>${
+      problem ?? words(under ?? newest.v)}</b>${brief ? null : html` <small>${unit_text(column?.unit)}</small>`}
       ${Number.isFinite(apart) ? html` <span data-test="delta">Δ ${quantity_text(apart, column?.unit)}</span>` : null}
       ${told ? html` <span class="statistics">${quantity_text(told.min, column?.unit)} … ${quantity_text(told.max, column?.unit)}, mean ${quantity_text(told.mean, column?.unit)}</span>` : null}
       ${on_remove ? html`<button class="tiny" title=${`take ${name} out`} onClick=${() => on_remove(name)}>×</button>` : null}</span>`;
@@ -221,7 +224,7 @@ export function Legend({names, brief, on_remove, about = nothing, window = null}
 /// When, how far apart, and what happened there: for all plots of a view.
 export function Cursors() {
   const at = cursor_t.value, [first, last] = pins.value;
-  if (at === null && first === undefined) return html`<span class="cursors">click: a cursor, a second one: what lies between; drag: zoom, wheel: heights, double click: all</span>`;
+  if (at === null && first === undefined) return html`<span class="cursors">click: cursor, drag: zoom, wheel: heights, double click: all</span>`;
   const near = at === null ? null : marks_in(at - 0.15, at + 0.15).sort((a, b) => Math.abs(a.t - at) - Math.abs(b.t - at))[0];
   return html`<span class="cursors" data-test="cursors">${at !== null ? clock_text(at, 3) : ''}${first !== undefined ? html` from <b>${clock_text(first, 3)}</b>` : null}${
     last !== undefined ? html` to <b>${clock_text(last, 3)}</b>, ${(last - first).toFixed(3)} s` : null}${near ? html` · ${near.words}` : null}
@@ -298,7 +301,7 @@ function draw_xy(canvas, size, list, names, range) {
     ctx.fillText(brief_text(+tick.toPrecision(5)), box.left - 6, y(tick) + 4);
   }
   ctx.textAlign = 'center';
-  const labels = names.map((name) => `${short_name(name)} ${unit_text(columns.peek().get(name)?.unit) && `[${unit_text(columns.peek().get(name)?.unit)}]`}`);
+  const labels = names.map((name) => `${short_name(name)} ${unit_text(column_of(name)?.unit) && `[${unit_text(column_of(name)?.unit)}]`}`);
   ctx.fillText(labels[0], box.left + box.width / 2, size.height - 6);
   ctx.save(); ctx.translate(12, box.top + box.height / 2); ctx.rotate(-Math.PI / 2); ctx.fillText(labels[1], 0, 0); ctx.restore();
   const parts = 8;

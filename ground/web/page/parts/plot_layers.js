@@ -5,8 +5,9 @@
 // whole range of a joint. Each is a plugin of uPlot.
 import {fixed_text} from '../format.js';
 import {stop} from '../stop_story.js';
-import {columns, commands, events, gaps, outcome_of, values} from '../store.js';
+import {commands, events, gaps, outcome_of, values} from '../store.js';
 import {colour} from '../theme.js';
+import {column_of} from './curves.js';
 import {pins} from './plot_cursor.js';
 
 const inside = (plot, draw) => {
@@ -39,7 +40,7 @@ export const stop_mark = {hooks: {draw: (plot) => inside(plot, (ctx, bbox, x) =>
 export const limit_bands = (names) => ({hooks: {drawClear: (plot) => inside(plot, (ctx, bbox) => {
   const drawn = new Set();
   names.forEach((name, i) => {
-    const column = columns.peek().get(name), scale = plot.series[3 * i + 1]?.scale;
+    const column = column_of(name), scale = plot.series[3 * i + 1]?.scale;
     if (!column || column.enumeration?.length || column.type === 'BOOL') return;
     for (const [limit, below] of [[column.min, true], [column.max, false]]) {
       const key = `${scale} ${limit} ${below}`;
@@ -103,7 +104,7 @@ export const bare = {hooks: {draw: ({bare: is_bare, ctx, bbox}) => {
   ctx.fillStyle = colour('faint');
   ctx.font = `${12 * (devicePixelRatio || 1)}px Inter`;
   ctx.textAlign = 'center';
-  ctx.fillText('no samples here', bbox.left + bbox.width / 2, bbox.top + bbox.height / 2);
+  ctx.fillText(bbox.width < 130 * (devicePixelRatio || 1) ? 'no samples' : 'no samples here', bbox.left + bbox.width / 2, bbox.top + bbox.height / 2);
   ctx.restore();
 }}};
 

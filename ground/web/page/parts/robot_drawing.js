@@ -18,7 +18,8 @@ import {Arrow, colours} from '../scene/instruments.js';
 import {Kit, merged} from '../scene/kit.js';
 import {Pace} from '../scene/pace.js';
 import {Readout} from '../scene/readout.js';
-import {affordable, RobotModel} from '../scene/robot_model.js';
+import {affordable} from '../scene/plain.js';
+import {RobotModel} from '../scene/robot_model.js';
 import {cast_on_plane} from '../scene/skins.js';
 import {environment, lights, sun_from} from '../scene/space.js';
 import {StillPicture} from '../scene/still.js';
@@ -103,7 +104,7 @@ export class RobotView {
     const [own, ...texts] = await Promise.all([description.parts ? mission_code(description.parts) : {}, ...description.robots.map(async ({urdf}) => (await asset(`${this.folder}/${urdf}`)).text())]);
     this.own = own;
     this.mirror = this.software ? null : environment(this.renderer, 128);
-    const kit = new Kit(this.mirror, this.software ? 0.42 : 1);
+    const kit = new Kit(this.mirror, this.software ? 0.3 : 1);
     for (const [i, about] of description.robots.entries()) {
       const parts = () => own.links?.[about.urdf]?.(kit) ?? {};
       const robot = new RobotModel(about, texts[i], parts(), {environment: this.mirror, software: this.software});

@@ -6,10 +6,11 @@ import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import {clock_text, state_text, value_text} from '../format.js';
 import {html} from '../html.js';
 import {drop_series, extend, use_series} from '../series.js';
-import {columns, now_s, replay, slow} from '../store.js';
+import {now_s, replay, slow} from '../store.js';
+import {column_of} from './curves.js';
 
 export const is_named = (name) => {
-  const column = columns.value.get(name);
+  const column = column_of(name);
   return Boolean(column?.enumeration?.length) || column?.type === 'BOOL';
 };
 
@@ -46,7 +47,7 @@ export function StateLanes({names, window_s, range, left, right}) {
   const to = range ? range[1] : now_s(), from = range ? range[0] : to - window_s;
   const x = (t) => left + (t - from) / (to - from) * Math.max(10, width - left - right);
   return html`<svg class="lanes_of_states" ref=${node} height=${names.length * lane_height + 2} data-test="state-lanes">${names.map((name, i) => {
-    const column = columns.value.get(name);
+    const column = column_of(name);
     const spans = used.current[i] ? spans_of(used.current[i], from, to) : [];
     return html`<g transform=${`translate(0 ${i * lane_height})`}><text class="label" x="4" y="14">${name.split('.').at(-1).slice(0, Math.max(3, Math.floor(left / 7) - 1))}</text>${spans.map((span, k) => {
       const words = state_text(value_text(column?.type === 'BOOL' ? span.value === 1 : span.value, column)), wide = Math.max(1, x(span.to) - x(span.from));

@@ -10,6 +10,7 @@ import {mission, status_of} from '../store.js';
 import {surface_x_m} from '../parts/hand.js';
 import {colours} from './instruments.js';
 import {Kit, merged} from './kit.js';
+import {one_mesh} from './plain.js';
 import {lights, mirrored_cube, sky} from './space.js';
 import {module_of, module_places, usual_surroundings} from './usual.js';
 
@@ -33,12 +34,7 @@ export function surroundings_in_steps(view) {
 
 /// What the still picture shows hides the robot where it stands before it.
 function hide_behind(obstacles) {
-  const hidden = new MeshBasicMaterial({colorWrite: false});
-  obstacles?.traverse((part) => {
-    if (!part.isMesh) return;
-    part.material = hidden;
-    part.renderOrder = -3;
-  });
+  if (obstacles?.children.length) one_mesh(obstacles, new MeshBasicMaterial({colorWrite: false})).renderOrder = -3;
 }
 
 /// A module for each subsystem: its name and state stand at it, its lamp tells whether it deviates.

@@ -5,7 +5,7 @@
 import {Vector3} from 'three';
 import {values} from '../store.js';
 import {Arrow, colours, contact_ring, Ribbon} from './instruments.js';
-import {affordable} from './robot_model.js';
+import {affordable} from './plain.js';
 import {least_force_n} from './readout.js';
 
 const trail_points = 300, trail_step_m2 = 4e-6;

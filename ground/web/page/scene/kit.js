@@ -250,12 +250,13 @@ export class Kit {
 
   /// A coil along x, of unit length, from the origin: scaled to where it is hooked.
   coil(turns, radius, wire, material) {
-    const points = Array.from({length: turns * 12 + 1}, (_, i) => {
-      const part = i / (turns * 12), angle = i / 12 * 2 * half_turn, wide = part < 0.05 || part > 0.95 ? 0 : radius;
+    const [steps, sides] = this.detail < 1 ? [8, 3] : [12, 4];
+    const points = Array.from({length: turns * steps + 1}, (_, i) => {
+      const part = i / (turns * steps), angle = i / steps * 2 * half_turn, wide = part < 0.05 || part > 0.95 ? 0 : radius;
       return [part, wide * Math.cos(angle), wide * Math.sin(angle)];
     });
     const curve = new CatmullRomCurve3(points.map((point) => new Vector3(...point)));
-    return new Mesh(new TubeGeometry(curve, turns * 12, wire, 4), material);
+    return new Mesh(new TubeGeometry(curve, turns * steps, wire, sides), material);
   }
 }
 

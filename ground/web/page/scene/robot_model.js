@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A robot of scene.json: its URDF with the parts that the mission gives for its links, posed by telemetry, with its dials, halo and tool frame.
-import {Box3, Color, CylinderGeometry, Group, Mesh, MeshLambertMaterial, MeshStandardMaterial, Quaternion, ShaderMaterial, SphereGeometry, Vector3} from 'three';
+import {Box3, Color, CylinderGeometry, Group, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3} from 'three';
 import URDFLoader from 'urdf-loader';
 import {merged} from './kit.js';
 import {Dial, triad} from './instruments.js';
 import {Motion} from './motion.js';
+import {affordable, joined} from './plain.js';
 import {reach} from './reach.js';
 import {Halo} from './skins.js';
-import {sun_from} from './space.js';
 
 const moved_rad = 1e-5;
 const dial_of_size = 0.28;
@@ -60,36 +60,6 @@ function bones(link, thick, material) {
   return group;
 }
 
-/// Lit at its corners by the sun and the sky of space.js, and toned there: a processor that draws pays for every point of the picture.
-function lit_at_corners(material) {
-  const {metalness = 0, roughness = 0.5} = material;
-  // A metal that mirrors nothing would be dark.
-  const colour = material.color.clone().lerp(new Color(0xffffff), metalness * 0.12);
-  return new ShaderMaterial({
-    uniforms: {colour: {value: colour}, sun: {value: sun_from.clone().normalize()}, gloss: {value: (1 - roughness) * 0.55}},
-    vertexShader: `uniform vec3 colour, sun; uniform float gloss; varying vec3 seen;
-      #include <common>
-      #include <tonemapping_pars_fragment>
-      void main() {
-        vec4 p = modelMatrix * vec4(position, 1.);
-        vec3 n = normalize(mat3(modelMatrix) * normal), half_way = normalize(sun + normalize(cameraPosition - p.xyz));
-        vec3 light = vec3(3.4, 3.03, 2.6) * max(dot(n, sun), 0.) + .42 * mix(vec3(.023, .014, .007), vec3(.27, .45, .80), .5 + .5 * n.z);
-        vec3 c = colour * light * RECIPROCAL_PI + gloss * pow(max(dot(n, half_way), 0.), 24.);
-        seen = pow(ACESFilmicToneMapping(c), vec3(1. / 2.2));
-        gl_Position = projectionMatrix * viewMatrix * p;
-      }`,
-    fragmentShader: 'varying vec3 seen; void main() { gl_FragColor = vec4(seen, 1.); }'});
-}
-
-/// Materials of a graphics card, or the same colours as a processor can draw them.
-const plain = new Map();
-export function affordable(material, software) {
-  if (!software || !material.isMeshStandardMaterial) return material;
-  if (!plain.has(material)) plain.set(material, material.map ? new MeshLambertMaterial({color: material.color, map: material.map, transparent: material.transparent,
-    polygonOffset: material.polygonOffset, polygonOffsetFactor: material.polygonOffsetFactor}) : lit_at_corners(material));
-  return plain.get(material);
-}
-
 /// The mission's parts in place of the URDF's own shapes, where it has them; each link's parts of one material are one mesh. How many parts of bones
 /// it took for shapes that are nowhere.
 export function dress(body, parts, environment, software) {
@@ -108,7 +78,7 @@ export function dress(body, parts, environment, software) {
       continue;
     }
     for (const child of [...link.children]) if (child.isURDFVisual) child.removeFromParent();
-    const whole = merged(parts[name]);
+    const whole = software ? joined(merged(parts[name])) : merged(parts[name]);
     whole.traverse((part) => {
       if (!part.isMesh) return;
       part.material = affordable(part.material, software);

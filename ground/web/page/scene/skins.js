@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Other ways to draw the parts of a robot: as the ghost of where it shall go, with a halo where it is stopped, as its shadow on a plate.
-import {BackSide, Color, CustomBlending, LessEqualDepth, MaxEquation, Mesh, MeshBasicMaterial, OneFactor, ShaderMaterial, Vector3, ZeroFactor} from 'three';
+import {BackSide, Color, CustomBlending, DoubleSide, LessEqualDepth, MaxEquation, Mesh, MeshBasicMaterial, OneFactor, ShaderMaterial, Vector3, ZeroFactor} from 'three';
+import {coarse} from './plain.js';
 
 const world = 'vec4 p = modelMatrix * vec4(position, 1.); vec3 k = normalize(mat3(viewMatrix) * mat3(modelMatrix) * normal);';
 
@@ -30,9 +31,9 @@ function halo_skins(count) {
 
 /// Where the sun's rays through each point meet the plane z: the darkest of all that falls on a place counts, not their sum.
 function shadow_skin(sun, z, strength) {
-  return new ShaderMaterial({transparent: true, depthWrite: false, blending: CustomBlending, blendEquation: MaxEquation, blendSrc: OneFactor, blendDst: OneFactor,
+  return new ShaderMaterial({transparent: true, depthWrite: false, side: DoubleSide, blending: CustomBlending, blendEquation: MaxEquation, blendSrc: OneFactor, blendDst: OneFactor,
     blendEquationAlpha: MaxEquation, blendSrcAlpha: OneFactor, blendDstAlpha: ZeroFactor, uniforms: {sun: {value: sun}, z: {value: z}, strength: {value: strength}},
-    vertexShader: `uniform vec3 sun; uniform float z; void main() { ${world} p.xyz -= sun * (p.z - z) / sun.z; gl_Position = projectionMatrix * viewMatrix * p; }`,
+    vertexShader: `uniform vec3 sun; uniform float z; void main() { vec4 p = modelMatrix * vec4(position, 1.); p.xyz -= sun * (p.z - z) / sun.z; gl_Position = projectionMatrix * viewMatrix * p; }`,
     fragmentShader: 'uniform float strength; void main() { gl_FragColor = vec4(0., 0., 0., strength); }'});
 }
 
@@ -42,8 +43,8 @@ const meshes_of = (robot) => {
   return found;
 };
 
-function wrapped(part, material, order) {
-  const skin = new Mesh(part.geometry, material);
+function wrapped(part, material, order, geometry = part.geometry) {
+  const skin = new Mesh(geometry, material);
   skin.userData.skin = true;
   skin.renderOrder = order;
   skin.frustumCulled = false;
@@ -73,13 +74,17 @@ export class Halo {
   set shown(value) { for (const skin of this.#skins) skin.visible = value; }
 }
 
+const shadow_cell = 0.09;
 /// What is smaller hides behind what is not.
 const least_shadow_m = 0.045;
 /// For pictures that are composed of a still one and a transparent one above it, which has no light of its own to be dimmed.
 export function cast_on_plane(robot, sun, z) {
   const material = shadow_skin(new Vector3().copy(sun).normalize(), z, 0.42);
   for (const part of meshes_of(robot)) {
+    // Dials and frames are drawn upon the picture: they stand nowhere.
+    if (part.material.isMeshBasicMaterial) continue;
     part.geometry.computeBoundingSphere();
-    if (part.geometry.boundingSphere.radius > least_shadow_m) wrapped(part, material, -2);
+    const {radius} = part.geometry.boundingSphere;
+    if (radius > least_shadow_m) wrapped(part, material, -2, coarse(part.geometry, radius * shadow_cell));
   }
 }

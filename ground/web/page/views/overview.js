@@ -6,6 +6,7 @@ import {EventTable} from '../parts/event_list.js';
 import {wanted_form} from '../parts/goal_form.js';
 import {Lanes} from '../parts/lanes.js';
 import {LinkRows, links_hint} from '../parts/link_rows.js';
+import {is_reckoned, of_flight} from '../parts/curves.js';
 import {Panel} from '../parts/panel.js';
 import {Legend, TimePlot} from '../parts/plot.js';
 import {Robot} from '../parts/robot.js';
@@ -26,14 +27,17 @@ function worth(name) {
 }
 
 /// What a mission without a scene shows first: the first arrays and numbers of its housekeeping.
+const is_plotted = (column) => column.type !== 'TEXT' && !column.enumeration?.length && !/CYCLE_STATS|COUNTS|REJECTIONS/.test(column.name);
 export function first_plots() {
   // Not known yet: plots that go again at once would ask the archive in vain.
   if (scene_of_mission.value === undefined) return [];
   const described = scene_of_mission.value?.plots;
   if (described) return described.map((plot) => told_by(plot)).filter((plot) => plot.names.length);
-  const by_parameter = new Map();
-  for (const column of columns.value.values()) {
-    if (column.type === 'TEXT' || column.enumeration?.length || /CYCLE_STATS|COUNTS|REJECTIONS/.test(column.name)) continue;
+  const by_parameter = new Map(), own = (column) => (mission.value?.subsystems.find((one) => one.name === column.subsystem)?.id ?? 0) >= 10;
+  // What the mission is about, where it has numbers; what every mission has, else.
+  const all = [...columns.value.values()], of_mission = all.filter(own);
+  for (const column of of_mission.some(is_plotted) ? of_mission : all) {
+    if (!is_plotted(column)) continue;
     if (scene_of_mission.value === null && column.subsystem === 'SUPERVISOR') continue;
     const base = column.name.replace(/\[\d+\]$/, '');
     by_parameter.set(base, [...(by_parameter.get(base) ?? []), column.name]);
@@ -53,7 +57,8 @@ function told_by(plot) {
 export const plot_title = (names) => {
   const known = (scene_of_mission.value?.plots ?? []).find((plot) => plot.title && plot_names(plot).join() === names.join());
   if (known) return known.title;
-  const base = (names.at(-1) ?? '').replace(/\[\d+\]$/, '').split('.');
+  if (names.some(is_reckoned)) return names.find(is_reckoned).slice(1);
+  const base = of_flight(names.at(-1) ?? '')[0].replace(/\[\d+\]$/, '').split('.');
   const words = base.slice(base.length > 2 ? 2 : 1).join('.').replaceAll('_', ' ').toLowerCase();
   // Of several elements of arrays what they have in common is which one.
   const [place, ...others] = new Set(names.map((name) => /\[\d+\]$/.exec(name)?.[0] ?? ''));

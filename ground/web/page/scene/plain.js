@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// A robot's parts as a processor can draw them: lit at their corners, and all of one link at once. Each call to draw costs such a processor as
+// much as a thousand corners.
+import {BufferGeometry, Color, Float32BufferAttribute, Mesh, MeshLambertMaterial, ShaderMaterial} from 'three';
+import {mergeGeometries} from 'three/addons/utils/BufferGeometryUtils.js';
+import {sun_from} from './space.js';
+
+/// A metal that mirrors nothing would be dark.
+const colour_of = ({color, metalness = 0}) => color.clone().lerp(new Color(0xffffff), metalness * 0.12);
+const gloss_of = ({roughness = 0.5}) => (1 - roughness) * 0.55;
+
+/// Lit by the sun and the sky of space.js, and toned there. `tinted`: colour and gloss come with each corner.
+function lit_at_corners(uniforms, tinted = false) {
+  return new ShaderMaterial({
+    uniforms: {...uniforms, sun: {value: sun_from.clone().normalize()}},
+    vertexShader: `${tinted ? 'attribute vec4 tint;' : 'uniform vec3 colour; uniform float gloss;'} uniform vec3 sun; varying vec3 seen;
+      #include <common>
+      #include <tonemapping_pars_fragment>
+      void main() {
+        ${tinted ? 'vec3 colour = tint.rgb; float gloss = tint.a;' : ''}
+        vec4 p = modelMatrix * vec4(position, 1.);
+        vec3 n = normalize(mat3(modelMatrix) * normal), half_way = normalize(sun + normalize(cameraPosition - p.xyz));
+        vec3 light = vec3(3.4, 3.03, 2.6) * max(dot(n, sun), 0.) + .42 * mix(vec3(.023, .014, .007), vec3(.27, .45, .80), .5 + .5 * n.z);
+        vec3 c = colour * light * RECIPROCAL_PI + gloss * pow(max(dot(n, half_way), 0.), 24.);
+        seen = pow(ACESFilmicToneMapping(c), vec3(1. / 2.2));
+        gl_Position = projectionMatrix * viewMatrix * p;
+      }`,
+    fragmentShader: 'varying vec3 seen; void main() { gl_FragColor = vec4(seen, 1.); }'});
+}
+
+/// Materials of a graphics card, or the same colours as a processor can draw them.
+const plain = new Map();
+export function affordable(material, software) {
+  if (!software || !material.isMeshStandardMaterial) return material;
+  if (!plain.has(material)) plain.set(material, material.map ? new MeshLambertMaterial({color: material.color, map: material.map, transparent: material.transparent,
+    polygonOffset: material.polygonOffset, polygonOffsetFactor: material.polygonOffsetFactor}) : lit_at_corners({colour: {value: colour_of(material)}, gloss: {value: gloss_of(material)}}));
+  return plain.get(material);
+}
+
+let tinted_skin = null;
+const may_be_joined = ({isMesh, material, children, userData}) => isMesh && material.isMeshStandardMaterial && !material.map && !material.transparent && !children.length && !userData.label;
+
+/// The parts of `whole` (kit.js merged()) that differ in colour only as one mesh, each corner with its own.
+export function joined(whole) {
+  const parts = whole.children.filter(may_be_joined);
+  if (parts.length < 2) return whole;
+  const geometries = parts.map(({geometry, material}) => {
+    const made = geometry.clone(), count = made.attributes.position.count, {r, g, b} = colour_of(material), gloss = gloss_of(material);
+    for (const name of Object.keys(made.attributes)) if (!['position', 'normal'].includes(name)) made.deleteAttribute(name);
+    return made.setAttribute('tint', new Float32BufferAttribute(Array.from({length: count}, () => [r, g, b, gloss]).flat(), 4));
+  });
+  whole.remove(...parts);
+  whole.add(new Mesh(mergeGeometries(geometries), tinted_skin ??= lit_at_corners({}, true)));
+  return whole;
+}
+
+/// All corners in one cell as one, and no triangle that has become a line: a fifth of them, of nearly the same outline. A processor that draws
+/// pays for each.
+export function coarse(geometry, cell_m) {
+  const {position} = geometry.attributes, known = new Map(), places = [], index = [];
+  const of_cell = Array.from({length: position.count}, (_, i) => {
+    const at = [position.getX(i), position.getY(i), position.getZ(i)], key = at.map((value) => Math.round(value / cell_m)).join();
+    if (!known.has(key)) {
+      known.set(key, known.size);
+      places.push(...at);
+    }
+    return known.get(key);
+  });
+  const corner = geometry.index ? (i) => of_cell[geometry.index.getX(i)] : (i) => of_cell[i], drawn = new Set();
+  for (let i = 0, end = geometry.index?.count ?? position.count; i + 2 < end; i += 3) {
+    const [a, b, c] = [corner(i), corner(i + 1), corner(i + 2)];
+    if (a === b || b === c || c === a) continue;
+    const key = [a, b, c].sort((one, other) => one - other).join();
+    if (drawn.has(key)) continue;
+    drawn.add(key);
+    index.push(a, b, c);
+  }
+  return new BufferGeometry().setAttribute('position', new Float32BufferAttribute(places, 3)).setIndex(index);
+}
+
+const hiding_cell = 0.02;
+/// The parts of `whole` (kit.js merged()) as one mesh of a material that asks for no more than where it is.
+export function one_mesh(whole, material) {
+  const geometries = whole.children.filter((part) => part.isMesh).map(({geometry}) => {
+    geometry.computeBoundingSphere();
+    return coarse(geometry, geometry.boundingSphere.radius * hiding_cell);
+  });
+  const mesh = new Mesh(mergeGeometries(geometries), material);
+  whole.clear();
+  whole.add(mesh);
+  return mesh;
+}
