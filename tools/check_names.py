@@ -46,6 +46,8 @@ def parts_of(text):
 
 def says(line, name, is_word):
     wanted = name.split("_")
+    if any(part not in line.lower() for part in wanted):
+        return False  # most lines, told in a tenth of the time
     if is_word:
         one = "[-_]".join(map(re.escape, wanted))
         return bool(re.search(rf"(?<![A-Z]){one.upper()}(?![A-Z])", line)

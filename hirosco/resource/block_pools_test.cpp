@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "hirosco/utilities/allocation_guard.hpp"
+#include "hirosco/utilities/testing/slice.hpp"
 
 namespace hirosco {
 namespace {
 
 template <class Pools>
-class Pool : public testing::Test {
+class Pool : public ::testing::Test {
  protected:
   static std::unique_ptr<Pools> make(std::vector<PoolSpec> specs, PoolNotices notices = {}) {
     auto made = Pools::create(specs, std::move(notices));
@@ -23,7 +24,7 @@ class Pool : public testing::Test {
     return made ? std::move(*made) : nullptr;
   }
 };
-using BothPools = testing::Types<BlockPools, LocalBlockPools>;
+using BothPools = ::testing::Types<BlockPools, LocalBlockPools>;
 TYPED_TEST_SUITE(Pool, BothPools);
 
 TYPED_TEST(Pool, TakesTheSmallestBlockThatFits) {
@@ -179,7 +180,7 @@ TYPED_TEST(Pool, IsNeverRefusedIn1e7MixedOperationsAt95PercentWhileBlocksAreFree
     for (std::uint32_t i = 0; i < blocks_each * 95 / 100; ++i) take(pool);
 
   const RealtimeScope scope;
-  constexpr int pairs = 5'000'000;
+  const int pairs = 5'000'000 / hirosco::testing::one_in(10);
   for (int i = 0; i < pairs && !this->HasFatalFailure(); ++i) {
     const std::size_t pool = random() % pool_count;
     void*& victim = held[pool][random() % held[pool].size()];

@@ -13,7 +13,7 @@
 namespace hirosco {
 namespace {
 
-class CountedTest : public testing::Test {
+class CountedTest : public ::testing::Test {
  protected:
   std::unique_ptr<BlockPools> pools_ = *BlockPools::create(std::array{PoolSpec{128, 8}});
   [[nodiscard]] std::uint32_t used() const { return pools_->usage(0).used; }

@@ -15,7 +15,7 @@
 namespace hirosco {
 namespace {
 
-class PoolAllocatorTest : public testing::Test {
+class PoolAllocatorTest : public ::testing::Test {
  protected:
   std::unique_ptr<BlockPools> pools_ =
       *BlockPools::create(std::array{PoolSpec{64, 200}, PoolSpec{256, 20}, PoolSpec{4096, 4}});

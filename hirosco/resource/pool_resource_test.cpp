@@ -12,7 +12,7 @@
 namespace hirosco {
 namespace {
 
-struct PoolResourceTest : testing::Test {
+struct PoolResourceTest : ::testing::Test {
   std::unique_ptr<BlockPools> pools = *BlockPools::create(std::array{PoolSpec{64, 4}, PoolSpec{1024, 1}});
   PoolResource resource{pools.get()};
 };

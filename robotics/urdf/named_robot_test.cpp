@@ -20,15 +20,16 @@ using ::testing::HasSubstr;
   for (const char* link : {"hand", "finger", "thumb"})
     text += std::string{"<link name='"} + link +
             "'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>";
-  const std::string limit = "<limit lower='0' upper='1' velocity='1' effort='1'/></joint>";
-  text += "<joint name='turn' type='revolute'><parent link='base'/><child link='hand'/><axis xyz='0 0 1'/>" + limit;
-  text += "<joint name='slide' type='prismatic'><parent link='hand'/><child link='finger'/><axis xyz='1 0 0'/>" + limit;
+  const std::string ends_at = "<limit lower='0' upper='1' velocity='1' effort='1'/></joint>";
+  text += "<joint name='turn' type='revolute'><parent link='base'/><child link='hand'/><axis xyz='0 0 1'/>" + ends_at;
+  text +=
+      "<joint name='slide' type='prismatic'><parent link='hand'/><child link='finger'/><axis xyz='1 0 0'/>" + ends_at;
   text += "<joint name='still' type='fixed'><parent link='hand'/><child link='thumb'/></joint></robot>";
   return text;
 }
 
 /// ARM with these settings.
-[[nodiscard]] descriptor::Subsystem with(const std::map<std::string, std::string>& settings) {
+[[nodiscard]] descriptor::Subsystem with_settings(const std::map<std::string, std::string>& settings) {
   descriptor::Subsystem subsystem;
   subsystem.devices.resize(1);
   subsystem.devices[0].name = "ARM";
@@ -46,7 +47,7 @@ struct NamedRobotTest : ::testing::Test {
 };
 
 TEST_F(NamedRobotTest, IsTheOneOfTheFileWithoutWhatIsSomebodyElses) {
-  const auto settings = with({{"MODEL_FILE", file}, {"FIXED", "slide"}, {"TIP", "thumb"}});
+  const auto settings = with_settings({{"MODEL_FILE", file}, {"FIXED", "slide"}, {"TIP", "thumb"}});
   const auto named = read_named(settings, "ARM");
   ASSERT_TRUE(named) << named.error().text;
   EXPECT_EQ(named->text, forked());
@@ -58,7 +59,7 @@ TEST_F(NamedRobotTest, IsTheOneOfTheFileWithoutWhatIsSomebodyElses) {
 
 TEST_F(NamedRobotTest, SaysWithTheNamesOfTheSettingAndTheDeviceWhatIsNotThere) {
   const auto why = [](const std::map<std::string, std::string>& settings) -> std::string {
-    const auto subsystem = with(settings);
+    const auto subsystem = with_settings(settings);
     const auto named = read_named(subsystem, "ARM");
     if (!named) return named.error().text;
     const auto tip = named_tip(subsystem, "ARM", *named);

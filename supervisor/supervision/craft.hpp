@@ -56,6 +56,8 @@ struct Craft {
     if (remembers) remembers();
   }
   std::function<void()> remembers{};
+  /// Whether somebody measures now what electrical power there is; nothing: that is no matter here.
+  std::function<bool()> power_known{};
 
   /// Commissioning failed, or something that the end is not orderly without: nothing takes that back.
   void fail() noexcept { failed_ = true; }

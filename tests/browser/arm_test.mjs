@@ -8,7 +8,7 @@ import {spawn} from 'node:child_process';
 import {readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, describe, it} from 'node:test';
-import {go, holds, open_browser, open_page, small} from './browser.mjs';
+import {go, holds, open_browser, open_page, small, take_hold} from './browser.mjs';
 import {free_port, ground, missions, new_folder} from './flight.mjs';
 import {cut_texts, faint_texts, overlapping_texts} from './looks.mjs';
 
@@ -107,6 +107,14 @@ describe('the page of an arm of six joints', () => {
     assert.equal(await page.locator('[data-test=here-VELOCITY]').count(), 0);
   });
 
+  it('pushes the tool by a button for each way, one telecommand a push', async () => {
+    await go(page, 'commands/ARM/JOG_L');
+    await page.click('[data-test="jog-move-y-"]');
+    const pushed = page.locator('[data-test=history] > li.completed', {hasText: 'ARM JOG_L'}).first();
+    await pushed.waitFor();
+    assert.match(await pushed.textContent(), /LINEAR 0 −0\.005 0, ANGULAR 0 0 0, SECONDS 0\.4/);
+  });
+
   it('names the joints of the parameters, with how far they are from their limits', async () => {
     await go(page, 'subsystems/ARM');
     const row = page.locator('.values tr', {hasText: 'CUR_VALUES.POSITION[1]'});
@@ -133,6 +141,18 @@ describe('the page of an arm of six joints', () => {
     await holds(page, () => [...document.querySelectorAll('.readout .tag.goal')].some((node) => !node.hidden && node.textContent === 'goal 6 joints at 50 %, at least 1.0 s'));
     await page.fill('.quick [data-test=field-GOAL]', '-0.8 2.5 1.2 -0.6 0.7 0.1');
     await holds(page, () => [...document.querySelectorAll('.readout .tag.wrong')].some((node) => node.textContent.includes('2 lift beyond its limit')));
+  });
+
+  it('leads the goal by its ball, from where the arm stands, and says in the form where to', async () => {
+    await page.click('[data-test=set-goal]');
+    await holds(page, (wanted) => document.querySelector('.quick [data-test=field-GOAL]').value === wanted, stands.join(' '));
+    await holds(page, () => [...document.querySelectorAll('.readout .tag.goal')].some((node) => !node.hidden));
+    const [x, y] = await take_hold(page, 0.3, 0.9, (places) => places[places.length >> 1]);
+    await page.mouse.move(x - 40, y - 30, {steps: 3});
+    await holds(page, (before) => document.querySelector('.quick [data-test=field-GOAL]').value !== before, stands.join(' '));
+    await page.mouse.up();
+    const led = (await page.inputValue('.quick [data-test=field-GOAL]')).split(' ').map(Number);
+    assert.ok(led.length === 6 && led.every(Number.isFinite), `${led}`);
   });
 
   it('cuts no text, lays none on another, and has none that is faint', async () => {

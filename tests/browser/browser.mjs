@@ -38,6 +38,9 @@ export const small = {width: 1280, height: 720};
 /// is usual, would make a browser without a graphics card draw sixty of them a second for nothing else.
 export const holds = (page, condition, value) => page.waitForFunction(condition, value, {polling: 100});
 
+/// The address of a view at a printed URL. The robot is drawn in the overview and beside the timeline only: who has no need of it opens another.
+export const at_view = (url, view) => url.replace('#', `#/${view}?`);
+
 /// Opens `url`; `faults` fills with console errors, exceptions and requests to anybody else.
 export async function open_page(context, url, size = {width: 1600, height: 900}) {
   const page = await context.newPage();
@@ -93,8 +96,9 @@ export async function grips(page, from, to) {
     const canvas = document.querySelector('[data-test=robot] canvas');
     const box = canvas.getBoundingClientRect();
     const places = [];
-    for (let y = box.y + 50; y < box.bottom - 40; y += 5) {
-      for (let x = box.x + box.width * left; x < box.x + box.width * right; x += 5) {
+    const step = 8;  // a handle is wider
+    for (let y = box.y + 50; y < box.bottom - 40; y += step) {
+      for (let x = box.x + box.width * left; x < box.x + box.width * right; x += step) {
         canvas.dispatchEvent(new PointerEvent('pointermove', {clientX: x, clientY: y, buttons: 0}));
         if (canvas.style.cursor === 'grab') places.push([x, y]);
       }
@@ -119,20 +123,21 @@ export async function take_hold(page, from, to, choose) {
 
 /// Waits until `is_so` answers true; a wait that leads nowhere says what for.
 export async function until(what, is_so, limit_s = patience_ms / 1000) {
-  for (const end = performance.now() + limit_s * 1000; !await is_so(); await sleep(20)) {
+  for (const end = performance.now() + limit_s * 1000; !await is_so(); await sleep(50)) {
     if (performance.now() > end) throw new Error(`${what}: not within ${limit_s} s`);
   }
 }
 
-/// What axe-core finds serious or critical in any view.
-export async function serious_findings(page) {
+/// What axe-core finds serious or critical in any view. Its contrast takes most of the time; looks_test.mjs judges that itself, in every
+/// view, state and theme.
+export async function serious_findings(page, {contrast = true} = {}) {
   const source = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
   const found = [];
   for (const view of views) {
     await go(page, view);
     await page.waitForSelector('main .panel');
     await page.evaluate(source);
-    const {violations} = await page.evaluate(() => window.axe.run(document, {resultTypes: ['violations']}));
+    const {violations} = await page.evaluate((enabled) => window.axe.run(document, {resultTypes: ['violations'], rules: {'color-contrast': {enabled}}}), contrast);
     for (const one of violations.filter(({impact}) => ['serious', 'critical'].includes(impact))) {
       found.push(`${view}: ${one.id}: ${one.nodes.slice(0, 3).map((node) => node.html.slice(0, 120)).join(' | ')}`);
     }

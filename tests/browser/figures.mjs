@@ -10,7 +10,7 @@ import {join} from 'node:path';
 import {setTimeout as sleep} from 'node:timers/promises';
 import {gzipSync} from 'node:zlib';
 import {chromium} from 'playwright-core';
-import {executable, flags, go, open_browser, open_page, serious_findings, until, views} from './browser.mjs';
+import {at_view, executable, flags, go, open_browser, open_page, serious_findings, until, views} from './browser.mjs';
 import {fly, free_port, ground, missions} from './flight.mjs';
 import {judge_forms, judge_gateway} from './forms.mjs';
 
@@ -290,7 +290,7 @@ async function measure_forms(context) {
   for (const name of readdirSync(missions, {withFileTypes: true}).filter((one) => one.isDirectory()).map((one) => one.name)) {
     const station = await ground(folder, name, await free_port());
     const mission = await (await api(station, '/api/mission')).json();
-    const {page} = await open_page(context, station.url);
+    const {page} = await open_page(context, at_view(station.url, 'commands'));
     const judged = await judge_forms(page, mission);
     const agreed = await judge_gateway(mission, async (body) => (await api(station, '/api/commands/preview', body)).status);
     fields += judged.fields;

@@ -3,14 +3,12 @@
 //
 // fill_form.mjs URL SUBSYSTEM FUNCTION FIELD=TEXT...: sends one telecommand by its form, and prints what the form asked and what became of
 // it. Ends with 0 when it was completed and the page had no fault.
-import {holds, open_browser, open_page, small} from './browser.mjs';
+import {at_view, holds, open_browser, open_page, small} from './browser.mjs';
 
 const [url, subsystem, action, ...given] = process.argv.slice(2);
 const browser = await open_browser({calm: true});
 try {
-  const {page, faults} = await open_page(browser.context, url, small);
-  await page.waitForSelector(`[data-test=subsystem-${subsystem}]`);
-  await page.evaluate((to) => { location.hash = to; }, `#/commands/${subsystem}/${action}`);
+  const {page, faults} = await open_page(browser.context, at_view(url, `commands/${subsystem}/${action}`), small);
   for (const word of given) {
     const [name, text] = [word.slice(0, word.indexOf('=')), word.slice(word.indexOf('=') + 1)];
     const field = page.locator(`[data-test=field-${name}]`);

@@ -5,14 +5,14 @@
 // move the arm, unplug the joystick, read why, replay.
 import assert from 'node:assert/strict';
 import {after, before, describe, it} from 'node:test';
-import {bring_up, go, holds, open_browser, open_page, small, until} from './browser.mjs';
+import {at_view, bring_up, go, holds, open_browser, open_page, small, until} from './browser.mjs';
 import {fly} from './flight.mjs';
 
 describe('the page on a real flight', () => {
   let flight, browser, page, faults;
   before(async () => {
     flight = await fly();
-    browser = await open_browser();
+    browser = await open_browser({calm: true});
     ({page, faults} = await open_page(browser.context, flight.url, small));
   });
   after(async () => {
@@ -34,6 +34,8 @@ describe('the page on a real flight', () => {
 
   it('draws 3D and two plots while the robot moves', async () => {
     const frames = () => page.evaluate(() => Number(document.querySelector('[data-test=robot]').dataset.frames));
+    // At its own pace, this once; all else is about words.
+    await page.emulateMedia({reducedMotion: 'no-preference'});
     // A hand that never rests: where no joint moves, nothing is drawn.
     await page.evaluate(() => fetch('/api/faults', {method: 'POST', body: '{"device":"joystick","line":"hand sine 1 0.1 0.5"}',
       headers: {'Content-Type': 'application/json', Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}}));
@@ -41,6 +43,7 @@ describe('the page on a real flight', () => {
     const began = performance.now();
     await holds(page, (wanted) => Number(document.querySelector('[data-test=robot]').dataset.frames) >= wanted, first + 30);
     console.log(`measured: ${((await frames() - first) / ((performance.now() - began) / 1000)).toFixed(1)} frames a second`);
+    await page.emulateMedia({reducedMotion: 'reduce'});
   });
 
   it('says before sending that a coupled robot takes no MOVE_TO, and shows the refusal', async () => {
@@ -54,10 +57,9 @@ describe('the page on a real flight', () => {
   });
 
   it('lets one page command at a time: the other is refused by the station, asks, and is handed it', async () => {
-    const {page: other} = await open_page(browser.context, flight.url, small);
+    const {page: other} = await open_page(browser.context, at_view(flight.url, 'commands/MANIPULATOR/MOVE_TO'), small);
     const word = (where) => where.textContent('[data-test=commander] b');
     await until('who sent first commands', async () => await word(page) === 'you' && await word(other) === 'operator');
-    await go(other, 'commands/MANIPULATOR/MOVE_TO');
     await other.waitForSelector('[data-test=not-commanding]');
     assert.ok(await other.locator('[data-test=send]').isDisabled());
     const refused = await other.evaluate(async () => {

@@ -5,7 +5,7 @@
 // many of them as HIROSCO_STOPS says. In a view without the picture, which is cheap to draw: the banner stands in every one.
 import assert from 'node:assert/strict';
 import {after, before, describe, it} from 'node:test';
-import {coupled, go, holds, inject, is_coupled, open_browser, open_page, small, until} from './browser.mjs';
+import {at_view, coupled, holds, inject, is_coupled, open_browser, open_page, small, until} from './browser.mjs';
 import {fly, process_of} from './flight.mjs';
 
 describe('whatever stopped the craft', () => {
@@ -13,8 +13,7 @@ describe('whatever stopped the craft', () => {
   before(async () => {
     flight = await fly();
     browser = await open_browser({calm: true});
-    ({page, faults} = await open_page(browser.context, flight.url, small));
-    await go(page, 'subsystems/MANIPULATOR');
+    ({page, faults} = await open_page(browser.context, at_view(flight.url, 'subsystems/MANIPULATOR'), small));
     await coupled(page);
     await inject(page, 'joystick', 'hand target 0 0');
   });

@@ -39,12 +39,12 @@ class Handlers(unittest.TestCase):
         return next((line for line in told.splitlines() if "error:" in line), "")
 
     def test_good_ones_compile(self):
-        for handler in ('on_function("X", [](double, std::uint8_t) -> Result<> { return ok(); })',
-                        'on_function("X", [](const FunctionValues&, Call) -> Outcome { return running; })',
-                        'on_function("X", [](std::int64_t, std::string_view, const std::array<bool, 3>&, Sized<float, 4>, Call)'
-                        ' -> Outcome { return running; })',
-                        'book.on_request("X", [](std::uint16_t, std::string_view, bool, const Call&) -> Outcome { return running; })'):
-            self.assertEqual(self.first_error(handler), "", handler)
+        good = ('on_function("X", [](double, std::uint8_t) -> Result<> { return ok(); })',
+                'on_function("X", [](const FunctionValues&, Call) -> Outcome { return running; })',
+                'on_function("X", [](std::int64_t, std::string_view, const std::array<bool, 3>&, Sized<float, 4>, Call)'
+                ' -> Outcome { return running; })',
+                'book.on_request("X", [](std::uint16_t, std::string_view, bool, const Call&) -> Outcome { return running; })')
+        self.assertEqual(self.first_error(";\n".join(good)), "")
 
     def test_one_that_returns_nothing_is_told_what_to_return(self):
         for handler in ('on_function("X", [](double) {})', 'book.on_request("X", [](const std::uint16_t&) {})'):

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/utilities/testing/slice.hpp"
 #include "simulation/scenarios/flight.hpp"
 #include "simulation/world/random.hpp"
 #include "tests/integration/flight.hpp"
@@ -111,7 +112,7 @@ TEST_F(ModeChange, AnImpossibleOneMovesNobodyAndTheReasonsAreTelemetry) {
 TEST(ModeChanges, EndInTheOldModeTheNewOneOrSafeWhateverHappensAtAnyMoment) {
   simulation::Random random{20'261'123};
   std::map<std::string, int> ends;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < 60 / one_in(3); ++round) {
     Flight flight{{.edit = simulation::hand_rests}};
     ASSERT_TRUE(flight.commission());
     const char* const to = std::array{"standalone", "remote", "automatic", "feel"}[static_cast<std::size_t>(round) % 4];

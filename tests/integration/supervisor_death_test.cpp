@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hirosco/utilities/testing/slice.hpp"
 #include "simulation/scenarios/flight.hpp"
 #include "tests/integration/flight.hpp"
 
@@ -114,7 +115,7 @@ constexpr Duration settles = 1500ms;
 
 /// Flies `what` again and again, with a death one moment later each time, until none comes any more; the number of flights.
 int at_every_moment(const std::function<void(MortalFlight&)>& begin, const std::function<void(MortalFlight&)>& judge,
-                    int every = 1) {
+                    int every = one_in(3)) {
   int flights = 0;
   for (int at = 1;; at += every) {
     MortalFlight mortal{at};
@@ -214,7 +215,7 @@ TEST(SupervisorDeath, AtEveryMomentOfAModeChangeEndsInTheOldModeTheNewOneOrSafe)
         }
         flies_again(mortal);
       });
-  EXPECT_GT(flights, 20);
+  EXPECT_GT(flights, 20 / one_in(3));
   EXPECT_GT(ends["standalone"], 0);
   // What a step has to say leaves together, here a message at a time, and is noted behind the last of them.
   constexpr int moments_of_one_batch = 12;
@@ -236,7 +237,7 @@ TEST(SupervisorDeath, AtEveryMomentOfAStopEverybodyHasStopped) {
                                         }
                                         flies_again(mortal);
                                       });
-  EXPECT_GT(flights, 10);
+  EXPECT_GT(flights, 10 / one_in(3));
 }
 
 TEST(SupervisorDeath, AtEveryMomentOfARecoveryBothMachinesComeToRest) {
@@ -247,14 +248,14 @@ TEST(SupervisorDeath, AtEveryMomentOfARecoveryBothMachinesComeToRest) {
         static_cast<void>(mortal.flight.craft().device("joystick")->fault("plug"));
         flies_again(mortal);
       });
-  EXPECT_GT(flights, 10);
+  EXPECT_GT(flights, 10 / one_in(3));
 }
 
 /// From the first message of the flight on: who was let go before the death moves on only where the whole craft was commissioned.
 TEST(SupervisorDeath, AtEveryMomentOfCommissioningNobodyIsLeftMovingAndTheCraftIsCommissionedAnew) {
   std::map<std::string, int> ends;
   int flights = 0;
-  for (int at = 1;; ++at) {
+  for (int at = 1;; at += one_in(5)) {
     MortalFlight mortal{at};
     Flight& flight = mortal.flight;
     mortal.deaths.armed = true;
@@ -278,7 +279,7 @@ TEST(SupervisorDeath, AtEveryMomentOfCommissioningNobodyIsLeftMovingAndTheCraftI
     flies_again(mortal);
     if (HasFailure() || !died) break;
   }
-  EXPECT_GT(ends["stopped"], 100);
+  EXPECT_GT(ends["stopped"], 100 / one_in(5));
   EXPECT_GT(ends["commissioned"], 0);
   std::printf("%d flights, stopped: %d, commissioned: %d\n", flights, ends["stopped"], ends["commissioned"]);
 }

@@ -2,9 +2,10 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """The mission servicer with real processes: one device program has joints and base in one world, the arm moves its tool, and when its
-control is killed in motion the AOCS takes the station over."""
+control is killed in motion the AOCS takes the station over. Before that the sun does not suffice for the arm, and goes while it moves."""
 import math
 import pathlib
+import threading
 import time
 import unittest
 
@@ -21,8 +22,30 @@ class Servicer(unittest.TestCase):
     def test_it_tracks_and_hands_its_station_over(self):
         with flight.Flight(MISSION) as craft:
             craft.wait_told("commissioned: mode coast", 30.0)
+            begin = craft.count()
+            craft.fault("power", "sun_angle 70")
+            time.sleep(1.2)
+            code, said = craft.tc("SUPERVISOR", "SET_MODE", "track")[:2]
+            self.assertNotEqual(code, 0, said)
+            craft.wait_told("MCS needs 260 W, 257.818 W of 457.818 W are free: POWER.BUDGET_W measures it", 2.0, begin)
+            craft.fault("power", "sun_angle 0")
+            time.sleep(1.2)
             code, said = craft.tc("SUPERVISOR", "SET_MODE", "track")[:2]
             self.assertEqual(code, 0, said)
+            begin = craft.count()
+            moves = threading.Thread(target=craft.tc, args=("MCS", "MOVE_TOOL", "0.02,0,0", 8))
+            moves.start()
+            time.sleep(2)
+            craft.ask("power", "eclipse on")
+            craft.wait_told("MCS to SafeOperational because of BUS_LOW", 2.0, begin)
+            moves.join()
+            for i in range(7):
+                self.assertLess(abs(craft.truth("arm")[f"qd{i + 1}"]), 1e-3)
+            craft.fault("power", "eclipse off")
+            time.sleep(1.2)
+            for mode in ("coast", "track"):
+                code, said = craft.tc("SUPERVISOR", "SET_MODE", mode)[:2]
+                self.assertEqual(code, 0, said)
             before = craft.truth("arm")
             code, said = craft.tc("MCS", "MOVE_TOOL", "0.02,0,0", 3)[:2]
             self.assertEqual(code, 0, said)

@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "hirosco/descriptor/read/read.hpp"
 #include "missions/servicer/scenarios/servicer_craft.hpp"
+#include "missions/servicer/scenarios/servicer_power.hpp"
 
 /// The mission servicer on virtual time, judged by what its world tells. Its figures are the report's (`hirosco report servicer`); here
 /// is what must not break between two of them.
@@ -116,6 +118,57 @@ TEST(Servicer, HandsItsStationOverWhenTheArmsControlDiesInMotion) {
   EXPECT_LT(craft.base_deg(), turned);
   EXPECT_EQ(craft.flight().inhibited("AOCS"), 0u);
   EXPECT_LT(craft.momentum_n_m_s(), 1e-6) << "the wheels have what the base gave";
+}
+
+TEST(Servicer, IsRefusedItsArmWhereTheSunDoesNotSuffice) {
+  ServicerCraft craft{{.mission = mission, .mode = "coast"}};
+  EXPECT_TRUE(ask_for_track(craft, {.sun_angle_deg = 69}).granted) << craft.flight().story().text();
+  EXPECT_TRUE(craft.flight().set_mode("coast").completed);
+  const Grant refused = ask_for_track(craft, {.sun_angle_deg = 70});
+  EXPECT_FALSE(refused.granted);
+  EXPECT_NEAR(refused.free_w, 900 * std::cos(70 * std::numbers::pi / 180) + 150 - 200, 1e-3);
+  EXPECT_TRUE(craft.flight().story().has(": POWER.BUDGET_W measures it")) << craft.flight().story().text();
+  EXPECT_EQ(craft.flight().state("AOCS"), State::Operational) << "it stays where it is";
+  EXPECT_FALSE(ask_for_track(craft, {.eclipse = true}).granted);
+}
+
+TEST(Servicer, BrakesItsArmInAnEclipseAndTakesNobodysSupplyAway) {
+  ServicerCraft craft{{.mission = mission, .mode = "track"}};
+  const Brake seen = eclipse_in_motion(craft, 4);
+  std::cout << "  told " << 1e3 * seen.told_s << " ms, at rest " << seen.rest_s << " s after the sun went\n";
+  EXPECT_LT(seen.told_s, 0.05);
+  EXPECT_LT(seen.rest_s, 0.5);
+  EXPECT_EQ(craft.flight().state("MCS"), State::SafeOperational);
+  EXPECT_EQ(craft.flight().state("AOCS"), State::Operational);
+  EXPECT_TRUE(craft.flight().story().missing_in_order({"BUS_LOW", "plan bus-low"}).empty())
+      << craft.flight().story().text();
+  EXPECT_FALSE(craft.flight().story().has("LOAD_SHED"));
+  auto& unit = craft.flight().device<SimulatedDevice>("power");
+  const auto feeds_arm = [&] { return unit.truth().find("payload_on=1") != std::string::npos; };
+  EXPECT_TRUE(feeds_arm());
+  // What keeps the station is granted in the dark, the arm is not.
+  EXPECT_FALSE(craft.flight().set_mode("track").completed);
+  // Nearly empty: the plan takes the arm away, and then its outlet.
+  ASSERT_TRUE(unit.fault("charge 0.15"));
+  craft.run(2);
+  EXPECT_EQ(craft.flight().state("MCS"), State::Offline) << craft.flight().story().text();
+  EXPECT_FALSE(feeds_arm());
+  EXPECT_EQ(craft.flight().state("POWER"), State::Operational);
+  EXPECT_TRUE(craft.flight().set_mode("coast").completed) << craft.flight().story().text();
+}
+
+/// Who measures dies in motion: the arm goes on, nothing more is granted, and who measures comes back.
+TEST(Servicer, GoesOnWithoutAMeasurementAndGrantsNothingMore) {
+  ServicerCraft craft{{.mission = mission, .mode = "track"}};
+  craft.begin("MOVE_TOOL", {away_m, 0.0, 0.0, within_s});
+  craft.craft().kill("POWER");
+  craft.run(0.1);
+  EXPECT_TRUE(craft.flight().story().has("no more than 235 W are granted")) << craft.flight().story().text();
+  EXPECT_EQ(craft.flight().state("MCS"), State::Operational);
+  craft.run(3);
+  EXPECT_EQ(craft.flight().state("MCS"), State::Operational);
+  EXPECT_EQ(craft.flight().state("POWER"), State::Operational) << craft.flight().story().text();
+  EXPECT_NE(craft.flight().device<SimulatedDevice>("power").truth().find("payload_on=1"), std::string::npos);
 }
 
 TEST(Servicer, FliesTheSameOctetsFromTheSameSeed) {

@@ -57,6 +57,14 @@ export const fixed_text = (value, digits) => Number.isFinite(value) ? value.toFi
 /// Without the zeros that a table of changing numbers keeps.
 export const brief_text = (value) => number_text(value).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');
 
+/// Labels of an axis, all with the digits of its step: −0.80 below −0.75.
+export function ticks_text(splits) {
+  const known = splits.filter(Number.isFinite), step = known.length > 1 ? String(+(known[1] - known[0]).toPrecision(3)) : 'e';
+  if (step.includes('e') || known.some((value) => Math.abs(value) >= 1e6)) return splits.map((value) => value === null ? '' : brief_text(+value.toPrecision(6)));
+  const digits = step.split('.')[1]?.length ?? 0;
+  return splits.map((value) => value === null ? '' : fixed_text(value, digits));
+}
+
 export const value_text = (value, column) => typeof value === 'boolean' ? (value ? 'on' : 'off') :
   column?.enumeration?.find((entry) => entry.value === value)?.name ?? number_text(value);
 

@@ -157,6 +157,8 @@ export function aligned(list, from, to) {
   return rows;
 }
 
+export const has_samples = ({t, v}, from, to) => t.some((at, i) => at >= from && at <= to && v[i] !== null);
+
 /// The newest sample up to `t`; undefined where there is none.
 export function value_at(name, t) {
   const series = known.get(name);

@@ -68,23 +68,28 @@ TEST(SerialFlow, CarriesEveryOctetAndCountsDamageOnTheWay) {
   device.make_raw();
   const auto flow = open_serial_flow({.address = device.path}).value();
   std::array<std::byte, max_frame_octets> buffer{};
+  // The system hands on what was put into a terminal when it has time, in as many pieces as it likes.
+  std::uint64_t lost = 0;
+  const auto take = [&] {
+    EXPECT_TRUE(flow->wait(1h));
+    const auto received = flow->receive(buffer).value();
+    lost += received.damaged;
+    return received;
+  };
   auto damaged = streamed(1);
   damaged[9] ^= std::byte{0x80};
-  device.put(damaged);
-  ASSERT_TRUE(flow->wait(1h));
-  EXPECT_EQ(flow->receive(buffer).value().damaged, 1U);
-  device.put(damaged);
-  ASSERT_TRUE(flow->wait(1h));
-  EXPECT_EQ(flow->receive(buffer).value().damaged, 1U) << "each of them, without a good one between";
+  for (std::uint64_t each = 1; each <= 2; ++each) {
+    device.put(damaged);
+    while (lost < each) take();
+    EXPECT_EQ(lost, each) << "each of them, without a good one between";
+  }
   device.put(streamed(2));
   device.put(Octets{streamed(2)}.subspan(5));  // begins in the middle
   device.put(streamed(3));
-  ASSERT_TRUE(flow->wait(1h));
-  const auto received = flow->receive(buffer).value();
-  EXPECT_EQ(received.flow, Flow::New);
+  auto received = take();
+  while (received.flow != Flow::New || buffer[0] != std::byte{3}) received = take();
   EXPECT_EQ(received.octets, 40U);
-  EXPECT_EQ(buffer[0], std::byte{3});
-  EXPECT_EQ(received.damaged, 1U);
+  EXPECT_EQ(lost, 3U);
   // Those that a terminal would take for orders: end of line, interrupt, stop, escape.
   std::vector<std::byte> all(256);
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::byte>(i);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "hirosco/descriptor/model/reported.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/layout.hpp"
 
@@ -89,7 +90,54 @@ namespace {
   return "none of the structures that are heard of it has it";
 }
 
+/// Of its reports, with the id in front.
+[[nodiscard]] std::size_t octets_of(const HousekeepingStructure& structure, const Subsystem& subsystem) {
+  const auto octets = [&](const std::vector<ParameterRef>& references) {
+    std::size_t sum = 0;
+    for (const ParameterRef& each : references) sum += subsystem.parameters[each.parameter].octets(each.member);
+    return sum;
+  };
+  std::size_t sum = sizeof structure.id + octets(structure.sampled_once);
+  for (const auto& set : structure.sampled_repeatedly) sum += set.repetitions * octets(set.parameters);
+  return sum;
+}
+
+/// Null: this configuration does not report it by itself.
+[[nodiscard]] const HousekeepingStructure* find_enabled(const Subsystem& subsystem, const Configuration& configuration,
+                                                        std::uint16_t id) {
+  for (const auto* structures : {&subsystem.housekeeping, &configuration.housekeeping})
+    for (const HousekeepingStructure& each : *structures)
+      if (each.id == id && each.enabled) return &each;
+  return nullptr;
+}
+
+/// Where it stands, if it is the same and often enough in every configuration.
+[[nodiscard]] std::optional<ReportedAt> find_reported_in(const Subsystem& subsystem, std::uint16_t id,
+                                                         const ParameterRef& place, Duration age) {
+  std::optional<ReportedAt> found;
+  for (const Configuration& configuration : subsystem.configurations) {
+    const HousekeepingStructure* structure = find_enabled(subsystem, configuration, id);
+    const auto offset = structure != nullptr ? offset_in(*structure, subsystem, place) : std::nullopt;
+    if (!offset) return std::nullopt;
+    if (configuration.sampling * static_cast<int>(structure->interval_cycles) > age) return std::nullopt;
+    const ReportedAt here{id, *offset, octets_of(*structure, subsystem)};
+    if (found && (found->offset != here.offset || found->octets != here.octets)) return std::nullopt;
+    found = here;
+  }
+  return found;
+}
+
 }  // namespace
+
+std::expected<ReportedAt, std::string> find_reported(const Subsystem& subsystem, const ParameterRef& place,
+                                                     Duration age) {
+  if (!subsystem.configurations.empty())
+    for (const auto* structures : {&subsystem.housekeeping, &subsystem.configurations.front().housekeeping})
+      for (const HousekeepingStructure& each : *structures)
+        if (const auto found = find_reported_in(subsystem, each.id, place, age)) return *found;
+  return std::unexpected{"no structure reports it in every configuration, alike and at least each " +
+                         std::to_string(age / std::chrono::milliseconds{1}) + " ms"};
+}
 
 NoForeign resolve_foreign(const Subsystem& own, Subscribes& heard, const Subsystem& other) {
   for (Foreign& foreign : heard.foreign)

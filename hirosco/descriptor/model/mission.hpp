@@ -13,6 +13,7 @@
 
 #include "hirosco/data_transfer/device/device_network.hpp"
 #include "hirosco/descriptor/model/manifest.hpp"
+#include "hirosco/descriptor/model/reported.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/utilities/result.hpp"
 
@@ -193,6 +194,14 @@ struct ShownValue {
   std::uint8_t decimals{3};
 };
 
+/// A parameter by which a subsystem tells what electrical power there is (docs/adr/0124).
+struct MeasuredPower {
+  std::string name;  ///< "SUBSYSTEM.PARAMETER"
+  Duration age{};  ///< a measurement counts so long
+  std::uint16_t apid{0};
+  ReportedAt at{};
+};
+
 struct Mission {
   std::string name;
   std::uint16_t id{};
@@ -201,6 +210,8 @@ struct Mission {
   DatabaseUse database;
   GroundAddresses ground;
   std::optional<double> power_budget_w;  ///< for the configurations in use; empty = not limited
+  std::optional<MeasuredPower> power_measured{};  ///< of that budget; none: it is all there, whatever shines
+  double power_least_w{0};  ///< is granted whatever is measured, and where nothing is
   std::optional<Manifest> manifest{};  ///< none: whatever has the name of an executable is started (adr 0089)
   /// Outside this computer, where devices may be reached (docs/adr/0112); empty: nowhere.
   std::vector<DeviceNetwork> device_networks{};

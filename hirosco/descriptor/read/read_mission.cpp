@@ -57,7 +57,7 @@ Mission MissionReader::read(const xml::Element& root) {
     mission_.id = attributes.required_integer<std::uint16_t>("id", 1, 65'535);
   }
   // What is referred to is read before what refers to it, whatever the order in the file.
-  std::vector<const xml::Element*> grounds, budgets, devices, links, modes, recoveries, consoles;
+  std::vector<const xml::Element*> grounds, powers, budgets, devices, links, modes, recoveries, consoles;
   const auto later = [](auto& list) { return [&list](const xml::Element& element) { list.push_back(&element); }; };
   for (const xml::Element& child : root.children)
     if (child.name == "DeviceNetwork") read_device_network(child);
@@ -69,7 +69,7 @@ Mission MissionReader::read(const xml::Element& root) {
                  supervised = true;
                },
                1},
-              {"Power", [this](const auto& element) { read_power(element); }, 1},
+              {"Power", later(powers), 1},
               {"Resources", later(budgets), 1},
               {"Manifest", [this](const auto& element) { read_manifest(element); }, 1},
               {"Isolation", [this](const auto& element) { read_isolation(element); }, 1},
@@ -91,6 +91,7 @@ Mission MissionReader::read(const xml::Element& root) {
     break;
   }
   resolve_commands();
+  for (const auto* element : powers) read_power(*element);
   for (const auto* element : budgets) {
     read_resources(*element);
     if (whole()) check_resources(*element);
@@ -222,12 +223,6 @@ void MissionReader::read_address(Attributes& attributes, std::string_view name, 
 }
 
 std::string MissionReader::executable(Attributes& attributes) { return attributes.name("executable", NameKind::Loose); }
-
-void MissionReader::read_power(const xml::Element& element) {
-  Attributes attributes{element, problems_};
-  no_children(element, problems_);
-  if (attributes.required("budget_W") != nullptr) mission_.power_budget_w = attributes.watts("budget_W");
-}
 
 void MissionReader::read_member(const xml::Element& element) {
   Attributes attributes{element, problems_};

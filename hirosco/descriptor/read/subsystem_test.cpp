@@ -7,6 +7,7 @@
 
 #include "hirosco/descriptor/model/framework_parameters.hpp"
 #include "hirosco/descriptor/testing.hpp"
+#include "hirosco/utilities/testing/slice.hpp"
 
 namespace hirosco::descriptor {
 namespace {
@@ -335,7 +336,7 @@ TEST(SubsystemDescriptor, EveryTruncationIsRefused) {
   std::string text = file_system()(data / "coronagraph.xml").value();
   while (text.ends_with('\n')) text.pop_back();
   ASSERT_TRUE(read_text(text).value);
-  for (std::size_t octets = 0; octets < text.size(); ++octets) {
+  for (std::size_t octets = 0; octets < text.size(); octets += hirosco::testing::one_in(std::size_t{7})) {
     const auto reading = read_text(text.substr(0, octets));
     EXPECT_FALSE(reading.value) << octets;
     EXPECT_FALSE(reading.problems.empty()) << octets;
@@ -385,7 +386,8 @@ TEST(SubsystemDescriptor, CountsAreBounded) {
 
 TEST(SubsystemDescriptor, ManyProblemsEndTheReading) {
   std::string text = "<Subsystem name=\"S\" id=\"1\">";
-  for (int i = 0; i < 40'000; ++i) text += "<ParamRef name=\"X\" id=\"1\" type=\"INTT8\"/>";
+  for (int i = 0; i < 40'000 / hirosco::testing::one_in(10); ++i)
+    text += "<ParamRef name=\"X\" id=\"1\" type=\"INTT8\"/>";
   EXPECT_EQ(read_text(text + "</Subsystem>").problems.size(), 200U);
 }
 

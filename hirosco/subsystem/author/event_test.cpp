@@ -193,8 +193,10 @@ TEST(Rings, FullOfAnAuthorsEventsStillTellThatADeviceIsLost) {
     text.replace(text.find(own_event), own_event.size() + 3, own_event + severity);
     Rig rig{author, text};
     rig.bring_to(State::PreOperational, 3);
-    author.events = 5'000;
     rig.set_state(State::SafeOperational);
+    rig.service();
+    rig.advance(first_answer_limit + 1ms);
+    author.events = 5'000;
     rig.service();
     rig.cycle(6);
     rig.settle();

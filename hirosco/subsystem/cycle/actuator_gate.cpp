@@ -61,7 +61,7 @@ void CycleLoop::write_outputs(TimePoint planned) noexcept {
   }
   // Old data is not sent as new: nobody else's actuator moves on it either, once it is older than its consumer takes.
   const LinkStatus status = link_status();
-  if (awaits_fall_back_ && status != LinkStatus::Fault) return;
+  if (awaits_device_ && status != LinkStatus::Fault) return;
   for (LinkOutputSlot& output : plan_.outputs) output.write(planned, status);
 }
 

@@ -52,7 +52,8 @@ void CycleLoop::prepare(CyclePlan plan) {
   state_ = State::PreOperational;
   first_ = true;
   inhibited_ = 0;
-  awaits_fall_back_ = false;
+  awaits_device_ = false;
+  awaits_first_answer_.store(!plan_.devices.empty(), std::memory_order_relaxed);
   taken_over_ = nullptr;
   heartbeat_ = permit().heartbeat.load(std::memory_order_acquire);
   silent_cycles_ = 0;

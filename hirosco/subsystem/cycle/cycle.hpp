@@ -94,6 +94,10 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   [[nodiscard]] const descriptor::Configuration& in_force() const noexcept {
     return *in_force_.load(std::memory_order_acquire);
   }
+  /// Whether a device of the configuration has not answered since it was opened, and is not late yet.  Realtime: wait-free. Thread: any.
+  [[nodiscard]] bool awaits_first_answer() const noexcept {
+    return awaits_first_answer_.load(std::memory_order_relaxed);
+  }
   [[nodiscard]] std::vector<BoundFunction>& functions() noexcept { return functions_; }
   /// Whether the author's self test has passed in this configuration, and nothing has voided it.  Realtime: wait-free. Thread: any.
   [[nodiscard]] bool self_test_passed() const noexcept { return self_test_.passed(); }
@@ -217,7 +221,8 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   std::optional<std::size_t> starter_;  ///< of the inputs: whose samples start the cycle
   bool first_{true};
   std::uint32_t inhibited_{0};
-  bool awaits_fall_back_{false};  ///< what a device said last is of before
+  std::atomic<bool> awaits_first_answer_{false};
+  bool awaits_device_{false};  ///< what a device said last is of before
   std::uint64_t count_{0};
   std::uint32_t entered_epoch_{0};
   std::uint32_t permitted_epoch_{0};  ///< of the permit page, as checked in this cycle

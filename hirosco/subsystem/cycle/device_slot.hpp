@@ -21,6 +21,9 @@
 /// built by the service loop while the cycle rests; step functions run in the cycle and are bounded.
 namespace hirosco {
 
+/// How long the entry into control waits for devices that begin when their subsystem does (docs/adr/0128); from then on who is silent is lost.
+inline constexpr Duration first_answer_limit = std::chrono::seconds{2};
+
 /// A device, or one endnode of it, and its data flows: the preferred one and its fall-backs, of which one is in use (adr 0079).
 /// Who falls silent is left for the next fall-back, each once; that one is alive with its first answer to a command that was
 /// sent to it, and until then, and until the watchdog of what was left has run out, holds_back() is true.
@@ -57,6 +60,8 @@ class DeviceSlot {
   [[nodiscard]] bool holds_back() const noexcept { return awaits_ || left_obeys_cycles_ > 0; }
   /// The fall-back that is in use has not answered yet: what its fields say is of before.
   [[nodiscard]] bool awaits() const noexcept { return awaits_; }
+  /// Nobody has answered since the slot was made, and it is not late yet.
+  [[nodiscard]] bool awaits_first() const noexcept { return !heard_ && since_good_.silent_cycles < silence_limit_; }
   /// Which endnode was left last, and which is in use.
   [[nodiscard]] std::uint8_t left() const noexcept { return left_; }
   [[nodiscard]] std::uint8_t taken() const noexcept { return ways_[way_].endnode; }

@@ -14,7 +14,8 @@
 namespace hirosco {
 
 void CycleLoop::read_inputs(TimePoint started, bool counts) noexcept {
-  // Passes by itself: with the first answer of a fall-back, or the first good sample of a slower producer, which are no old data.
+  // Passes by itself: with the first answer of a device or of its fall-back, or the first good sample of a slower producer, which are
+  // no old data.
   inhibited_ &= ~static_cast<std::uint32_t>(inhibited_while_awaited);
   for (std::size_t i = 0; i < plan_.inputs.size(); ++i) {
     LinkInputSlot& input = plan_.inputs[i];
@@ -32,12 +33,14 @@ void CycleLoop::read_inputs(TimePoint started, bool counts) noexcept {
     }
     input_was_stale_[i] = stale ? 1 : 0;
   }
-  awaits_fall_back_ = false;
+  awaits_device_ = false;
+  bool awaits_first = false;
   for (std::size_t i = 0; i < plan_.devices.size(); ++i) {
     DeviceSlot& device = plan_.devices[i];
     device.read(controlling(), counts);
-    awaits_fall_back_ = awaits_fall_back_ || device.awaits();
-    if (device.holds_back()) inhibit(inhibited_while_awaited);
+    awaits_first = awaits_first || device.awaits_first();
+    awaits_device_ = awaits_device_ || device.awaits() || device.awaits_first();
+    if (device.holds_back() || (controlling() && device.awaits_first())) inhibit(inhibited_while_awaited);
     else if (!device.alive() && controlling()) inhibit(inhibited_by_device);
     if (device.just_fell_back()) {
       const std::array arguments{static_cast<double>(device.loss().reason), static_cast<double>(device.left()),
@@ -51,6 +54,7 @@ void CycleLoop::read_inputs(TimePoint started, bool counts) noexcept {
                                static_cast<double>(loss.damaged), static_cast<double>(loss.wrong_size)};
     raise(plan_.device_lost_events[i], arguments);
   }
+  awaits_first_answer_.store(awaits_first, std::memory_order_relaxed);
 }
 
 }  // namespace hirosco

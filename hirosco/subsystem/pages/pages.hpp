@@ -27,7 +27,7 @@ enum Inhibition : std::uint32_t {
   inhibited_by_failure = 16,  ///< a state's node failed, or its output jumped at a bumpless change
   inhibited_by_supervisor = 32,  ///< the supervisor is gone
   inhibited_while_awaited =
-      64,  ///< a fall-back has not answered yet, a slower producer has sent no good sample yet; passes by itself
+      64,  ///< a device or its fall-back has not answered yet, a slower producer has sent no good sample yet; passes by itself
 };
 
 /// A real-time link as its consumer sees it, since the link was made.

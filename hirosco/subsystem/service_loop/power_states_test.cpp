@@ -94,28 +94,30 @@ TEST(WithoutAPowerSwitch, NobodyAsks) {
   EXPECT_EQ(rig.set_state_now(State::Offline), "1 3 7");
 }
 
+constexpr auto arm_lost = descriptor::framework_event::device_lost(0);
+constexpr auto fell_back = descriptor::framework_event::fell_back(1);
+
 /// The lamp by two ways; somebody else may have them.
 struct FallBackStates : ::testing::Test {
-  static constexpr auto fell_back = descriptor::framework_event::fell_back(1);
   Probe probe;
   Rig rig{probe, lamp_with("address=\"lamp\"/>",
                            "address=\"lamp\"><FallBack transfer=\"unix\" address=\"lamp2\"/></Endnode>")};
 };
 
-TEST_F(FallBackStates, WhileAFallBackHasNotAnsweredNoSampleGoesOutAndTheActuatorsAreInhibited) {
-  std::string text =
-      lamp_with("address=\"lamp\"/>", "address=\"lamp\"><FallBack transfer=\"unix\" address=\"lamp2\"/></Endnode>");
-  const std::string link =
-      R"(<RealTimeLinkService><Provides name="ARM_STATE"><ParamRef name="SEEN"/></Provides></RealTimeLinkService>)";
-  text.insert(text.find("<Device name=\"ARM\" silence"), link);
-  Probe linked;
-  Rig craft{linked, text};
-  craft.bring_to(State::PreOperational, 3);
-  auto reader = craft.attach(2, pus::st128::Role::Producer, "ARM_STATE", {{"SEEN", Type::Double, 1}}).reader;
-  const auto lamp = craft.flows.open({Transfer::SharedMemory, "lamp"}, FlowSide::Device).value();
-  const auto spare = craft.flows.open({Transfer::Unix, "lamp2"}, FlowSide::Device).value();
-  const auto arm = craft.flows.open({Transfer::SharedMemory, "arm"}, FlowSide::Device).value();
-  const auto answer = [](DataFlow& flow, std::size_t octets) {
+/// The test plays arm, lamp and the lamp's fall-back, and is the consumer of a link.
+struct LinkedDevices : ::testing::Test {
+  static std::string text() {
+    std::string text = lamp_with(R"("LAMP"><Endnode transfer="shared_memory" address="lamp"/>)",
+                                 R"("LAMP" silence="20"><Endnode transfer="shared_memory" address="lamp">
+                                      <FallBack transfer="unix" address="lamp2"/></Endnode>)");
+    const std::string link =
+        R"(<RealTimeLinkService><Provides name="ARM_STATE"><ParamRef name="SEEN"/></Provides></RealTimeLinkService>)";
+    return text.insert(text.find("<Device name=\"ARM\" silence"), link);
+  }
+  std::unique_ptr<DataFlow> open(const char* address, Transfer transfer = Transfer::SharedMemory) {
+    return std::move(craft.flows.open({transfer, address}, FlowSide::Device)).value();
+  }
+  static void answer(DataFlow& flow, std::size_t octets) {
     std::array<std::byte, max_frame_octets> frame{};
     const auto received = flow.receive(frame);
     if (!received || received->flow != Flow::New) return;
@@ -126,22 +128,83 @@ TEST_F(FallBackStates, WhileAFallBackHasNotAnsweredNoSampleGoesOutAndTheActuator
         write_status(status,
                      {.epoch = command.epoch, .sequence = command.sequence, .payload = Octets{payload}.first(octets)})
             .value()));
-  };
-  bool lamp_speaks = true, spare_speaks = false;
-  const auto cycle = [&] {
+  }
+  void SetUp() override {
+    craft.bring_to(State::PreOperational, 3);
+    attached.emplace(craft.attach(2, pus::st128::Role::Producer, "ARM_STATE", {{"SEEN", Type::Double, 1}}));
+  }
+  /// Whether the consumer has a new sample after it.
+  bool cycle() {
     craft.service();
     craft.cycle();
-    answer(*arm, 8);
+    if (arm_speaks) answer(*arm, 8);
     if (lamp_speaks) answer(*lamp, 1);
     if (spare_speaks) answer(*spare, 1);
     std::array<std::byte, 8> payload{};
-    return reader.read(payload).flow == Flow::New;
-  };
-  for (const State state : {State::SafeOperational, State::Operational}) {
+    return attached->reader.read(payload).flow == Flow::New;
+  }
+  void enter(State state) {
     static_cast<void>(craft.set_state(state));
-    for (int i = 0; i < 4; ++i) static_cast<void>(cycle());
+    for (int i = 0; i < 4; ++i) cycle();
     ASSERT_EQ(craft.state(), state);
   }
+  Probe probe;
+  Rig craft{probe, text()};
+  std::unique_ptr<DataFlow> lamp = open("lamp"), spare = open("lamp2", Transfer::Unix), arm = open("arm");
+  std::optional<Rig::Partner> attached;
+  bool arm_speaks{true}, lamp_speaks{true}, spare_speaks{false};
+};
+
+TEST_F(LinkedDevices, TheEntryIntoControlWaitsForTheFirstAnswerOfEachDeviceAndUntilThenNoSampleGoesOut) {
+  lamp_speaks = false;
+  const auto entry = craft.set_state(State::SafeOperational);
+  for (int i = 0; i < 100; ++i) {
+    const bool came = cycle();
+    EXPECT_FALSE(came && i > 0) << "what was sent before is of no device";
+    ASSERT_EQ(craft.state(), State::PreOperational);
+  }
+  EXPECT_EQ(craft.outcome(entry), "1 3");
+  lamp_speaks = true;
+  EXPECT_FALSE(cycle()) << "it has been asked";
+  EXPECT_TRUE(cycle()) << "and has answered";
+  for (int i = 0; i < 2; ++i) cycle();
+  EXPECT_EQ(craft.outcome(entry), "1 3 7");
+  EXPECT_EQ(craft.inhibited(), 0U);
+  EXPECT_EQ(craft.heard(descriptor::framework_event::device_lost(1)), 0);
+}
+
+TEST_F(LinkedDevices, WhoWaitsForADeviceIsTakenDownAllTheSame) {
+  arm_speaks = false;
+  static_cast<void>(craft.set_state(State::SafeOperational));
+  for (int i = 0; i < 3; ++i) cycle();
+  static_cast<void>(craft.set_state(State::ErrorOperational));
+  for (int i = 0; i < 3; ++i) cycle();
+  EXPECT_EQ(craft.state(), State::ErrorOperational);
+}
+
+TEST_F(LinkedDevices, ADeviceThatNeverAnswersIsToldAsLostWhenItsTimeAndWhatItMayBeSilentAreOver) {
+  arm_speaks = false;
+  static_cast<void>(craft.set_state(State::SafeOperational));
+  cycle();
+  craft.advance(first_answer_limit);
+  for (int i = 0; i < 3 && craft.state() != State::SafeOperational; ++i) cycle();
+  ASSERT_EQ(craft.state(), State::SafeOperational);
+  int silent = 0;
+  for (bool told = false; !told && silent < 50; ++silent) {
+    ASSERT_EQ(craft.inhibited(), inhibited_while_awaited);
+    told = cycle();
+  }
+  EXPECT_EQ(craft.inhibited(), inhibited_by_device) << "told with the link, and stays so, whoever answers now";
+  EXPECT_LT(silent, 4);
+  arm_speaks = true;
+  for (int i = 0; i < 4; ++i) cycle();
+  EXPECT_EQ(craft.inhibited(), inhibited_by_device);
+  EXPECT_EQ(craft.heard(arm_lost), 1);
+}
+
+TEST_F(LinkedDevices, WhileAFallBackHasNotAnsweredNoSampleGoesOutAndTheActuatorsAreInhibited) {
+  enter(State::SafeOperational);
+  enter(State::Operational);
   ASSERT_EQ(craft.inhibited(), 0U);
   ASSERT_TRUE(cycle());
   lamp_speaks = false;

@@ -349,6 +349,8 @@ TEST(ReducedPromise, WithoutRealtimeRightsTheSecondSetOfLimitsHolds) {
   rig.bring_to(State::PreOperational, 3);
   rig.set_state(State::SafeOperational);
   rig.service();
+  rig.advance(first_answer_limit + 1ms);
+  rig.service();
   rig.cycle(39);
   rig.service();
   EXPECT_EQ(rig.events(arm_lost), 0);

@@ -81,6 +81,10 @@ bool GenericSubsystem::run_phase(State next, TimePoint now) {
   }
   const bool cycle_node = is_cyclic(next) && configuration_ != nullptr && wanted_.load(std::memory_order_relaxed);
   if (cycle_node) {
+    // Nothing moves yet: who begins is given time to, which the limit of somebody's silence is not made for (docs/adr/0128).
+    if (next == State::SafeOperational && state_ == State::PreOperational && cycle_.awaits_first_answer() &&
+        now <= phase_deadline_ - transient_limit + first_answer_limit)
+      return false;
     awaiting_cycle_ = push({.kind = CommandKind::EnterState, .index = static_cast<std::uint16_t>(next)});
     return false;
   }

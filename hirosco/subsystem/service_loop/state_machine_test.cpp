@@ -193,6 +193,8 @@ TEST_F(Commissioning, EachDeviceOfAConfigurationIsMissedByItsOwnEvent) {
   rig.bring_to(State::PreOperational, 3);
   rig.set_state(State::SafeOperational);
   rig.service();
+  rig.advance(first_answer_limit + 1ms);
+  rig.service();
   rig.cycle(20);
   rig.service();
   EXPECT_EQ(rig.heard(testing::arm_lost), 1);

@@ -14,4 +14,11 @@ namespace hirosco::testing {
   return slice != nullptr && std::string_view{slice} == "whole";
 }
 
+/// Of so many one is tried: `slice` of them, or 1 in NAME_whole. One that shares no factor with how the kinds of what is tried
+/// recur meets all of them.
+template <class Integer>
+[[nodiscard]] Integer one_in(Integer slice) noexcept {
+  return whole() ? Integer{1} : slice;
+}
+
 }  // namespace hirosco::testing

@@ -39,16 +39,17 @@ export function tour(page) {
 
   return [
     {title: 'Move it', view: '#/overview',
-      text: 'Drag the blue handle of the joystick, or the fingertip of the robot, in the 3D view: your mouse is the hand at the joystick, and the robot follows. Solid is what is measured, the blue ghost what is commanded.',
+      text: 'Drag the violet handle of the joystick, or the fingertip of the robot, in the 3D view: your mouse is the hand at the joystick, and the robot follows. White is measured, teal touched, violet what the hand feels; a blue ghost is the goal of a telecommand.',
       act: ['Let the hand wander', () => fault('joystick', 'hand wander')],
       done: () => injections.value.some((one) => one.line?.startsWith('hand'))},
     {title: 'Couple two machines', view: '#/subsystems/MANIPULATOR',
       text: 'Two processes at 2 kHz, joined by two real-time links. Take them apart, send the arm somewhere by telecommand, and couple them again: each step of the commissioning is a telecommand that the supervisor permits and logs.',
       act: ['Take apart', () => couple('standalone')], act_2: ['MOVE_TO −1.0 1.9 in 2 s', () => send_and_say('MANIPULATOR', 'MOVE_TO', {Q1: -1.0, Q2: 1.9, DURATION: 2.0})],
       act_3: ['Home, and couple', home_and_couple],
-      done: () => is_coupled() && sent('LINK', 'completed')},
+      // An arm that is coupled takes no MOVE_TO: it was apart. How it was coupled again is the visitor's.
+      done: () => is_coupled() && sent('MOVE_TO', 'completed')},
     {title: 'Feel the wall', view: '#/overview',
-      text: 'Press the fingertip against the rail, by mouse or by the button. The red arrow is the contact force; the torque plot shows what the joystick gives back to the hand.',
+      text: 'Press the fingertip against the rail, by mouse or by the button. The teal arrow is the contact force; the torque plot shows what the joystick gives back to the hand.',
       act: ['Press with 43 N', () => fault('joystick', 'hand cartesian 0.0226 0 1')], done: () => force_n() > 10},
     {title: 'Unplug the joystick', view: '#/overview',
       text: 'The test of the paper: the joystick loses its cable. Both machines must stop by themselves, at once and in order, without the ground: watch the ten lamps of each.',

@@ -32,7 +32,7 @@ int report(const ReportOptions& options) {
   const auto runs = simulation::servicer_runs();
   for (const std::string& id : options.only)
     if (std::ranges::find(runs, id, &simulation::ServicerRun::id) == runs.end()) {
-      fmt::print(stderr, "hirosco report: no run '{}'; there are SV1 SV2 SV3 SV4 SV8\n", id);
+      fmt::print(stderr, "hirosco report: no run '{}'; there are SV1 SV2 SV3 SV4 SV8 SV9\n", id);
       return tools::exit_usage;
     }
   std::vector<Chapter> chapters;

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "hirosco/descriptor/read/read.hpp"
+#include "missions/servicer/scenarios/servicer_power.hpp"
 
 namespace hirosco::simulation {
 namespace {
@@ -327,6 +328,10 @@ constexpr std::array runs{
     ServicerRun{"SV4", "Pose lost", "track, 0.2 m along x: after 8 s the AOCS stands still", fly_cut},
     ServicerRun{"SV8", "Station keeping handed over", "track, 0.2 m in 20 s: after 10 s the arm's control is killed",
                 fly_hand_over},
+    ServicerRun{"SV9", "Power",
+                "the sun at four angles, an eclipse: whether track is entered; then, track, 0.2 m in 20 s: after 8 s "
+                "the sun is gone",
+                fly_power},
 };
 
 }  // namespace

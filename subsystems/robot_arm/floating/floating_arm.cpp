@@ -81,35 +81,23 @@ void FloatingArm::measure(const Cycle& cycle) noexcept {
   moving_ = false;
   measured_ = {robot_arm::vector_of(in.position), robot_arm::vector_of(in.velocity), robot_arm::vector_of(in.torque)};
   follow_base();
-  const robotics::Pose base{base_orientation_.toRotationMatrix(), base_position_};
+  const robotics::Pose base{base_.orientation().toRotationMatrix(), base_.position_m()};
   // A robot with masses always has an inertia; without one the last state stays, and the law's torques are bounded.
   static_cast<void>(floating_->update(base, measured_.position));
   tool_values_.store({three_of(floating_->tool().position), four_of(Quaternion{floating_->tool().rotation})});
-  base_values_.store({three_of(base_position_), four_of(base_orientation_)});
+  base_values_.store({three_of(base_.position_m()), four_of(base_.orientation())});
   conditioning_.store(floating_->conditioning());
 }
 
-/// Between two samples the base goes on as the joints make it, without momentum.
+/// The base goes on as the joints make it, without momentum, and samples set that right.
 void FloatingArm::follow_base() noexcept {
-  if (!tracks()) {
-    base_position_.setZero();
-    base_orientation_.setIdentity();
-    return;
-  }
+  if (!tracks()) return base_.stand_still();
+  if (!pose_.valid()) base_.forget();
+  base_.go_on(floating_->base() * measured_.velocity, cycle_s_);
   const BasePose& sample = pose_.value();
-  if (pose_.valid() && pose_.age_cycles() == 0 && sample.quality != 0) {
-    base_position_ = {sample.position_m[0], sample.position_m[1], sample.position_m[2]};
-    const auto& wxyz = sample.orientation_wxyz;
-    const Quaternion turned{wxyz[0], wxyz[1], wxyz[2], wxyz[3]};
-    if (turned.norm() > 0.5) base_orientation_ = turned.normalized();
-    return;
-  }
-  const robot_arm::Vector6 twist = floating_->base() * measured_.velocity;
-  base_position_ += cycle_s_ * (base_orientation_ * Vector3{twist.tail<3>()});
-  Quaternion by;
-  by.w() = 1;
-  by.vec() = 0.5 * cycle_s_ * twist.head<3>();
-  base_orientation_ = (base_orientation_ * by).normalized();
+  if (!pose_.valid() || pose_.age_cycles() != 0 || sample.quality == 0) return;
+  const auto& wxyz = sample.orientation_wxyz;
+  base_.take({sample.position_m[0], sample.position_m[1], sample.position_m[2]}, {wxyz[0], wxyz[1], wxyz[2], wxyz[3]});
 }
 
 /// Takes the present place as the reference: entering Operational moves nothing.
@@ -117,7 +105,7 @@ void FloatingArm::engage() noexcept {
   phase_ = Phase::Holds;
   joints_goal_ = joints_from_ = measured_.position;
   tool_goal_ = {floating_->tool(), Vector3::Zero()};
-  base_kept_ = base_orientation_.toRotationMatrix();
+  base_kept_ = base_.orientation().toRotationMatrix();
   mean_left_m_.setZero();
   error_m_ = 0;
 }
@@ -171,7 +159,7 @@ void FloatingArm::arrive() noexcept {
 void FloatingArm::control() noexcept {
   if (phase_ == Phase::ToolMoves || (phase_ == Phase::Holds && tracks())) {
     wanted_rates_ =
-        robot_arm::tool_rates(law_, *floating_, tool_goal_, base_orientation_.toRotationMatrix(), base_kept_);
+        robot_arm::tool_rates(law_, *floating_, tool_goal_, base_.orientation().toRotationMatrix(), base_kept_);
   } else {
     const robot_arm::Course at =
         phase_ == Phase::JointsMove ? robot_arm::course(moved_s_, duration_s_) : robot_arm::Course{};

@@ -12,6 +12,7 @@
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "robotics/urdf/named_robot.hpp"
 #include "subsystems/robot_arm/control/watch.hpp"
+#include "subsystems/robot_arm/floating/base_estimate.hpp"
 #include "subsystems/robot_arm/floating/tool_law.hpp"
 
 namespace hirosco {
@@ -117,8 +118,7 @@ class FloatingArm final : public Subsystem {
   robot_arm::ToolLaw law_{robot_arm::ToolLaw::FixedBase};
   robot_arm::Watch watch_;
   robot_arm::Measured measured_;
-  robotics::Vector3 base_position_{robotics::Vector3::Zero()};
-  robotics::Quaternion base_orientation_{robotics::Quaternion::Identity()};
+  robot_arm::BaseEstimate base_;
   double cycle_s_{0.001};
 
   Phase phase_{Phase::Holds};

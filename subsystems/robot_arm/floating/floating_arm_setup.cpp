@@ -73,8 +73,7 @@ Result<> FloatingArm::configure(const descriptor::Configuration& configuration) 
   floating_.emplace(*model_, tip_);
   watch_.arm();
   motion_.reset();
-  base_position_.setZero();
-  base_orientation_.setIdentity();
+  base_.stand_still();
   measured_.position = measured_.velocity = measured_.torque = robot_arm::JointVector::Zero(model_->joint_count());
   wanted_rates_ = joints_goal_ = joints_from_ = measured_.position;
   phase_ = Phase::Holds;

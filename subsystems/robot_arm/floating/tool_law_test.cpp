@@ -6,10 +6,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <iostream>
+#include <limits>
 #include <numbers>
+#include <random>
 
 #include "robotics/dynamics/integrator.hpp"
+#include "subsystems/robot_arm/floating/base_estimate.hpp"
 #include "subsystems/robot_arm/testing/plant.hpp"
 
 /// Figures of the servicer come from the design of its scenarios, not from here.
@@ -34,6 +38,54 @@ const JointVector stretched = joints({0.3, 0.35, 0.2, 1.1, -0.3, 0.5, 0.1});
   FloatingModel model{servicer(), servicer().find_frame("tool").value()};
   EXPECT_TRUE(model.update(base, q));
   return model;
+}
+
+TEST(BaseEstimate, IsAMeanFromItsFirstSamplesOnAndKeepsASixthOfTheNoise) {
+  std::mt19937 random{7};
+  std::normal_distribution<double> noise_m{0, 1e-3};
+  BaseEstimate base;
+  const robotics::Vector3 place{1, 2, 3};
+  const robotics::Quaternion turned{std::cos(0.1), std::sin(0.1), 0, 0};
+  base.take(place, turned);
+  EXPECT_EQ(base.position_m(), place) << "the first as it is";
+  EXPECT_NEAR(base.orientation().angularDistance(turned), 0, 1e-12);
+  double square = 0;
+  constexpr int count = 4000;
+  for (int i = 0; i < count; ++i) {
+    base.take(place + robotics::Vector3{noise_m(random), noise_m(random), noise_m(random)}, turned);
+    if (i >= 100) square += (base.position_m() - place).squaredNorm() / 3 / (count - 100);
+  }
+  EXPECT_NEAR(std::sqrt(square), 1e-3 / std::sqrt(2.0 * BaseEstimate::most_samples - 1), 0.2e-4);
+  base.forget();
+  base.take({0, 0, 0}, turned);
+  EXPECT_EQ(base.position_m(), robotics::Vector3::Zero()) << "after a silence, too";
+}
+
+TEST(BaseEstimate, PassesOverSamplesThatAreNoPlaceOrNoAttitude) {
+  BaseEstimate base;
+  const robotics::Quaternion turned{std::cos(0.1), std::sin(0.1), 0, 0};
+  base.take({1, 2, 3}, turned);
+  const double none = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
+  for (const double bad : {none, endless, -endless}) {
+    base.take({1, bad, 3}, turned);
+    base.take({5, 5, 5}, {1, bad, 0, 0});
+  }
+  base.take({5, 5, 5}, {0, 0, 0, 0});
+  EXPECT_EQ(base.position_m(), robotics::Vector3(1, 2, 3));
+  EXPECT_NEAR(base.orientation().angularDistance(turned), 0, 1e-9);
+  base.take({2, 2, 3}, turned);
+  EXPECT_EQ(base.position_m(), robotics::Vector3(1.5, 2, 3)) << "the second sample: those between do not count";
+}
+
+TEST(BaseEstimate, GoesOnBetweenSamplesAsTheBaseMovesByItself) {
+  BaseEstimate base;
+  robotics::Vector6 twist = robotics::Vector6::Zero();
+  twist[2] = 0.5;  // rad/s about z
+  twist[3] = 1;    // m/s along its own x: a circle with a radius of 2 m
+  for (int i = 0; i < 1000; ++i) base.go_on(twist, 1e-3);
+  EXPECT_NEAR(base.position_m().x(), 2 * std::sin(0.5), 1e-3);
+  EXPECT_NEAR(base.position_m().y(), 2 * (1 - std::cos(0.5)), 1e-3);
+  EXPECT_NEAR(base.orientation().angularDistance(robotics::Quaternion::Identity()), 0.5, 1e-6);
 }
 
 TEST(FloatingModel, KnowsTheServicersToolAndHowWellItCanHoldItsAttitude) {

@@ -9,9 +9,9 @@
 namespace hirosco::supervisor {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Pair;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Pair;
 
 TEST(StandardErrorLines, ShowControlCharactersAsText) {
   EXPECT_EQ(shown("red \x1b[31m bell \a tab\t end \xc3"), "red \\x1b[31m bell \\x07 tab  end \\xc3");
@@ -55,7 +55,7 @@ TEST(StandardErrorLines, AreNamedAfterWhoWroteThemToTheLastOne) {
     arm->reset();
     hand->reset();
   }
-  EXPECT_THAT(printed, testing::UnorderedElementsAre("ARM: sensor \\x1b broken\n", "HAND: no end\n"));
+  EXPECT_THAT(printed, ::testing::UnorderedElementsAre("ARM: sensor \\x1b broken\n", "HAND: no end\n"));
 }
 
 }  // namespace

@@ -22,9 +22,9 @@
 namespace hirosco::supervisor {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 /// TC[17,1] to 0x73 from pus-c section 16.
 std::vector<std::byte> ping() {
@@ -53,7 +53,7 @@ std::vector<std::uint64_t> numbers(const LogPage& page) {
 }
 
 /// What every strategy must do alike.
-class Databases : public testing::TestWithParam<DatabaseStrategy> {
+class Databases : public ::testing::TestWithParam<DatabaseStrategy> {
  protected:
   void SetUp() override {
     if (GetParam() != DatabaseStrategy::Postgresql) return;
@@ -182,13 +182,13 @@ TEST_P(DatabasesOnDisk, ReportAFolderThatDoesNotExist) {
 
 const auto strategy_name = [](const auto& strategy) { return std::string{to_text(strategy.param)}; };
 INSTANTIATE_TEST_SUITE_P(Strategies, Databases,
-                         testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii, DatabaseStrategy::Memory,
-                                         DatabaseStrategy::Postgresql),
+                         ::testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii, DatabaseStrategy::Memory,
+                                           DatabaseStrategy::Postgresql),
                          strategy_name);
 INSTANTIATE_TEST_SUITE_P(Strategies, DatabasesOnDisk,
-                         testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii), strategy_name);
+                         ::testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii), strategy_name);
 
-class OneDatabase : public testing::Test {
+class OneDatabase : public ::testing::Test {
  protected:
   [[nodiscard]] std::filesystem::path path() const { return folder_.path() / "log"; }
 

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <random>
 
+#include "hirosco/utilities/testing/slice.hpp"
 #include "supervisor/platform/storage/log_store.hpp"
 #include "supervisor/platform/storage/testing/batches.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
@@ -19,9 +20,9 @@ namespace hirosco::supervisor {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
-class LogPieces : public testing::TestWithParam<DatabaseStrategy> {
+class LogPieces : public ::testing::TestWithParam<DatabaseStrategy> {
  protected:
   [[nodiscard]] fs::path log() const { return folder_.path() / "log.db"; }
   [[nodiscard]] LogPage page(std::size_t last = 100'000) const { return *read_log(log(), {.last = last}); }
@@ -193,7 +194,7 @@ TEST_P(LogPieces, ThatGoWhileTheDiskIsFullAreAGap) {
   EXPECT_EQ(page().records.front().lost, 5U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Strategies, LogPieces, testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii),
+INSTANTIATE_TEST_SUITE_P(Strategies, LogPieces, ::testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii),
                          [](const auto& strategy) { return std::string{to_text(strategy.param)}; });
 
 TEST(PieceNames, AreThoseOfTheLogWhicheverOfThemIsGiven) {
@@ -231,7 +232,8 @@ TEST(KilledInRotation, NothingThatWasDurableIsLostAndNothingIsThereTwice) {
   const fs::path log = folder.path() / "log.db";
   std::minstd_rand random{20};
   std::uint64_t durable = 0;
-  for (int kill = 0; kill < 25; ++kill) {
+  const int kills = 25 / hirosco::testing::one_in(5);
+  for (int kill = 0; kill < kills; ++kill) {
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
     const pid_t child = ::fork();
@@ -255,7 +257,7 @@ TEST(KilledInRotation, NothingThatWasDurableIsLostAndNothingIsThereTwice) {
     ASSERT_LE(page->damaged, static_cast<std::uint64_t>(kill) + 1) << "at most the line that each kill has cut";
     durable = page->records.size();
   }
-  EXPECT_GT(pieces_of(log).size(), 25U);
+  EXPECT_GT(pieces_of(log).size(), static_cast<std::size_t>(kills));
   std::uint64_t stored = 0;
   for (const LogPiece& piece : pieces_of(log))
     stored +=

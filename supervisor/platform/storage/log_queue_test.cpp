@@ -11,7 +11,7 @@
 namespace hirosco::supervisor {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 std::vector<LogRecord> take_all(LogQueue& queue) {
   std::vector<LogRecord> all;

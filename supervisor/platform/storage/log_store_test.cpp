@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class EveryLogStore : public testing::TestWithParam<DatabaseStrategy> {
+class EveryLogStore : public ::testing::TestWithParam<DatabaseStrategy> {
  protected:
   [[nodiscard]] fs::path path() const { return folder_.path() / "log.sqlite"; }
   [[nodiscard]] fs::path piece(int number = 1) const { return piece_path(path(), GetParam(), number); }
@@ -71,7 +71,8 @@ TEST_P(EveryLogStore, StoresNothingWhileItsFolderIsGoneAndNotWritableAndResumesB
   EXPECT_EQ(covered(*read_log(inner / "log.sqlite", {})), 4U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Strategies, EveryLogStore, testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii),
+INSTANTIATE_TEST_SUITE_P(Strategies, EveryLogStore,
+                         ::testing::Values(DatabaseStrategy::Sqlite, DatabaseStrategy::Ascii),
                          [](const auto& strategy) { return std::string{to_text(strategy.param)}; });
 
 /// A disk whose answers are written down: each append takes the next error, none = it works.

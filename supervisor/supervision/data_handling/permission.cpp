@@ -245,10 +245,18 @@ using Notice = std::optional<FailureNotice>;
   return asked.subsystem.find_configuration(wanted);
 }
 
+/// Whom no shortage refuses: without the ground link nobody could give the craft more power, without who measures it nobody would know
+/// of any.
+[[nodiscard]] bool needs_no_grant(const Asked& asked) {
+  const descriptor::Mission& mission = asked.situation.mission;
+  return asked.subsystem.name == mission.ground.subsystem ||
+         (mission.power_measured && mission.power_measured->apid == asked.subsystem.id);
+}
+
 /// With power that it is not granted, or a cycle that may keep others waiting, nobody goes on.
 [[nodiscard]] Notice is_carried(const Asked& asked, const descriptor::Configuration& wanted) {
   const Situation& situation = asked.situation;
-  if (situation.power != nullptr && asked.subsystem.name != situation.mission.ground.subsystem)
+  if (situation.power != nullptr && !needs_no_grant(asked))
     if (const auto shortage = situation.power->shortage(asked.subsystem.id, wanted.power_w))
       return notice_of(*shortage);
   if (!situation.in_force) return std::nullopt;
@@ -272,9 +280,8 @@ using Notice = std::optional<FailureNotice>;
   if (up_to_safe(asked) || up_to_operational(asked))
     if (const auto link = absent_link(asked.subsystem, situation))
       return FailureNotice{FailureCode::LinkAbsent}.with(*link);
-  if (!up_to_safe(asked) || situation.power == nullptr) return std::nullopt;
-  // Whom no shortage sheds none refuses: without the ground link nobody could give the craft more power.
-  if (asked.subsystem.name == situation.mission.ground.subsystem) return std::nullopt;
+  if (!(up_to_safe(asked) || up_to_operational(asked)) || situation.power == nullptr) return std::nullopt;
+  if (needs_no_grant(asked)) return std::nullopt;
   if (const auto shortage = situation.power->shortage(asked.subsystem.id, demand_w(asked.subsystem, situation)))
     return notice_of(*shortage);
   return std::nullopt;

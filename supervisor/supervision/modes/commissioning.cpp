@@ -41,6 +41,8 @@ void Commissioning::commission(const descriptor::Mode& start_mode) {
     way.add(subsystem, *subsystem.find_configuration(step.configuration), {State::Offline}, step.state);
   }
   for (const std::uint8_t id : start_mode.establish) way.link(id);
+  // Whoever measures reports from Pre-Operational on; what is granted without that may not suffice.
+  if (const auto& measured = craft_.mission.power_measured) way.await_power(measured->age);
   way.enter(start_mode);
   runner_.start({.stages = way.stages(),
                  .finished = [this, &start_mode](const ProcedureEnd& end) { ended(start_mode, end.text()); }});

@@ -45,6 +45,10 @@ void WayThere::down(const descriptor::Subsystem& subsystem, const Present& from)
 
 void WayThere::link(std::uint8_t id) { link_.push_back(step("link", supervisor_apid, {id})); }
 
+void WayThere::await_power(Duration at_most) {
+  await_power_.push_back(step("await_power", supervisor_apid, {at_most / std::chrono::milliseconds{1}}));
+}
+
 void WayThere::enter(const descriptor::Mode& mode) { mode_.push_back(step("enter_mode", supervisor_apid, {mode.id})); }
 
 namespace {
@@ -164,19 +168,31 @@ class Planner {
     }
   }
 
-  /// Those who are commissioned beyond Pre-Operational, beside the supervisor, against what there is now.
+  /// Those who are to come up, in the order of the mission, against what there is now beside those who stay. A mode that brings up nobody
+  /// is never refused for want of power.
   void check_power(const PowerLedger& power) {
     if (!power.limited()) return;
     const auto milliwatts = [](double watts) { return static_cast<std::uint32_t>(watts * 1000 + 0.5); };
-    std::uint32_t sum_mw = power.held_mw(supervisor_apid);
-    for (const Member& member : craft_.members) {
+    const auto comes_up = [&](const Member& member) {
       const auto target = target_of(member);
-      if (!target) sum_mw += power.held_mw(member.apid());
-      else if (target->configuration != nullptr && target->state != State::PreOperational)
-        sum_mw += milliwatts(target->configuration->power_w);
+      return movers_.contains(member.apid()) && target && target->configuration != nullptr &&
+             target->state != State::PreOperational;
+    };
+    std::uint64_t sum_mw = power.held_mw(supervisor_apid);
+    for (const Member& member : craft_.members)
+      if (!movers_.contains(member.apid())) sum_mw += power.held_mw(member.apid());
+    for (const Member& member : craft_.members) {
+      if (!comes_up(member)) continue;
+      const std::uint32_t needs_mw = milliwatts(target_of(member)->configuration->power_w);
+      const std::uint64_t free_mw = power.budget_mw() - std::min<std::uint64_t>(sum_mw, power.budget_mw());
+      sum_mw += needs_mw;
+      const auto& measured = craft_.mission.power_measured;
+      const bool measures = measured && measured->apid == member.apid();
+      if (needs_mw <= free_mw || measures || craft_.is_ground_link(member)) continue;
+      return object("{} needs {} W, {} W of {} W are free{}{}", member.descriptor().name,
+                    static_cast<double>(needs_mw) / 1000, static_cast<double>(free_mw) / 1000,
+                    power.budget_mw() / 1000.0, power.basis().empty() ? "" : ": ", power.basis());
     }
-    if (sum_mw > power.budget_mw())
-      object("it draws {} W of the {} W that there are", sum_mw / 1000.0, power.budget_mw() / 1000.0);
   }
 
   [[nodiscard]] bool holds(const descriptor::Interlock& interlock) const {

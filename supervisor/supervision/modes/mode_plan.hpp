@@ -33,14 +33,18 @@ class WayThere {
   void down(const descriptor::Subsystem& subsystem, const Present& from);
   /// A link of the mission; made between Pre-Operational and Safe-Operational (docs/adr/0021).
   void link(std::uint8_t id);
+  /// Before somebody goes to Safe-Operational: until somebody measures what power there is, or for so long.
+  void await_power(Duration at_most);
   /// At the end.
   void enter(const descriptor::Mode& mode);
   [[nodiscard]] std::vector<Stage> stages() const {
-    return {stop_, post_, pre_, configure_, recall_, link_, safe_, recall_safe_, self_test_, operational_, mode_};
+    return {stop_,        post_, pre_,         configure_, recall_,      link_,
+            await_power_, safe_, recall_safe_, self_test_, operational_, mode_};
   }
 
  private:
-  Stage stop_, post_, pre_, configure_, recall_, link_, safe_, recall_safe_, self_test_, operational_, mode_;
+  Stage stop_, post_, pre_, configure_, recall_, link_, await_power_, safe_, recall_safe_, self_test_, operational_,
+      mode_;
 };
 
 struct ModePlan {

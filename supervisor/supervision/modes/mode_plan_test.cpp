@@ -194,10 +194,25 @@ TEST_F(ModePlanTest, EveryReasonAgainstItIsNamedAtOnce) {
   craft.member(hand)->died();
   set(arm, SoftwareInit);
   power.set_budget(10);
-  EXPECT_THAT(plan(coupled).against, ElementsAre("it is not entered from mode narrow", "it needs CAMERA in Operational",
-                                                 "it needs ARM in Operational", "ARM is on its way between two states",
-                                                 "HAND is down: SET_STATE Offline starts it again",
-                                                 "it draws 80 W of the 10 W that there are"));
+  EXPECT_THAT(plan(coupled).against,
+              ElementsAre("it is not entered from mode narrow", "it needs CAMERA in Operational",
+                          "it needs ARM in Operational", "ARM is on its way between two states",
+                          "HAND is down: SET_STATE Offline starts it again", "ARM needs 60 W, 10 W of 10 W are free"));
+}
+
+TEST_F(ModePlanTest, WhoeverIsToComeUpNeedsPowerAndWhoeverGoesDownDoesNot) {
+  couple();
+  for (const std::uint16_t each : {arm, hand}) power.observe(each, Operational, each == arm ? 60 : 20, clock.now());
+  power.set_budget(100);
+  EXPECT_TRUE(plan(watching).against.empty());
+  power.set_grantable(19.5, "dusk");
+  EXPECT_THAT(plan(watching).against, ElementsAre("CAMERA needs 20 W, 19.5 W of 19.5 W are free: dusk"));
+  EXPECT_TRUE(plan(coupled).against.empty()) << "they are there";
+  set(arm, SafeOperational, 2);
+  EXPECT_THAT(plan(coupled).against, ElementsAre("ARM needs 60 W, 19.5 W of 19.5 W are free: dusk"))
+      << "it would act again";
+  watching.commission.clear();
+  EXPECT_TRUE(plan(watching).against.empty());
 }
 
 TEST_F(ModePlanTest, AnInterlockIsJudgedByStateAndConfiguration) {

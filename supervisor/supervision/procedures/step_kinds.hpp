@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hirosco/descriptor/model/plan_steps.hpp"
+#include "supervisor/supervision/procedures/steps/await_power.hpp"
 #include "supervisor/supervision/procedures/steps/command.hpp"
 #include "supervisor/supervision/procedures/steps/configure.hpp"
 #include "supervisor/supervision/procedures/steps/enter_mode.hpp"
@@ -46,7 +47,8 @@ inline constexpr std::array step_kinds{&steps::log,
                                        &steps::wait_for,
                                        &steps::hand_over,
                                        &steps::notify_network,
-                                       &steps::power};
+                                       &steps::power,
+                                       &steps::await_power};
 
 /// Place in the table; its size when there is none of this name. (With sanitizers a comparison with null is no constant.)
 [[nodiscard]] constexpr std::size_t place_of_step_kind(std::string_view name) noexcept {

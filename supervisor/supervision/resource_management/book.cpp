@@ -7,11 +7,12 @@
 
 namespace hirosco::supervisor {
 
-std::optional<Shortage> Book::shortage(std::uint16_t holder, std::uint32_t amount) const noexcept {
-  if (!limited() || amount == 0) return std::nullopt;
+std::optional<Shortage> Book::shortage(std::uint16_t holder, std::uint32_t amount,
+                                       std::uint32_t budget) const noexcept {
+  if (amount == 0) return std::nullopt;
   const std::uint32_t others = reserved() - held(holder);
-  if (std::uint64_t{others} + amount <= *budget_) return std::nullopt;
-  return Shortage{.budget = *budget_, .reserved = others, .requested = amount};
+  if (std::uint64_t{others} + amount <= budget) return std::nullopt;
+  return Shortage{.budget = budget, .reserved = others, .requested = amount};
 }
 
 void Book::hold(std::uint16_t holder, std::uint32_t amount) {

@@ -23,7 +23,12 @@ class Book {
   /// Empty: not limited.
   void set_budget(std::optional<std::uint32_t> budget) noexcept { budget_ = budget; }
   /// What `holder` already has would be replaced, so it does not count.
-  [[nodiscard]] std::optional<Shortage> shortage(std::uint16_t holder, std::uint32_t amount) const noexcept;
+  [[nodiscard]] std::optional<Shortage> shortage(std::uint16_t holder, std::uint32_t amount) const noexcept {
+    return limited() ? shortage(holder, amount, budget()) : std::nullopt;
+  }
+  /// Of a budget that holds for who asks now, whatever holds for what is taken.
+  [[nodiscard]] std::optional<Shortage> shortage(std::uint16_t holder, std::uint32_t amount,
+                                                 std::uint32_t budget) const noexcept;
   /// In place of what it had; 0 strikes it out. Asks nobody: what is taken is taken.
   void hold(std::uint16_t holder, std::uint32_t amount);
 

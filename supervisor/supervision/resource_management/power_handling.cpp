@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "supervisor/supervision/event_handling/reactions.hpp"
 
 namespace hirosco::supervisor {
@@ -32,15 +35,16 @@ void PowerHandling::tell_shortage(std::uint16_t apid, const pus::FailureNotice& 
   OctetReader reader{notice.data()};
   const auto watts = [&] { return reader.get<std::uint32_t>() * 1e-3; };
   const double budget_w = watts(), reserved_w = watts(), requested_w = watts();
-  craft_.tell(fmt::format("power short: {} asks for {} W, {} W of {} W are reserved", craft_.name_of(apid), requested_w,
-                          reserved_w, budget_w),
+  craft_.tell(fmt::format("power short: {} asks for {} W, {} W of {} W are reserved{}{}", craft_.name_of(apid),
+                          requested_w, reserved_w, budget_w, ledger_.basis().empty() ? "" : ": ", ledger_.basis()),
               apid);
   own_.announce("POWER_REFUSED", {static_cast<double>(apid), budget_w, reserved_w, requested_w});
   if (Member* subject = craft_.member(apid); subject != nullptr && subject->alive())
     reactions_.react(*subject, "POWER_REFUSED", Severity::Low);
 }
 
-void PowerHandling::hear(std::uint16_t, const pus::TelemetryView& report) {
+void PowerHandling::hear(std::uint16_t from, const pus::TelemetryView& report) {
+  if (measured_ && measured_->hear(from, report, craft_.now)) follow_measurement();
   if (report.service() != 1 || (report.subtype() % 2 != 0 && report.subtype() != 7)) return;
   OctetReader reader{report.source_data()};
   const auto id = reader.get<std::uint32_t>();
@@ -48,6 +52,7 @@ void PowerHandling::hear(std::uint16_t, const pus::TelemetryView& report) {
 }
 
 void PowerHandling::watch(TimePoint) {
+  follow_measurement();
   observe();
   shed_load();
 }
@@ -58,7 +63,7 @@ void PowerHandling::set_budget(double budget_w) {
   ledger_.set_budget(budget_w);
   set_w_ = budget_w;
   observe();
-  const double limit_w = ledger_.budget_mw() * 1e-3, reserved_w = ledger_.reserved_mw() * 1e-3;
+  const double limit_w = ledger_.declared_mw() * 1e-3, reserved_w = ledger_.reserved_mw() * 1e-3;
   craft_.tell(fmt::format("power budget {} W, {} W are reserved", limit_w, reserved_w), supervisor_apid);
   if (ledger_.overdrawn()) return shed_load();
   if (reserved_w <= (1 - least_margin) * limit_w) return;
@@ -66,6 +71,45 @@ void PowerHandling::set_budget(double budget_w) {
   for (Member& subject : craft_.members)
     if (ledger_.held_mw(subject.apid()) != 0 && !craft_.is_ground_link(subject))
       reactions_.react(subject, "POWER_LOW", Severity::Medium);
+}
+
+void PowerHandling::measure() {
+  const auto& measured = craft_.mission.power_measured;
+  if (!measured) return;
+  measured_.emplace(*measured);
+  craft_.power_known = [this] { return measured_->watts().has_value(); };
+  ledger_.set_grantable(craft_.mission.power_least_w, basis());
+}
+
+/// What is known decides what is granted, never less than what the mission says; what is not known is told when that begins.
+void PowerHandling::follow_measurement() {
+  if (!measured_) return;
+  const Member* who = std::as_const(craft_).member(craft_.mission.power_measured->apid);
+  if (who == nullptr || !who->alive()) measured_->gone();
+  measured_->watch(craft_.now);
+  const double least_w = craft_.mission.power_least_w;
+  const auto watts = measured_->watts();
+  ledger_.set_grantable(std::max(least_w, std::min(watts.value_or(0), craft_.mission.power_budget_w.value_or(0))),
+                        basis());
+  const bool was_known = std::exchange(known_, watts.has_value());
+  if (was_known == known_ || craft_.shutting_down) return;
+  craft_.tell(watts ? fmt::format("power budget {} W: {}", *watts, basis())
+                    : fmt::format("{}: no more than {} W are granted from now on", basis(), least_w),
+              supervisor_apid);
+  if (!watts) own_.announce("POWER_UNMEASURED", {static_cast<double>(craft_.mission.power_measured->apid), least_w});
+}
+
+std::string PowerHandling::basis() const {
+  const std::string& name = craft_.mission.power_measured->name;
+  using enum MeasuredBudget::Doubt;
+  switch (measured_->doubt()) {
+    case None: break;
+    case NeverHeard: return name + " was never heard";
+    case Old: return name + " was not heard in its time";
+    case Gone: return name + " is not measured: who measures it does not run";
+    case NoNumber: return name + " is not known to who measures it";
+  }
+  return name + " measures it";
 }
 
 void PowerHandling::note(OctetWriter& writer) const {
@@ -83,7 +127,8 @@ void PowerHandling::recall(OctetReader& reader) {
 /// The last of the mission first, each with its network, until the rest fits; the ground link never.
 void PowerHandling::shed_load() {
   // Told once: a mission may have a plan that does nothing about it.
-  if (ledger_.newly_overdrawn()) own_.announce("LOAD_SHED", {ledger_.budget_mw() * 1e-3, ledger_.reserved_mw() * 1e-3});
+  if (ledger_.newly_overdrawn())
+    own_.announce("LOAD_SHED", {ledger_.declared_mw() * 1e-3, ledger_.reserved_mw() * 1e-3});
   if (!ledger_.overdrawn() || craft_.shutting_down) return;
   const auto stays_mw = [&] {
     std::uint32_t sum_mw = ledger_.held_mw(supervisor_apid);
@@ -91,7 +136,7 @@ void PowerHandling::shed_load() {
       if (!subject.recovery.going_down()) sum_mw += ledger_.held_mw(subject.apid());
     return sum_mw;
   };
-  for (auto subject = craft_.members.rbegin(); subject != craft_.members.rend() && stays_mw() > ledger_.budget_mw();
+  for (auto subject = craft_.members.rbegin(); subject != craft_.members.rend() && stays_mw() > ledger_.declared_mw();
        ++subject) {
     if (craft_.is_ground_link(*subject) || subject->recovery.going_down() || ledger_.held_mw(subject->apid()) == 0)
       continue;

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/resource_management/measured_budget.hpp"
 #include "supervisor/supervision/resource_management/power_ledger.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
@@ -15,12 +17,15 @@ namespace hirosco::supervisor {
 
 class Reactions;
 
-/// Keeps the ledger of electrical power true, and acts when the budget falls (paper 4.3 resource management).
+/// Keeps the ledger of electrical power true, and acts when the budget falls (paper 4.3 resource management). Where a subsystem measures
+/// the budget it decides what is granted; what is taken is left to the plans of the mission.
 /// Thread: the supervisor's.
 class PowerHandling final : public Watch, public Hearer, public Remembered {
  public:
   PowerHandling(Craft& craft, OwnSubsystem& own, Reactions& reactions)
-      : craft_{craft}, own_{own}, reactions_{reactions}, ledger_{craft.mission.power_budget_w} {}
+      : craft_{craft}, own_{own}, reactions_{reactions}, ledger_{craft.mission.power_budget_w} {
+    measure();
+  }
 
   /// SET_POWER_BUDGET.
   void provide();
@@ -29,7 +34,7 @@ class PowerHandling final : public Watch, public Hearer, public Remembered {
   /// What everybody draws by its state and configuration.
   void observe();
   void tell_shortage(std::uint16_t apid, const pus::FailureNotice& notice);
-  /// A failure of any stage, or completion: what was reserved for the telecommand is over.
+  /// A failure of any stage, or completion: what was reserved for the telecommand is over. And what is measured.
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
   void watch(TimePoint now) override;
   /// The budget, where a telecommand has set it.
@@ -39,12 +44,17 @@ class PowerHandling final : public Watch, public Hearer, public Remembered {
  private:
   void set_budget(double budget_w);
   void shed_load();
+  void measure();
+  void follow_measurement();
+  [[nodiscard]] std::string basis() const;
 
   Craft& craft_;
   OwnSubsystem& own_;
   Reactions& reactions_;
   PowerLedger ledger_;
   std::optional<double> set_w_;
+  std::optional<MeasuredBudget> measured_;
+  bool known_{false};  ///< as it was told last
 };
 
 }  // namespace hirosco::supervisor

@@ -29,8 +29,17 @@ PowerLedger::PowerLedger(std::optional<double> budget_w) {
 
 void PowerLedger::set_budget(double budget_w) noexcept { book_.set_budget(milliwatts(budget_w)); }
 
+void PowerLedger::set_grantable(double grantable_w, std::string basis) {
+  grantable_mw_ = milliwatts(grantable_w);
+  basis_ = std::move(basis);
+}
+
+std::uint32_t PowerLedger::budget_mw() const noexcept {
+  return grantable_mw_ ? std::min(*grantable_mw_, book_.budget()) : book_.budget();
+}
+
 std::optional<PowerShortage> PowerLedger::shortage(std::uint16_t apid, double demand_w) const noexcept {
-  const auto found = book_.shortage(apid, milliwatts(demand_w));
+  const auto found = limited() ? book_.shortage(apid, milliwatts(demand_w), budget_mw()) : std::nullopt;
   if (!found) return std::nullopt;
   return PowerShortage{.budget_mw = found->budget, .reserved_mw = found->reserved, .requested_mw = found->requested};
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "hirosco/descriptor/model/subsystem.hpp"
@@ -14,12 +15,14 @@
 /// Electrical power (paper 4.3): a subsystem is refused what the budget does not carry, before it is commissioned.
 /// Books only: what is promised, to whom. A subsystem counts with the power_W of its configuration from the permission
 /// to go to Safe-Operational until it is back in Pre-Operational, Offline or dead. Amounts are in mW.
+/// Where the budget is measured (docs/adr/0124) two numbers hold: who asks is granted what is measured, and what is taken is held
+/// against what the mission or a telecommand says. So a measurement refuses, and sheds nothing.
 namespace hirosco::supervisor {
 
 /// Why something does not fit.
 struct PowerShortage {
   std::uint32_t budget_mw{};
-  std::uint32_t reserved_mw{};       ///< by all others
+  std::uint32_t reserved_mw{};  ///< by all others
   std::uint32_t requested_mw{};
 };
 
@@ -29,6 +32,8 @@ class PowerLedger {
   /// Empty: not limited.
   explicit PowerLedger(std::optional<double> budget_w);
   void set_budget(double budget_w) noexcept;
+  /// Who asks from now on is granted no more than this, nor than the budget; `basis`: why, in words.
+  void set_grantable(double grantable_w, std::string basis);
 
   /// What `apid` already holds would be replaced, so it does not count.
   [[nodiscard]] std::optional<PowerShortage> shortage(std::uint16_t apid, double demand_w) const noexcept;
@@ -40,10 +45,15 @@ class PowerLedger {
   void observe(std::uint16_t apid, std::optional<descriptor::State> state, double demand_w, TimePoint now);
 
   [[nodiscard]] bool limited() const noexcept { return book_.limited(); }
-  [[nodiscard]] std::uint32_t budget_mw() const noexcept { return book_.budget(); }
+  /// For who asks.
+  [[nodiscard]] std::uint32_t budget_mw() const noexcept;
+  /// For what is taken.
+  [[nodiscard]] std::uint32_t declared_mw() const noexcept { return book_.budget(); }
+  /// Why it is what it is, in words; empty: the mission or a telecommand says so.
+  [[nodiscard]] const std::string& basis() const noexcept { return basis_; }
   [[nodiscard]] std::uint32_t reserved_mw() const noexcept { return book_.reserved(); }
   [[nodiscard]] std::uint32_t held_mw(std::uint16_t apid) const noexcept { return book_.held(apid); }
-  /// More is in use than the budget carries: it was lowered, or a configuration changed behind a permission.
+  /// More is in use than what is declared carries: it was lowered, or a configuration changed behind a permission.
   [[nodiscard]] bool overdrawn() const noexcept { return book_.overdrawn(); }
   /// True once from when it is overdrawn until it no longer is.
   [[nodiscard]] bool newly_overdrawn() noexcept;
@@ -58,6 +68,8 @@ class PowerLedger {
   void forget(std::uint16_t apid);
 
   Book book_;  ///< in mW
+  std::optional<std::uint32_t> grantable_mw_;
+  std::string basis_;
   std::vector<Pending> pending_;
   bool overdraft_told_{false};
 };

@@ -115,6 +115,19 @@ TEST_F(PowerLedgerTest, AnOverdraftIsNewOnceUntilItIsOver) {
   EXPECT_TRUE(ledger.newly_overdrawn());
 }
 
+TEST_F(PowerLedgerTest, WhatIsMeasuredHoldsForWhoAsksAndNotForWhatIsTaken) {
+  uses(robot, 60);
+  ledger.set_grantable(50, "dusk");
+  EXPECT_EQ(ledger.budget_mw(), 50'000U);
+  EXPECT_EQ(ledger.basis(), "dusk");
+  EXPECT_TRUE(ledger.shortage(handle, 1));
+  EXPECT_FALSE(ledger.shortage(robot, 50)) << "what it has would be replaced";
+  EXPECT_TRUE(ledger.shortage(robot, 50.001));
+  EXPECT_FALSE(ledger.overdrawn());
+  ledger.set_grantable(1000, "noon");
+  EXPECT_EQ(ledger.budget_mw(), 100'000U) << "never more than the budget";
+}
+
 TEST(PowerLedgerProperties, WhatIsGrantedByAskingFirstNeverExceedsTheBudget) {
   std::mt19937_64 random{1};
   const auto any = [&](std::uint64_t below) { return random() % below; };

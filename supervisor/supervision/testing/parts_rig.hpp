@@ -40,27 +40,32 @@ struct PlayedMember {
   std::uint16_t reports{0};
 };
 
+/// The small mission, each with a configuration, under the supervisor's own descriptor.
+inline descriptor::Mission parts_mission() {
+  auto made = small_mission();
+  static const auto own =
+      descriptor::read_subsystem(HIROSCO_SOURCE_DIR "/supervisor/supervisor.xml", descriptor::file_system());
+  made.supervisor = *own.value;
+  made.ground.subsystem = "CAMERA";
+  made.initial_mode = made.start_mode = "open";
+  for (auto& member : made.subsystems) {
+    if (!member.subsystem.configurations.empty()) continue;
+    descriptor::Configuration only;
+    only.name = "ONLY";
+    only.id = 1;
+    only.power_w = 20;
+    member.subsystem.configurations = {only};
+  }
+  return made;
+}
+
 struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
+  explicit PartsTest(descriptor::Mission flown = parts_mission()) : mission{std::move(flown)} {}
+
   ManualClock clock;
   HeapMemory memory;
   LocalFlows flows;
-  descriptor::Mission mission = [] {
-    auto made = small_mission();
-    static const auto own =
-        descriptor::read_subsystem(HIROSCO_SOURCE_DIR "/supervisor/supervisor.xml", descriptor::file_system());
-    made.supervisor = *own.value;
-    made.ground.subsystem = "CAMERA";
-    made.initial_mode = made.start_mode = "open";
-    for (auto& member : made.subsystems) {
-      if (!member.subsystem.configurations.empty()) continue;
-      descriptor::Configuration only;
-      only.name = "ONLY";
-      only.id = 1;
-      only.power_w = 20;
-      member.subsystem.configurations = {only};
-    }
-    return made;
-  }();
+  descriptor::Mission mission;
   Guard guard{{.clock = clock, .flows = flows, .first_epoch = 1000, .on_finding = {}}};
   DirectPacketLog log{clock, open_database(DatabaseStrategy::Memory, {}).value()};
   MemoryValueDisk value_disk;

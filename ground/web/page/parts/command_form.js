@@ -3,7 +3,7 @@
 //
 // A telecommand from its descriptor: one field for each argument, judged while it is typed, the octets and the supervisor's
 // answer to "permitted now?" before sending, the chain of verdicts after.
-import {useEffect, useRef, useState} from 'preact/hooks';
+import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import {copy, preview, send, send_and_say, state_name} from '../commanding.js';
 import {brief_text, clock_text, hex_text, number_text, state_text, unit_text} from '../format.js';
 import {html} from '../html.js';
@@ -11,9 +11,12 @@ import {commands, mission, mode_of, operator, outcome_of, replay, slow, status_o
 import {command_is, commander, i_ask, may_send, take_command} from '../people.js';
 import {arguments_text, choices_of} from './arguments.js';
 import {as_python, as_tc, is_favourite, toggle_favourite} from './favourites.js';
+import {JogPad} from './jog_pad.js';
+import {jog_of} from './jog_steps.js';
 import {JointRows} from './joint_rows.js';
 import {mode_wanted} from './mode_menu.js';
 import {joints_of} from './robot_file.js';
+import {numbers_in} from './numbers.js';
 import {scene_of_mission} from './scene_file.js';
 import {fill_form, kept_texts, typed} from './typed.js';
 
@@ -221,11 +224,14 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
   const sent_values = wrong ? null : Object.fromEntries(list.map((argument, i) => [argument.name, results[i].value]));
   const answer = usePreview(subsystem, action, sent_values);
   const mine = commands.value.find((one) => one.id === sent);
-  const now = led_by(subsystem, action.name);
+  const now = led_by(subsystem, action.name), jog = jog_of(action);
   useEffect(() => {
-    typed.value = {subsystem, action: action.name, values: Object.keys(texts).length ? sent_values : null};
-  }, [key, JSON.stringify(sent_values), Object.keys(texts).length]);
-  useEffect(() => () => { typed.value = null; }, []);
+    const touched = Object.keys(texts).length > 0;
+    const numbers = () => Object.fromEntries(list.map((argument) => [argument.name, numbers_in(text_of(argument), argument.count ?? 1)]));
+    typed.value = {subsystem, action: action.name, values: touched ? sent_values : null, numbers: touched ? numbers() : null};
+  }, [key, JSON.stringify(texts), JSON.stringify(sent_values)]);
+  // With the form, not after a picture: by then another one may stand there.
+  useLayoutEffect(() => () => { typed.value = null; }, []);
 
   const submit = async (event) => {
     event.preventDefault();
@@ -246,6 +252,7 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
   };
   return html`<form class="command" ref=${form} onSubmit=${submit} data-test="command-form" autocomplete="off">
     ${action.description ? html`<p class="about">${action.description}</p>` : null}
+    ${jog ? html`<${JogPad} subsystem=${subsystem} action=${action} jog=${jog} />` : null}
     ${list.map((argument, i) => html`<${Field} key=${argument.name} subsystem=${subsystem} action=${action}
       argument=${argument} text=${text_of(argument)} result=${results[i]} focus=${focus && i === 0} now=${now[argument.name]}
       on_text=${(text) => fill_form(subsystem, action.name, {[argument.name]: text})} />`)}

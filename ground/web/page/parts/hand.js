@@ -7,12 +7,6 @@
 /// The fault line that leads the hand to these angles of the handle.
 export const target_line = ([first, second]) => `hand target ${first.toFixed(4)} ${second.toFixed(4)}`;
 
-/// Handle angles that move the tip by (dx, dy), as the operator's hand turns them (the Jacobian at home).
-export function angles_of_offset({home_jacobian_m_per_rad: [[a, b], [c, d]]}, [dx, dy]) {
-  const determinant = a * d - b * c;
-  return [(d * dx - b * dy) / determinant, (a * dy - c * dx) / determinant];
-}
-
 /// Both angles within what the handle can do.
 export const within_range = (hand, angles) =>
   angles.map((angle) => Math.max(-hand.handle_range_rad, Math.min(hand.handle_range_rad, angle)));

@@ -6,6 +6,7 @@ import {useState} from 'preact/hooks';
 import {fixed_text} from '../format.js';
 import {html} from '../html.js';
 import {slow, values} from '../store.js';
+import {number_in} from './numbers.js';
 
 const digits = 3;
 const within = ({lower, upper}, value) => Math.max(lower, Math.min(upper, value));
@@ -34,7 +35,7 @@ export function JointRows({argument, joints, text, on_text}) {
   const [typing, set_typing] = useState(null);
   const take = (i, typed) => {
     set_typing(null);
-    const value = Number.parseFloat(typed.replace('−', '-').replace(',', '.'));
+    const value = number_in(typed);
     if (Number.isFinite(value)) set(i, value);
   };
   const wanted = wanted_of(joints, text), empty = String(text ?? '').trim() === '';

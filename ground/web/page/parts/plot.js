@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import uPlot from 'uplot';
-import {brief_text, clock_text, quantity_text, unit_text, value_text} from '../format.js';
+import {brief_text, clock_text, quantity_text, ticks_text, unit_text, value_text} from '../format.js';
 import {html} from '../html.js';
-import {aligned, drop_series, extend, statistics, use_series, value_at} from '../series.js';
+import {aligned, drop_series, extend, has_samples, statistics, use_series, value_at} from '../series.js';
 import {columns, freshness, now_s, replay, slow, values} from '../store.js';
 import {colour, theme} from '../theme.js';
 import {cursor_t, look_at, pin, pins, unpin} from './plot_cursor.js';
-import {event_marks, gap_shade, gauge, limit_bands, marks_in, pinned_cursors, stop_mark} from './plot_layers.js';
+import {bare, event_marks, gap_shade, gauge, limit_bands, marks_in, pinned_cursors, stop_mark} from './plot_layers.js';
 import {is_named, StateLanes} from './state_lanes.js';
 
 /// Of curves that have no meaning of their own; what is measured, set, touched or felt has the colour of that everywhere.
@@ -17,7 +17,7 @@ const palette = {dark: ['#6cb0ff', '#ffc06a', '#46d6c8', '#ff8fb8', '#b9a2ff', '
 export const curve_colour = (i, look) => look ? colour(looks[look].colour) : palette[theme.value][i % palette.dark.length];
 const looks = {is: {colour: 'measured', width: 1.7}, set: {colour: 'blue', width: 1.5, dash: [4, 3]}, touched: {colour: 'teal', width: 3.2},
   felt: {colour: 'violet', width: 1.5, dash: [5, 3]}};
-const font = '11px Inter';
+const font = '11px Inter', narrow_px = 200;
 
 const short_name = (name) => name.split('.').slice(1).join('.') || name;
 
@@ -26,7 +26,10 @@ const axis_of_time = (relative) => ({
   stroke: word_stroke, grid: {stroke: line_stroke, width: 1}, ticks: {stroke: line_stroke, width: 1, size: 4}, font,
   space: relative ? 60 : 80, size: relative ? 22 : 26,
   // The label of a tick has as many digits as its step: 2.5 s are not cut to whole seconds.
-  splits: relative ? (plot, _, from, to) => [0, 1, 2, 3].map((i) => to - i * (to - from) / 3).reverse() : undefined,
+  splits: relative ? (plot, _, from, to) => {
+    const parts = plot.width < narrow_px ? 1 : 3;
+    return Array.from({length: parts + 1}, (_, i) => from + i * (to - from) / parts);
+  } : undefined,
   values: relative ? (_, splits) => splits.map((t, i) => i === splits.length - 1 ? 'now' : `−${+(splits.at(-1) - t).toFixed(1)} s`) :
     (_, splits) => splits.map((t) => clock_text(t, splits.length > 1 && (splits[1] - splits[0]) % 1 > 1e-6 ? 1 : 0)),
 });
@@ -35,7 +38,7 @@ function axis_of(unit, index, relative) {
   return {scale: unit, side: index % 2 ? 1 : 3, stroke: word_stroke, font, size: relative ? 40 : 52, label: relative ? undefined : unit_text(unit) || 'value',
     labelSize: 14, labelFont: font, labelGap: 0, gap: 3, space: 34, ticks: {stroke: line_stroke, width: 1, size: relative ? 0 : 4},
     grid: {show: index === 0, stroke: line_stroke, width: 1},
-    values: (_, splits) => splits.map((value) => brief_text(+value.toPrecision(6)))};
+    values: (plot, splits) => plot.bare ? splits.map(() => '') : ticks_text(splits)};
 }
 
 const sync = uPlot.sync('hirosco');
@@ -77,8 +80,8 @@ function options_of(names, size, on_zoom, about) {
     {scale, stroke: 'transparent', points: {show: false}}, {scale, stroke: 'transparent', points: {show: false}});
     bands.push({series: [3 * i + 3, 3 * i + 2], fill: () => `${stroke()}33`});
   });
-  return {...size, series, bands, legend: {show: false}, padding: [about.range ? 18 : 8, about.range ? 44 : units.length > 1 ? 0 : 30, 0, 0],
-    scales: {x: {time: false}, ...zoomable(scales_of(units, about))}, plugins: [gap_shade, limit_bands(names), event_marks, stop_mark, pinned_cursors, ...(about.range ? [gauge(about.range, names[0])] : [])],
+  return {...size, series, bands, legend: {show: false}, padding: [about.range ? 18 : 8, about.range ? 48 : units.length > 1 ? 0 : 30, 0, 0],
+    scales: {x: {time: false}, ...zoomable(scales_of(units, about))}, plugins: [gap_shade, limit_bands(names), event_marks, stop_mark, pinned_cursors, bare, ...(about.range ? [gauge(about.range, names[0])] : [])],
     axes: [axis_of_time(about.relative), ...units.map((unit, i) => axis_of(unit, i, about.relative))],
     cursor: {sync: {key: sync.key, scales: ['x', null]}, drag: {x: true, y: true, uni: 24, setScale: false}, points: {size: 6}},
     hooks: {
@@ -177,6 +180,7 @@ export function TimePlot({names: all_names, window_s = 60, range = null, on_zoom
     const to = range ? range[1] : now_s(), from = range ? range[0] : to - window_s;
     if (!Number.isFinite(to)) return;
     plot.setData(aligned(list, from, to), false);
+    plot.bare = !list.some((series) => has_samples(series, from, to));
     plot.setScale('x', {min: from, max: to});
   };
   drawn.current.on_zoom = on_zoom;

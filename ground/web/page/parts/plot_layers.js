@@ -3,7 +3,7 @@
 //
 // What stands behind and above the curves of a plot: gaps, limits, what was commanded and what happened, the stop, the pinned cursors, the
 // whole range of a joint. Each is a plugin of uPlot.
-import {brief_text} from '../format.js';
+import {fixed_text} from '../format.js';
 import {stop} from '../stop_story.js';
 import {columns, commands, events, gaps, outcome_of, values} from '../store.js';
 import {colour} from '../theme.js';
@@ -96,11 +96,22 @@ export const pinned_cursors = {hooks: {draw: (plot) => inside(plot, (ctx, bbox, 
   for (const t of [first, last]) if (t !== undefined) ctx.fillRect(x(t) - 0.5, bbox.top, 1, bbox.height);
 })}};
 
+/// Where there is nothing to be drawn it says so, and no axis is made up.
+export const bare = {hooks: {draw: ({bare: is_bare, ctx, bbox}) => {
+  if (!is_bare) return;
+  ctx.save();
+  ctx.fillStyle = colour('faint');
+  ctx.font = `${12 * (devicePixelRatio || 1)}px Inter`;
+  ctx.textAlign = 'center';
+  ctx.fillText('no samples here', bbox.left + bbox.width / 2, bbox.top + bbox.height / 2);
+  ctx.restore();
+}}};
+
 /// The whole range of a parameter beside its curve: where its ends are, what part the plot shows, where it stands now.
 export const gauge = ([low, high], name) => ({hooks: {draw: (plot) => {
   const {ctx, bbox} = plot, ratio = devicePixelRatio || 1;
   const scale = plot.scales[plot.series[1].scale];
-  const x = bbox.left + bbox.width + 24 * ratio, wide = 6 * ratio, tall = bbox.height;
+  const x = bbox.left + bbox.width + 30 * ratio, wide = 6 * ratio, tall = bbox.height;
   const y = (value) => bbox.top + tall * (1 - Math.max(0, Math.min(1, (value - low) / (high - low))));
   const now = values.get(name)?.v, end = (high - low) * 0.05;
   const near = Number.isFinite(now) && (now - low < end || high - now < end);
@@ -111,7 +122,7 @@ export const gauge = ([low, high], name) => ({hooks: {draw: (plot) => {
   ctx.fillRect(x - wide / 2, bbox.top, wide, tall * 0.05);
   ctx.fillRect(x - wide / 2, bbox.top + tall * 0.95, wide, tall * 0.05);
   ctx.fillStyle = colour('edge');
-  ctx.fillRect(x - wide / 2, y(scale.max), wide, Math.max(2, y(scale.min) - y(scale.max)));
+  if (!plot.bare) ctx.fillRect(x - wide / 2, y(scale.max), wide, Math.max(2, y(scale.min) - y(scale.max)));
   if (Number.isFinite(now)) {
     ctx.fillStyle = colour(near ? 'amber' : 'measured');
     ctx.beginPath();
@@ -123,7 +134,8 @@ export const gauge = ([low, high], name) => ({hooks: {draw: (plot) => {
   ctx.fillStyle = colour('faint');
   ctx.font = `${11 * ratio}px Inter`;
   ctx.textAlign = 'center';
-  ctx.fillText(brief_text(high), x, bbox.top - 4 * ratio);
-  ctx.fillText(brief_text(low), x, bbox.top + tall + 13 * ratio);
+  const digits = high - low < 20 ? 1 : 0;
+  ctx.fillText(fixed_text(high, digits), x, bbox.top - 4 * ratio);
+  ctx.fillText(fixed_text(low, digits), x, bbox.top + tall + 13 * ratio);
   ctx.restore();
 }}});

@@ -7,6 +7,7 @@ import {html} from '../html.js';
 import {mission_folder} from '../mission_files.js';
 import {target_line} from './hand.js';
 import {usual_description} from '../scene/usual.js';
+import {goal_where_it_stands} from './goal_form.js';
 import {drawing_code, scene_of_mission} from './scene_file.js';
 import {typed} from './typed.js';
 import {fallen, fallen_text, inhibited_text} from '../stop_story.js';
@@ -57,14 +58,41 @@ function Verdict({description}) {
   const silent = !replay.value && stale && Number.isFinite(age_s);
   if (!why && !silent) return null;
   return html`<div class=${`inhibited ${why ? '' : 'old'}`} data-test="robot-verdict"><b>${silent && !why ? 'OLD DATA' : 'ACTUATORS INHIBITED'}</b>
-    <span>${why}${why && silent ? ' · ' : ''}${silent ? `last pose, ${age_text(age_s)} old` : ''}</span></div>`;
+    <span>${why ? html`<span class="why">${why}${silent ? ' · ' : ''}</span>` : null}${silent ? `last pose, ${age_text(age_s)} old` : ''}</span></div>`;
 }
 
 const feels = (description) => description.robots.some((one) => one.force);
 const toggles = [['goal', 'Goal'], ['limits', 'Limits'], ['force', 'Force'], ['trail', 'Trail'], ['frames', 'Frames']];
 
+function node(name, words, space = 'http://www.w3.org/1999/xhtml') {
+  const made = document.createElementNS(space, name);
+  for (const [word, value] of Object.entries(words)) made.setAttribute(word, value);
+  return made;
+}
+
+/// The picture of a description, with what it is drawn in: made once, for it takes a second without a graphics card, and moved from view to view.
+let kept = null;
+function picture_of(description) {
+  if (kept?.description === description) return kept;
+  kept?.view?.close();
+  const nodes = {still: node('canvas', {class: 'still', 'aria-hidden': 'true'}), stage: node('div', {class: 'stage', 'data-test': 'robot'}), shade: node('div', {class: 'shade'}),
+    leads: node('svg', {class: 'leads', 'aria-hidden': 'true'}, 'http://www.w3.org/2000/svg'), tags: node('div', {class: 'readout'})};
+  const picture = kept = {description, nodes, view: null, ready: null, entered: null, leave: null};
+  picture.ready = drawing_code().then(async ({RobotView}) => {
+    picture.view = new RobotView(nodes, mission_folder, description);
+    picture.entered?.();
+    await picture.view.load();
+    nodes.stage.dataset.loaded = 'yes';
+  }).catch((error) => {
+    picture.view?.close();
+    if (kept === picture) kept = null;
+    throw error;
+  });
+  return picture;
+}
+
 export function Robot() {
-  const stage = useRef(null), still = useRef(null), tags = useRef(null), leads = useRef(null), window_ref = useRef(null);
+  const home = useRef(null), stage = useRef(null), window_ref = useRef(null);
   const view = useRef(null);
   const [problem, set_problem] = useState('');
   const [show, set_show] = useState({goal: true, limits: true, force: true, trail: true, frames: false});
@@ -77,19 +105,26 @@ export function Robot() {
   useEffect(() => {
     if (!description) return;
     let over = false;
-    drawing_code().then(async ({RobotView}) => {
-      if (over) return;
-      view.current = new RobotView({stage: stage.current, still: still.current, tags: tags.current, leads: leads.current, window: window_ref.current}, mission_folder, description);
-      await view.current.load();
-      if (over) return;
-      stage.current.dataset.loaded = 'yes';
-      set_loaded(true);
-    }).catch((error) => over || set_problem(`No 3D here: ${error.message}`));
-    return () => {
-      over = true;
-      view.current?.close();
-      view.current = null;
+    const picture = picture_of(description), {nodes} = picture;
+    // A view of before may be told that it is over only after this one has begun.
+    picture.leave?.();
+    home.current.append(nodes.still, nodes.stage, nodes.shade, nodes.leads, nodes.tags);
+    stage.current = nodes.stage;
+    picture.entered = () => {
+      view.current = picture.view;
+      picture.view.enter(window_ref.current);
     };
+    if (picture.view) picture.entered();
+    picture.ready.then(() => over || set_loaded(true), (error) => over || set_problem(`No 3D here: ${error.message}`));
+    const leave = () => {
+      over = true;
+      view.current = null;
+      if (picture.leave !== leave) return;
+      picture.leave = picture.entered = null;
+      picture.view?.leave();
+      home.current?.replaceChildren();
+    };
+    return picture.leave = leave;
   }, [description]);
   useEffect(() => fast.subscribe(() => view.current?.update()), []);
   useEffect(() => replay.subscribe(() => view.current?.forget()), []);
@@ -104,22 +139,25 @@ export function Robot() {
     view.current.look_again(stopped);
   }, [show, old, stopped.join(), loaded]);
   slow.value;
-  if (description?.modules) view.current?.look_at_modules();
+  if (description?.modules) view.current?.modules?.look();
   if (view.current) {
     view.current.hand_allowed = Boolean(hand) && operator.value;
+    view.current.goal_allowed = operator.value;
     const boxes = taken_boxes(stage.current);
     if (JSON.stringify(boxes) !== JSON.stringify(view.current.taken)) view.current.draw_soon();
     view.current.taken = boxes;
   }
   slow.value;
-  const from = description?.camera;
+  const from = description?.camera, movable = description?.robots.find((one) => one.goal);
+  const goal_typed = Boolean(typed.value?.numbers) && description?.robots.some((one) => one.goal?.function === typed.value.action && one.subsystem === typed.value.subsystem);
   const goal_sent = commands.value.some((one) => description?.robots.some((robot) => robot.goal?.function === one.function && robot.subsystem === one.subsystem) && !['completed', 'failed'].includes(outcome_of(one).stage));
   return html`<div class=${`robot ${old && !stopped.length ? 'old' : ''}`}>
-    <canvas class="still" ref=${still} aria-hidden="true" /><div class="stage" ref=${stage} data-test="robot" /><div class="shade" />
-    <svg class="leads" ref=${leads} aria-hidden="true" /><div class="readout" ref=${tags} />
+    <div class="home" ref=${home} />
     ${description ? html`<div class="tools">
       ${description.robots.length ? toggles.filter(([name]) => name !== 'force' || feels(description)).map(([name, title]) => html`<button class=${`chip ${show[name] ? 'on' : ''}`} aria-pressed=${show[name]} onClick=${() => set_show({...show, [name]: !show[name]})}>${title}</button>`) : null}
       <span class="space" />
+      ${movable && operator.value && !replay.value && typed.value ? html`<button class="chip" data-test="set-goal" title=${`a goal where it stands, to be dragged: by its tip, or a link by itself; it fills the form of ${movable.goal.function}`} disabled=${old}
+        onClick=${() => goal_where_it_stands(movable)}>Set goal</button>` : null}
       ${hand && operator.value && !replay.value ? html`<button class="chip" title="the simulated hand wanders by itself" onClick=${() => fault(hand.device, 'hand wander').catch(() => {})}>Hand wanders</button>
         <button class=${`chip ${gamepad ? 'on' : ''}`} title="the left stick of a gamepad is the hand" aria-pressed=${gamepad} onClick=${() => set_gamepad(!gamepad)}>Gamepad</button>` : null}
       <button class="chip" title="as at first" onClick=${() => view.current?.view_from(from.from_m)}>Scene</button>
@@ -130,16 +168,16 @@ export function Robot() {
     ${description?.inset ? html`<${Hand} description=${description} window_ref=${window_ref} />` : null}
     ${description ? html`<${Verdict} description=${description} />
       <div class="key">${stopped.length ? html`<span><i />last known pose</span><span><i class="fallen" />inhibited</span>` : html`${description.robots.length ? html`<span><i />measured</span>` : html`<span><i />Operational</span><span><i class="fallen" />inhibited or failed</span>`}${
-        typed.value?.values || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : 'goal, not sent'}</span>` : null}${feels(description) ? html`<span><i class="touched" />touched</span>` : null}${
-        description.inset ? html`<span><i class="felt" />felt</span>` : null}`}${hand && operator.value && !replay.value && !stopped.length ? html`<span class="hint">drag the handle or the fingertip</span>` : null}</div>` : null}
+        goal_typed || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : 'goal, not sent'}</span>` : null}${feels(description) ? html`<span><i class="touched" />touched</span>` : null}${
+        description.inset ? html`<span><i class="felt" />felt</span>` : null}`}${hand && operator.value && !replay.value && !stopped.length ? html`<span class="hint">${goal_typed && !goal_sent ? 'drag the goal by its ball or a link' : 'drag the handle or the fingertip'}</span>` : null}</div>` : null}
   </div>`;
 }
 
 /// Where tags must not lie: on the buttons above, the hand, the key and the verdict.
 function taken_boxes(stage) {
-  const home = stage?.parentElement?.getBoundingClientRect();
+  const robot = stage?.closest('.robot'), home = robot?.getBoundingClientRect();
   if (!home) return [];
-  return [...stage.parentElement.querySelectorAll('.tools, .hand, .key, .inhibited')].map((node) => {
+  return [...robot.querySelectorAll('.tools, .hand, .key, .inhibited')].map((node) => {
     const box = node.getBoundingClientRect();
     return {left: box.left - home.left, right: box.right - home.left, top: box.top - home.top, bottom: box.bottom - home.top};
   });

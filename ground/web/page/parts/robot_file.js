@@ -5,6 +5,7 @@
 import {signal} from '@preact/signals';
 import {asset} from '../api.js';
 import {mission_folder} from '../mission_files.js';
+import {led} from './numbers.js';
 import {scene_of_mission} from './scene_file.js';
 
 const turns_rad = 2 * Math.PI;
@@ -28,17 +29,6 @@ function limits_in(urdf) {
     asset(`${mission_folder}/${urdf}`).then((answer) => answer.text()).then((text) => { known.value = {...known.value, [urdf]: limits_of(text)}; }).catch(() => {});
   }
   return known.value[urdf];
-}
-
-/// "GOAL[2]": the argument GOAL and its element 2; a name alone has no element.
-export function led(words) {
-  const [, argument, element] = /^(.*?)(?:\[(\d+)\])?$/.exec(words);
-  return {argument, element: element === undefined ? null : Number(element)};
-}
-/// What it is among the values of a telecommand.
-export function led_value(values, words) {
-  const {argument, element} = led(words);
-  return Number(element === null ? values?.[argument] : values?.[argument]?.[element]);
 }
 
 /// The joints that an array of numbers leads, by its elements: [{name, parameter, lower, upper}], of a `jog` the range of their velocities and no

@@ -6,7 +6,8 @@ import {signal} from '@preact/signals';
 
 /// "SUBSYSTEM.FUNCTION" -> {argument: text}
 export const kept_texts = signal({});
-/// The form in front: {subsystem, action, values}; values null while it is empty or wrong.
+/// The form in front: {subsystem, action, values, numbers}; values null while it is empty or wrong, numbers as they stand there, wrong or not,
+/// and null while nobody has touched it.
 export const typed = signal(null);
 export function fill_form(subsystem, action, texts) {
   const key = `${subsystem}.${action}`;

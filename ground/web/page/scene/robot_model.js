@@ -7,6 +7,7 @@ import URDFLoader from 'urdf-loader';
 import {merged} from './kit.js';
 import {Dial, triad} from './instruments.js';
 import {Motion} from './motion.js';
+import {reach} from './reach.js';
 import {Halo} from './skins.js';
 import {sun_from} from './space.js';
 
@@ -119,8 +120,12 @@ export function dress(body, parts, environment, software) {
 }
 
 export class RobotModel {
+  #text;
+  #reckoning;
+
   constructor(about, text, parts, {environment, software}) {
     this.about = about;
+    this.#text = text;
     this.body = parsed_urdf(text);
     this.bones = dress(this.body, parts, environment, software);
     // Unseen until the first telemetry says how it stands.
@@ -182,14 +187,19 @@ export class RobotModel {
   show_limits(shown) {
     for (const dial of this.dials) if (dial) dial.group.visible = shown;
   }
+
+  /// Another one that nobody sees, to reckon with.
+  get reckoning() { return this.#reckoning ??= new Phantom(this.about, this.#text, null); }
 }
 
-/// Another one of the same robot that stands where it is told to: for goals that are typed.
+/// Another one of the same robot that stands where it is told to: for goals that are typed, and, without `parts`, unseen.
 export class Phantom {
   constructor(about, text, parts) {
     this.body = parsed_urdf(text);
-    dress(this.body, parts, null, true);
+    this.body.position.fromArray(about.at_m ?? [0, 0, 0]);
+    if (parts) dress(this.body, parts, null, true);
     this.tip = about.tip;
+    this.tip_link = this.body.links[about.tip];
     for (const joint of Object.values(this.body.joints)) joint.ignoreLimits = true;
   }
 
@@ -198,5 +208,16 @@ export class Phantom {
     for (const [name, angle] of Object.entries(angles)) this.body.setJointValue(name, angle);
     this.body.updateMatrixWorld(true);
     return this.tip ? this.body.links[this.tip].getWorldPosition(new Vector3()) : null;
+  }
+
+  /// {joint: angle} at which the point `local` of `link` is at `place`, or as near as the joints `free` of `robot` bring it; from `angles` on.
+  reached({link, local}, place, angles, robot, free = robot.names) {
+    const {names} = robot, named = (list) => Object.fromEntries(names.map((name, i) => [name, list[i]]));
+    const place_of = (list) => {
+      this.stand(named(list));
+      return link.localToWorld(local.clone()).toArray();
+    };
+    const joints = names.map((name) => ({lower: robot.body.joints[name].limit.lower, upper: robot.body.joints[name].limit.upper, free: free.includes(name)}));
+    return named(reach(place_of, joints, names.map((name) => angles[name]), place.toArray(), robot.size));
   }
 }

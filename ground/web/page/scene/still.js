@@ -9,13 +9,20 @@ const background = 0x04060a;
 
 export class StillPicture {
   constructor(renderer, scene, canvas) {
-    Object.assign(this, {renderer, scene, canvas, band: 0, wanted: false, whole: false, unseen: null});
+    Object.assign(this, {renderer, scene, canvas, band: 0, wanted: false, held: false, whole: false, unseen: null});
   }
 
   /// The camera moved, or there is more to be seen.
   ask() {
     this.wanted = true;
+    this.held = false;
     this.band = 0;
+  }
+
+  /// It is not what is wanted any more, but stands until somebody asks again.
+  hold() {
+    this.wanted = false;
+    this.held = true;
   }
 
   /// One step of it; true when there is more to do. The renderer's own canvas is spoiled by it.

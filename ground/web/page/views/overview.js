@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-import {useState} from 'preact/hooks';
+import {useEffect, useState} from 'preact/hooks';
 import {CommandForm} from '../parts/command_form.js';
 import {EventTable} from '../parts/event_list.js';
+import {wanted_form} from '../parts/goal_form.js';
 import {Lanes} from '../parts/lanes.js';
 import {LinkRows, links_hint} from '../parts/link_rows.js';
 import {Panel} from '../parts/panel.js';
 import {Legend, TimePlot} from '../parts/plot.js';
 import {Robot} from '../parts/robot.js';
-import {scene_of_mission} from '../parts/scene_file.js';
+import {plot_names, scene_of_mission} from '../parts/scene_file.js';
 import {SubsystemCard} from '../parts/subsystem_card.js';
 import {html} from '../html.js';
 import {stop} from '../stop_story.js';
@@ -50,8 +51,13 @@ function told_by(plot) {
 }
 
 export const plot_title = (names) => {
+  const known = (scene_of_mission.value?.plots ?? []).find((plot) => plot.title && plot_names(plot).join() === names.join());
+  if (known) return known.title;
   const base = (names.at(-1) ?? '').replace(/\[\d+\]$/, '').split('.');
-  return base.slice(base.length > 2 ? 2 : 1).join('.').replaceAll('_', ' ').toLowerCase();
+  const words = base.slice(base.length > 2 ? 2 : 1).join('.').replaceAll('_', ' ').toLowerCase();
+  // Of several elements of arrays what they have in common is which one.
+  const [place, ...others] = new Set(names.map((name) => /\[\d+\]$/.exec(name)?.[0] ?? ''));
+  return place && !others.length ? `${words} ${place}` : words;
 };
 
 const chips = 4;
@@ -62,6 +68,13 @@ function QuickCommand() {
   const first = list.filter((one) => one.id !== 1).sort((one, other) => own(other) - own(one) || other.id - one.id)[0] ?? list[0];
   const [subsystem, set_subsystem] = useState(null);
   const [action, set_action] = useState(null);
+  const asked = wanted_form.value;
+  useEffect(() => {
+    if (!asked) return;
+    set_subsystem(asked.subsystem);
+    set_action(asked.action);
+    wanted_form.value = null;
+  }, [asked]);
   const chosen = list.find((one) => one.name === subsystem) ?? first;
   if (!chosen) return null;
   const actions = chosen.functions ?? [];

@@ -103,7 +103,7 @@ export function Values({name}) {
   slow.value;
   const own = entries_of(name);
   const half = Math.ceil(own.length / 2);
-  return html`<div class="two" data-test="values">${[own.slice(0, half), own.slice(half)].map((part) => html`<table class="values"><thead><tr><th>parameter</th><th>value</th><th>unit</th><th>range</th><th>age</th></tr></thead>
+  return html`<div class="two" data-test="values">${[own.slice(0, half), own.slice(half)].map((part) => html`<table class="values"><thead><tr><th>parameter</th><th>value</th><th>unit</th><th>range</th><th class="age">age</th></tr></thead>
     <tbody>${part.map(({column, elements}) => {
       const value = values.get(column.name)?.v, joint = joint_of(column.name);
       const {age_s, stale} = freshness(elements?.[0].name ?? column.name);

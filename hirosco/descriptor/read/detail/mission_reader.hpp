@@ -44,7 +44,9 @@ class MissionReader {
   void read_log_server(Attributes& attributes);
   void read_ground(const xml::Element& element);
   void read_address(Attributes& attributes, std::string_view name, std::string& into);
+  // read_power.cpp
   void read_power(const xml::Element& element);
+  void read_measured_power(const xml::Attribute& measured, Duration age);
   // read_resources.cpp
   void read_resources(const xml::Element& element);
   void read_isolation(const xml::Element& element);

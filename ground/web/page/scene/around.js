@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// What stands around the robot: sky and spacecraft, made after the robot moves, for without a graphics card that takes a second; and the
+// modules of a mission that shows no robot.
+import {MeshBasicMaterial, Vector3} from 'three';
+import {state_name} from '../commanding.js';
+import {state_text} from '../format.js';
+import {mission, status_of} from '../store.js';
+import {surface_x_m} from '../parts/hand.js';
+import {colours} from './instruments.js';
+import {Kit, merged} from './kit.js';
+import {lights, mirrored_cube, sky} from './space.js';
+import {module_of, module_places, usual_surroundings} from './usual.js';
+
+/// The steps in which it is made, one for each moment that is free.
+export function surroundings_in_steps(view) {
+  const {software, far, scale, description, own} = view, light_at = new Vector3().fromArray(description.camera.to_m);
+  return [
+    () => far.add(...sky(scale), ...(software ? lights({target: light_at, reach_m: 0.62 * scale, shadow: false}) : [])),
+    () => {
+      const kit = new Kit(software ? mirrored_cube() : view.mirror, software ? 0.7 : 1), around = own.surroundings?.(kit) ?? usual_surroundings(kit, view.robots.length > 0);
+      if (description.modules) view.modules = new Modules(view, kit, around);
+      around.traverse((part) => { if (part.isMesh) part.castShadow = part.receiveShadow = !software; });
+      far.add(around);
+      if (!software || !own.obstacles) return;
+      far.add(merged(own.obstacles(kit, {...description, surface_x_m})));
+      hide_behind(view.obstacles);
+    },
+    () => view.still?.grown(),
+  ];
+}
+
+/// What the still picture shows hides the robot where it stands before it.
+function hide_behind(obstacles) {
+  const hidden = new MeshBasicMaterial({colorWrite: false});
+  obstacles?.traverse((part) => {
+    if (!part.isMesh) return;
+    part.material = hidden;
+    part.renderOrder = -3;
+  });
+}
+
+/// A module for each subsystem: its name and state stand at it, its lamp tells whether it deviates.
+class Modules {
+  constructor(view, kit, around) {
+    this.view = view;
+    const names = (mission.value?.subsystems ?? []).map((one) => one.name);
+    this.list = module_places(names.length).map(([x, y, wide], i) => {
+      const {group, lamp, top} = module_of(kit, wide);
+      group.position.set(x, y, -0.02);
+      around.add(group);
+      return {name: names[i], lamp, at: new Vector3(x, y, top + 0.02), tag: view.readout.tags.add('', '', ''), told: ''};
+    });
+    this.look();
+  }
+
+  look() {
+    for (const module of this.list) {
+      const now = status_of(module.name), state = state_name(now?.state), told = `${state} ${now?.inhibited?.length ?? 0}`;
+      this.view.readout.tags.tell(module.tag, module.name.slice(0, 24), {unit: state_text(state)});
+      if (told === module.told) continue;
+      module.told = told;
+      module.lamp.material.color.set(state === 'ErrorOperational' || now?.inhibited?.length ? colours.wrong : state === 'Operational' ? colours.measured : 0x4b535e);
+      this.view.still?.ask();
+      this.view.draw_soon();
+    }
+  }
+}

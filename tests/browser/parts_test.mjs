@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, when the
+// next picture is drawn.
+import assert from 'node:assert/strict';
+import {join} from 'node:path';
+import {describe, it} from 'node:test';
+import {pathToFileURL} from 'node:url';
+
+const of_page = (file) => import(pathToFileURL(join(process.env.HIROSCO_SOURCES, 'ground/web/page', file)));
+const {beyond_rad, reach} = await of_page('scene/reach.js');
+const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numbers.js');
+const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
+const {ticks_text} = await of_page('format.js');
+
+const near = (one, other, what = '') => assert.ok(Math.hypot(...one.map((value, i) => value - other[i])) < 1e-4, `${what} ${one} instead of ${other}`);
+
+describe('a goal that is dragged', () => {
+  /// Two links in a plane, as rokviss has them.
+  const tip = ([a, b]) => [0.19 * Math.cos(a) + 0.2 * Math.cos(a + b), 0.19 * Math.sin(a) + 0.2 * Math.sin(a + b), 0.075];
+  const joints = [{lower: -2, upper: 1, free: true}, {lower: 0.2, upper: 2.6, free: true}];
+  const size_m = 0.5;
+
+  it('brings the tip to where the mouse is, wherever that can be reached', () => {
+    let angles = [-0.8, 1.6];
+    for (const wanted of [[-0.5, 1.2], [-1.4, 2.3], [0.4, 0.7], [-1.9, 2.5]]) {
+      angles = reach(tip, joints, angles, tip(wanted), size_m);
+      near(tip(angles), tip(wanted), `to ${wanted}`);
+    }
+  });
+
+  it('stays near when the mouse goes where no arm reaches, and comes back', () => {
+    const far = reach(tip, joints, [-0.8, 1.6], [3, 0, 0.075], size_m);
+    assert.ok(far.every(Number.isFinite));
+    near(tip(reach(tip, joints, far, tip([-0.5, 1.2]), size_m)), tip([-0.5, 1.2]));
+  });
+
+  it('shows a joint beyond its range a little, so that it is seen that it cannot go there', () => {
+    const [, elbow] = reach(tip, joints, [0, 0.3], tip([0, 0]), size_m);
+    assert.ok(elbow >= joints[1].lower - beyond_rad - 1e-9 && elbow < joints[1].lower, `${elbow}`);
+  });
+
+  it('turns one joint alone when a link is led', () => {
+    const found = reach(tip, [joints[0], {...joints[1], free: false}], [-0.8, 1.6], tip([-0.2, 1.6]), size_m);
+    near(found, [-0.2, 1.6]);
+  });
+
+  it('takes an arm of six joints to a place in space', () => {
+    const six = (q) => {
+      let at = [0, 0, 0], frame = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+      q.forEach((angle, i) => {
+        const [u, v] = [[0, 1], [0, 2], [0, 2], [1, 2], [0, 1], [1, 2]][i], c = Math.cos(angle), s = Math.sin(angle);
+        frame = frame.map((row) => row.map((value, k) => k === u ? c * row[u] + s * row[v] : k === v ? c * row[v] - s * row[u] : value));
+        at = at.map((value, k) => value + 0.2 * frame[k][2]);
+      });
+      return at;
+    };
+    const free = new Array(6).fill({lower: -3, upper: 3, free: true}), wanted = six([0.5, 0.2, 0.9, -0.3, 0.4, 0.1]);
+    near(six(reach(six, free, [0.2, 0.5, 1.2, -0.6, 0.7, 0.1], wanted, 1.2)), wanted);
+  });
+
+  it('stands in the form as words: an argument for each joint, or all of an array', () => {
+    assert.deepEqual(goal_texts({joints: {a: 'Q1', b: 'Q2'}}, {a: -1.38049, b: 2}), {Q1: '-1.38', Q2: '2'});
+    assert.deepEqual(goal_texts({joints: {b: 'GOAL[1]', a: 'GOAL[0]'}}, {a: 0.1234, b: -0.5}), {GOAL: '0.123 -0.5'});
+  });
+});
+
+describe('numbers in words', () => {
+  it('are read with any keyboard’s minus and comma, and are none where anything else stands', () => {
+    assert.deepEqual(['−1,5', '+2e-3', ' .5 '].map(number_in), [-1.5, 0.002, 0.5]);
+    for (const word of ['', 'NaN', '0x1', '1 2', 'left', undefined]) assert.ok(Number.isNaN(number_in(word)), word);
+    assert.deepEqual(numbers_in('1; 2,5  -3', 3), [1, 2.5, -3]);
+    assert.equal(led_value({GOAL: [1, 2, 3]}, 'GOAL[2]'), 3);
+  });
+
+  it('have the digits of their step at an axis', () => {
+    assert.deepEqual(ticks_text([-0.85, -0.8, -0.75]), ['−0.85', '−0.80', '−0.75']);
+    assert.deepEqual(ticks_text([-0.825, -0.8, null]), ['−0.825', '−0.800', '']);
+    assert.deepEqual(ticks_text([0, 5, 10]), ['0', '5', '10']);
+  });
+});
+
+describe('the pushes of a tool', () => {
+  const action = {arguments: [{name: 'LINEAR', count: 3, unit: 'm/s', min: -1, max: 0.03}, {name: 'ANGULAR', count: 3, unit: 'rad/s', min: -2, max: 2}, {name: 'SECONDS', unit: 's', min: 0.01, max: 30}]};
+
+  it('are there for a telecommand of two velocities and a time, and for no other', () => {
+    assert.equal(jog_of(action).linear.name, 'LINEAR');
+    assert.equal(jog_of({arguments: action.arguments.slice(0, 2)}), null);
+    assert.equal(jog_of({arguments: [{name: 'VELOCITY', count: 6, unit: 'rad/s'}, {name: 'SECONDS', unit: 's'}]}), null);
+    assert.equal(jog_of({}), null);
+  });
+
+  it('go along one axis or about it, to one side, and no faster than the descriptor permits', () => {
+    const jog = jog_of(action), [fine, , coarse] = paces;
+    assert.deepEqual(push_of(jog, {turning: false, axis: 1, side: -1}, fine), {LINEAR: [0, -0.005, 0], ANGULAR: [0, 0, 0], SECONDS: 0.4});
+    assert.deepEqual(push_of(jog, {turning: true, axis: 2, side: 1}, fine), {LINEAR: [0, 0, 0], ANGULAR: [0, 0, 0.05], SECONDS: 0.4});
+    assert.deepEqual(push_of(jog, {turning: false, axis: 0, side: 1}, coarse).LINEAR, [0.03, 0, 0]);
+  });
+});
+
+describe('the next picture', () => {
+  it('waits its turn also when drawing itself asks for it, and comes after a picture that failed', async () => {
+    const asked = [];
+    Object.assign(globalThis, {matchMedia: () => ({matches: false}), requestAnimationFrame: (draw) => asked.push(draw), cancelAnimationFrame: () => {}});
+    const {Pace} = await of_page('scene/pace.js');
+    let drawn = 0;
+    const pace = new Pace(() => {
+      pace.soon();
+      if (++drawn === 2) throw new Error('of the picture');
+      return {unfinished: true, moving: true};
+    }, false);
+    const again = async () => { while (!asked.length) await new Promise((resolve) => setImmediate(resolve)); };
+    pace.soon();
+    asked.shift()();
+    assert.equal(asked.length, 0);
+    await again();
+    assert.throws(asked.shift(), /of the picture/);
+    await again();
+    asked.shift()();
+    assert.equal(drawn, 3);
+    pace.close();
+  });
+});
