@@ -169,19 +169,28 @@ class Judge {
     return Eigen::SelfAdjointEigenSolver<robotics::Matrix3>{inertia.about_centre, Eigen::EigenvaluesOnly}.eigenvalues();
   }
 
-  /// Its world takes each link by itself, and no inertia that no body has.
+  [[nodiscard]] static bool may_be(const robotics::Inertia& inertia) {
+    if (inertia.about_centre.isZero(0)) return true;
+    const auto moments = principal_moments(inertia);
+    const double largest = moments.maxCoeff();
+    return moments.minCoeff() >= least_moment && largest <= (moments.sum() - largest) * (1 + rounding);
+  }
+
+  /// Its world takes no inertia that no body has; of links that are fixed to each other that of all of them counts.
   void judge_bodies() {
+    const auto whole = robotics::urdf::describe(robot_);
+    const auto body_of = [&](const std::string& link) -> const robotics::Inertia& {
+      const auto frame = std::ranges::find(whole.frames, link, &robotics::FrameDescription::name);
+      return frame != whole.frames.end() && frame->joint ? whole.joints[*frame->joint].moved : whole.base;
+    };
     for (const auto& link : robot_.links) {
-      if (!link.inertia) continue;
-      if (link.inertia->about_centre.isZero(0)) continue;
+      if (!link.inertia || may_be(*link.inertia) || may_be(body_of(link.name))) continue;
       const auto moments = principal_moments(*link.inertia);
-      const double largest = moments.maxCoeff();
-      if (moments.minCoeff() >= least_moment && largest <= (moments.sum() - largest) * (1 + rounding)) continue;
       problem(place_of("link", link.name, "inertia"), "U0604",
               fmt::format("no body has the inertia of link '{}': principal moments {:.4g}, {:.4g} and {:.4g} kg m2",
                           link.name, moments[0], moments[1], moments[2]),
-              "each is above 0 and at most the sum of the others; the world of a simulated flight takes no other: look "
-              "for a typing error or a wrong unit");
+              "each is above 0 and at most the sum of the others, of it or of all that is fixed to it; the world of a "
+              "simulated flight takes no other: look for a typing error or a wrong unit");
     }
     for (const auto& joint : robot_.joints)
       if (joint.type != robotics::urdf::JointType::Fixed && !has_body(joint.child))
@@ -371,7 +380,8 @@ JudgedRobot judge_robot(const std::filesystem::path& file, const descriptor::Fil
   if (!reading.value) return judged;
   Judge{file, *reading.value, *text, judged}.judge(tip, robotics::urdf::listed_names(gripper));
   // Said more gravely by U0604.
-  std::erase_if(judged.warnings, [](const Diagnostic& one) { return one.code == "U0504" || one.code == "U0508"; });
+  if (std::ranges::find(judged.problems, std::string_view{"U0604"}, &Diagnostic::code) != judged.problems.end())
+    std::erase_if(judged.warnings, [](const Diagnostic& one) { return one.code == "U0504" || one.code == "U0508"; });
   std::ranges::stable_sort(judged.problems, [](const Diagnostic& one, const Diagnostic& other) {
     return std::pair{one.at.line, one.at.column} < std::pair{other.at.line, other.at.column};
   });

@@ -126,6 +126,24 @@ TEST(NewRobot, IsRefusedWithPlaceReasonAndWhatToDo) {
   EXPECT_TRUE(judged(text_of({.more = second}), "other").robot) << "once the tool is named";
 }
 
+TEST(NewRobot, TakesALinkThatIsNoBodyWhereItIsOneWithWhatItIsFixedTo) {
+  const auto with = [](const char* inertia) {
+    return judged(text_of({.more = fmt::format(
+                               R"(<joint name="screw" type="fixed"><parent link="rod"/><child link="antenna"/></joint>
+<link name="antenna"><inertial><mass value="0.001"/>{}</inertial></link>)",
+                               inertia)}),
+                  "tool");
+  };
+  const auto light = with(R"(<inertia ixx="-1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/>)");
+  EXPECT_TRUE(light.robot);
+  ASSERT_EQ(light.warnings.size(), 1u);
+  EXPECT_EQ(light.warnings.front().code, "U0508");
+  const auto heavy = with(R"(<inertia ixx="9" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/>)");
+  ASSERT_EQ(heavy.problems.size(), 1u);
+  EXPECT_THAT(heavy.problems.front().message, HasSubstr("no body has the inertia of link 'antenna'"));
+  EXPECT_TRUE(heavy.warnings.empty()) << "said once";
+}
+
 TEST(NewRobot, EveryCodeIsExplained) {
   const std::string page = in_repository("docs/urdf-errors.md");
   for (const char* code : {"U0601", "U0602", "U0603", "U0604", "U0605", "U0606", "U0607", "U0608"})
