@@ -141,6 +141,11 @@ class Planner {
   std::minstd_rand random_{1};
 };
 
+/// A number that is none stays.
+void keep_worst(double& worst, double found) {
+  if (!std::isnan(worst) && !(found <= worst)) worst = found;
+}
+
 [[nodiscard]] std::vector<double> numbers(const JointVector& vector) { return {vector.begin(), vector.end()}; }
 [[nodiscard]] JointVector vector_of(const std::vector<double>& numbers) {
   JointVector vector;
@@ -206,7 +211,7 @@ class Flown {
       arguments.emplace_back(speed);
       if (!command("MOVE_J", arguments, goal_limit)) return;
       ++found_.goals;
-      found_.joint_rad = std::max(found_.joint_rad, (joints() - vector_of(goal)).cwiseAbs().maxCoeff());
+      for (const double off : joints() - vector_of(goal)) keep_worst(found_.joint_rad, std::abs(off));
     }
     for (const auto& way : task_.lines) {
       const Vector3 offset{way[0], way[1], way[2]};
@@ -222,14 +227,14 @@ class Flown {
     flight_.craft().on_cycle([&](std::string_view subsystem, TimePoint) {
       if (subsystem != task_.subsystem) return;
       const Vector3 gone = tip() - from;
-      found_.beside_m = std::max(found_.beside_m, (gone - gone.dot(along) * along).norm());
+      keep_worst(found_.beside_m, (gone - gone.dot(along) * along).norm());
     });
     const bool done = command(
         "MOVE_L", {to.x(), to.y(), to.z(), kept.w(), kept.x(), kept.y(), kept.z(), line_m_s, line_rad_s}, line_limit);
     flight_.craft().on_cycle({});
     if (!done) return false;
     ++found_.lines;
-    found_.tool_m = std::max(found_.tool_m, (tip() - to).norm());
+    keep_worst(found_.tool_m, (tip() - to).norm());
     return true;
   }
 

@@ -204,6 +204,38 @@ TEST_F(RobotArmTest, GoesStraightWithinTwoMillimetres) {
   EXPECT_LE((tool().position - to).norm(), 0.001);
 }
 
+/// Every joint within a milliradian, and the tool of an arm of a metre farther than a millimetre off: that is not the end of its line.
+TEST_F(RobotArmTest, IsDoneWithALineOnceTheToolItselfIsMeasuredThere) {
+  const auto asked = [&](Flown& arm) {
+    arm.plant.place(start);
+    arm.operate();
+    robotics::Dynamics dynamics{arm.model, robotics::Base::Fixed};
+    robotics::State state{.q = start, .qd = JointVector::Zero(start.size())};
+    dynamics.update(state);
+    const robotics::Pose from = dynamics.frame_pose(arm.model.find_frame("tool").value());
+    const robotics::Quaternion kept{from.rotation};
+    return arm.ask("MOVE_L", {from.position.x(), from.position.y(), from.position.z() - 0.1, kept.w(), kept.x(),
+                              kept.y(), kept.z(), 0.25, 0.5});
+  };
+  const std::string done = "1 3 5:0001 7";
+  const auto request = asked(flown);
+  int cycles = 0;
+  for (; cycles < 4000 && flown.rig.outcome(request) != done; ++cycles) flown.cycle();
+  ASSERT_LT(cycles, 4000);
+  Flown other{6, std::string{folder} + "robot_arm.urdf"};
+  const auto again = asked(other);
+  constexpr int before = 10;
+  other.cycle(cycles - before);
+  ASSERT_NE(other.rig.outcome(again), done);
+  other.told = other.plant.measured();
+  for (const int joint : {1, 2, 3}) other.told->position[joint] += joint == 2 ? -9e-4 : -8e-4;
+  other.cycle(3 * before);
+  EXPECT_NE(other.rig.outcome(again), done);
+  other.told.reset();
+  other.finish(again);
+  EXPECT_EQ(other.rig.outcome(again), done);
+}
+
 TEST_F(RobotArmTest, RefusesAGoalInWhichItMeetsItselfAndNamesWho) {
   flown.operate();
   const auto request = flown.move_j(vector_of(std::array{0.0, 0.0, 2.6, 2.2, 0.0, 0.0}));
