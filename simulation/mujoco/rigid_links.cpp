@@ -41,6 +41,12 @@ constexpr mjtNum rounding = 1e-12;
 }
 [[nodiscard]] mjtNum one(const Element* element, std::string_view name) { return three(said(element, name))[0]; }
 
+[[nodiscard]] Matrix times(const Matrix& one, const Matrix& other) {
+  Matrix product{};
+  mju_mulMatMat(product.data(), one.data(), other.data(), 3, 3, 3);
+  return product;
+}
+
 struct Frame {
   Numbers3 place{};
   Matrix turned{1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -59,7 +65,7 @@ struct Frame {
   Frame frame;
   mju_mulMatVec3(frame.place.data(), outer.turned.data(), inner.place.data());
   mju_addTo3(frame.place.data(), outer.place.data());
-  mju_mulMatMat3(frame.turned.data(), outer.turned.data(), inner.turned.data());
+  frame.turned = times(outer.turned, inner.turned);
   return frame;
 }
 
@@ -100,12 +106,9 @@ struct Weight {
 void add(const Element& inertial, const Frame& link, Weight& all) {
   const Frame frame = within(link, frame_of(inertial));
   const mjtNum mass = one(child_of(inertial, "mass"), "value");
-  Matrix half{}, turned{}, back{};
-  const Matrix its = inertia_of(inertial);
-  mju_mulMatMat3(half.data(), frame.turned.data(), its.data());
+  Matrix back{};
   mju_transpose(back.data(), frame.turned.data(), 3, 3);
-  mju_mulMatMat3(turned.data(), half.data(), back.data());
-  all.add(mass, frame.place, turned);
+  all.add(mass, frame.place, times(times(frame.turned, inertia_of(inertial)), back));
   all.mass += mass;
   mju_addToScl3(all.first.data(), frame.place.data(), mass);
 }
