@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "hirosco/descriptor/model/setting_files.hpp"
 #include "hirosco/pus/words/describe.hpp"
@@ -35,7 +36,7 @@ constexpr std::size_t most_goals = 2, most_lines = 2;
 constexpr double farthest = 1.0, from_ends = 0.1;
 /// What a drive may need at rest with the payload, of its effort: the arm's own limit is 0.8.
 constexpr double most_load = 0.6;
-constexpr int candidates = 300;
+constexpr int candidates = 2000;
 constexpr auto goal_limit = 90s, line_limit = 30s;
 
 [[nodiscard]] const descriptor::MissionSubsystem* arm_of(const descriptor::Mission& mission) {
@@ -109,13 +110,17 @@ class Planner {
     dynamics_.update(state_);
     return dynamics_.frame_pose(tip_);
   }
-  /// Not far from there. Nothing: none of many can be gone to and has lines.
-  [[nodiscard]] std::optional<JointVector> another(const JointVector& from) {
+  /// Not far from there, and gone to with the load where that is held there. Nothing: none of many can be gone to and has lines.
+  [[nodiscard]] std::optional<JointVector> another(const JointVector& from, bool loaded) {
     for (int i = 0; i < candidates; ++i) {
       JointVector to = from;
-      for (double& joint : to)
-        joint += farthest * (2 * static_cast<double>(random_()) / static_cast<double>(random_.max()) - 1);
-      if (goes(from, to) && lines(to).size() == most_lines) return to;
+      for (int joint = 0; joint < model_.joint_count(); ++joint) {
+        const auto& limits = model_.joints()[static_cast<std::size_t>(joint)].limits;
+        const double far =
+            limits.lower && limits.upper ? std::min(farthest, 0.3 * (*limits.upper - *limits.lower)) : farthest;
+        to[joint] += far * (2 * static_cast<double>(random_()) / static_cast<double>(random_.max()) - 1);
+      }
+      if ((loaded ? goes(from, to) : within(to) && holds(to)) && lines(to).size() == most_lines) return to;
     }
     return std::nullopt;
   }
@@ -202,11 +207,14 @@ class Flown {
 
   void fly_all(const RobotCase& wanted) {
     auto* device = flight_.craft().device(task_.device);
-    for (const std::string& line : wanted.differs)
+    std::vector<std::string> lines = wanted.differs;
+    if (wanted.loaded) lines.insert(lines.begin(), posture_of(task_.goals.back().joints));
+    for (const std::string& line : lines)
       if (device == nullptr || !device->fault(line)) return problem("its world does not take '" + line + "'");
     if (!flight_.commission()) return problem("it was not commissioned: " + flight_.story().text());
     if (wanted.declared_kg > 0 && !command("SET_PAYLOAD", {wanted.declared_kg, 0.0, 0.0, 0.0}, 10s)) return;
-    for (const auto& goal : task_.goals) {
+    for (const auto& [goal, loaded] : task_.goals) {
+      if (wanted.loaded && !loaded) continue;
       std::vector<Value> arguments(goal.begin(), goal.end());
       arguments.emplace_back(speed);
       if (!command("MOVE_J", arguments, goal_limit)) return;
@@ -219,6 +227,15 @@ class Flown {
       if (!line(begin.position, begin.position + offset, begin.rotation)) return;
       if (!line(begin.position + offset, begin.position, begin.rotation)) return;
     }
+  }
+
+  /// The fault line that puts it there, whatever of it is not the arm's as it is.
+  [[nodiscard]] std::string posture_of(const std::vector<double>& goal) {
+    std::vector<double> all;
+    for (std::size_t i = 0; !std::isnan(word(fmt::format("q{}", i + 1))); ++i)
+      all.push_back(word(fmt::format("q{}", i + 1)));
+    for (std::size_t i = 0; i < goal.size(); ++i) all.at(arm_.in_world[i]) = goal[i];
+    return fmt::format("posture {:.9g}", fmt::join(all, ","));
   }
 
   [[nodiscard]] bool line(const Vector3& from, const Vector3& to, const robotics::Matrix3& rotation) {
@@ -280,14 +297,13 @@ class Flown {
 std::vector<RobotCase> robot_cases(double weakest) {
   constexpr double share = 0.1;
   const std::string payload = fmt::format("payload {}", payload_kg);
-  return {{"as its file says", {}, 0},
-          {"links 10 % heavier", {"mass 1.1"}, 0},
-          {"inertias 5 % larger", {"inertia 1.05"}, 0},
+  return {{"as its file says", {}},
+          {"links 10 % heavier", {"mass 1.1"}},
+          {"inertias 5 % larger", {"inertia 1.05"}},
           {fmt::format("{:.3g} N m more friction in each joint", share * weakest),
-           {fmt::format("friction 1 {}", share * weakest)},
-           0},
-          {"2 kg at the tool, undeclared", {payload}, 0},
-          {"2 kg at the tool, declared", {payload}, payload_kg}};
+           {fmt::format("friction 1 {}", share * weakest)}},
+          {"2 kg at the tool, undeclared", {payload}, true},
+          {"2 kg at the tool, declared", {payload}, true, payload_kg}};
 }
 
 bool CaseFound::holds() const noexcept {
@@ -320,16 +336,21 @@ std::expected<RobotTask, std::string> robot_task(const std::filesystem::path& fi
     task.joints.push_back(joint.name);
     task.weakest = std::min(task.weakest, *joint.limits.effort);
   }
-  task.goals = {judged.robot->goal, judged.robot->posture};
   Planner planner{arm->robot.model, arm->tip};
   JointVector last = vector_of(judged.robot->posture);
+  for (const auto& goal : {judged.robot->goal, judged.robot->posture})
+    task.goals.push_back({goal, planner.goes(vector_of(goal), last)});
   for (std::size_t i = 0; i < most_goals; ++i)
-    if (const auto next = planner.another(last)) {
-      task.goals.push_back(numbers(*next));
+    if (const auto next = planner.another(last, task.goals.back().loaded)) {
+      task.goals.push_back({numbers(*next), true});
       last = *next;
     }
+  // Who carries something begins at the last one.
+  auto &first = task.goals[0], &begin = task.goals[1];
+  begin.loaded = begin.loaded && planner.goes(last, vector_of(begin.joints));
+  first.loaded = first.loaded && begin.loaded && planner.goes(last, vector_of(first.joints));
   for (const Vector3& way : planner.lines(last)) task.lines.push_back({way.x(), way.y(), way.z()});
-  if (task.lines.empty()) return std::unexpected{std::string{"no posture was found from which its tool goes straight"}};
+  if (task.lines.empty() || !task.goals.back().loaded) return std::unexpected{std::string{"no posture was found from which its tool goes straight"}};
   return task;
 }
 

@@ -17,6 +17,7 @@ inline constexpr double most_joint_error_rad = 1e-3, most_tool_error_m = 1e-3, m
 struct RobotCase {
   std::string name;
   std::vector<std::string> differs;  ///< fault lines of its world
+  bool loaded{false};  ///< something hangs at the tool
   double declared_kg{0};  ///< told to the arm by SET_PAYLOAD
 };
 /// As the file says; links a tenth heavier; inertias; friction of a tenth of what the weakest drive can, in every joint; 2 kg at the tool, not
@@ -29,7 +30,11 @@ struct RobotTask {
   std::string tip;  ///< link
   std::vector<std::string> joints;
   double weakest{0};  ///< effort
-  std::vector<std::vector<double>> goals;  ///< of MOVE_J, one after the other; the last one is where lines begin
+  struct Goal {
+    std::vector<double> joints;
+    bool loaded{true};  ///< the drives hold 2 kg at the tool there, and on the way to and from the next such goal; else it is flown without
+  };
+  std::vector<Goal> goals;  ///< of MOVE_J, one after the other; the last one is where lines begin, and whoever carries something
   std::vector<std::vector<double>> lines;  ///< x y z, m: there and back; such as joints, velocities and drives permit
 };
 /// In words why there is none.
