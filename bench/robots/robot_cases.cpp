@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <optional>
 #include <random>
 #include <stdexcept>
 
@@ -45,6 +44,14 @@ constexpr auto goal_limit = 90s, line_limit = 30s;
            member.subsystem.find_function("SET_PAYLOAD") != nullptr;
   });
   return found != mission.subsystems.end() ? &*found : nullptr;
+}
+
+[[nodiscard]] std::vector<double> numbers(const JointVector& vector) { return {vector.begin(), vector.end()}; }
+[[nodiscard]] JointVector vector_of(const std::vector<double>& numbers) {
+  JointVector vector;
+  vector.resize(static_cast<Eigen::Index>(numbers.size()));
+  std::ranges::copy(numbers, vector.begin());
+  return vector;
 }
 
 /// What the robot can do by its file, with 2 kg at its tool.
@@ -110,8 +117,8 @@ class Planner {
     dynamics_.update(state_);
     return dynamics_.frame_pose(tip_);
   }
-  /// Not far from there, and gone to with the load where that is held there. Nothing: none of many can be gone to and has lines.
-  [[nodiscard]] std::optional<JointVector> another(const JointVector& from, bool loaded) {
+  /// Not far from there, and gone to with the load where that is held there. Empty: none of many can be gone to and has lines.
+  [[nodiscard]] std::vector<double> another(const JointVector& from, bool loaded) {
     for (int i = 0; i < candidates; ++i) {
       JointVector to = from;
       for (int joint = 0; joint < model_.joint_count(); ++joint) {
@@ -120,9 +127,9 @@ class Planner {
             limits.lower && limits.upper ? std::min(farthest, 0.3 * (*limits.upper - *limits.lower)) : farthest;
         to[joint] += far * (2 * static_cast<double>(random_()) / static_cast<double>(random_.max()) - 1);
       }
-      if ((loaded ? goes(from, to) : within(to) && holds(to)) && lines(to).size() == most_lines) return to;
+      if ((loaded ? goes(from, to) : within(to) && holds(to)) && lines(to).size() == most_lines) return numbers(to);
     }
-    return std::nullopt;
+    return {};
   }
   [[nodiscard]] std::vector<Vector3> lines(const JointVector& from) {
     std::vector<Vector3> found;
@@ -149,14 +156,6 @@ class Planner {
 /// A number that is none stays.
 void keep_worst(double& worst, double found) {
   if (!std::isnan(worst) && !(found <= worst)) worst = found;
-}
-
-[[nodiscard]] std::vector<double> numbers(const JointVector& vector) { return {vector.begin(), vector.end()}; }
-[[nodiscard]] JointVector vector_of(const std::vector<double>& numbers) {
-  JointVector vector;
-  vector.resize(static_cast<Eigen::Index>(numbers.size()));
-  std::ranges::copy(numbers, vector.begin());
-  return vector;
 }
 
 /// The robot of the mission as the arm knows it, and where its joints are among the world's.
@@ -219,7 +218,8 @@ class Flown {
       arguments.emplace_back(speed);
       if (!command("MOVE_J", arguments, goal_limit)) return;
       ++found_.goals;
-      for (const double off : joints() - vector_of(goal)) keep_worst(found_.joint_rad, std::abs(off));
+      const std::vector<double> now = positions();
+      for (std::size_t i = 0; i < now.size(); ++i) keep_worst(found_.joint_rad, std::abs(now[i] - goal[i]));
     }
     for (const auto& way : task_.lines) {
       const Vector3 offset{way[0], way[1], way[2]};
@@ -270,16 +270,14 @@ class Flown {
     return at == std::string::npos ? NAN : std::strtod(words.c_str() + at + name.size() + 2, nullptr);
   }
   [[nodiscard]] Vector3 tip() { return {word("tip_x"), word("tip_y"), word("tip_z")}; }
-  [[nodiscard]] JointVector joints() {
-    JointVector now;
-    now.resize(static_cast<Eigen::Index>(arm_.in_world.size()));
-    for (std::size_t i = 0; i < arm_.in_world.size(); ++i)
-      now[static_cast<Eigen::Index>(i)] = word(fmt::format("q{}", arm_.in_world[i] + 1));
+  [[nodiscard]] std::vector<double> positions() {
+    std::vector<double> now;
+    for (const std::size_t joint : arm_.in_world) now.push_back(word(fmt::format("q{}", joint + 1)));
     return now;
   }
   [[nodiscard]] robotics::Pose pose() {
     robotics::State state;
-    state.q = joints();
+    state.q = vector_of(positions());
     state.qd = JointVector::Zero(state.q.size());
     kinematics_.update(state);
     return {kinematics_.frame_pose(arm_.tip).rotation, tip()};
@@ -330,7 +328,10 @@ std::expected<RobotTask, std::string> robot_task(const std::filesystem::path& fi
       "", [&](const std::filesystem::path&) -> Result<std::string> { return arm->robot.text; }, arm->tip_name,
       arm->fixed);
   if (!judged.robot) return std::unexpected{std::string{"hirosco new robot refuses its file"}};
-  RobotTask task{.subsystem = member->subsystem.name, .device = device->name, .tip = arm->tip_name};
+  RobotTask task;
+  task.subsystem = member->subsystem.name;
+  task.device = device->name;
+  task.tip = arm->tip_name;
   task.weakest = HUGE_VAL;
   for (const auto& joint : arm->robot.model.joints()) {
     task.joints.push_back(joint.name);
@@ -341,9 +342,9 @@ std::expected<RobotTask, std::string> robot_task(const std::filesystem::path& fi
   for (const auto& goal : {judged.robot->goal, judged.robot->posture})
     task.goals.push_back({goal, planner.goes(vector_of(goal), last)});
   for (std::size_t i = 0; i < most_goals; ++i)
-    if (const auto next = planner.another(last, task.goals.back().loaded)) {
-      task.goals.push_back({numbers(*next), true});
-      last = *next;
+    if (const auto next = planner.another(last, task.goals.back().loaded); !next.empty()) {
+      task.goals.push_back({next, true});
+      last = vector_of(next);
     }
   // Who carries something begins at the last one.
   auto &first = task.goals[0], &begin = task.goals[1];
