@@ -26,9 +26,9 @@ int fly(const std::string& mission, const std::vector<int>& only, std::uint64_t 
   fmt::print("{}: {} joints, tool {}, {} goals and {} lines there and back\n", task->subsystem, task->joints.size(),
              task->tip, task->goals.size(), task->lines.size());
   fmt::print("  {:<40} {:>16} {:>15} {:>21}\n", "", "joints, mrad", "tool, mm", "beside its line, mm");
-  fmt::print("  {:<40} {:>16} {:>15} {:>21}\n", "as required", fmt::format("<= {:g}", 1e3 * bench::most_joint_error_rad),
-             fmt::format("<= {:g}", 1e3 * bench::most_tool_error_m),
-             fmt::format("<= {:g}", 1e3 * bench::most_beside_line_m));
+  fmt::print(
+      "  {:<40} {:>16} {:>15} {:>21}\n", "as required", fmt::format("<= {:g}", 1e3 * bench::most_joint_error_rad),
+      fmt::format("<= {:g}", 1e3 * bench::most_tool_error_m), fmt::format("<= {:g}", 1e3 * bench::most_beside_line_m));
   bool all = true;
   const auto cases = bench::robot_cases(task->weakest);
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -46,7 +46,8 @@ int fly(const std::string& mission, const std::vector<int>& only, std::uint64_t 
 }
 
 int read_and_fly(int argc, char** argv) {
-  CLI::App app{"Flies the arm of a mission on virtual time, in a world that differs from its URDF file", "hirosco-robot-cases"};
+  CLI::App app{"Flies the arm of a mission on virtual time, in a world that differs from its URDF file",
+               "hirosco-robot-cases"};
   std::string mission, seed = "1";
   std::vector<int> only;
   app.add_option("mission", mission, "mission.xml of a folder that `hirosco new robot` made")->required();

@@ -199,7 +199,8 @@ class Flown {
   CaseFound fly(const RobotCase& wanted) {
     fly_all(wanted);
     for (const auto& line : flight_.story().lines()) {
-      const bool grave = line.text.find(" medium ") != std::string::npos || line.text.find(" high ") != std::string::npos;
+      const bool grave =
+          line.text.find(" medium ") != std::string::npos || line.text.find(" high ") != std::string::npos;
       const bool met = line.text.find(" CONTACT ") != std::string::npos;
       if ((grave || met) && found_.problems.size() < 6) found_.problems.push_back(line.text);
     }
@@ -359,7 +360,8 @@ std::expected<RobotTask, std::string> robot_task(const std::filesystem::path& fi
   begin.loaded = begin.loaded && planner.goes(last, vector_of(begin.joints));
   first.loaded = first.loaded && begin.loaded && planner.goes(last, vector_of(first.joints));
   for (const Vector3& way : planner.lines(last)) task.lines.push_back({way.x(), way.y(), way.z()});
-  if (task.lines.empty() || !task.goals.back().loaded) return std::unexpected{std::string{"no posture was found from which its tool goes straight"}};
+  if (task.lines.empty() || !task.goals.back().loaded)
+    return std::unexpected{std::string{"no posture was found from which its tool goes straight"}};
   return task;
 }
 

@@ -32,9 +32,11 @@ struct RobotTask {
   double weakest{0};  ///< effort
   struct Goal {
     std::vector<double> joints;
-    bool loaded{true};  ///< the drives hold 2 kg at the tool there, and on the way to and from the next such goal; else it is flown without
+    bool loaded{
+        true};  ///< the drives hold 2 kg at the tool there, and on the way to and from the next such goal; else it is flown without
   };
-  std::vector<Goal> goals;  ///< of MOVE_J, one after the other; the last one is where lines begin, and whoever carries something
+  std::vector<Goal>
+      goals;  ///< of MOVE_J, one after the other; the last one is where lines begin, and whoever carries something
   std::vector<std::vector<double>> lines;  ///< x y z, m: there and back; such as joints, velocities and drives permit
 };
 /// In words why there is none.

@@ -174,8 +174,7 @@ void join_impossible_links(Element& robot) {
     if (links.size() < 2 || std::ranges::none_of(links, impossible)) continue;
     Weight all;
     for (Element* link : links) {
-      if (const Element* inertial = child_of(*link, "inertial"))
-        add(*inertial, carried(said(link, "name")).frame, all);
+      if (const Element* inertial = child_of(*link, "inertial")) add(*inertial, carried(said(link, "name")).frame, all);
       std::erase_if(link->children, [](const Element& child) { return child.name == "inertial"; });
     }
     for (Element* link : links)

@@ -46,7 +46,8 @@ TEST(RigidLinks, WeighWhatTheyWeighWhereTheyAre) {
 }
 
 TEST(RigidLinks, ThatStandAreNobodysLoad) {
-  EXPECT_TRUE(MujocoRobot::make(slab(R"(<inertia ixx="1e-9" ixy="0" ixz="0" iyy="1e-9" iyz="0" izz="1e-9"/>)", "base")));
+  EXPECT_TRUE(
+      MujocoRobot::make(slab(R"(<inertia ixx="1e-9" ixy="0" ixz="0" iyy="1e-9" iyz="0" izz="1e-9"/>)", "base")));
 }
 
 TEST(RigidLinks, ThatAreNoBodyTogetherAreRefused) {

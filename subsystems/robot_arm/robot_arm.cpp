@@ -138,8 +138,7 @@ void RobotArm::arrive() noexcept {
   const JointVector left = setpoints_->now().position - measured_.position;
   // A long arm's joints are all there, and its tool is not.
   const auto tool = tool_values_.load().position_m;
-  const bool at_end =
-      !line_to_ || (Vector3{tool[0], tool[1], tool[2]} - *line_to_).norm() <= most_off_end_m;
+  const bool at_end = !line_to_ || (Vector3{tool[0], tool[1], tool[2]} - *line_to_).norm() <= most_off_end_m;
   const bool there = laws_->gives_way() || (at_end && left.cwiseAbs().maxCoeff() <= tolerance);
   settled_s_ = there ? settled_s_ + cycle_s_ : 0;
   waited_s_ += cycle_s_;
