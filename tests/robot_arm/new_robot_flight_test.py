@@ -129,9 +129,16 @@ class Made(unittest.TestCase):
             off = max(abs(joints[name] - goal) for name, goal in zip(robot.arm, self.goal))
             self.assertLess(off, 1e-3)
 
-            wanted = [tool[0], tool[1], tool[2] + 0.05]
-            listed = ",".join(map(str, wanted)), ",".join(map(str, robot.turned(TIP, joints)))
-            self.does(craft, SUBSYSTEM, "MOVE_L", *listed, 0.1, 0.5)
+            # Where a line of 30 mm goes to depends on where its joints have room.
+            turned = ",".join(map(str, robot.turned(TIP, joints)))
+            for axis, step in ((2, 0.03), (2, -0.03), (1, 0.03), (1, -0.03), (0, 0.03), (0, -0.03)):
+                wanted = list(truth()[2])
+                wanted[axis] += step
+                code = craft.tc(SUBSYSTEM, "MOVE_L", ",".join(map(str, wanted)), turned, 0.1, 0.5)[0]
+                if code == 0:
+                    break
+                self.does(craft, SUBSYSTEM, "MOVE_J", ",".join(map(str, self.goal)), 0.5)
+            self.assertEqual(code, 0, "no line was gone to its end")
             _, _, tool = truth()
             beside = math.dist(tool, wanted)
             self.assertLess(beside, 1e-3)
