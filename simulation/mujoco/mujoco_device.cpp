@@ -204,6 +204,11 @@ Result<> MujocoDevice::do_fault(const Words& words) {
     auto floats = robot_->let_float();
     return floats ? ok() : refuse(ErrorCode::InvalidArgument, std::move(floats.error()));
   }
+  if (words[0] == "tip") {
+    HIROSCO_TRY(words.expect(2));
+    auto set = robot_->set_tip(std::string{words[1]});
+    return set ? ok() : refuse(ErrorCode::NotFound, std::move(set.error()));
+  }
   if (words[0] == "posture" || words[0] == "rotors") {
     HIROSCO_TRY(words.expect(2));
     HIROSCO_TRY_LET(const std::vector<double> numbers, each_joint(words[1]));

@@ -22,6 +22,7 @@ namespace hirosco::simulation {
 /// Shapes of the file that touch nothing are told at its start (remarks()).
 /// Faults besides the common ones, each also a <Setting> of its mission:
 ///   base free   (before all that says where it is; floating_base.hpp)
+///   tip LINK
 ///   obstacle_NAME SHAPE [SIZES] X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | obstacle_NAME none   (shapes.hpp; 16 at most)
 ///   body_NAME SHAPE SIZES MASS X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | body_NAME none | pull_NAME X Y Z   (8 at most)
 ///   softness SECONDS

@@ -155,6 +155,16 @@ std::expected<void, std::string> MujocoRobot::let_float() {
   return build(obstacles_, bodies);
 }
 
+std::expected<void, std::string> MujocoRobot::set_tip(const std::string& link) {
+  if (!spec_.hang_payload_on(link)) return std::unexpected{fmt::format("there is no link '{}'", link)};
+  const Standing before = standing();
+  const std::vector<LooseBody> bodies = bodies_;
+  if (auto built = build(obstacles_, bodies); !built) return built;
+  stand(before);
+  feel();
+  return {};
+}
+
 void MujocoRobot::set_in_motion(const std::array<double, 6>& base_twist, std::span<const double> velocities) noexcept {
   if (base_.floats()) base_.set_twist(*data_, base_twist);
   for (std::size_t i = 0; i < std::min(velocities.size(), joints_.size()); ++i)

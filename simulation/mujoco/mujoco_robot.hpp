@@ -50,7 +50,9 @@ class MujocoRobot {
   /// What the drive and the brake give to the link: behind friction and rotor, which are theirs.
   [[nodiscard]] double torque(std::size_t joint) const noexcept { return joints_[joint].torque; }
   [[nodiscard]] double effort(std::size_t joint) const noexcept { return joints_[joint].effort; }
-  /// Of the last link, in the axes of the base, of one that floats in inertial ones, m.
+  /// From now on this link is its tip, which pushes and payloads act at; at first it is the first one that carries nothing. In words why not.
+  [[nodiscard]] std::expected<void, std::string> set_tip(const std::string& link);
+  /// Of the tip's origin, in the axes of the base, of one that floats in inertial ones, m.
   [[nodiscard]] std::span<const double, 3> tip_m() const noexcept;
   /// w x y z.
   [[nodiscard]] std::span<const double, 4> tip_orientation() const noexcept;
@@ -111,10 +113,10 @@ class MujocoRobot {
   void set_friction(double factor, double more) noexcept;
   /// What the drive of each joint moves besides links, behind its gear, kg m2 or kg; the file does not have it.
   void set_rotors(std::span<const double> inertias) noexcept;
-  /// A point with this mass at the origin of the last link.
+  /// A point with this mass at the tip's origin.
   void set_payload(double mass_kg) noexcept;
   void set_gravity(double x, double y, double z) noexcept;
-  /// A force at the last link's origin, N, in the axes of the base, until it is another.
+  /// A force at the tip's origin, N, in the axes of the base, until it is another.
   void push(double x, double y, double z) noexcept;
 
  private:

@@ -109,6 +109,23 @@ TEST(MujocoRobot, IsHeavierWhereThatIsWanted) {
   EXPECT_NEAR(std::abs(robot.torque(0)), 1.1 * weight_n_m * std::sin(0.5), 1e-2);
 }
 
+TEST(MujocoRobot, CarriesAPayloadAtTheLinkThatIsItsTip) {
+  std::string text = pendulum();
+  // The first end of the file is none that moves.
+  text.insert(text.find("<joint"),
+              R"(<link name="post"/><joint name="nail" type="fixed"><parent link="world"/><child link="post"/></joint>
+    <link name="tool"/><joint name="flange" type="fixed"><parent link="rod"/><child link="tool"/><origin xyz="0 0 -1"/></joint>)");
+  auto robot = MujocoRobot::make(text).value();
+  ASSERT_TRUE(robot.place(std::array{std::numbers::pi / 2}));
+  EXPECT_FALSE(robot.set_tip("nowhere"));
+  ASSERT_TRUE(robot.set_tip("tool"));
+  EXPECT_NEAR(robot.position(0), std::numbers::pi / 2, 1e-12) << "it stays where it is";
+  EXPECT_NEAR(robot.tip_m()[0], -1, 1e-9);
+  robot.set_payload(0.5);
+  for (int i = 0; i < 3000; ++i) robot.step(none, Brakes::Closed, 1ms);
+  EXPECT_NEAR(std::abs(robot.torque(0)), weight_n_m + 0.5 * 9.81, 1e-2);
+}
+
 TEST(MujocoRobot, RefusesInWordsWhatItCannotMove) {
   EXPECT_FALSE(MujocoRobot::make("no file"));
   std::string text = pendulum();

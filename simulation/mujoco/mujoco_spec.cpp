@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "simulation/mujoco/rigid_links.hpp"
+
 namespace hirosco::simulation {
 namespace {
 
@@ -188,7 +190,9 @@ std::expected<MujocoSpec, std::string> MujocoSpec::make(std::string_view urdf, c
         element.name == "link" && std::ranges::find(carried, link) == carried.end())
       made.root_ = body_name(link);
   std::string text;
-  write(*tree, text);
+  Element joined = *tree;
+  join_impossible_links(joined);
+  write(joined, text);
   std::array<char, 1000> why{};
   made.spec_.reset(mj_parseXMLString(text.c_str(), nullptr, why.data(), why.size()));
   if (made.spec_ == nullptr) return std::unexpected{std::string{"MuJoCo: "} + why.data()};
@@ -198,16 +202,23 @@ std::expected<MujocoSpec, std::string> MujocoSpec::make(std::string_view urdf, c
   spec.option.cone = mjCONE_ELLIPTIC;
   spec.option.impratio = friction_stiffness;
   spec.compiler.usethread = 0;
-  mjsBody* last = leaf != carried.end() ? mjs_findBody(&spec, leaf->c_str()) : nullptr;
-  if (mjsBody* payload = last != nullptr ? mjs_addBody(last, nullptr) : nullptr) {
-    mjs_setName(payload->element, payload_body);
-    payload->explicitinertial = 1;
-  }
+  if (leaf != carried.end()) static_cast<void>(made.hang_payload_on(*leaf));
   for (const Mimic& mimic : mimics) add(mimic, spec);
   made.mimics_ = mimics.size();
   made.add_shapes(*tree, meshes);
   if (auto done = made.leave_out_pairs(); !done) return std::unexpected{std::move(done.error())};
   return made;
+}
+
+bool MujocoSpec::hang_payload_on(const std::string& link) {
+  mjsBody* carrier = mjs_findBody(spec_.get(), body_name(link).c_str());
+  if (carrier == nullptr || link == payload_body) return false;
+  if (mjsBody* before = mjs_findBody(spec_.get(), payload_body)) mjs_delete(spec_.get(), before->element);
+  mjsBody* payload = mjs_addBody(carrier, nullptr);
+  if (payload == nullptr) return false;
+  mjs_setName(payload->element, payload_body);
+  payload->explicitinertial = 1;
+  return true;
 }
 
 std::expected<void, std::string> MujocoSpec::let_float() {

@@ -47,6 +47,8 @@ class MujocoSpec {
   /// In the order of the file.
   [[nodiscard]] const std::vector<DrivenJoint>& joints() const noexcept { return joints_; }
   [[nodiscard]] std::size_t mimics() const noexcept { return mimics_; }
+  /// What pushes and hangs on it does so at the origin of this link; at first of the first one that carries nothing. False: there is no such link.
+  [[nodiscard]] bool hang_payload_on(const std::string& link);
   /// From now on nothing holds the root link (floating_base.hpp). In words why not.
   [[nodiscard]] std::expected<void, std::string> let_float();
   [[nodiscard]] bool floats() const noexcept { return floats_; }

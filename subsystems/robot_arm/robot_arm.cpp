@@ -20,8 +20,8 @@ constexpr double settled_enough_s = 0.02;
 constexpr double patience_s = 3;
 /// A telecommand is waited for a little longer.
 constexpr double longest_motion_s = 60;
-/// Of a line, before it is given up.
-constexpr double most_off_line_m = 0.002;
+/// Of a line, before it is given up; of its end, where the tool has to be measured.
+constexpr double most_off_line_m = 0.002, most_off_end_m = 0.001;
 
 [[nodiscard]] std::int64_t millimetres(double metres) noexcept {
   return static_cast<std::int64_t>(std::clamp(1e3 * metres, -1e6, 1e6));
@@ -136,7 +136,10 @@ void RobotArm::advance() noexcept {
 void RobotArm::arrive() noexcept {
   const double tolerance = goal_tolerance_.load();
   const JointVector left = setpoints_->now().position - measured_.position;
-  const bool there = laws_->gives_way() || left.cwiseAbs().maxCoeff() <= tolerance;
+  // A long arm's joints are all there, and its tool is not.
+  const auto tool = tool_values_.load().position_m;
+  const bool at_end = !line_to_ || (Vector3{tool[0], tool[1], tool[2]} - *line_to_).norm() <= most_off_end_m;
+  const bool there = laws_->gives_way() || (at_end && left.cwiseAbs().maxCoeff() <= tolerance);
   settled_s_ = there ? settled_s_ + cycle_s_ : 0;
   waited_s_ += cycle_s_;
   if (settled_s_ >= settled_enough_s) {
@@ -232,6 +235,7 @@ Outcome RobotArm::start(const Result<>& planned, const Call& call) noexcept {
     return refused(Trouble::too_slow, "it would take longer, s", static_cast<std::int64_t>(longest_motion_s));
   }
   motion_ = call;
+  line_to_.reset();
   half_reported_ = false;
   arrives_ = true;
   settled_s_ = waited_s_ = jog_left_s_ = 0;
@@ -253,13 +257,16 @@ Outcome RobotArm::move_l(const FunctionValues& values, const Call& call) noexcep
   const robotics::Quaternion wanted{values[3], values[4], values[5], values[6]};
   if (!(wanted.norm() > 0.5 && wanted.norm() < 1.5)) return refused(Trouble::no_goal, "no orientation");
   const robotics::Pose goal{wanted.normalized().toRotationMatrix(), {values[0], values[1], values[2]}};
-  return start(setpoints_->go_straight(goal, {values[7], values[8]}), call);
+  const Outcome started = start(setpoints_->go_straight(goal, {values[7], values[8]}), call);
+  line_to_ = goal.position;
+  return started;
 }
 
 Outcome RobotArm::jog_j(const FunctionValues& values, const Call& call) noexcept {
   if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
   setpoints_->jog(robot_arm::vector_of(std::span{values}.first(bounds_.size())));
   motion_ = call;
+  line_to_.reset();
   arrives_ = false;
   settled_s_ = waited_s_ = 0;
   jog_left_s_ = values[bounds_.size()];
@@ -272,6 +279,7 @@ Outcome RobotArm::jog_l(const FunctionValues& values, const Call& call) noexcept
   twist << values[3], values[4], values[5], values[0], values[1], values[2];
   setpoints_->jog(twist);
   motion_ = call;
+  line_to_.reset();
   arrives_ = false;
   settled_s_ = waited_s_ = 0;
   jog_left_s_ = values[6];

@@ -140,6 +140,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   robot_arm::Measured measured_;
   robot_arm::Joints rotor_;
   robot_arm::JointVector goal_;
+  std::optional<robot_arm::Vector3> line_to_;  ///< where the tool is to be at the end of its line
   double cycle_s_{0.001};
   std::size_t tried_{0};  ///< in a self test: each joint to each side
   std::uint32_t contact_cycles_{0};

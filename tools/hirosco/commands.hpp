@@ -194,6 +194,7 @@ struct NewOptions {
   std::string to{"."};  ///< folder that gets the new one
   std::string urdf;  ///< of a robot: its file; empty = the one that comes with the template
   std::string tip;  ///< of a robot: link; empty = the only end that moves
+  std::string gripper;  ///< of a robot: joints that are a subsystem of their own; empty = none
 };
 /// A folder of one's own to begin with (adr 0109).
 int make_new(const NewOptions& options);

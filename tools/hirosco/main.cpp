@@ -112,6 +112,8 @@ int read_and_do(int argc, char** argv) {
                           "Of a robot: its URDF file; by default an arm that is there to try");
   new_command->add_option("--tip", new_options.tip,
                           "Of a robot: the link that is its tool; by default the only end that moves");
+  new_command->add_option("--gripper", new_options.gripper,
+                          "Of a robot: joints that drive fingers (NAME,NAME): a subsystem of their own");
 
   SimulateOptions simulate_options;
   std::string simulate_for = "10s";

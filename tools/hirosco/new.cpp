@@ -43,7 +43,7 @@ constexpr const char* world_program = "hirosco-sim-mujoco";
                                                      const fs::path& from) {
   const auto source = descriptor::file_system();
   const fs::path file = options.urdf.empty() ? referred(from, "page/newpart.urdf") : fs::path{options.urdf};
-  JudgedRobot judged = judge_robot(file, source, options.tip);
+  JudgedRobot judged = judge_robot(file, source, options.tip, options.gripper);
   const bool colour = ::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   for (const auto* list : {&judged.problems, &judged.warnings})
     for (const auto& problem : *list) fmt::print(stderr, "{}", descriptor::render(problem, source, colour));
@@ -75,8 +75,8 @@ int make_new(const NewOptions& options) {
     fmt::print(stderr, "hirosco new: '{}' is no name for it: {}\n", options.name, name.error());
     return exit_usage;
   }
-  if (!kind->of_urdf && !(options.urdf.empty() && options.tip.empty())) {
-    fmt::print(stderr, "hirosco new: --urdf and --tip are of a robot: hirosco new robot {} --urdf FILE\n",
+  if (!kind->of_urdf && !(options.urdf.empty() && options.tip.empty() && options.gripper.empty())) {
+    fmt::print(stderr, "hirosco new: --urdf, --tip and --gripper are of a robot: hirosco new robot {} --urdf FILE\n",
                options.name);
     return exit_usage;
   }

@@ -11,7 +11,7 @@
 
 #include "hirosco/xml/reader.hpp"
 #include "robotics/dynamics/dynamics.hpp"
-#include "robotics/urdf/robot.hpp"
+#include "robotics/urdf/named_robot.hpp"
 #include "tools/new_folder/robot.hpp"
 
 namespace hirosco::tools {
@@ -98,21 +98,44 @@ class Statics {
 
 class Judge {
  public:
-  Judge(std::filesystem::path file, const robotics::urdf::Robot& robot, std::string text, JudgedRobot& judged)
-      : file_{std::move(file)}, robot_{robot}, text_{std::move(text)}, judged_{judged} {
+  Judge(std::filesystem::path file, robotics::urdf::Robot robot, std::string text, JudgedRobot& judged)
+      : file_{std::move(file)}, robot_{std::move(robot)}, text_{std::move(text)}, judged_{judged} {
     if (auto tree = xml::read_tree(text_)) root_ = std::move(*tree);
   }
 
-  void judge(const std::string& wanted_tip) {
+  void judge(std::string wanted_tip, const std::vector<std::string>& fingers) {
     judge_bodies();
-    const std::string tip = judge_tip(wanted_tip);
     auto model = robotics::Model::make(robotics::urdf::describe(robot_));
     if (!model) return problem(place(root_), "U0310", model.error().text, "");
     judge_drives(*model);
+    std::vector<std::string> world_joints;
+    for (const auto& joint : model->joints()) world_joints.push_back(joint.name);
+    std::optional<NewGripper> gripper;
+    if (!fingers.empty()) {
+      if (!judged_.problems.empty()) return;
+      gripper =
+          judge_gripper(robot_, *model, fingers, [&](std::string_view joint, std::string message, std::string hint) {
+            problem(place_of("joint", joint, "name"), "U0608", std::move(message), std::move(hint));
+          });
+      if (!gripper) return;
+      if (wanted_tip.empty()) wanted_tip = gripper->carrier;
+      // Each is known: nothing is left to be told.
+      static_cast<void>(robotics::urdf::fix(robot_, fingers));
+      model = robotics::Model::make(robotics::urdf::describe(robot_));
+      if (!model) return problem(place(root_), "U0310", model.error().text, "");
+    }
+    const std::string tip = judge_tip(wanted_tip);
     if (!judged_.problems.empty()) return;
     const auto frame = model->find_frame(tip);
     if (!frame) return;
-    NewRobot made{.name = robot_.name, .urdf = text_, .model = *model, .tip = tip, .posture = {}, .goal = {}};
+    NewRobot made{.name = robot_.name,
+                  .urdf = text_,
+                  .model = *model,
+                  .hand = std::move(gripper),
+                  .world_joints = std::move(world_joints),
+                  .tip = tip,
+                  .posture = {},
+                  .goal = {}};
     if (find_postures(made, *frame)) judged_.robot = std::move(made);
   }
 
@@ -146,19 +169,28 @@ class Judge {
     return Eigen::SelfAdjointEigenSolver<robotics::Matrix3>{inertia.about_centre, Eigen::EigenvaluesOnly}.eigenvalues();
   }
 
-  /// Its world takes each link by itself, and no inertia that no body has.
+  [[nodiscard]] static bool may_be(const robotics::Inertia& inertia) {
+    if (inertia.about_centre.isZero(0)) return true;
+    const auto moments = principal_moments(inertia);
+    const double largest = moments.maxCoeff();
+    return moments.minCoeff() >= least_moment && largest <= (moments.sum() - largest) * (1 + rounding);
+  }
+
+  /// Its world takes no inertia that no body has; of links that are fixed to each other that of all of them counts.
   void judge_bodies() {
+    const auto whole = robotics::urdf::describe(robot_);
+    const auto body_of = [&](const std::string& link) -> const robotics::Inertia& {
+      const auto frame = std::ranges::find(whole.frames, link, &robotics::FrameDescription::name);
+      return frame != whole.frames.end() && frame->joint ? whole.joints[*frame->joint].moved : whole.base;
+    };
     for (const auto& link : robot_.links) {
-      if (!link.inertia) continue;
-      if (link.inertia->about_centre.isZero(0)) continue;
+      if (!link.inertia || may_be(*link.inertia) || may_be(body_of(link.name))) continue;
       const auto moments = principal_moments(*link.inertia);
-      const double largest = moments.maxCoeff();
-      if (moments.minCoeff() >= least_moment && largest <= (moments.sum() - largest) * (1 + rounding)) continue;
       problem(place_of("link", link.name, "inertia"), "U0604",
               fmt::format("no body has the inertia of link '{}': principal moments {:.4g}, {:.4g} and {:.4g} kg m2",
                           link.name, moments[0], moments[1], moments[2]),
-              "each is above 0 and at most the sum of the others; the world of a simulated flight takes no other: look "
-              "for a typing error or a wrong unit");
+              "each is above 0 and at most the sum of the others, of it or of all that is fixed to it; the world of a "
+              "simulated flight takes no other: look for a typing error or a wrong unit");
     }
     for (const auto& joint : robot_.joints)
       if (joint.type != robotics::urdf::JointType::Fixed && !has_body(joint.child))
@@ -331,7 +363,7 @@ class Judge {
   }
 
   std::filesystem::path file_;
-  const robotics::urdf::Robot& robot_;
+  robotics::urdf::Robot robot_;
   std::string text_;
   JudgedRobot& judged_;
   xml::Element root_;
@@ -340,15 +372,16 @@ class Judge {
 
 }  // namespace
 
-JudgedRobot judge_robot(const std::filesystem::path& file, const descriptor::FileSource& source,
-                        const std::string& tip) {
+JudgedRobot judge_robot(const std::filesystem::path& file, const descriptor::FileSource& source, const std::string& tip,
+                        const std::string& gripper) {
   const auto text = source(file);
   auto reading = text ? robotics::urdf::read(file, *text) : robotics::urdf::read(file, source);
   JudgedRobot judged{.robot = {}, .problems = std::move(reading.problems), .warnings = std::move(reading.warnings)};
   if (!reading.value) return judged;
-  Judge{file, *reading.value, *text, judged}.judge(tip);
+  Judge{file, *reading.value, *text, judged}.judge(tip, robotics::urdf::listed_names(gripper));
   // Said more gravely by U0604.
-  std::erase_if(judged.warnings, [](const Diagnostic& one) { return one.code == "U0504" || one.code == "U0508"; });
+  if (std::ranges::find(judged.problems, std::string_view{"U0604"}, &Diagnostic::code) != judged.problems.end())
+    std::erase_if(judged.warnings, [](const Diagnostic& one) { return one.code == "U0504" || one.code == "U0508"; });
   std::ranges::stable_sort(judged.problems, [](const Diagnostic& one, const Diagnostic& other) {
     return std::pair{one.at.line, one.at.column} < std::pair{other.at.line, other.at.column};
   });

@@ -47,6 +47,18 @@ void replace_all(std::string& text, std::string_view word, const std::string& by
   return {std::istreambuf_iterator<char>{text}, {}};
 }
 
+[[nodiscard]] std::string without_lines(const std::string& text, const std::vector<std::string>& words) {
+  if (words.empty()) return text;
+  std::string made;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+    const std::string_view line{text.data() + begin, end - begin};
+    if (std::ranges::none_of(words, [&](const std::string& word) { return line.starts_with(word); })) made += line;
+    begin = end;
+  }
+  return made;
+}
+
 /// Empty: all are made.
 [[nodiscard]] std::string make_files(const fs::path& from, const fs::path& target, const NewName& name,
                                      const NewParts& parts, std::vector<fs::path>& made) {
@@ -61,7 +73,9 @@ void replace_all(std::string& text, std::string_view word, const std::string& by
   };
   for (const auto& entry : fs::recursive_directory_iterator{from, failed}) {
     if (!entry.is_regular_file(failed) || entry.path().extension() == reference_ending) continue;
-    if (!make(fs::relative(entry.path(), from, failed).string(), named_text(read(entry.path()), name, parts)))
+    const std::string as_in_template = fs::relative(entry.path(), from, failed).string();
+    if (std::ranges::find(parts.without_files, as_in_template) != parts.without_files.end()) continue;
+    if (!make(as_in_template, named_text(read(entry.path()), name, parts)))
       return fmt::format("{} cannot be written", made.back().string());
   }
   for (const auto& [as_in_template, text] : parts.files)
@@ -121,7 +135,7 @@ std::string without_licence(const std::string& text) {
 }
 
 std::string named_text(const std::string& text, const NewName& name, const NewParts& parts) {
-  std::string made = without_licence(text);
+  std::string made = without_lines(without_licence(text), parts.without_lines);
   replace_all(made, lower_word, name.lower);
   replace_all(made, upper_word, name.upper);
   replace_all(made, camel_word, name.camel);

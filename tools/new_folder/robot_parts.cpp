@@ -114,6 +114,16 @@ struct Widest {
   return plots;
 }
 
+[[nodiscard]] ordered_json force_plot(const std::string& gripper) {
+  ordered_json plot;
+  plot["title"] = "Force of the fingers";
+  plot["hint"] = "N";
+  plot["least"] = 2;
+  plot["curves"].push_back(curve(gripper + ".GAP.FORCE", "is", "is"));
+  plot["curves"].push_back(curve(gripper + ".GAP.WANTED_FORCE", "set", "set"));
+  return plot;
+}
+
 /// Of the page (ground/web/README.md).
 [[nodiscard]] std::string scene_of(const NewRobot& robot, const NewName& name) {
   ordered_json shown;
@@ -129,6 +139,11 @@ struct Widest {
     goal["joints"][joint] = fmt::format("GOAL[{}]", i);
     jog["joints"][joint] = fmt::format("VELOCITY[{}]", i);
   }
+  for (std::size_t i = 0; robot.hand && i < robot.hand->joints.size(); ++i) {
+    const std::string& joint = robot.hand->joints[i].name;
+    shown["joints"][joint] = fmt::format("{}_GRIPPER.CUR_VALUES.POSITION[{}]", name.upper, i);
+    shown["names"][joint] = robot.hand->joints.size() == 1 ? "fingers" : fmt::format("finger {}", i + 1);
+  }
   goal["speed"] = "SPEED";
   shown["goal"] = goal;
   shown["jog"] = jog;
@@ -142,6 +157,7 @@ struct Widest {
   scene["camera"]["above_m"] = rounded(0.1 * reach, 0, middle + 2.4 * reach);
   scene["camera"]["tip_from_m"] = rounded(0.7 * reach, -0.7 * reach, middle + 0.4 * reach);
   scene["plots"] = plots_of(robot.model, name.upper);
+  if (robot.hand) scene["plots"].push_back(force_plot(name.upper + "_GRIPPER"));
   return scene.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -154,6 +170,69 @@ struct Timing {
   Timing timing{.budget = static_cast<int>(std::ceil(budget / 50) * 50)};
   if (budget > most_budget_us) timing.sampling *= 2;
   return timing;
+}
+
+/// Of one that opens to 100 mm and presses with 40 N: 3, 10, 1 and 32 N.
+constexpr double felt_share = 0.075, move_share = 0.25, least_grip_share = 0.025, most_grip_share = 0.8;
+constexpr double least_force_n = 0.5;
+
+/// Of all joints of the world in the order of the file.
+struct Begins {
+  std::vector<std::string> posture, rotors;
+};
+[[nodiscard]] Begins begins_of(const NewRobot& robot) {
+  Begins begins;
+  for (const std::string& world : robot.world_joints) {
+    for (std::size_t i = 0; i < robot.model.joints().size(); ++i) {
+      if (robot.model.joints()[i].name != world) continue;
+      begins.posture.push_back(fmt::format("{}", robot.posture[i]));
+      begins.rotors.push_back(brief(rotor(*robot.model.joints()[i].limits.effort)));
+    }
+    if (!robot.hand) continue;
+    for (const auto& joint : robot.hand->joints) {
+      if (joint.name != world) continue;
+      // Nearly all open.
+      const double lower = *joint.limits.lower, upper = *joint.limits.upper, in = 0.05 * (upper - lower);
+      begins.posture.push_back(brief(robot.hand->closed_is_upper ? lower + in : upper - in));
+      begins.rotors.push_back(brief(rotor(*joint.limits.effort)));
+    }
+  }
+  return begins;
+}
+
+/// Of the fingers: what stands in lines and files of the templates that robots without them do without.
+void add_hand(const NewGripper& hand, std::map<std::string, std::string>& words) {
+  std::vector<std::string> joints, rotors, safe;
+  std::string names;
+  double strongest = 0;
+  for (const auto& joint : hand.joints) {
+    joints.push_back(xml::escaped(joint.name));
+    names += fmt::format("    <Text value=\"{}\">{}</Text>\n", joints.size(), joints.back());
+    rotors.push_back(brief(rotor(*joint.limits.effort)));
+    safe.emplace_back("0");
+    strongest = std::max(strongest, *joint.limits.effort);
+  }
+  const auto force = [&](double share) { return brief(std::max(least_force_n, share * hand.most_force_n)); };
+  const std::map<std::string, std::string> more{{"@hand@", ""},
+                                                {"@hand_joints@", fmt::format("{}", fmt::join(joints, ","))},
+                                                {"@hand_force@", brief(hand.most_force_n)},
+                                                {"@fingers@", std::to_string(joints.size())},
+                                                {"@finger_names@", names},
+                                                {"@finger_rotors@", fmt::format("{}", fmt::join(rotors, " "))},
+                                                {"@finger_safe@", fmt::format("{}", fmt::join(safe, " "))},
+                                                {"@finger_strongest@", brief(strongest)},
+                                                {"@closed@", hand.closed_is_upper ? "upper" : "lower"},
+                                                {"@full_width@", brief(hand.full_width_m)},
+                                                {"@felt_force@", force(felt_share)},
+                                                {"@move_force@", force(move_share)},
+                                                {"@least_force@", brief(least_force_n)},
+                                                {"@least_grip@", brief(least_grip_share * hand.most_force_n)},
+                                                {"@most_grip@", brief(most_grip_share * hand.most_force_n)},
+                                                {"@gap_speed@", brief(hand.most_speed_m_s)},
+                                                {"@grip_speed@", brief(hand.most_speed_m_s / 2)},
+                                                {"@tried_grip@", brief(std::min(20.0, hand.most_force_n / 2))},
+                                                {"@tried_speed@", brief(hand.most_speed_m_s / 4)}};
+  words.insert(more.begin(), more.end());
 }
 
 }  // namespace
@@ -170,33 +249,41 @@ NewParts parts_of(const NewRobot& robot, const NewName& name) {
     rotors.push_back(brief(rotor(*joint.limits.effort)));
     safe.emplace_back("0");
   }
-  return {.words = {{"@robot@", robot.name},
-                    {"@joints@", std::to_string(model.joint_count())},
-                    {"@joint_names@", names},
-                    {"@tip@", xml::escaped(robot.tip)},
-                    {"@lowest@", fmt::format("{:.10g}", all.lowest - beyond_all)},
-                    {"@highest@", fmt::format("{:.10g}", all.highest + beyond_all)},
-                    {"@fastest@", fmt::format("{}", all.fastest)},
-                    {"@strongest@", fmt::format("{}", all.strongest)},
-                    {"@safe@", fmt::format("{}", fmt::join(safe, " "))},
-                    {"@rotors@", fmt::format("{}", fmt::join(rotors, " "))},
-                    {"@rotors_of_world@", fmt::format("{}", fmt::join(rotors, ","))},
-                    {"@rotors_most@", brief(std::max(usual_rotor_most, 2 * all.heaviest_rotor))},
-                    {"@budget@", std::to_string(timing.budget)},
-                    {"@sampling@", std::to_string(timing.sampling)},
-                    {"@acceleration@", brief(robot.acceleration)},
-                    {"@jerk@", brief(robot.acceleration * jerk_per_acceleration)},
-                    {"@reach@", brief(std::max(usual_reach_m, std::ceil(robot.reach_m)))},
-                    {"@posture@", fmt::format("{}", fmt::join(robot.posture, ","))},
-                    {"@goal@", fmt::format("{}", fmt::join(robot.goal, ","))},
-                    {"@place_unit@", unit(model, "rad", "m")},
-                    {"@speed_unit@", unit(model, "rad/s", "m/s")},
-                    {"@acceleration_unit@", unit(model, "rad/s2", "m/s2")},
-                    {"@jerk_unit@", unit(model, "rad/s3", "m/s3")},
-                    {"@force_unit@", unit(model, "N m", "N")},
-                    {"@stiffness_unit@", unit(model, "N m/rad", "N/m")},
-                    {"@inertia_unit@", unit(model, "kg m2", "kg")}},
-          .files = {{"page/newpart.urdf", robot.urdf}, {"page/scene.json", scene_of(robot, name)}}};
+  const Begins begins = begins_of(robot);
+  NewParts parts{.words = {{"@robot@", robot.name},
+                           {"@joints@", std::to_string(model.joint_count())},
+                           {"@joint_names@", names},
+                           {"@tip@", xml::escaped(robot.tip)},
+                           {"@lowest@", fmt::format("{:.10g}", all.lowest - beyond_all)},
+                           {"@highest@", fmt::format("{:.10g}", all.highest + beyond_all)},
+                           {"@fastest@", fmt::format("{}", all.fastest)},
+                           {"@strongest@", fmt::format("{}", all.strongest)},
+                           {"@safe@", fmt::format("{}", fmt::join(safe, " "))},
+                           {"@rotors@", fmt::format("{}", fmt::join(rotors, " "))},
+                           {"@rotors_of_world@", fmt::format("{}", fmt::join(begins.rotors, ","))},
+                           {"@rotors_most@", brief(std::max(usual_rotor_most, 2 * all.heaviest_rotor))},
+                           {"@budget@", std::to_string(timing.budget)},
+                           {"@sampling@", std::to_string(timing.sampling)},
+                           {"@acceleration@", brief(robot.acceleration)},
+                           {"@jerk@", brief(robot.acceleration * jerk_per_acceleration)},
+                           {"@reach@", brief(std::max(usual_reach_m, std::ceil(robot.reach_m)))},
+                           {"@posture@", fmt::format("{}", fmt::join(begins.posture, ","))},
+                           {"@goal@", fmt::format("{}", fmt::join(robot.goal, ","))},
+                           {"@place_unit@", unit(model, "rad", "m")},
+                           {"@speed_unit@", unit(model, "rad/s", "m/s")},
+                           {"@acceleration_unit@", unit(model, "rad/s2", "m/s2")},
+                           {"@jerk_unit@", unit(model, "rad/s3", "m/s3")},
+                           {"@force_unit@", unit(model, "N m", "N")},
+                           {"@stiffness_unit@", unit(model, "N m/rad", "N/m")},
+                           {"@inertia_unit@", unit(model, "kg m2", "kg")}},
+                 .files = {{"page/newpart.urdf", robot.urdf}, {"page/scene.json", scene_of(robot, name)}}};
+  if (robot.hand) {
+    add_hand(*robot.hand, parts.words);
+  } else {
+    parts.without_lines.emplace_back("@hand@");
+    parts.without_files.emplace_back("newpart_gripper.xml");
+  }
+  return parts;
 }
 
 }  // namespace hirosco::tools

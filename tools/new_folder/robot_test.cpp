@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/new_folder/robot.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,8 +34,9 @@ struct Parts {
          "link=\"tool\"/></joint><link name=\"tool\"/>\n" +
          parts.more + "</robot>";
 }
-[[nodiscard]] JudgedRobot judged(const std::string& text, const std::string& tip = "") {
-  return judge_robot("rod.urdf", [&](const fs::path&) -> Result<std::string> { return text; }, tip);
+[[nodiscard]] JudgedRobot judged(const std::string& text, const std::string& tip = "",
+                                 const std::string& gripper = "") {
+  return judge_robot("rod.urdf", [&](const fs::path&) -> Result<std::string> { return text; }, tip, gripper);
 }
 [[nodiscard]] std::string in_repository(const char* file) {
   return descriptor::file_system()(fs::path{HIROSCO_SOURCE_DIR} / file).value();
@@ -124,9 +126,27 @@ TEST(NewRobot, IsRefusedWithPlaceReasonAndWhatToDo) {
   EXPECT_TRUE(judged(text_of({.more = second}), "other").robot) << "once the tool is named";
 }
 
+TEST(NewRobot, TakesALinkThatIsNoBodyWhereItIsOneWithWhatItIsFixedTo) {
+  const auto with = [](const char* inertia) {
+    return judged(text_of({.more = fmt::format(
+                               R"(<joint name="screw" type="fixed"><parent link="rod"/><child link="antenna"/></joint>
+<link name="antenna"><inertial><mass value="0.001"/>{}</inertial></link>)",
+                               inertia)}),
+                  "tool");
+  };
+  const auto light = with(R"(<inertia ixx="-1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/>)");
+  EXPECT_TRUE(light.robot);
+  ASSERT_EQ(light.warnings.size(), 1u);
+  EXPECT_EQ(light.warnings.front().code, "U0508");
+  const auto heavy = with(R"(<inertia ixx="9" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/>)");
+  ASSERT_EQ(heavy.problems.size(), 1u);
+  EXPECT_THAT(heavy.problems.front().message, HasSubstr("no body has the inertia of link 'antenna'"));
+  EXPECT_TRUE(heavy.warnings.empty()) << "said once";
+}
+
 TEST(NewRobot, EveryCodeIsExplained) {
   const std::string page = in_repository("docs/urdf-errors.md");
-  for (const char* code : {"U0601", "U0602", "U0603", "U0604", "U0605", "U0606", "U0607"})
+  for (const char* code : {"U0601", "U0602", "U0603", "U0604", "U0605", "U0606", "U0607", "U0608"})
     EXPECT_THAT(page, HasSubstr(std::string{"| "} + code + " |"));
 }
 
@@ -173,6 +193,60 @@ TEST(NewRobot, SaysBothUnitsWhereSomeJointsSlide) {
   EXPECT_EQ(words.at("@rotors@"), "0.2 0.1");
   EXPECT_EQ(words.at("@lowest@"), "-1.05");
   EXPECT_EQ(words.at("@strongest@"), "60");
+}
+
+/// A pair of fingers at the tool, the second of which follows the first; both at the middle at `lower`.
+[[nodiscard]] std::string with_fingers(const char* lower = "0", const char* upper = "0.04") {
+  std::string more;
+  for (const char* side : {"left", "right"}) {
+    const bool left = std::string_view{side} == "left";
+    more += fmt::format(
+        R"(<joint name="{0}_slide" type="prismatic"><parent link="tool"/><child link="{0}"/><axis xyz="0 {1} 0"/>
+<limit lower="{2}" upper="{3}" velocity="0.1" effort="40"/>{4}</joint><link name="{0}"><inertial><mass value="0.1"/>
+<inertia ixx="0.001" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="0.001"/></inertial></link>)",
+        side, left ? 1 : -1, lower, upper, left ? "" : R"(<mimic joint="left_slide"/>)");
+  }
+  return text_of({.more = more});
+}
+
+TEST(NewRobot, TakesFingersForASubsystemOfTheirOwnInTheArmsWorld) {
+  const auto found = judged(with_fingers(), "", "left_slide");
+  ASSERT_TRUE(found.robot) << found.problems.front().message;
+  const NewRobot& robot = *found.robot;
+  EXPECT_EQ(robot.tip, "tool") << "where they slide";
+  EXPECT_EQ(robot.model.joint_count(), 1);
+  ASSERT_TRUE(robot.hand);
+  EXPECT_NEAR(robot.hand->full_width_m, 0.08, 1e-12);
+  EXPECT_NEAR(robot.hand->most_force_n, 20, 1e-9) << "one drive of 40 N for both";
+  EXPECT_NEAR(robot.hand->most_speed_m_s, 0.2, 1e-12);
+  EXPECT_FALSE(robot.hand->closed_is_upper);
+  const auto parts = parts_of(robot, new_name("rod").value());
+  EXPECT_EQ(parts.words.at("@posture@"), "0,0.038") << "of both, fingers nearly open";
+  EXPECT_EQ(parts.words.at("@joints@"), "1");
+  EXPECT_EQ(named_text("@hand@a @hand_joints@\nb @closed@ @most_grip@ @gap_speed@\n", new_name("rod").value(), parts),
+            "a left_slide\nb lower 16 0.2\n");
+  const auto shown = nlohmann::json::parse(parts.files[1].second).at("robots").at(0);
+  EXPECT_EQ(shown.at("joints").at("left_slide"), "ROD_GRIPPER.CUR_VALUES.POSITION[0]");
+  EXPECT_FALSE(shown.at("goal").at("joints").contains("left_slide"));
+}
+
+TEST(NewRobot, SeesAtWhichEndFingersAreClosed) {
+  EXPECT_TRUE(judged(with_fingers("-0.04", "0"), "", "left_slide").robot->hand->closed_is_upper);
+}
+
+TEST(NewRobot, SaysWhatIsNoGripper) {
+  const auto why = [](const char* gripper) { return judged(with_fingers(), "tool", gripper).problems.at(0); };
+  EXPECT_THAT(why("thumb").message, HasSubstr("no joint 'thumb' that moves by itself"));
+  EXPECT_THAT(why("right_slide").message, HasSubstr("no joint 'right_slide'")) << "it follows another one";
+  EXPECT_THAT(why("swing").message, HasSubstr("joint 'swing' turns"));
+  EXPECT_EQ(why("swing").code, "U0608");
+  EXPECT_EQ(why("swing").at.line, 5);
+}
+
+TEST(NewRobot, WithoutAGripperItsLinesAndItsFileAreLeftOut) {
+  const auto parts = parts_of(*judged(text_of()).robot, new_name("rod").value());
+  EXPECT_EQ(named_text("a\n@hand@b\nc\n", new_name("rod").value(), parts), "a\nc\n");
+  EXPECT_THAT(parts.without_files, ElementsAre("newpart_gripper.xml"));
 }
 
 TEST(NewRobot, NamesOfAFileAreNoMarkup) {

@@ -12,6 +12,8 @@ constexpr double left_alone = 1e-4;
 constexpr double at_rest = 1e-6;
 /// An error this large is a collision or a jump and not the model's: nothing is learnt from it.
 constexpr double not_learnt = 0.05;
+/// Of what a joint's integral may give, what others' integrals and another posture may make of it.
+constexpr double most_beyond = 1.5;
 
 [[nodiscard]] double rotor_of(const Law::Settings& settings, Eigen::Index joint) noexcept {
   const auto i = static_cast<std::size_t>(joint);
@@ -34,13 +36,23 @@ void Law::learn(const JointVector& error, const Setpoint& wanted, const Measured
                 robotics::Dynamics& dynamics, Bounds bounds, const Settings& settings) noexcept {
   const double w = settings.bandwidth_rad_s;
   dynamics.mass_matrix(mass_);
+  // What it gives to each joint: of coupled ones each has to answer for what the others' does to it, so it is the torque that is bounded.
+  JointVector given;
+  given.noalias() = mass_.lazyProduct(integral_);
+  double within = 1;
+  for (Eigen::Index i = 0; i < error.size(); ++i) {
+    given[i] = w * w * w * (given[i] + rotor_of(settings, i) * integral_[i]);
+    const double most = settings.integral_share * bounds[static_cast<std::size_t>(i)].effort;
+    if (std::abs(given[i]) > most_beyond * most) within = std::min(within, most_beyond * most / std::abs(given[i]));
+  }
+  integral_ *= within;
   for (Eigen::Index i = 0; i < error.size(); ++i) {
     const bool rests = std::abs(wanted.velocity[i]) < at_rest;
     if (rests && std::abs(error[i]) < left_alone && std::abs(measured.velocity[i]) < friction_knee) continue;
     if (!(std::abs(error[i]) < not_learnt) || saturated_) continue;
-    const double most = settings.integral_share * bounds[static_cast<std::size_t>(i)].effort /
-                        std::max(mass_(i, i) + rotor_of(settings, i), 1e-9) / (w * w * w);
-    integral_[i] = std::clamp(integral_[i] + error[i] * cycle_s_, -most, most);
+    const double most = settings.integral_share * bounds[static_cast<std::size_t>(i)].effort;
+    if (std::abs(given[i]) >= most && given[i] * error[i] > 0) continue;
+    integral_[i] += error[i] * cycle_s_;
   }
 }
 

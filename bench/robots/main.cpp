@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/robots/robot_cases.hpp"
+#include "tools/hirosco/command_line.hpp"
+#include "tools/hirosco/commands.hpp"
+
+/// `hirosco-robot-cases MISSION`: how exactly the arm of a folder that `hirosco new robot` made goes where it is told to.
+namespace {
+
+using namespace hirosco;
+
+int fly(const std::string& mission, const std::vector<int>& only, std::uint64_t seed) {
+  const auto task = bench::robot_task(mission);
+  if (!task) {
+    fmt::print(stderr, "hirosco-robot-cases: {}: {}\n", mission, task.error());
+    return tools::exit_finding;
+  }
+  fmt::print("{}: {} joints, tool {}, {} goals and {} lines there and back\n", task->subsystem, task->joints.size(),
+             task->tip, task->goals.size(), task->lines.size());
+  fmt::print("  {:<40} {:>16} {:>15} {:>21}\n", "", "joints, mrad", "tool, mm", "beside its line, mm");
+  fmt::print(
+      "  {:<40} {:>16} {:>15} {:>21}\n", "as required", fmt::format("<= {:g}", 1e3 * bench::most_joint_error_rad),
+      fmt::format("<= {:g}", 1e3 * bench::most_tool_error_m), fmt::format("<= {:g}", 1e3 * bench::most_beside_line_m));
+  bool all = true;
+  const auto cases = bench::robot_cases(task->weakest);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (!only.empty() && std::ranges::find(only, static_cast<int>(i) + 1) == only.end()) continue;
+    const auto found = bench::fly_case(mission, *task, cases[i], seed);
+    fmt::print("  {:<40} {:>16.3f} {:>15.3f} {:>21.3f}{}\n", cases[i].name, 1e3 * found.joint_rad, 1e3 * found.tool_m,
+               1e3 * found.beside_m, found.holds() ? "" : "  not as required");
+    if (!found.problems.empty())
+      fmt::print("    after {} goals and {} lines: {}\n", found.goals, found.lines,
+                 fmt::join(found.problems, "\n      "));
+    std::fflush(stdout);
+    all = all && found.holds();
+  }
+  return all ? tools::exit_ok : tools::exit_finding;
+}
+
+int read_and_fly(int argc, char** argv) {
+  CLI::App app{"Flies the arm of a mission on virtual time, in a world that differs from its URDF file",
+               "hirosco-robot-cases"};
+  std::string mission, seed = "1";
+  std::vector<int> only;
+  app.add_option("mission", mission, "mission.xml of a folder that `hirosco new robot` made")->required();
+  app.add_option("--only", only, "Only these cases, from 1 (1,6)")->delimiter(',')->check(CLI::Range(1, 6));
+  app.add_option("--seed", seed, "Seed of everything random")->capture_default_str();
+  std::uint64_t number = 1;
+  try {
+    app.parse(argc, argv);
+    number = tools::seed_of(seed);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? tools::exit_ok : tools::exit_usage;
+  }
+  return fly(mission, only, number);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return hirosco::tools::run_main("hirosco-robot-cases", [&] { return read_and_fly(argc, argv); });
+}
