@@ -19,6 +19,8 @@ using Indices = std::vector<std::uint32_t>;
 
 /// As deep as XML is read; who refers to himself is deeper.
 constexpr std::size_t deepest = xml::max_depth;
+/// Who shows others twice each shows no end of them.
+constexpr std::size_t most_nodes = 10'000;
 
 [[nodiscard]] descriptor::Location place(xml::Position at) { return {at.line, at.column}; }
 
@@ -119,6 +121,7 @@ class Collada {
 
   Added add_node(const Element& node, Placement at, std::size_t depth) {
     if (depth > deepest) return problem(place(node.at), "nodes are in each other deeper than 64");
+    if (++nodes_ > most_nodes) return problem(place(node.at), "more than 10000 nodes are shown");
     for (const Element& part : node.children) {
       if (auto moved = move(part, at); !moved) return moved;
       Added added;
@@ -269,6 +272,7 @@ class Collada {
   const Element& root_;
   std::map<std::string_view, const Element*> by_id_;
   Mesh mesh_;
+  std::size_t nodes_{0};
 };
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace hirosco::robotics {
 /// no radius, and so has a piece of a mesh, whose radius is what its few corners leave out.
 class RoundedHull {
  public:
-  static constexpr std::size_t most_corners = 48;
+  static constexpr std::size_t most_corners = 64;
 
   RoundedHull() = default;
   /// Of more corners than there is room for the first ones.

@@ -209,7 +209,7 @@ void RobotArm::watch_clearance() noexcept {
   const double now_m = clearance_->nearest(setpoints_->now().position).distance_m;
   clearance_m_.store(now_m);
   if (setpoints_->at_rest() || setpoints_->braking()) return;
-  const auto ahead = clearance_->nearer(setpoints_->now().position, ahead_of_setpoint(), clearance_limit_m_.load());
+  const auto ahead = clearance_->nearer(setpoints_->now().position, ahead_of_setpoint());
   if (ahead.distance_m == HUGE_VAL) return;
   raise(too_near_, ahead.distance_m);
   if (motion_) abort(*motion_, Trouble::too_near, ahead.names, millimetres(ahead.distance_m));
@@ -252,7 +252,7 @@ Outcome RobotArm::move_j(const FunctionValues& values, const Call& call) noexcep
   if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
   const JointVector goal = robot_arm::vector_of(std::span{values}.first(bounds_.size()));
   if (!in_range(goal)) return refused(Trouble::out_of_range);
-  if (const auto there = clearance_->nearer(setpoints_->now().position, goal, clearance_limit_m_.load());
+  if (const auto there = clearance_->nearer(setpoints_->now().position, goal);
       there.distance_m < HUGE_VAL)
     return refused(Trouble::too_near, there.names, millimetres(there.distance_m));
   return start(setpoints_->go(goal, values[bounds_.size()]), call);

@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
   const auto names = robotics::urdf::listed_names(fixed);
   if (!reading.value || robotics::urdf::fix(*reading.value, names)) return 1;
   const auto model = robotics::Model::make(robotics::urdf::describe(*reading.value)).value();
-  const auto shapes = robotics::read_collision_shapes(file, *text, descriptor::file_system());
+  const auto shapes = robotics::read_collision_shapes(file, *text, descriptor::file_system(), [] { robotics::Fineness f; if (auto* e = getenv("HULLS")) f.most_hulls = atoi(e); if (auto* e = getenv("GAIN")) f.least_gain = atof(e); if (auto* e = getenv("CORNERS")) f.most_corners = atoi(e); return f; }());
   for (const auto& warning : shapes.warnings) fmt::print(stderr, "{}: {}\n", warning.code, warning.message);
   if (!shapes.value) {
     for (const auto& problem : shapes.problems) fmt::print(stderr, "{}: {}\n", problem.code, problem.message);
@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
   for (const auto& joint : model.joints())
     fmt::print("joint {} {} {}\n", joint.name, joint.limits.lower.value_or(-4), joint.limits.upper.value_or(4));
   for (std::size_t i = 0; i < clearance.pairs(); ++i)
-    fmt::print("pair {} {}\n", clearance.pair(i).by_construction_m, clearance.pair(i).names);
+    fmt::print("pair {} {}\n", clearance.pair(i).built_m, clearance.pair(i).names);
   fmt::print("read\n");
   std::unique_ptr<Flown> flown;
   std::string line;

@@ -13,6 +13,8 @@ using robotics::RoundedHull;
 
 /// Postures that are looked at for what is near by construction.
 constexpr std::size_t postures = 200;
+/// Who is built no farther apart than this is no pair that can be told apart.
+constexpr double nothing_between_m = 1e-3;
 
 /// From 0 to 1, evenly spread for each base (van der Corput): the same postures at each start.
 [[nodiscard]] double spread(std::size_t i, std::size_t base) noexcept {
@@ -69,17 +71,30 @@ void Clearance::add_links(const robotics::Model& model, std::span<const robotics
 
 void Clearance::add_pair(std::size_t one, std::size_t other, std::string names) {
   const std::size_t searches = bodies_[one].solids.size() * bodies_[other].solids.size();
-  pairs_.push_back({{std::move(names)}, one, other, std::vector<Vector3>(searches, Vector3::UnitZ())});
+  LookedAt& pair = pairs_.emplace_back();
+  pair.named.names = std::move(names);
+  pair.one = one;
+  pair.other = other;
+  pair.axes.assign(searches, Vector3::UnitZ());
 }
 
-/// How near two are that nobody built to touch: with all joints at 0, where they may be there, and else as far apart as they ever come.
+/// Are all joints between two bodies such that they can be at 0?
+bool Clearance::may_be_zero(const robotics::Model& model, std::size_t one, std::size_t other) {
+  const auto bodies = model.bodies();
+  while (one != other) {
+    // What carries stands before what is carried.
+    std::size_t& farther = one > other ? one : other;
+    const auto& limits = model.joints()[static_cast<std::size_t>(bodies[farther].coordinate)].limits;
+    if (limits.lower.value_or(0) > 0 || limits.upper.value_or(0) < 0) return false;
+    farther = bodies[farther].parent;
+  }
+  return true;
+}
+
 void Clearance::learn_construction(const robotics::Model& model) {
   std::vector<double> apart(pairs_.size());
   JointVector position = JointVector::Zero(model.joint_count());
-  const bool may_be_zero = std::ranges::all_of(model.joints(), [](const robotics::Model::Joint& joint) {
-    return joint.limits.lower.value_or(0) <= 0 && joint.limits.upper.value_or(0) >= 0;
-  });
-  for (LookedAt& pair : pairs_) pair.named.by_construction_m = 0;
+  for (LookedAt& pair : pairs_) pair.named.built_m = 0;
   for (std::size_t i = 1; i <= postures; ++i) {
     constexpr std::array<std::size_t, max_joints> bases{2,  3,  5,  7,  11, 13, 17, 19,
                                                         23, 29, 31, 37, 41, 43, 47, 53};
@@ -90,29 +105,37 @@ void Clearance::learn_construction(const robotics::Model& model) {
     }
     distances(position, apart);
     for (std::size_t k = 0; k < pairs_.size(); ++k)
-      pairs_[k].named.by_construction_m = std::max(pairs_[k].named.by_construction_m, apart[k]);
+      pairs_[k].named.built_m = std::max(pairs_[k].named.built_m, apart[k]);
   }
-  if (!may_be_zero) return;
   position.setZero();
   distances(position, apart);
-  for (std::size_t k = 0; k < pairs_.size(); ++k)
-    pairs_[k].named.by_construction_m = std::min(pairs_[k].named.by_construction_m, apart[k]);
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    LookedAt& pair = pairs_[k];
+    if (may_be_zero(model, bodies_[pair.one].body, bodies_[pair.other].body))
+      pair.named.built_m = std::min(pair.named.built_m, apart[k]);
+  }
 }
 
-void Clearance::set_margin(double margin_m) noexcept {
-  for (LookedAt& pair : std::span{pairs_}.first(link_pairs_)) pair.counts = pair.named.by_construction_m >= margin_m;
+void Clearance::set_limit(double limit_m) noexcept {
+  limit_m_ = limit_m;
+  for (LookedAt& pair : std::span{pairs_}.first(link_pairs_)) {
+    const double built_m = pair.named.built_m;
+    pair.named.limit_m = built_m < nothing_between_m ? 0 : std::min(limit_m, built_m / 2);
+  }
+  keep_out(kept_out_);
 }
 
 void Clearance::keep_out(std::span<const Capsule> volumes) noexcept {
   for (std::size_t i = 0; i < most_volumes; ++i) {
     const Capsule capsule = i < volumes.size() ? volumes[i] : Capsule{};
+    kept_out_[i] = capsule;
     Body& body = bodies_[links_ + i];
     body.solids[0].hull = RoundedHull{std::array{capsule.from, capsule.to}, capsule.radius_m};
     body.ball = body.solids[0].ball = ball_of({&body.solids[0].hull, 1});
     body.centre = body.solids[0].centre = body.ball.centre;
   }
   for (LookedAt& pair : std::span{pairs_}.subspan(link_pairs_))
-    pair.counts = bodies_[pair.other].solids[0].hull.radius_m() > 0;
+    pair.named.limit_m = bodies_[pair.other].solids[0].hull.radius_m() > 0 ? limit_m_ : 0;
 }
 
 void Clearance::place(const JointVector& position) noexcept {
@@ -150,7 +173,7 @@ Clearance::Nearest Clearance::nearest(const JointVector& position) noexcept {
   Nearest found;
   const auto look = [&](std::size_t i) {
     LookedAt& pair = pairs_[i];
-    if (!pair.counts) return;
+    if (pair.named.limit_m < limit_m_ || limit_m_ <= 0) return;
     const double far = apart_m(pair, found.distance_m);
     if (far >= found.distance_m) return;
     found = {far, pair.named.names.c_str()};
@@ -163,18 +186,19 @@ Clearance::Nearest Clearance::nearest(const JointVector& position) noexcept {
   return found;
 }
 
-Clearance::Nearest Clearance::nearer(const JointVector& now, const JointVector& then, double least_m) noexcept {
+Clearance::Nearest Clearance::nearer(const JointVector& now, const JointVector& then) noexcept {
   place(then);
   bool any = false;
   for (LookedAt& pair : pairs_) {
-    pair.then_m = pair.counts ? apart_m(pair, least_m) : HUGE_VAL;
-    any = any || pair.then_m < least_m;
+    const double limit_m = pair.named.limit_m;
+    pair.then_m = limit_m > 0 ? apart_m(pair, limit_m) : HUGE_VAL;
+    any = any || pair.then_m < limit_m;
   }
   Nearest found;
   if (!any) return found;
   place(now);
   for (LookedAt& pair : pairs_) {
-    if (pair.then_m >= least_m || pair.then_m >= found.distance_m) continue;
+    if (pair.then_m >= pair.named.limit_m || pair.then_m >= found.distance_m) continue;
     // As far as the search is exact: who does not move is no nearer.
     constexpr double same_m = 3e-7;
     if (apart_m(pair, pair.then_m + same_m) < pair.then_m + same_m) continue;

@@ -19,15 +19,16 @@ struct Capsule {
   double radius_m{0};
 };
 
-/// How near an arm comes to itself and to what it is to keep out of. Links that are joined to each other are not looked at, nor what is near by
-/// construction (near_by_construction_m()).
+/// How near an arm comes to itself and to what it is to keep out of. Links that are joined to each other are not looked at. Two others have an own
+/// limit where they are built near each other: half of how far apart they are with the joints between them at 0, where these may be there, or as far
+/// apart as they ever come. Where that is less than a millimetre they pass through each other.
 class Clearance {
  public:
   /// Realtime: allocates; some hundred postures are looked at.
   Clearance(const robotics::Model& model, std::span<const robotics::LinkHull> hulls);
 
-  /// Pairs that are nearer than this by construction are not looked at.  Realtime: wait-free.
-  void set_margin(double margin_m) noexcept;
+  /// How near any two may come.  Realtime: wait-free.
+  void set_limit(double limit_m) noexcept;
 
   /// In the axes of the base; those of no radius count for nothing.
   void keep_out(std::span<const Capsule> volumes) noexcept;
@@ -37,21 +38,21 @@ class Clearance {
     double distance_m{HUGE_VAL};
     const char* names{""};  ///< of the two, as long as this lives
   };
-  /// Time grows with the number of pairs.  Realtime: wait-free.
+  /// Of those that are not built nearer than the limit. Time grows with the number of pairs.  Realtime: wait-free.
   [[nodiscard]] Nearest nearest(const JointVector& position) noexcept;
-  /// The nearest two at `then` among those that are nearer there than `least_m`, and nearer than at `now`: who is too near may go away, and keeps
+  /// The nearest two at `then` among those that are nearer there than they may be, and nearer than at `now`: who is too near may go away, and keeps
   /// nobody else from being seen. None: infinitely far.  Realtime: wait-free.
-  [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& then, double least_m) noexcept;
+  [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& then) noexcept;
 
   /// Two links, and how near each other they are built.
   struct Pair {
     std::string names;
-    double by_construction_m{HUGE_VAL};
+    double built_m{HUGE_VAL};
+    double limit_m{0};  ///< 0: they pass through each other
   };
-  /// Of links, whether they are looked at or not.
+  /// Of links.
   [[nodiscard]] std::size_t pairs() const noexcept { return link_pairs_; }
   [[nodiscard]] const Pair& pair(std::size_t i) const noexcept { return pairs_[i].named; }
-  [[nodiscard]] bool looks_at(std::size_t i) const noexcept { return pairs_[i].counts; }
   /// Of every one of these pairs.  Realtime: wait-free.
   void distances(const JointVector& position, std::span<double> of_pairs) noexcept;
 
@@ -72,15 +73,15 @@ class Clearance {
   };
   struct LookedAt {
     Pair named;
-    std::size_t one;
-    std::size_t other;
+    std::size_t one{0};
+    std::size_t other{0};
     std::vector<Vector3> axes;  ///< of each two solids, from the last search
-    bool counts{true};
     double then_m{0};
   };
   void add_links(const robotics::Model& model, std::span<const robotics::LinkHull> hulls);
   void add_pair(std::size_t one, std::size_t other, std::string names);
   void learn_construction(const robotics::Model& model);
+  [[nodiscard]] static bool may_be_zero(const robotics::Model& model, std::size_t one, std::size_t other);
   void place(const JointVector& position) noexcept;
   [[nodiscard]] double apart_m(LookedAt& pair, double enough_m) noexcept;
 
@@ -90,6 +91,8 @@ class Clearance {
   std::vector<LookedAt> pairs_;  ///< of links, then of links and volumes
   std::size_t links_{0};
   std::size_t link_pairs_{0};
+  std::array<Capsule, most_volumes> kept_out_{};
+  double limit_m_{0};
   std::size_t nearest_{0};  ///< of the last search: the next begins there
 };
 
