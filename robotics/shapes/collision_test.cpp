@@ -51,10 +51,10 @@ TEST(CollisionShapes, EncloseCylindersBoxesAndBallsWhereTheyAre) {
   EXPECT_NEAR(apart(hulls[2], {0, 0, 0}), 0.8, 1e-6);
 }
 
-const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const std::string triangle_obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 TEST(CollisionShapes, OfMeshesBesideTheFileAreScaledAndPlaced) {
-  const Folder folder{{{"robots/lab/m.obj", triangle}}};
+  const Folder folder{{{"robots/lab/m.obj", triangle_obj}}};
   const auto reading = folder.read(
       R"(<collision><origin xyz="0 0 1"/><geometry><mesh filename="package://lab/m.obj" scale="0.1 -0.1 1"/></geometry></collision>)");
   ASSERT_TRUE(reading.value);

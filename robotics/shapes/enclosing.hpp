@@ -11,12 +11,12 @@ namespace hirosco::robotics {
 
 /// How a mesh is enclosed: finer takes longer, then and in every cycle.
 struct Fineness {
-  std::size_t most_hulls{6};
+  std::size_t most_hulls{12};
   std::size_t most_corners{RoundedHull::most_corners};
   /// Corners are added until no point is farther outside than this.
   double tolerance_m{0.001};
   /// A piece is cut in two only where that takes away this share of the volume of the hull of the whole, or more.
-  double least_gain{0.03};
+  double least_gain{0.003};
 };
 
 /// Hulls that have the whole surface of the mesh in them, together: it is cut across where its hulls lose most volume by it. What is inside of a body without

@@ -16,6 +16,8 @@ namespace {
 
 /// 80 octets of anything, how many triangles, then each: its normal, three points, two octets of anything.
 constexpr std::size_t stl_head_octets = 84, stl_triangle_octets = 50, stl_normal_octets = 12;
+/// A text has no octet that is 0 among its first ones.
+constexpr std::size_t stl_text_octets = 512;
 
 [[nodiscard]] std::uint32_t word_at(std::string_view octets, std::size_t at) noexcept {
   std::uint32_t word = 0;
@@ -88,7 +90,8 @@ std::expected<Mesh, MeshProblem> read_stl(std::string_view octets) {
       octets.size() >= stl_head_octets ? std::uint64_t{word_at(octets, stl_head_octets - 4)} : 0;
   if (octets.size() >= stl_head_octets && octets.size() == stl_head_octets + said * stl_triangle_octets)
     return read_binary_stl(octets);
-  if (octets.starts_with("solid")) return read_text_stl(octets);
+  if (octets.starts_with("solid") && octets.substr(0, stl_text_octets).find('\0') == std::string_view::npos)
+    return read_text_stl(octets);
   if (octets.size() < stl_head_octets) return problem({}, "it is shorter than the head of an STL file");
   return problem({}, "it says that it has " + std::to_string(said) + " triangles, which takes " +
                          std::to_string(stl_head_octets + said * stl_triangle_octets) + " octets, and has " +

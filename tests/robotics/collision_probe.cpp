@@ -106,6 +106,19 @@ int main(int argc, char** argv) {
       clearance.distances(read(in, joints), apart);
       for (const double each : apart) fmt::print("{} ", each);
       fmt::print("\n");
+    } else if (what == "path") {
+      clearance.set_limit(0.02);
+      const JointVector from = read(in, joints), goal = read(in, joints);
+      JointVector now = from; std::string who;
+      for (int i = 1; i <= 300 && who.empty(); ++i) { const JointVector next = from + (goal - from) * i / 300; auto n = clearance.nearer(now, next); if (n.distance_m < HUGE_VAL) who = n.names; now = next; }
+      fmt::print("path {}\n", who);
+    } else if (what == "time") {
+      clearance.set_limit(0.02);
+      std::vector<double> us;
+      const JointVector from = read(in, joints), goal = read(in, joints);
+      for (int i = 0; i < 2000; ++i) { const JointVector now = from + (goal - from) * i / 2000, next = from + (goal - from) * (i + 50) / 2000; auto t0 = std::chrono::steady_clock::now(); volatile double d = clearance.nearest(now).distance_m + clearance.nearer(now, next).distance_m; (void)d; us.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count() * 1e6); }
+      std::sort(us.begin(), us.end());
+      fmt::print("time {} {} {}\n", us[1000], us[1980], us[1999]);
     } else if (what == "move") {
       if (!flown) {
         flown = std::make_unique<Flown>(model, descriptor_of(model, file, tip, fixed));
