@@ -139,6 +139,13 @@ class Judge:
         self.place(q)
         return all(self.apart(pair) >= pair.free_m for pair in self.pairs)
 
+    def touches(self, start, goal):
+        for share in numpy.linspace(0.1, 1, 10):
+            self.place(start + share * (goal - start))
+            if any(self.apart(pair) <= 0 for pair in self.pairs):
+                return True
+        return False
+
     def path(self, start, goal):
         """free, near or colliding, and by whom: each pair is looked at again as soon as it can have come so near as to matter."""
         way = goal - start

@@ -120,7 +120,7 @@ void Clearance::set_limit(double limit_m) noexcept {
   limit_m_ = limit_m;
   for (LookedAt& pair : std::span{pairs_}.first(link_pairs_)) {
     const double built_m = pair.named.built_m;
-    pair.named.limit_m = built_m < nothing_between_m ? 0 : std::min(limit_m, built_m / 2);
+    pair.named.limit_m = built_m < nothing_between_m ? 0 : std::min(limit_m, built_m / 3);
   }
   keep_out(kept_out_);
 }

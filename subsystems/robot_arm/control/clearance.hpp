@@ -20,7 +20,7 @@ struct Capsule {
 };
 
 /// How near an arm comes to itself and to what it is to keep out of. Links that are joined to each other are not looked at. Two others have an own
-/// limit where they are built near each other: half of how far apart they are with the joints between them at 0, where these may be there, or as far
+/// limit where they are built near each other: a third of how far apart they are with the joints between them at 0, where these may be there, or as far
 /// apart as they ever come. Where that is less than a millimetre they pass through each other.
 class Clearance {
  public:

@@ -83,7 +83,7 @@ TEST_F(ClearanceTest, NamesTheLinkThatComesNearAVolumeToKeepOutOf) {
 
 TEST(ClearanceByConstruction, IsTheLimitOfThoseWhoAreBuiltNearEachOther) {
   constexpr const char* any = "lower='-1' upper='1'";
-  EXPECT_NEAR(clearance_of_row(0.03, any).pair(0).limit_m, 0.015, 1e-6) << "30 mm apart";
+  EXPECT_NEAR(clearance_of_row(0.03, any).pair(0).limit_m, 0.01, 1e-6) << "30 mm apart";
   EXPECT_EQ(clearance_of_row(0.1, any).pair(0).limit_m, 0.02) << "100 mm apart";
   EXPECT_EQ(clearance_of_row(-0.05, any).pair(0).limit_m, 0) << "in each other";
 }
