@@ -22,8 +22,8 @@ struct Folder {
       if (found == files.end()) return fail(ErrorCode::NotFound, "does not exist");
       return found->second;
     };
-    return read_collision_shapes("robots/r.urdf", "<robot name=\"r\">\n<link name=\"a\">" + collision + "</link></robot>",
-                                 source);
+    return read_collision_shapes("robots/r.urdf",
+                                 "<robot name=\"r\">\n<link name=\"a\">" + collision + "</link></robot>", source);
   }
 };
 

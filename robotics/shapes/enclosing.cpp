@@ -95,8 +95,7 @@ void measure(Piece& piece) {
       if ((height[i] > 0) != (height[(i + 1) % 3] > 0) && (height[i] > 0) != (height[(i + 2) % 3] > 0)) alone = i;
     const std::size_t next = (alone + 1) % 3, last = (alone + 2) % 3;
     const auto met = [&](std::size_t other) -> Vector3 {
-      return triangle[alone] +
-             height[alone] / (height[alone] - height[other]) * (triangle[other] - triangle[alone]);
+      return triangle[alone] + height[alone] / (height[alone] - height[other]) * (triangle[other] - triangle[alone]);
     };
     const Vector3 to_next = met(next), to_last = met(last);
     auto& own = height[alone] > 0 ? halves.second : halves.first;
@@ -252,8 +251,7 @@ RoundedHull hull_around(std::vector<Vector3> points, const Fineness& fineness) {
 std::vector<RoundedHull> enclosing(const Mesh& mesh, const Fineness& fineness) {
   std::vector<Piece> pieces(1);
   for (const Mesh::Triangle& triangle : mesh.triangles)
-    pieces[0].triangles.push_back(
-        {mesh.points[triangle[0]], mesh.points[triangle[1]], mesh.points[triangle[2]]});
+    pieces[0].triangles.push_back({mesh.points[triangle[0]], mesh.points[triangle[1]], mesh.points[triangle[2]]});
   measure(pieces[0]);
   const double whole_m3 = pieces[0].volume_m3;
   // What cutting it takes away: of each piece once.
@@ -263,8 +261,7 @@ std::vector<RoundedHull> enclosing(const Mesh& mesh, const Fineness& fineness) {
   };
   const auto tried = [](const Piece& piece) {
     Cut found{0, best_cut(piece)};
-    if (found.halves)
-      found.gain_m3 = piece.volume_m3 - found.halves->first.volume_m3 - found.halves->second.volume_m3;
+    if (found.halves) found.gain_m3 = piece.volume_m3 - found.halves->first.volume_m3 - found.halves->second.volume_m3;
     return found;
   };
   std::vector<Cut> cuts;

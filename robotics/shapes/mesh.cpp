@@ -86,8 +86,7 @@ constexpr std::size_t stl_text_octets = 512;
 
 std::expected<Mesh, MeshProblem> read_stl(std::string_view octets) {
   // A binary one may begin with the word, too: its length tells.
-  const std::uint64_t said =
-      octets.size() >= stl_head_octets ? std::uint64_t{word_at(octets, stl_head_octets - 4)} : 0;
+  const std::uint64_t said = octets.size() >= stl_head_octets ? std::uint64_t{word_at(octets, stl_head_octets - 4)} : 0;
   if (octets.size() >= stl_head_octets && octets.size() == stl_head_octets + said * stl_triangle_octets)
     return read_binary_stl(octets);
   if (octets.starts_with("solid") && octets.substr(0, stl_text_octets).find('\0') == std::string_view::npos)

@@ -69,8 +69,7 @@ endsolid
 TEST(Stl, ThatIsWrongIsToldWithItsPlace) {
   EXPECT_THAT(problem_of(MeshKind::Stl, binary_stl(2, {0, 0, 0, 1, 0, 0, 0, 2, 0})).text, HasSubstr("has 134"));
   EXPECT_THAT(problem_of(MeshKind::Stl, "short").text, HasSubstr("shorter"));
-  EXPECT_THAT(problem_of(MeshKind::Stl, binary_stl(1, {0, 0, 0, 1, 0, 0, 0, NAN, 0})).text,
-              HasSubstr("triangle 1"));
+  EXPECT_THAT(problem_of(MeshKind::Stl, binary_stl(1, {0, 0, 0, 1, 0, 0, 0, NAN, 0})).text, HasSubstr("triangle 1"));
   const auto wrong = problem_of(MeshKind::Stl, "solid a\nfacet normal 0 0 1\nouter loop\n vertex 0 nine 0\n");
   EXPECT_EQ(wrong.at, (descriptor::Location{4, 11}));
   EXPECT_THAT(wrong.text, HasSubstr("'nine' is no number"));
@@ -136,10 +135,10 @@ TEST(Collada, IsReadInItsUnitsAndWhereItsNodesHaveIt) {
 
 TEST(Collada, HasPolygonsStripsAndFans) {
   const auto taken = [](std::string_view kind, std::string_view p) {
-    return mesh_of(MeshKind::Collada, collada("<" + std::string{kind} +
-                                                  "><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>" +
-                                                  std::string{p} + "</" + std::string{kind} + ">",
-                                              scene))
+    return mesh_of(MeshKind::Collada,
+                   collada("<" + std::string{kind} + "><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>" +
+                               std::string{p} + "</" + std::string{kind} + ">",
+                           scene))
         .triangles.size();
   };
   EXPECT_EQ(taken("polylist", "<vcount>3 4</vcount><p>0 1 2 0 1 2 3</p>"), 3u);
@@ -174,12 +173,13 @@ TEST(Collada, ThatIsWrongIsToldWithItsPlace) {
 }
 
 TEST(Collada, OfANodeThatIsInItselfHasAnEnd) {
-  EXPECT_THAT(problem_of(MeshKind::Collada,
-                         collada(triangles, "<library_visual_scenes><visual_scene id='w'><node id='n'><instance_node "
+  EXPECT_THAT(
+      problem_of(MeshKind::Collada, collada(triangles,
+                                            "<library_visual_scenes><visual_scene id='w'><node id='n'><instance_node "
                                             "url='#n'/></node></visual_scene></library_visual_scenes><scene>"
                                             "<instance_visual_scene url='#w'/></scene>"))
-                  .text,
-              HasSubstr("deeper"));
+          .text,
+      HasSubstr("deeper"));
 }
 
 }  // namespace

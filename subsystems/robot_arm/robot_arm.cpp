@@ -252,8 +252,7 @@ Outcome RobotArm::move_j(const FunctionValues& values, const Call& call) noexcep
   if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
   const JointVector goal = robot_arm::vector_of(std::span{values}.first(bounds_.size()));
   if (!in_range(goal)) return refused(Trouble::out_of_range);
-  if (const auto there = clearance_->nearer(setpoints_->now().position, goal);
-      there.distance_m < HUGE_VAL)
+  if (const auto there = clearance_->nearer(setpoints_->now().position, goal); there.distance_m < HUGE_VAL)
     return refused(Trouble::too_near, there.names, millimetres(there.distance_m));
   return start(setpoints_->go(goal, values[bounds_.size()]), call);
 }

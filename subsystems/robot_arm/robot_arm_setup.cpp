@@ -81,13 +81,16 @@ Result<> RobotArm::read_model() {
   return take_bounds();
 }
 
-/// Meshes beside the file, too. Of what is wrong in them the first is told.
+/// Meshes beside the file, too. Of what is wrong in them the first is told; what is not seen, to whoever reads standard error.
 Result<> RobotArm::read_shapes(const std::filesystem::path& file, std::string_view text) {
   auto reading = robotics::read_collision_shapes(file, text, descriptor::file_system());
+  const auto said = [](const descriptor::Diagnostic& its) {
+    return fmt::format("{}:{}:{}: {}: {}", its.file.filename().string(), its.at.line, its.at.column, its.code,
+                       its.message);
+  };
+  for (const auto& warning : reading.warnings) fmt::print(stderr, "{}\n", said(warning));
   if (!reading.value) {
-    const auto& first = reading.problems.front();
-    not_read_ = {ErrorCode::Malformed, fmt::format("{}:{}:{}: {}: {}", first.file.filename().string(), first.at.line,
-                                                   first.at.column, first.code, first.message),
+    not_read_ = {ErrorCode::Malformed, said(reading.problems.front()),
                  static_cast<std::int64_t>(reading.problems.size())};
     return not_read_.error();
   }

@@ -41,14 +41,15 @@ void say(const JointVector& position) {
 }
 
 /// No gravity: whether drives hold a posture is another question.
-[[nodiscard]] std::string descriptor_of(const robotics::Model& model, const std::string& file,
-                                        const std::string& tip, const std::string& fixed) {
+[[nodiscard]] std::string descriptor_of(const robotics::Model& model, const std::string& file, const std::string& tip,
+                                        const std::string& fixed) {
   using robot_arm::testing::replace_all;
   std::string text = robot_arm::testing::descriptor_for(model.joints().size(), file);
   replace_all(text, "init=\"0 0 -9.81\"", "init=\"0 0 0\"");
   replace_all(text, "minimum=\"-3.15\" maximum=\"3.15\"", "minimum=\"-7\" maximum=\"7\"");
   replace_all(text, "minimum=\"-150\" maximum=\"150\"", "minimum=\"-3000\" maximum=\"3000\"");
-  replace_all(text, "unit=\"m\" init=\"0.02\" minimum=\"0.005\"", fmt::format("unit=\"m\" init=\"{}\" minimum=\"0.005\"", limit_m));
+  replace_all(text, "unit=\"m\" init=\"0.02\" minimum=\"0.005\"",
+              fmt::format("unit=\"m\" init=\"{}\" minimum=\"0.005\"", limit_m));
   replace_all(text, "name=\"TIP\" value=\"tool\"", "name=\"TIP\" value=\"" + tip + "\"");
   if (const auto at = text.find("<Setting name=\"MODEL_FILE\""); !fixed.empty() && at != std::string::npos)
     text.insert(at, "<Setting name=\"FIXED\" value=\"" + fixed + "\"/>");

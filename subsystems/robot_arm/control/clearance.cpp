@@ -96,8 +96,7 @@ void Clearance::learn_construction(const robotics::Model& model) {
   JointVector position = JointVector::Zero(model.joint_count());
   for (LookedAt& pair : pairs_) pair.named.built_m = 0;
   for (std::size_t i = 1; i <= postures; ++i) {
-    constexpr std::array<std::size_t, max_joints> bases{2,  3,  5,  7,  11, 13, 17, 19,
-                                                        23, 29, 31, 37, 41, 43, 47, 53};
+    constexpr std::array<std::size_t, max_joints> bases{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53};
     for (std::size_t joint = 0; joint < model.joints().size(); ++joint) {
       const robotics::JointLimits& limits = model.joints()[joint].limits;
       const double lower = limits.lower.value_or(-std::numbers::pi), upper = limits.upper.value_or(std::numbers::pi);
@@ -161,8 +160,7 @@ double Clearance::apart_m(LookedAt& pair, double enough_m) noexcept {
       Vector3& axis = pair.axes[search++];
       const double enough = std::min(enough_m, least);
       double far = between(its.centre, its.ball, others.centre, others.ball);
-      if (far < enough)
-        far = robotics::distance_m({its.hull, one.pose}, {others.hull, other.pose}, enough, axis);
+      if (far < enough) far = robotics::distance_m({its.hull, one.pose}, {others.hull, other.pose}, enough, axis);
       least = std::min(least, far);
     }
   return least;

@@ -64,8 +64,11 @@ TEST_F(ClearanceTest, NamesTheLinkThatComesNearAVolumeToKeepOutOf) {
 /// Three links in a row, of which the first and the last are `gap` apart with all joints at 0; the middle one is in nobody's way.
 [[nodiscard]] std::string row(double gap, const char* range) {
   const auto link = [](const std::string& name, const std::string& x) {
-    return "<link name='" + name + "'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' "
-           "izz='1'/></inertial><collision><origin xyz='" + x + " 0 0'/><geometry><box size='0.2 0.1 0.1'/></geometry>"
+    return "<link name='" + name +
+           "'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' "
+           "izz='1'/></inertial><collision><origin xyz='" +
+           x +
+           " 0 0'/><geometry><box size='0.2 0.1 0.1'/></geometry>"
            "</collision></link>";
   };
   const auto joint = [&](const std::string& name, const char* x, const std::string& parent, const std::string& child) {

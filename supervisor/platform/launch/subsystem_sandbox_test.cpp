@@ -59,7 +59,8 @@ TEST(SubsystemSandbox, LetsReadWhatASettingOfADeviceNamesAsAFileAndNothingElseTh
 
 TEST(SubsystemSandbox, LetsReadTheMeshesBesideARobotsFileThatItNames) {
   const std::filesystem::path folder{::testing::TempDir()};
-  std::ofstream{folder / "arm.urdf"} << "<robot><link><mesh filename='parts/a.stl'/><mesh filename='../b.stl'/></link></robot>";
+  std::ofstream{folder / "arm.urdf"}
+      << "<robot><link><mesh filename='parts/a.stl'/><mesh filename='../b.stl'/></link></robot>";
   auto arm = with_device(Transfer::Udp, "127.0.0.1:5000");
   arm.subsystem.file = folder / "arm.xml";
   arm.subsystem.configurations[0].devices[0].settings = {{"MODEL_FILE", "arm.urdf", {}}};
