@@ -41,7 +41,7 @@ def wrong(path, to):
     if path.startswith(("simulation/spacecraft/", "simulation/scenarios/", "simulation/campaign/")): return target == "robotics" and "the on-board model of a robot"  # assemble and fly all parts
     same = path.split("/")[:2] == to.split("/")[:2]
     if top in may and target not in may[top] and not same: return "another part"
-    if top == "robotics" and path.startswith("robotics/dynamics/") and to.startswith(("robotics/urdf/", "robotics/motion/")): return "a higher folder of robotics"
+    if top == "robotics" and path.startswith("robotics/dynamics/") and to.startswith(("robotics/urdf/", "robotics/motion/", "robotics/shapes/")): return "a higher folder of robotics"
     if top == "simulation" and target == "robotics": return "the on-board model of a robot"
     if top == target == "hirosco" and rank(to) > rank(path): return "a higher rank"
     if path.startswith("hirosco/subsystem/") and to.startswith("hirosco/subsystem/") and not path.endswith("_test.cpp"):

@@ -6,13 +6,17 @@
 #include <cmath>
 
 namespace hirosco::robotics {
+namespace {
 
-Result<PointToPoint> PointToPoint::plan(const JointVector& from, const JointVector& to,
-                                        std::span<const MotionLimits> limits) noexcept {
+/// Shorter than any sensor tells: it limits nothing.
+constexpr double no_way = 1e-12;
+
+}  // namespace
+
+Result<> PointToPoint::check(const JointVector& from, const JointVector& to,
+                             std::span<const MotionLimits> limits) noexcept {
   if (from.size() != to.size() || static_cast<std::size_t>(from.size()) != limits.size())
     return fail(ErrorCode::InvalidArgument, "numbers of joints differ", to.size());
-  PointToPoint plan;
-  plan.joints_ = from.size();
   for (Eigen::Index i = 0; i < from.size(); ++i) {
     const MotionLimits& its = limits[static_cast<std::size_t>(i)];
     const auto usable = [](double limit) { return limit > 0 && std::isfinite(limit); };
@@ -20,11 +24,48 @@ Result<PointToPoint> PointToPoint::plan(const JointVector& from, const JointVect
       return fail(ErrorCode::InvalidArgument, "a place is no number", i);
     if (!usable(its.velocity) || !usable(its.acceleration) || !usable(its.jerk))
       return fail(ErrorCode::InvalidArgument, "a limit is not above 0", i);
+  }
+  return ok();
+}
+
+Result<PointToPoint> PointToPoint::plan(const JointVector& from, const JointVector& to,
+                                        std::span<const MotionLimits> limits) noexcept {
+  HIROSCO_TRY(check(from, to, limits));
+  PointToPoint plan;
+  plan.joints_ = from.size();
+  for (Eigen::Index i = 0; i < from.size(); ++i) {
     Curve& curve = plan.curves_[static_cast<std::size_t>(i)];
-    curve = quickest(std::abs(to[i] - from[i]), its);
+    curve = quickest(std::abs(to[i] - from[i]), limits[static_cast<std::size_t>(i)]);
     curve.start = from[i];
     curve.way = to[i] - from[i];
     plan.duration_s_ = std::max(plan.duration_s_, curve.duration());
+  }
+  return plan;
+}
+
+Result<PointToPoint> PointToPoint::plan_straight(const JointVector& from, const JointVector& to,
+                                                 std::span<const MotionLimits> limits) noexcept {
+  HIROSCO_TRY(check(from, to, limits));
+  PointToPoint plan;
+  plan.joints_ = from.size();
+  // Of the share of the way that is done, from 0 to 1.
+  MotionLimits shared{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  for (Eigen::Index i = 0; i < from.size(); ++i) {
+    const double way = std::abs(to[i] - from[i]);
+    if (way < no_way) continue;
+    const MotionLimits& its = limits[static_cast<std::size_t>(i)];
+    shared.velocity = std::min(shared.velocity, its.velocity / way);
+    shared.acceleration = std::min(shared.acceleration, its.acceleration / way);
+    shared.jerk = std::min(shared.jerk, its.jerk / way);
+  }
+  const Curve whole = shared.velocity < HUGE_VAL ? quickest(1, shared) : Curve{};
+  plan.duration_s_ = whole.duration();
+  for (Eigen::Index i = 0; i < from.size(); ++i) {
+    Curve& curve = plan.curves_[static_cast<std::size_t>(i)];
+    curve = whole;
+    curve.start = from[i];
+    curve.way = to[i] - from[i];
+    curve.jerk = whole.jerk * std::abs(curve.way);
   }
   return plan;
 }

@@ -26,6 +26,9 @@ class PointToPoint {
   /// InvalidArgument: numbers of joints differ, a place is no number or a limit not above 0.
   [[nodiscard]] static Result<PointToPoint> plan(const JointVector& from, const JointVector& to,
                                                  std::span<const MotionLimits> limits) noexcept;
+  /// The same on the straight line from one place to the other: all joints follow one curve, the quickest that every one of them can.
+  [[nodiscard]] static Result<PointToPoint> plan_straight(const JointVector& from, const JointVector& to,
+                                                          std::span<const MotionLimits> limits) noexcept;
 
   [[nodiscard]] double duration_s() const noexcept { return duration_s_; }
   struct Sample {
@@ -52,6 +55,8 @@ class PointToPoint {
     double velocity{0};
     double acceleration{0};
   };
+  [[nodiscard]] static Result<> check(const JointVector& from, const JointVector& to,
+                                      std::span<const MotionLimits> limits) noexcept;
   [[nodiscard]] static Curve quickest(double way, const MotionLimits& limits) noexcept;
   [[nodiscard]] static Point first_half(const Curve& curve, double t_s) noexcept;
 

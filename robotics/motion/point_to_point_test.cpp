@@ -41,7 +41,8 @@ TEST(PointToPoint, KeepsEveryLimitAndIsAtItsGoalAtTheEnd) {
     std::array<MotionLimits, 7> limits;
     for (auto& its : limits)
       its = {std::pow(10, power(random)), std::pow(10, power(random)), std::pow(10, power(random))};
-    const auto plan = PointToPoint::plan(from, to, limits).value();
+    const bool straight = trial % 2 == 0;
+    const auto plan = (straight ? PointToPoint::plan_straight : PointToPoint::plan)(from, to, limits).value();
     PointToPoint::Sample sample, before;
     plan.at(0, before);
     EXPECT_EQ(before.position, from);
@@ -60,10 +61,20 @@ TEST(PointToPoint, KeepsEveryLimitAndIsAtItsGoalAtTheEnd) {
         ASSERT_NEAR(sample.position[k] - before.position[k], h * middle, its.jerk * h * h * h);
       }
       before = sample;
+      const JointVector gone = sample.position - from, way = to - from;
+      ASSERT_TRUE(!straight || (gone - gone.dot(way) / way.squaredNorm() * way).norm() < 1e-9);
     }
     EXPECT_LT((sample.position - to).norm(), 1e-12);
     EXPECT_LT(sample.velocity.norm() + sample.acceleration.norm(), 1e-9);
   }
+}
+
+TEST(PointToPoint, GoesStraightInNoMoreTimeWhereAllJointsHaveTheSameLimits) {
+  const std::array<MotionLimits, 3> limits{MotionLimits{1, 2, 8}, MotionLimits{1, 2, 8}, MotionLimits{1, 2, 8}};
+  const JointVector from = numbers({0, 1, 2}), to = numbers({1.5, 0.2, 2});
+  EXPECT_NEAR(PointToPoint::plan_straight(from, to, limits).value().duration_s(),
+              PointToPoint::plan(from, to, limits).value().duration_s(), 1e-12);
+  EXPECT_EQ(PointToPoint::plan_straight(from, from, limits).value().duration_s(), 0);
 }
 
 TEST(PointToPoint, RestsBeforeAndAfter) {
@@ -80,7 +91,7 @@ TEST(PointToPoint, RestsBeforeAndAfter) {
 TEST(PointToPoint, RefusesWhatIsNoMotion) {
   const MotionLimits good{1, 1, 1};
   const auto refused = [](const JointVector& from, const JointVector& to, MotionLimits limits) {
-    return !PointToPoint::plan(from, to, {&limits, 1});
+    return !PointToPoint::plan(from, to, {&limits, 1}) && !PointToPoint::plan_straight(from, to, {&limits, 1});
   };
   EXPECT_FALSE(refused(numbers({0}), numbers({1}), good));
   EXPECT_TRUE(refused(numbers({0}), numbers({1, 2}), good));

@@ -55,7 +55,7 @@ std::expected<NamedRobot, NotRead> read_named(const descriptor::Subsystem& subsy
                                                      fixed_setting, device, *unknown));
   auto model = Model::make(describe(*reading.value));
   if (!model) return not_read(model.error());
-  return NamedRobot{std::move(*text), std::move(*reading.value), std::move(*model)};
+  return NamedRobot{file, std::move(*text), std::move(*reading.value), std::move(*model)};
 }
 
 std::expected<FrameId, NotRead> named_tip(const descriptor::Subsystem& subsystem, std::string_view device,

@@ -21,6 +21,7 @@ inline constexpr std::string_view fixed_setting = "FIXED";
 
 /// A robot as its file says.
 struct NamedRobot {
+  std::filesystem::path file;
   std::string text;  ///< of the file
   Robot robot;
   Model model;

@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "hirosco/descriptor/model/mesh_files.hpp"
+
 namespace hirosco::simulation {
 namespace {
 
@@ -223,16 +225,13 @@ std::expected<LooseBody, std::string> read_body(std::string_view name, std::span
 }
 
 std::expected<std::string, std::string> mesh_file(std::string_view named) {
-  constexpr std::string_view package = "package://";
-  std::string_view file = named;
-  if (file.starts_with(package)) file.remove_prefix(package.size());
-  else if (file.find("://") != file.npos || file.starts_with('/'))
-    return std::unexpected{fmt::format("{} is not beside the URDF file", named)};
-  std::string lower{file.substr(file.size() - std::min<std::size_t>(4, file.size()))};
-  std::ranges::transform(lower, lower.begin(),
+  const auto beside = descriptor::mesh_beside(named);
+  if (!beside) return std::unexpected{fmt::format("{} is not beside the URDF file", named)};
+  std::string ending = beside->extension().string();
+  std::ranges::transform(ending, ending.begin(),
                          [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  if (lower != ".stl" && lower != ".obj") return std::unexpected{fmt::format("{} is neither STL nor OBJ", named)};
-  return std::string{file};
+  if (ending != ".stl" && ending != ".obj") return std::unexpected{fmt::format("{} is neither STL nor OBJ", named)};
+  return beside->string();
 }
 
 }  // namespace hirosco::simulation

@@ -197,13 +197,23 @@ void RobotArm::watch(bool follows) noexcept {
   raise(event, static_cast<std::uint8_t>(found->joint + 1), found->value, found->limit);
 }
 
+/// Where it would come to rest if it braked now. Who creeps is looked at a little farther on, so that what he comes nearer is more than a search
+/// for a distance is off.
+JointVector RobotArm::ahead_of_setpoint() const noexcept {
+  constexpr double least_way = 1e-4;
+  const JointVector& now = setpoints_->now().position;
+  const JointVector way = setpoints_->braked() - now;
+  const double most = way.cwiseAbs().maxCoeff();
+  return most > 0 && most < least_way ? JointVector{now + least_way / most * way} : JointVector{now + way};
+}
+
 /// Comes to rest before links meet, or one of them what it is to keep out of; who is too near already may go away.
 void RobotArm::watch_clearance() noexcept {
   const double now_m = clearance_->nearest(setpoints_->now().position).distance_m;
   clearance_m_.store(now_m);
   if (setpoints_->at_rest() || setpoints_->braking()) return;
-  const auto ahead = clearance_->nearest(setpoints_->braked());
-  if (ahead.distance_m >= clearance_limit_m_.load() || ahead.distance_m >= now_m) return;
+  const auto ahead = clearance_->nearer(setpoints_->now().position, ahead_of_setpoint());
+  if (ahead.distance_m == HUGE_VAL) return;
   raise(too_near_, ahead.distance_m);
   if (motion_) abort(*motion_, Trouble::too_near, ahead.names, millimetres(ahead.distance_m));
   motion_.reset();
@@ -246,8 +256,7 @@ Outcome RobotArm::move_j(const FunctionValues& values, const Call& call) noexcep
   if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
   const JointVector goal = robot_arm::vector_of(std::span{values}.first(bounds_.size()));
   if (!in_range(goal)) return refused(Trouble::out_of_range);
-  const auto there = clearance_->nearest(goal);
-  if (there.distance_m < clearance_limit_m_.load() && there.distance_m < clearance_m_.load())
+  if (const auto there = clearance_->nearer(setpoints_->now().position, goal); there.distance_m < HUGE_VAL)
     return refused(Trouble::too_near, there.names, millimetres(there.distance_m));
   return start(setpoints_->go(goal, values[bounds_.size()]), call);
 }

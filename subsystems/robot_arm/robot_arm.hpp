@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -64,6 +65,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   void publish_all();
   void bind_functions();
   [[nodiscard]] Result<> read_model();
+  [[nodiscard]] Result<> read_shapes(const std::filesystem::path& file, std::string_view text);
   [[nodiscard]] Result<> take_bounds();
   [[nodiscard]] Result<> check_lengths() noexcept;
 
@@ -79,6 +81,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   void stand() noexcept override;
   void motion_ended() noexcept override { jog_left_s_ = 0; }
   void end_retract() noexcept;
+  [[nodiscard]] robot_arm::JointVector ahead_of_setpoint() const noexcept;
   void watch_clearance() noexcept;
   void arrive() noexcept;
   [[nodiscard]] bool in_range(const robot_arm::JointVector& goal) const noexcept;
@@ -133,7 +136,6 @@ class RobotArm final : public robotics::MovingSubsystem {
   std::optional<robot_arm::Laws> laws_;
   std::optional<robot_arm::MomentumObserver> observer_;
   std::optional<robot_arm::Setpoints> setpoints_;
-  robot_arm::Hulls hulls_;
   std::optional<robot_arm::Clearance> clearance_;
   robot_arm::Watch watch_;
   robotics::State model_state_;

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "robotics/shapes/collision.hpp"
 #include "subsystems/robot_arm/control/bounds.hpp"
 #include "subsystems/robot_arm/robot_arm.hpp"
 
@@ -74,8 +77,25 @@ Result<> RobotArm::read_model() {
   if (!tip) return (not_read_ = tip.error()).error();
   tip_ = *tip;
   model_ = std::move(named->model);
-  hulls_ = robot_arm::hulls_of(named->text);
+  HIROSCO_TRY(read_shapes(named->file, named->text));
   return take_bounds();
+}
+
+/// Meshes beside the file, too. Of what is wrong in them the first is told; what is not seen, to whoever reads standard error.
+Result<> RobotArm::read_shapes(const std::filesystem::path& file, std::string_view text) {
+  auto reading = robotics::read_collision_shapes(file, text, descriptor::file_system());
+  const auto said = [](const descriptor::Diagnostic& its) {
+    return fmt::format("{}:{}:{}: {}: {}", its.file.filename().string(), its.at.line, its.at.column, its.code,
+                       its.message);
+  };
+  for (const auto& warning : reading.warnings) fmt::print(stderr, "{}\n", said(warning));
+  if (!reading.value) {
+    not_read_ = {ErrorCode::Malformed, said(reading.problems.front()),
+                 static_cast<std::int64_t>(reading.problems.size())};
+    return not_read_.error();
+  }
+  clearance_.emplace(*model_, reading.value->hulls);
+  return ok();
 }
 
 /// Limits of the URDF file; those that a joint must have are asked for by name.
@@ -101,7 +121,7 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   laws_.emplace(*model_, tip_, cycle_s_);
   observer_.emplace(joints, cycle_s_, observer_gain_per_s);
   setpoints_.emplace(*model_, tip_, bounds_, cycle_s_);
-  clearance_.emplace(*model_, hulls_, clearance_limit_m_.load());
+  clearance_->set_limit(clearance_limit_m_.load());
   static_cast<void>(keep_out(keep_out_.load()));
   const auto place = tool_place_m_.load();
   setpoints_->set_tool({robotics::Matrix3::Identity(), {place[0], place[1], place[2]}});

@@ -20,10 +20,11 @@ DICTIONARY = "hirosco/parameter/dictionary.cpp"
 PARAMETERS = "hirosco/pus/st20_parameter/parameter_service.cpp"
 URDF = "robotics/urdf/read.cpp"
 URDF_TREE = "robotics/urdf/connect.cpp"
+MESH, COLLADA = "robotics/shapes/mesh.cpp", "robotics/shapes/collada.cpp"
 SCREEN = "tools/terminal/screen.cpp"
 SCREEN_MODEL = "tools/terminal/screen_model.cpp"
 # What a target needs of the system besides the C++ library.
-SYSTEM = {"urdf": ["-isystem", "/usr/include/eigen3", "-lexpat"], "screen": ["-lfmt"]}
+SYSTEM = {"mesh": ["-isystem", "/usr/include/eigen3", "-lexpat"], "urdf": ["-isystem", "/usr/include/eigen3", "-lexpat"], "screen": ["-lfmt"]}
 # The files of a target, and its defects: what stands in a file, and what does in its place.
 TARGETS = {"arguments": (
     [ARGUMENTS, "hirosco/pus/st08_function/function_service.cpp", "hirosco/pus/st01_verification/verification.cpp",
@@ -93,6 +94,14 @@ TARGETS = {"arguments": (
          (URDF_TREE, "whole.joint = found->second;", "whole.joint = 0;"),
      "a second link of a name is taken":
          (URDF_TREE, "if (!is_new)", "if (!is_new && list.size() > 9)")}),
+    "mesh": (
+    [MESH, COLLADA, "hirosco/xml/reader.cpp"],
+    {"a corner of a face may be a point that there is not":
+         (MESH, "at < 0 || at >= points", "at < 0 || at > points"),
+     "a corner of a triangle may be a point that there is not":
+         (COLLADA, "if ((*numbers)[i] >= mesh_.points.size() - first)", "if ((*numbers)[i] > mesh_.points.size() - first)"),
+     "a polygon may be longer than what is left":
+         (COLLADA, "if (count > corners.size() - at)", "if (count > corners.size() - at + 1)")}),
     "screen": (
     [SCREEN, SCREEN_MODEL, "tools/terminal/columns.cpp", "tools/terminal/verdict.cpp"],
     {"a row may be wider than the terminal":

@@ -3,158 +3,211 @@
 #include "subsystems/robot_arm/control/clearance.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <optional>
-
-#include "hirosco/xml/reader.hpp"
+#include <numbers>
 
 namespace hirosco::robot_arm {
 namespace {
 
-using xml::Element;
+using robotics::Ball;
+using robotics::RoundedHull;
 
-[[nodiscard]] const Element* child(const Element& element, std::string_view name) {
-  const auto found = std::ranges::find(element.children, name, &Element::name);
-  return found != element.children.end() ? &*found : nullptr;
+/// Postures that are looked at for what is near by construction.
+constexpr std::size_t postures = 200;
+/// Who is built no farther apart than this is no pair that can be told apart.
+constexpr double nothing_between_m = 1e-3;
+
+/// From 0 to 1, evenly spread for each base (van der Corput): the same postures at each start.
+[[nodiscard]] double spread(std::size_t i, std::size_t base) noexcept {
+  double number = 0, digit = 1;
+  for (; i > 0; i /= base) number += (digit /= static_cast<double>(base)) * static_cast<double>(i % base);
+  return number;
 }
 
-/// Numbers of an attribute, 0 where there are none: the strict reader has seen the file before.
-[[nodiscard]] std::array<double, 3> numbers(const Element* element, std::string_view attribute) {
-  std::array<double, 3> found{};
-  const auto* text = element != nullptr ? element->find(attribute) : nullptr;
-  if (text == nullptr) return found;
-  const char* at = text->value.data();
-  const char* const end = at + text->value.size();
-  for (double& number : found) {
-    while (at != end && (*at == ' ' || *at == '\t' || *at == '\n' || *at == '+')) ++at;
-    at = std::from_chars(at, end, number).ptr;
-  }
-  return found;
-}
-
-[[nodiscard]] std::optional<Capsule> enclosing(const Element& geometry) {
-  if (const Element* sphere = child(geometry, "sphere"))
-    return Capsule{Vector3::Zero(), Vector3::Zero(), numbers(sphere, "radius")[0]};
-  if (const Element* cylinder = child(geometry, "cylinder")) {
-    const Vector3 half{0, 0, numbers(cylinder, "length")[0] / 2};
-    return Capsule{-half, half, numbers(cylinder, "radius")[0]};
-  }
-  if (const Element* box = child(geometry, "box")) {
-    const auto sides = numbers(box, "size");
-    const auto longest = static_cast<std::size_t>(std::ranges::max_element(sides) - sides.begin());
-    Vector3 half = Vector3::Zero();
-    half[static_cast<Eigen::Index>(longest)] = sides[longest] / 2;
-    const double a = sides[(longest + 1) % 3], b = sides[(longest + 2) % 3];
-    return Capsule{-half, half, std::sqrt(a * a + b * b) / 2};
-  }
-  return std::nullopt;
-}
-
-[[nodiscard]] Capsule moved(const robotics::Pose& pose, const Capsule& capsule) noexcept {
-  return {pose * capsule.from, pose * capsule.to, capsule.radius_m};
-}
-
-[[nodiscard]] robotics::Pose origin_of(const Element& element) {
-  const Element* origin = child(element, "origin");
-  const auto xyz = numbers(origin, "xyz"), rpy = numbers(origin, "rpy");
-  using Eigen::AngleAxisd;
-  return {(AngleAxisd{rpy[2], Vector3::UnitZ()} * AngleAxisd{rpy[1], Vector3::UnitY()} *
-           AngleAxisd{rpy[0], Vector3::UnitX()})
-              .toRotationMatrix(),
-          {xyz[0], xyz[1], xyz[2]}};
-}
+[[nodiscard]] Ball ball_of(std::span<const RoundedHull> hulls) noexcept { return robotics::ball_around(hulls); }
 
 }  // namespace
 
-/// Of two line segments: the nearest points of both lines, brought back to the segments one after the other.
-double distance_m(const Capsule& one, const Capsule& other) noexcept {
-  constexpr double tiny = 1e-12;
-  const Vector3 u = one.to - one.from, v = other.to - other.from, w = one.from - other.from;
-  const double a = u.dot(u), e = v.dot(v), f = v.dot(w);
-  double s = 0, t = 0;
-  if (a <= tiny) {
-    t = e <= tiny ? 0 : std::clamp(f / e, 0.0, 1.0);
-  } else {
-    const double c = u.dot(w);
-    if (e <= tiny) {
-      s = std::clamp(-c / a, 0.0, 1.0);
-    } else {
-      const double b = u.dot(v), scale = a * e - b * b;
-      s = scale > tiny * a * e ? std::clamp((b * f - c * e) / scale, 0.0, 1.0) : 0;
-      t = (b * s + f) / e;
-      if (t < 0 || t > 1) {
-        t = std::clamp(t, 0.0, 1.0);
-        s = std::clamp((b * t - c) / a, 0.0, 1.0);
-      }
-    }
-  }
-  return (w + s * u - t * v).norm() - one.radius_m - other.radius_m;
-}
-
-Hulls hulls_of(std::string_view urdf) {
-  Hulls found;
-  const auto tree = xml::read_tree(urdf);
-  if (!tree) return found;
-  for (const Element& link : tree->children) {
-    const auto* name = link.name == "link" ? link.find("name") : nullptr;
-    if (name == nullptr) continue;
-    for (const Element& shape : link.children) {
-      if (shape.name != "collision") continue;
-      const Element* geometry = child(shape, "geometry");
-      const auto capsule = geometry != nullptr ? enclosing(*geometry) : std::nullopt;
-      if (capsule) found.hulls.push_back({name->value, moved(origin_of(shape), *capsule)});
-      else found.unknown.push_back(name->value);
-    }
-  }
-  return found;
-}
-
-Clearance::Clearance(const robotics::Model& model, const Hulls& hulls, double margin_m)
+Clearance::Clearance(const robotics::Model& model, std::span<const robotics::LinkHull> hulls)
     : dynamics_{model, robotics::Base::Fixed} {
-  std::vector<std::size_t> bodies;
-  for (const Hull& hull : hulls.hulls) {
-    const auto frame = model.find_frame(hull.link);
-    if (!frame) continue;
-    bodies.push_back(model.frame(*frame).body);
-    parts_.push_back({*frame, hull.capsule, {}, bodies.back() != 0, hull.link + " and a volume to keep out of"});
-  }
   state_.qd = JointVector::Zero(model.joint_count());
-  place(JointVector::Zero(model.joint_count()));
+  add_links(model, hulls);
   const auto joined = [&](std::size_t one, std::size_t other) {
     return one == other || model.bodies()[one].parent == other || model.bodies()[other].parent == one;
   };
-  for (std::size_t i = 0; i < parts_.size(); ++i)
-    for (std::size_t j = i + 1; j < parts_.size(); ++j) {
-      if (joined(bodies[i], bodies[j]) || distance_m(parts_[i].now, parts_[j].now) < margin_m) continue;
-      pairs_.push_back({i, j, model.frame(parts_[i].frame).name + " and " + model.frame(parts_[j].frame).name});
+  for (std::size_t i = 0; i < links_; ++i)
+    for (std::size_t j = i + 1; j < links_; ++j)
+      if (!joined(bodies_[i].body, bodies_[j].body))
+        add_pair(i, j, model.frame(bodies_[i].frame).name + " and " + model.frame(bodies_[j].frame).name);
+  link_pairs_ = pairs_.size();
+  learn_construction(model);
+  for (std::size_t i = 0; i < links_; ++i)
+    for (std::size_t volume = links_; volume < bodies_.size(); ++volume)
+      if (bodies_[i].body != 0)
+        add_pair(i, volume, model.frame(bodies_[i].frame).name + " and a volume to keep out of");
+  keep_out({});
+}
+
+void Clearance::add_links(const robotics::Model& model, std::span<const robotics::LinkHull> hulls) {
+  for (const robotics::LinkHull& each : hulls) {
+    const auto frame = model.find_frame(each.link);
+    if (!frame || each.hull.corners() == 0) continue;
+    auto found = std::ranges::find(bodies_, frame->index, [](const Body& body) { return body.frame.index; });
+    if (found == bodies_.end()) {
+      found = bodies_.emplace(bodies_.end());
+      found->frame = *frame;
+      found->body = model.frame(*frame).body;
     }
+    found->solids.push_back({each.hull, ball_of({&each.hull, 1})});
+  }
+  for (Body& body : bodies_) {
+    std::vector<RoundedHull> all;
+    for (const Solid& solid : body.solids) all.push_back(solid.hull);
+    body.ball = ball_of(all);
+  }
+  links_ = bodies_.size();
+  bodies_.resize(links_ + most_volumes);
+  for (std::size_t volume = links_; volume < bodies_.size(); ++volume) bodies_[volume].solids.resize(1);
+}
+
+void Clearance::add_pair(std::size_t one, std::size_t other, std::string names) {
+  const std::size_t searches = bodies_[one].solids.size() * bodies_[other].solids.size();
+  LookedAt& pair = pairs_.emplace_back();
+  pair.named.names = std::move(names);
+  pair.one = one;
+  pair.other = other;
+  pair.axes.assign(searches, Vector3::UnitZ());
+}
+
+/// Are all joints between two bodies such that they can be at 0?
+bool Clearance::may_be_zero(const robotics::Model& model, std::size_t one, std::size_t other) {
+  const auto bodies = model.bodies();
+  while (one != other) {
+    // What carries stands before what is carried.
+    std::size_t& farther = one > other ? one : other;
+    const auto& limits = model.joints()[static_cast<std::size_t>(bodies[farther].coordinate)].limits;
+    if (limits.lower.value_or(0) > 0 || limits.upper.value_or(0) < 0) return false;
+    farther = bodies[farther].parent;
+  }
+  return true;
+}
+
+void Clearance::learn_construction(const robotics::Model& model) {
+  std::vector<double> apart(pairs_.size());
+  JointVector position = JointVector::Zero(model.joint_count());
+  for (LookedAt& pair : pairs_) pair.named.built_m = 0;
+  for (std::size_t i = 1; i <= postures; ++i) {
+    constexpr std::array<std::size_t, max_joints> bases{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53};
+    for (std::size_t joint = 0; joint < model.joints().size(); ++joint) {
+      const robotics::JointLimits& limits = model.joints()[joint].limits;
+      const double lower = limits.lower.value_or(-std::numbers::pi), upper = limits.upper.value_or(std::numbers::pi);
+      position[static_cast<Eigen::Index>(joint)] = lower + (upper - lower) * spread(i, bases[joint]);
+    }
+    distances(position, apart);
+    for (std::size_t k = 0; k < pairs_.size(); ++k)
+      pairs_[k].named.built_m = std::max(pairs_[k].named.built_m, apart[k]);
+  }
+  position.setZero();
+  distances(position, apart);
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    LookedAt& pair = pairs_[k];
+    if (may_be_zero(model, bodies_[pair.one].body, bodies_[pair.other].body))
+      pair.named.built_m = std::min(pair.named.built_m, apart[k]);
+  }
+}
+
+void Clearance::set_limit(double limit_m) noexcept {
+  limit_m_ = limit_m;
+  for (LookedAt& pair : std::span{pairs_}.first(link_pairs_)) {
+    const double built_m = pair.named.built_m;
+    pair.named.limit_m = built_m < nothing_between_m ? 0 : std::min(limit_m, built_m / 3);
+  }
+  keep_out(kept_out_);
 }
 
 void Clearance::keep_out(std::span<const Capsule> volumes) noexcept {
-  volumes_ = {};
-  std::ranges::copy(volumes.first(std::min(volumes.size(), most_volumes)), volumes_.begin());
+  for (std::size_t i = 0; i < most_volumes; ++i) {
+    const Capsule capsule = i < volumes.size() ? volumes[i] : Capsule{};
+    kept_out_[i] = capsule;
+    Body& body = bodies_[links_ + i];
+    body.solids[0].hull = RoundedHull{std::array{capsule.from, capsule.to}, capsule.radius_m};
+    body.ball = body.solids[0].ball = ball_of({&body.solids[0].hull, 1});
+    body.centre = body.solids[0].centre = body.ball.centre;
+  }
+  for (LookedAt& pair : std::span{pairs_}.subspan(link_pairs_))
+    pair.named.limit_m = bodies_[pair.other].solids[0].hull.radius_m() > 0 ? limit_m_ : 0;
 }
 
 void Clearance::place(const JointVector& position) noexcept {
   state_.q = position;
   dynamics_.update(state_);
-  for (Part& part : parts_) part.now = moved(dynamics_.frame_pose(part.frame), part.own);
+  for (Body& body : std::span{bodies_}.first(links_)) {
+    body.pose = dynamics_.frame_pose(body.frame);
+    body.centre = body.pose * body.ball.centre;
+    for (Solid& solid : body.solids) solid.centre = body.pose * solid.ball.centre;
+  }
+}
+
+double Clearance::apart_m(LookedAt& pair, double enough_m) noexcept {
+  const Body &one = bodies_[pair.one], &other = bodies_[pair.other];
+  const auto between = [](const Vector3& from, const Ball& ball, const Vector3& to, const Ball& second) {
+    return (from - to).norm() - ball.radius_m - second.radius_m;
+  };
+  if (const double far = between(one.centre, one.ball, other.centre, other.ball); far >= enough_m) return far;
+  double least = HUGE_VAL;
+  std::size_t search = 0;
+  for (const Solid& its : one.solids)
+    for (const Solid& others : other.solids) {
+      Vector3& axis = pair.axes[search++];
+      const double enough = std::min(enough_m, least);
+      double far = between(its.centre, its.ball, others.centre, others.ball);
+      if (far < enough) far = robotics::distance_m({its.hull, one.pose}, {others.hull, other.pose}, enough, axis);
+      least = std::min(least, far);
+    }
+  return least;
 }
 
 Clearance::Nearest Clearance::nearest(const JointVector& position) noexcept {
   place(position);
   Nearest found;
-  const auto look = [&](double distance, const std::string& names) {
-    if (distance < found.distance_m) found = {distance, names.c_str()};
+  const auto look = [&](std::size_t i) {
+    LookedAt& pair = pairs_[i];
+    if (pair.named.limit_m < limit_m_ || limit_m_ <= 0) return;
+    const double far = apart_m(pair, found.distance_m);
+    if (far >= found.distance_m) return;
+    found = {far, pair.named.names.c_str()};
+    nearest_ = i;
   };
-  for (const Pair& pair : pairs_) look(distance_m(parts_[pair.one].now, parts_[pair.other].now), pair.names);
-  for (const Capsule& volume : volumes_) {
-    if (!(volume.radius_m > 0)) continue;
-    for (const Part& part : parts_)
-      if (part.moves) look(distance_m(part.now, volume), part.volume);
+  const std::size_t first = nearest_;
+  if (first < pairs_.size()) look(first);
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    if (i != first) look(i);
+  return found;
+}
+
+Clearance::Nearest Clearance::nearer(const JointVector& now, const JointVector& then) noexcept {
+  place(then);
+  bool any = false;
+  for (LookedAt& pair : pairs_) {
+    const double limit_m = pair.named.limit_m;
+    pair.then_m = limit_m > 0 ? apart_m(pair, limit_m) : HUGE_VAL;
+    any = any || pair.then_m < limit_m;
+  }
+  Nearest found;
+  if (!any) return found;
+  place(now);
+  for (LookedAt& pair : pairs_) {
+    if (pair.then_m >= pair.named.limit_m || pair.then_m >= found.distance_m) continue;
+    // As far as the search is exact: who does not move is no nearer.
+    constexpr double same_m = 3e-7;
+    if (apart_m(pair, pair.then_m + same_m) < pair.then_m + same_m) continue;
+    found = {pair.then_m, pair.named.names.c_str()};
   }
   return found;
+}
+
+void Clearance::distances(const JointVector& position, std::span<double> of_pairs) noexcept {
+  place(position);
+  for (std::size_t i = 0; i < std::min(of_pairs.size(), pairs_.size()); ++i) of_pairs[i] = apart_m(pairs_[i], HUGE_VAL);
 }
 
 }  // namespace hirosco::robot_arm

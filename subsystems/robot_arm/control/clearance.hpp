@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "robotics/shapes/collision.hpp"
 #include "subsystems/robot_arm/control/joints.hpp"
 
 namespace hirosco::robot_arm {
@@ -17,28 +19,16 @@ struct Capsule {
   double radius_m{0};
 };
 
-/// Between their surfaces; negative: how deep they are in each other, where their lines do not cross.  Realtime: wait-free.
-[[nodiscard]] double distance_m(const Capsule& one, const Capsule& other) noexcept;
-
-/// What encloses a link, in its frame.
-struct Hull {
-  std::string link;
-  Capsule capsule;
-};
-
-/// What the file has as <collision> of its links, each shape enclosed by a capsule. `unknown`: links with a shape of another file
-/// (a mesh), which nothing encloses.  Realtime: allocates.
-struct Hulls {
-  std::vector<Hull> hulls;
-  std::vector<std::string> unknown;
-};
-[[nodiscard]] Hulls hulls_of(std::string_view urdf);
-
-/// How near an arm comes to itself and to what it is to keep out of. Links that are joined to each other are not looked at, nor pairs whose
-/// hulls are nearer than `margin_m` with all joints at 0: those are near by construction.
+/// How near an arm comes to itself and to what it is to keep out of. Links that are joined to each other are not looked at. Two others have an own
+/// limit where they are built near each other: a third of how far apart they are with the joints between them at 0, where these may be there, or as far
+/// apart as they ever come. Where that is less than a millimetre they pass through each other.
 class Clearance {
  public:
-  Clearance(const robotics::Model& model, const Hulls& hulls, double margin_m);
+  /// Realtime: allocates; some hundred postures are looked at.
+  Clearance(const robotics::Model& model, std::span<const robotics::LinkHull> hulls);
+
+  /// How near any two may come.  Realtime: wait-free.
+  void set_limit(double limit_m) noexcept;
 
   /// In the axes of the base; those of no radius count for nothing.
   void keep_out(std::span<const Capsule> volumes) noexcept;
@@ -48,30 +38,62 @@ class Clearance {
     double distance_m{HUGE_VAL};
     const char* names{""};  ///< of the two, as long as this lives
   };
-  /// Time grows with the number of pairs.  Realtime: wait-free.
+  /// Of those that are not built nearer than the limit. Time grows with the number of pairs.  Realtime: wait-free.
   [[nodiscard]] Nearest nearest(const JointVector& position) noexcept;
-  [[nodiscard]] std::size_t pairs() const noexcept { return pairs_.size(); }
+  /// The nearest two at `then` among those that are nearer there than they may be, and nearer than at `now`: who is too near may go away, and keeps
+  /// nobody else from being seen. None: infinitely far.  Realtime: wait-free.
+  [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& then) noexcept;
+
+  /// Two links, and how near each other they are built.
+  struct Pair {
+    std::string names;
+    double built_m{HUGE_VAL};
+    double limit_m{0};  ///< 0: they pass through each other
+  };
+  /// Of links.
+  [[nodiscard]] std::size_t pairs() const noexcept { return link_pairs_; }
+  [[nodiscard]] const Pair& pair(std::size_t i) const noexcept { return pairs_[i].named; }
+  /// Of every one of these pairs.  Realtime: wait-free.
+  void distances(const JointVector& position, std::span<double> of_pairs) noexcept;
 
  private:
-  struct Part {
+  struct Solid {
+    robotics::RoundedHull hull;
+    robotics::Ball ball;  ///< in the link's frame
+    Vector3 centre{Vector3::Zero()};  ///< of the ball, in the base's
+  };
+  /// A link, or a volume, which stands.
+  struct Body {
     robotics::FrameId frame;
-    Capsule own;  ///< in its frame
-    Capsule now;  ///< in the base's
-    bool moves{false};
-    std::string volume;  ///< it and any volume that is kept out of
+    std::size_t body{0};
+    std::vector<Solid> solids;
+    robotics::Ball ball;
+    Vector3 centre{Vector3::Zero()};
+    robotics::Pose pose;
   };
-  struct Pair {
-    std::size_t one;
-    std::size_t other;
-    std::string names;
+  struct LookedAt {
+    Pair named;
+    std::size_t one{0};
+    std::size_t other{0};
+    std::vector<Vector3> axes;  ///< of each two solids, from the last search
+    double then_m{0};
   };
+  void add_links(const robotics::Model& model, std::span<const robotics::LinkHull> hulls);
+  void add_pair(std::size_t one, std::size_t other, std::string names);
+  void learn_construction(const robotics::Model& model);
+  [[nodiscard]] static bool may_be_zero(const robotics::Model& model, std::size_t one, std::size_t other);
   void place(const JointVector& position) noexcept;
+  [[nodiscard]] double apart_m(LookedAt& pair, double enough_m) noexcept;
 
   robotics::Dynamics dynamics_;
   robotics::State state_;
-  std::vector<Part> parts_;
-  std::vector<Pair> pairs_;
-  std::array<Capsule, most_volumes> volumes_{};
+  std::vector<Body> bodies_;  ///< links, then volumes
+  std::vector<LookedAt> pairs_;  ///< of links, then of links and volumes
+  std::size_t links_{0};
+  std::size_t link_pairs_{0};
+  std::array<Capsule, most_volumes> kept_out_{};
+  double limit_m_{0};
+  std::size_t nearest_{0};  ///< of the last search: the next begins there
 };
 
 }  // namespace hirosco::robot_arm

@@ -1,83 +1,98 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/control/clearance.hpp"
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numbers>
-#include <random>
-
-#include "subsystems/robot_arm/control/clearance.hpp"
 #include "subsystems/robot_arm/testing/plant.hpp"
 
 namespace hirosco::robot_arm {
 namespace {
 
-TEST(Capsules, AreAsFarFromEachOtherAsTheirLinesLessTheirRadii) {
-  const Capsule along_x{{0, 0, 0}, {1, 0, 0}, 0.1};
-  EXPECT_NEAR(distance_m(along_x, {{0.5, 0.5, -1}, {0.5, 0.5, 1}, 0.2}), 0.2, 1e-12) << "crossing";
-  EXPECT_NEAR(distance_m(along_x, {{0, 1, 0}, {1, 1, 0}, 0.1}), 0.8, 1e-12) << "parallel";
-  EXPECT_NEAR(distance_m(along_x, {{3, 0, 0}, {5, 0, 0}, 0.1}), 1.8, 1e-12) << "one behind the other";
-  EXPECT_NEAR(distance_m(along_x, {{2, 1, 0}, {2, 1, 0}, 0}), std::numbers::sqrt2 - 0.1, 1e-12) << "a point";
-  EXPECT_NEAR(distance_m({{1, 1, 1}, {1, 1, 1}, 0.5}, {{1, 1, 3}, {1, 1, 3}, 0.5}), 1, 1e-12) << "two balls";
-}
+using ::testing::HasSubstr;
 
-/// Against a search of both lines.
-TEST(Capsules, AreAsFarAsASearchFinds) {
-  std::mt19937 random{1};
-  std::uniform_real_distribution<double> any{-1, 1};
-  const auto point = [&] { return Vector3{any(random), any(random), any(random)}; };
-  constexpr int steps = 200;
-  for (int i = 0; i < 50; ++i) {
-    const Capsule one{point(), point(), 0.05}, other{point(), point(), 0.1};
-    double least = HUGE_VAL;
-    for (int s = 0; s <= steps; ++s)
-      for (int t = 0; t <= steps; ++t)
-        least = std::min(
-            least,
-            (one.from + (one.to - one.from) * s / steps - other.from - (other.to - other.from) * t / steps).norm());
-    EXPECT_NEAR(distance_m(one, other), least - 0.15, 0.01);
-    EXPECT_LE(distance_m(one, other), least - 0.15 + 1e-12);
-  }
+[[nodiscard]] robotics::CollisionShapes shapes_of(const std::filesystem::path& file, std::string_view text) {
+  auto reading = robotics::read_collision_shapes(file, text, descriptor::file_system());
+  for (const auto& problem : reading.problems) ADD_FAILURE() << problem.message;
+  return reading.value.value_or(robotics::CollisionShapes{});
 }
-
-TEST(Hulls, EncloseCylindersBoxesAndSpheresWhereTheyAreAndNameMeshes) {
-  const auto found = hulls_of(R"(<robot name="r">
-    <link name="a"><collision><origin xyz="1 2 3" rpy="0 1.5707963267948966 0"/><geometry><cylinder radius="0.1" length="2"/></geometry></collision></link>
-    <link name="b"><collision><geometry><box size="0.3 1 0.4"/></geometry></collision><collision><geometry><sphere radius="0.2"/></geometry></collision></link>
-    <link name="c"><collision><geometry><mesh filename="c.stl"/></geometry></collision><visual><geometry><sphere radius="9"/></geometry></visual></link>
-  </robot>)");
-  ASSERT_EQ(found.hulls.size(), 3u);
-  EXPECT_LT((found.hulls[0].capsule.to - Vector3{2, 2, 3}).norm(), 1e-12);
-  EXPECT_LT((found.hulls[0].capsule.from - Vector3{0, 2, 3}).norm(), 1e-12);
-  EXPECT_NEAR(found.hulls[1].capsule.radius_m, 0.25, 1e-12);
-  EXPECT_NEAR(found.hulls[1].capsule.to.y(), 0.5, 1e-12);
-  EXPECT_EQ(found.hulls[2].capsule.radius_m, 0.2);
-  EXPECT_EQ(found.unknown, std::vector<std::string>{"c"});
+[[nodiscard]] Clearance clearance_of(const robotics::Model& model, const std::filesystem::path& file,
+                                     std::string_view text) {
+  Clearance made{model, shapes_of(file, text).hulls};
+  made.set_limit(0.02);
+  return made;
 }
 
 struct ClearanceTest : ::testing::Test {
   robotics::Model model = testing::model_of(testing::six_joints);
-  Clearance clearance{model, hulls_of(descriptor::file_system()(testing::six_joints).value()), 0.02};
+  Clearance clearance =
+      clearance_of(model, testing::six_joints, descriptor::file_system()(testing::six_joints).value());
+  JointVector clear = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
+  /// Folded back onto the upper arm, the wrist meets it.
+  JointVector folded = vector_of(std::array{0.0, 0.0, 2.6, 2.2, 0.0, 0.0});
 };
 
 TEST_F(ClearanceTest, NamesTheTwoLinksThatAFoldedArmBringsTogether) {
   EXPECT_GT(clearance.pairs(), 3u);
-  EXPECT_GT(clearance.nearest(vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1})).distance_m, 0.05);
-  // Folded back onto the upper arm, the wrist meets it.
-  const auto folded = clearance.nearest(vector_of(std::array{0.0, 0.0, 2.6, 2.2, 0.0, 0.0}));
-  EXPECT_LT(folded.distance_m, 0.02) << folded.names;
-  EXPECT_NE(std::string{folded.names}.find("upper_arm"), std::string::npos) << folded.names;
+  EXPECT_GT(clearance.nearest(clear).distance_m, 0.05);
+  const auto found = clearance.nearest(folded);
+  EXPECT_LT(found.distance_m, 0.02) << found.names;
+  EXPECT_THAT(found.names, HasSubstr("upper_arm"));
+}
+
+TEST_F(ClearanceTest, RefusesWhoComesNearerAndLetsGoWhoIsTooNear) {
+  EXPECT_LT(clearance.nearer(clear, folded).distance_m, 0.02);
+  EXPECT_THAT(clearance.nearer(clear, folded).names, HasSubstr("upper_arm"));
+  EXPECT_EQ(clearance.nearer(folded, clear).distance_m, HUGE_VAL) << "away from it";
+  EXPECT_EQ(clearance.nearer(folded, folded).distance_m, HUGE_VAL) << "where it is";
 }
 
 TEST_F(ClearanceTest, NamesTheLinkThatComesNearAVolumeToKeepOutOf) {
-  const JointVector upright = JointVector::Zero(6);
+  const JointVector upright = JointVector::Zero(6), inside = vector_of(std::array{0.0, 0.8, 0.3, 0.0, 0.0, 0.0});
   const std::array volumes{Capsule{{0.5, -1, 0.7}, {0.5, 1, 0.7}, 0.2}};
   clearance.keep_out(volumes);
   EXPECT_GT(clearance.nearest(upright).distance_m, 0.05);
-  const auto near = clearance.nearest(vector_of(std::array{0.0, 0.8, 0.3, 0.0, 0.0, 0.0}));
-  EXPECT_LT(near.distance_m, 0);
-  EXPECT_NE(std::string{near.names}.find("volume"), std::string::npos) << near.names;
+  EXPECT_LT(clearance.nearest(inside).distance_m, 0);
+  EXPECT_THAT(clearance.nearest(inside).names, HasSubstr("volume"));
+  EXPECT_THAT(clearance.nearer(upright, inside).names, HasSubstr("volume"));
   clearance.keep_out({});
-  EXPECT_GT(clearance.nearest(vector_of(std::array{0.0, 0.8, 0.3, 0.0, 0.0, 0.0})).distance_m, 0);
+  EXPECT_GT(clearance.nearest(inside).distance_m, 0);
+  EXPECT_EQ(clearance.nearer(upright, inside).distance_m, HUGE_VAL);
+}
+
+/// Three links in a row, of which the first and the last are `gap` apart with all joints at 0; the middle one is in nobody's way.
+[[nodiscard]] std::string row(double gap, const char* range) {
+  const auto link = [](const std::string& name, const std::string& x) {
+    return "<link name='" + name +
+           "'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' "
+           "izz='1'/></inertial><collision><origin xyz='" +
+           x +
+           " 0 0'/><geometry><box size='0.2 0.1 0.1'/></geometry>"
+           "</collision></link>";
+  };
+  const auto joint = [&](const std::string& name, const char* x, const std::string& parent, const std::string& child) {
+    return "<joint name='" + name + "' type='revolute'><origin xyz='" + x + " 0 0'/><parent link='" + parent +
+           "'/><child link='" + child + "'/><axis xyz='0 0 1'/><limit " + range + " velocity='1' effort='1'/></joint>";
+  };
+  return "<robot name='row'>" + link("a", "0") + link("b", "5") + link("c", std::to_string(gap - 0.2)) +
+         joint("j", "0.1", "a", "b") + joint("k", "0.3", "b", "c") + "</robot>";
+}
+[[nodiscard]] Clearance clearance_of_row(double gap, const char* range) {
+  const std::string text = row(gap, range);
+  const auto reading = robotics::urdf::read("row.urdf", text);
+  return clearance_of(robotics::Model::make(robotics::urdf::describe(reading.value.value())).value(), "row.urdf", text);
+}
+
+TEST(ClearanceByConstruction, IsTheLimitOfThoseWhoAreBuiltNearEachOther) {
+  constexpr const char* any = "lower='-1' upper='1'";
+  EXPECT_NEAR(clearance_of_row(0.03, any).pair(0).limit_m, 0.01, 1e-6) << "30 mm apart";
+  EXPECT_EQ(clearance_of_row(0.1, any).pair(0).limit_m, 0.02) << "100 mm apart";
+  EXPECT_EQ(clearance_of_row(-0.05, any).pair(0).limit_m, 0) << "in each other";
+}
+
+TEST(ClearanceByConstruction, IsNotLearntWhereTheJointsBetweenThemCannotBe) {
+  EXPECT_EQ(clearance_of_row(-0.05, "lower='0.5' upper='2'").pair(0).limit_m, 0.02);
 }
 
 }  // namespace

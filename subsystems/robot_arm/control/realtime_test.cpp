@@ -26,7 +26,10 @@ TEST(Control, UsesNoHeapInACycle) {
   const Impedance impedance{JointVector::Constant(6, 100), 500, 20, 0.7};
   MomentumObserver observer{6, period_s, 50};
   Setpoints setpoints{model, tip, bounds, period_s};
-  Clearance clearance{model, hulls_of(descriptor::file_system()(testing::six_joints).value()), 0.02};
+  const auto text = descriptor::file_system()(testing::six_joints).value();
+  Clearance clearance{
+      model, robotics::read_collision_shapes(testing::six_joints, text, descriptor::file_system()).value.value().hulls};
+  clearance.set_limit(0.02);
   Watch watch;
   const JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
   const JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
@@ -62,7 +65,8 @@ TEST(Control, UsesNoHeapInACycle) {
         EXPECT_FALSE(laws.compliance().too_stiff(laws.kind(), impedance, dynamics, {}, 1e3));
       }
       EXPECT_TRUE(laws.torque(now, measured, dynamics, payload, bounds, {}).allFinite());
-      EXPECT_GT(clearance.nearest(setpoints.braked()).distance_m, 0);
+      EXPECT_GT(clearance.nearest(now.position).distance_m, 0);
+      EXPECT_GT(clearance.nearer(now.position, setpoints.braked()).distance_m, 0);
       static_cast<void>(watch.update(measured, &now.position, bounds, {}));
     }
     EXPECT_EQ(scope.count(), AllocationCount{}) << static_cast<int>(kind);

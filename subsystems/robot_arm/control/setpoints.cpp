@@ -69,7 +69,8 @@ Result<> Setpoints::go(const JointVector& goal, double speed_share) noexcept {
     limits[i] = bounds_[i].motion;
     limits[i].velocity *= speed_share;
   }
-  HIROSCO_TRY_LET(path_, robotics::PointToPoint::plan(now_.position, goal, std::span{limits}.first(bounds_.size())));
+  HIROSCO_TRY_LET(path_,
+                  robotics::PointToPoint::plan_straight(now_.position, goal, std::span{limits}.first(bounds_.size())));
   kind_ = Kind::JointPath;
   braking_ = false;
   path_s_ = 0;

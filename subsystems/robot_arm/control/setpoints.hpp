@@ -22,7 +22,7 @@ class Setpoints {
 
   /// Stands there from now on.
   void rest(const JointVector& position) noexcept;
-  /// All joints at once, jerk-limited, with this share of their velocities. InvalidArgument: as of PointToPoint.
+  /// All joints at once, each by the same share of its way, jerk-limited, with this share of their velocities. InvalidArgument: as of PointToPoint.
   [[nodiscard]] Result<> go(const JointVector& goal, double speed_share) noexcept;
   /// The tool on a straight line, turning about one axis meanwhile. InvalidArgument: there is no way, or no speed.
   struct LineSpeed {

@@ -63,7 +63,7 @@ TEST_F(SetpointsTest, BrakesOnItsPathWhereverItIsOnIt) {
   const JointVector goal = vector_of(std::array{-1.5, -0.5, 0.2, 0.9, -0.7, 2.0});
   std::vector<robotics::MotionLimits> limits;
   for (const JointBounds& its : bounds) limits.push_back(its.motion);
-  const auto path = robotics::PointToPoint::plan(start, goal, limits).value();
+  const auto path = robotics::PointToPoint::plan_straight(start, goal, limits).value();
   for (int cycles = 50; cycles < 1500; cycles += 150) {
     setpoints.rest(start);
     before = start;

@@ -78,9 +78,9 @@ struct Flown : hirosco::testing::Driven {
   std::optional<robot_arm::Measured> told;  ///< in place of the truth
 
   Flown(std::size_t joints, const std::string& file, double mass_factor = 1)
-      : Driven{make_robot_arm(), descriptor_for(joints, file), "robot-arm"},
-        n{joints},
-        model{model_of(file, mass_factor)} {
+      : Flown{model_of(file, mass_factor), descriptor_for(joints, file)} {}
+  Flown(robotics::Model of, const std::string& descriptor_text)
+      : Driven{make_robot_arm(), descriptor_text, "robot-arm"}, n{of.joints().size()}, model{std::move(of)} {
     plant.rotor = 0.1;
     commanded = outside = JointVector::Zero(static_cast<Eigen::Index>(n));
   }

@@ -42,7 +42,7 @@ inline const std::string six_joints = HIROSCO_SOURCE_DIR "/subsystems/robot_arm/
   return bounds;
 }
 
-/// Rigid bodies, viscous damping and dry friction of the file, steps of 50 us.
+/// Rigid bodies, viscous damping and dry friction of the file.
 class Plant {
  public:
   explicit Plant(const robotics::Model& model) : model_{model}, dynamics_{model, robotics::Base::Fixed} {
@@ -58,7 +58,7 @@ class Plant {
   }
   /// `outside`: what acts on the joints besides.
   void step(const JointVector& drive, double span_s, const JointVector* outside = nullptr) {
-    constexpr double h = 50e-6;
+    const double h = step_s;
     for (double t = 0; t < span_s - h / 2; t += h) {
       dynamics_.update(state_);
       robotics::Coordinates force = drive, acceleration;
@@ -83,7 +83,10 @@ class Plant {
   }
   [[nodiscard]] const Measured& measured() const { return measured_; }
 
+  void set_gravity(const Vector3& gravity_m_s2) { dynamics_.set_gravity(gravity_m_s2); }
+
   double friction_factor{1};
+  double step_s{50e-6};
   double rotor{0};  ///< of each joint
 
  private:

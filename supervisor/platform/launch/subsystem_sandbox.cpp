@@ -6,7 +6,9 @@
 #include <string>
 #include <string_view>
 
+#include "hirosco/descriptor/model/mesh_files.hpp"
 #include "hirosco/descriptor/model/setting_files.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 
 namespace hirosco::supervisor {
@@ -17,6 +19,14 @@ namespace {
   const std::string text = file.string();
   if (!text.starts_with(shipped_prefix)) return std::filesystem::absolute(file);
   return find_shipped(std::string_view{text}.substr(shipped_prefix.size()));
+}
+
+/// It, and the meshes beside it that it names.
+void add_file(const std::filesystem::path& file, Sandbox& sandbox) {
+  sandbox.readable.push_back(place_of(file).string());
+  if (file.extension() != ".urdf") return;
+  if (const auto text = descriptor::file_system()(file))
+    for (const auto& mesh : descriptor::meshes_named(file, *text)) sandbox.readable.push_back(place_of(mesh).string());
 }
 
 void add_address(const descriptor::Endnode& endnode, Sandbox& sandbox) {
@@ -69,8 +79,7 @@ Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::fil
   for (const auto& configuration : subsystem.subsystem.configurations)
     for (const auto& use : configuration.devices) {
       for (const auto& setting : use.settings)
-        if (descriptor::names_file(setting))
-          sandbox.readable.push_back(place_of(descriptor::file_of(subsystem.subsystem, setting.value)).string());
+        if (descriptor::names_file(setting)) add_file(descriptor::file_of(subsystem.subsystem, setting.value), sandbox);
       add_address(use.endnode, sandbox);
       for (const auto& other : use.fall_backs) add_address(other, sandbox);
     }

@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 namespace hirosco::supervisor {
 namespace {
 
@@ -52,6 +55,19 @@ TEST(SubsystemSandbox, LetsReadWhatASettingOfADeviceNamesAsAFileAndNothingElseTh
   EXPECT_THAT(sandbox.readable, Contains("/robots/arm.urdf"));
   EXPECT_THAT(sandbox.readable, Contains("/maps/all"));
   EXPECT_THAT(sandbox.readable, Not(Contains("/missions/secret.txt")));
+}
+
+TEST(SubsystemSandbox, LetsReadTheMeshesBesideARobotsFileThatItNames) {
+  const std::filesystem::path folder{::testing::TempDir()};
+  std::ofstream{folder / "arm.urdf"}
+      << "<robot><link><mesh filename='parts/a.stl'/><mesh filename='../b.stl'/></link></robot>";
+  auto arm = with_device(Transfer::Udp, "127.0.0.1:5000");
+  arm.subsystem.file = folder / "arm.xml";
+  arm.subsystem.configurations[0].devices[0].settings = {{"MODEL_FILE", "arm.urdf", {}}};
+  const Sandbox sandbox = sandbox_of(arm, "/bin/arm");
+  EXPECT_THAT(sandbox.readable, Contains((folder / "arm.urdf").string()));
+  EXPECT_THAT(sandbox.readable, Contains((folder / "parts/a.stl").string()));
+  EXPECT_THAT(sandbox.readable, Not(Contains(::testing::HasSubstr("b.stl"))));
 }
 
 TEST(SubsystemSandbox, KnowsAScriptByItsFirstLine) {
