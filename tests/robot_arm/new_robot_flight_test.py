@@ -137,6 +137,7 @@ class Made(unittest.TestCase):
                 code = craft.tc(SUBSYSTEM, "MOVE_L", ",".join(map(str, wanted)), turned, 0.1, 0.5)[0]
                 if code == 0:
                     break
+                time.sleep(1)  # it brakes
                 self.does(craft, SUBSYSTEM, "MOVE_J", ",".join(map(str, self.goal)), 0.5)
             self.assertEqual(code, 0, "no line was gone to its end")
             _, _, tool = truth()
