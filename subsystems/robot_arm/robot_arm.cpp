@@ -267,7 +267,7 @@ Outcome RobotArm::move_l(const FunctionValues& values, const Call& call) noexcep
   if (!(wanted.norm() > 0.5 && wanted.norm() < 1.5)) return refused(Trouble::no_goal, "no orientation");
   const robotics::Pose goal{wanted.normalized().toRotationMatrix(), {values[0], values[1], values[2]}};
   const Outcome started = start(setpoints_->go_straight(goal, {values[7], values[8]}), call);
-  line_to_ = goal.position;
+  if (started.kind != Outcome::Kind::Refused) line_to_ = goal.position;
   return started;
 }
 
