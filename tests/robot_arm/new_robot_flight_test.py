@@ -28,7 +28,7 @@ def given():
     sys.path[:0] = [str(flight.REPOSITORY / "tests/client")]
     import with_library
     os.environ["PYTHONPATH"] = os.pathsep.join([str(flight.REPOSITORY / "tests/robotics"), os.environ.get("PYTHONPATH", "")])
-    python = with_library.interpreter_or_skip(pathlib.Path(BUILD) / "robotics_judges", "import robots; robots.folder()",
+    python = with_library.interpreter_or_skip(pathlib.Path(BUILD) / "python_judges", "import robots; robots.folder()",
                                               flight.REPOSITORY / "tests/robotics/requirements.txt", 600)
     done = subprocess.run([python, "-c", "import robots; print(robots.folder())"], capture_output=True, text=True, check=True)
     return pathlib.Path(done.stdout.strip()) / FILE
