@@ -90,12 +90,13 @@ class Emulated:
         return "\n".join(self.lines())
 
     def until(self, wanted, what, seconds=15.0):
-        """The screen's text once `wanted(text)`."""
+        """The screen's text once `wanted(text)`, and nothing is being drawn."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
-            if wanted(self.text()):
-                return self.text()
+            text = self.text()
             time.sleep(0.02)
+            if wanted(text) and self.text() == text:
+                return text
         raise AssertionError(f"never on the screen: {what}\n{self.text()}")
 
     def press(self, keys):
