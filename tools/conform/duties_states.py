@@ -139,11 +139,15 @@ def runs(judged):
         expect(craft.vital.u64(32) == flown.configuration.period_ns, f"period_ns is {craft.vital.u64(32)}")
         craft.wait(0.1 + 3 * period)
         import time
-        begin, cycles = time.monotonic(), craft.vital.u64(40)
-        craft.wait(max(2, 20 * period))
-        passed = (time.monotonic() - begin) / period
-        made = craft.vital.u64(40) - cycles
-        expect(abs(made - passed) <= 0.1 * passed + 2, f"{made} cycles in {passed:.0f} periods")
+        # A busy machine takes cycles from whoever has no right to real time, now and then.
+        for left in (2, 1, 0):
+            begin, cycles = time.monotonic(), craft.vital.u64(40)
+            craft.wait(max(2, 20 * period))
+            passed = (time.monotonic() - begin) / period
+            made = craft.vital.u64(40) - cycles
+            if abs(made - passed) <= 0.1 * passed + 2:
+                break
+            expect(left > 0, f"{made} cycles in {passed:.0f} periods, and not better twice before")
         craft.permit.set32(8, craft.epoch() + 1)
         expect(craft.until(lambda: craft.vital.u32(20) == craft.epoch(), 3 * period + 0.1),
                f"seen_epoch is {craft.vital.u32(20)}, the page has {craft.epoch()}")
