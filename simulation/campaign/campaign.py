@@ -69,7 +69,29 @@ class Campaign:
         self.out_of_reach = out_of_reach(self.mission)
         self.command_cells = [cell for cell in commands_of(self.mission) if cell not in self.out_of_reach]
         self.fault_cells = [cell for cell in faults_of(self.mission) if cell not in self.out_of_reach]
-        self.failed, self.violations = [], 0
+        self.failed, self.violations, self.flown, self.before_s = [], 0, 0, 0.0
+        self.kept = pathlib.Path(arguments.keep) if arguments.keep else None
+        if self.kept and self.kept.exists():
+            self.go_on(json.loads(self.kept.read_text()))
+
+    def of_what(self):
+        """What a campaign that goes on must have alike."""
+        return {"mission": str(pathlib.Path(self.arguments.mission).resolve().name), "seed": self.arguments.seed, "defect": self.arguments.defect}
+
+    def go_on(self, kept):
+        if kept["of"] != self.of_what():
+            raise SystemExit(f"{self.kept}: is the campaign of {kept['of']}, not of {self.of_what()}: name another file, or take it away")
+        self.commands.update(kept["commands"])
+        self.faults.update(kept["faults"])
+        self.failed, self.violations, self.flown, self.before_s = kept["failed"], kept["violations"], kept["flown"], kept["seconds"]
+
+    def keep(self, flown, seconds):
+        """In one stroke: whoever is killed here goes on from the batch before."""
+        kept = {"of": self.of_what(), "flown": flown, "seconds": seconds, "violations": self.violations, "failed": self.failed,
+                "commands": self.commands, "faults": self.faults}
+        new = self.kept.with_name(self.kept.name + ".new")
+        new.write_text(json.dumps(kept))
+        new.replace(self.kept)
 
     def plan(self, index):
         turn = index % BATCH
@@ -79,11 +101,11 @@ class Campaign:
         return Draw(self.mission, self.arguments.seed, index, commands, faults).text()
 
     def run(self):
-        started = time.monotonic()
+        started = time.monotonic() - self.before_s
         only, flights = self.arguments.only, self.arguments.flights
         last = flights if only is None else only + 1
         with concurrent.futures.ThreadPoolExecutor(self.arguments.jobs) as pool:
-            for first in range(0, last, BATCH):
+            for first in range(self.flown, last, BATCH):
                 batch = range(first, min(first + BATCH, last))
                 plans = {index: self.plan(index) for index in batch}
                 wanted = [index for index in batch if only is None or index == only or first + BATCH <= only]
@@ -92,9 +114,11 @@ class Campaign:
                     self.faults.update(result["faults"])
                     if result["violations"] and only in (None, index):
                         self.tell(index, result, plans[index])
+                if self.kept and batch.stop % BATCH == 0:
+                    self.keep(batch.stop, time.monotonic() - started)
                 print(f"{batch.stop} flown, {time.monotonic() - started:.0f} s", file=sys.stderr, flush=True)
         full = self.table()
-        flown = last if only is None else 1
+        flown = max(last, self.flown) if only is None else 1
         wrong = [cell for cell in self.out_of_reach if self.commands[cell] + self.faults[cell]]
         for cell in wrong:
             print(f"covered, though draw.py says that it is out of reach: {cell}")
@@ -148,13 +172,17 @@ def parse(words=None):
     parser.add_argument("--only", type=int, help="this flight alone; those of earlier batches fly first, as its drawing aims by them")
     parser.add_argument("--plan", help="fly and judge this plan")
     parser.add_argument("--show", action="store_true", help="print the plan of --only instead of flying it")
+    parser.add_argument("--keep", metavar="FILE", help="write down after each batch how far it is, and go on from there where FILE is there already")
     parser.add_argument("--out", help="folder for the plans that failed")
     parser.add_argument("--shrink", type=int, default=3, help="how many failed plans are made small (0: none)")
     parser.add_argument("--table", action="store_true", help="print all cells that are not full")
     parser.add_argument("--defect", help="fly with this planted defect")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--fly-plan", default=os.environ.get("HIROSCO_FLY_PLAN", str(default)))
-    return parser.parse_args(words)
+    arguments = parser.parse_args(words)
+    if arguments.keep and arguments.only is not None:
+        parser.error("--only flies those of earlier batches first: it does not go on from --keep; the plans that failed are in --out")
+    return arguments
 
 
 def main():

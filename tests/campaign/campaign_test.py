@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A slice of the campaign has no violation, the same seed gives the same octets, a failing plan shrinks to what it needs,
 and each planted defect is found. campaign_test.py [flights|typed|defects|tools] [DEFECT...]"""
-import collections, os, pathlib, subprocess, sys, tempfile
+import collections, contextlib, os, pathlib, subprocess, sys, tempfile
 from concurrent.futures import ThreadPoolExecutor
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -29,8 +29,15 @@ def check(condition, text):
 
 
 def flights():
-    campaign = Campaign(parse([MISSION, "--flights", str(SLICE), "--shrink", "1"]))
-    check(campaign.run() == 0, f"{SLICE} flights hold every invariant")
+    with tempfile.TemporaryDirectory() as folder:
+        words = [MISSION, "--flights", str(SLICE), "--shrink", "1", "--keep", f"{folder}/kept.json"]
+        campaign = Campaign(parse(words))
+        check(campaign.run() == 0, f"{SLICE} flights hold every invariant")
+        again = Campaign(parse(words))
+        check(again.flown == SLICE and again.plan(SLICE) == campaign.plan(SLICE), "who goes on draws as if nothing had come between")
+        with contextlib.suppress(SystemExit):
+            Campaign(parse([*words, "--seed", "2"]))
+            check(False, "a campaign of another seed is not gone on with")
 
 
 def typed():

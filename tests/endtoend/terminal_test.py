@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`hirosco run` at a terminal, seen by a foreign emulator (pyte): what stands on the screen, that it follows the window, that a terminal
 which takes nothing changes nothing in the flight, and that the terminal is as it was after every end."""
+import itertools
 import json
 import os
 import pathlib
@@ -62,6 +63,12 @@ def clock_s(text):
     return 3600 * int(hours) + 60 * int(minutes) + int(seconds)
 
 
+def rows(lines):
+    """The table's, by the subsystem's name; what is remarked below it begins with one, too."""
+    begin = next(number for number, line in enumerate(lines) if line.split()[:2] == ["SUBSYSTEM", "STATE"]) + 1
+    return {line.split()[1]: line for line in itertools.takewhile(str.strip, lines[begin:])}
+
+
 class TerminalTest(unittest.TestCase):
     def assert_as_before(self, terminal):
         self.assertEqual(terminal.until_as_before(), [])
@@ -72,8 +79,9 @@ class TerminalTest(unittest.TestCase):
             text = terminal.until(lambda t: "● well" in t and (not station or "#token=" in t), "that it is well")
             lines = text.splitlines()
             self.assertIn(" ROKVISS  telepresence", lines[0])
-            for name in ("COMMUNICATION", "MANIPULATOR", "JOYSTICK"):
-                row, = (line for line in lines if line.startswith(f" ● {name}") or line.startswith(f" ◆ {name}"))
+            table = rows(lines)
+            self.assertEqual(set(table), {"COMMUNICATION", "MANIPULATOR", "JOYSTICK"})
+            for row in table.values():
                 self.assertIn("Operational", row)
                 self.assertIn(" Hz ", row)
             self.assertIn(" links 2/6  ● MANIPULATOR → JOYSTICK  ● JOYSTICK → MANIPULATOR", text)

@@ -7,7 +7,7 @@ stop of everything by three ways; then the craft must be whole again by one brin
 Judged from outside: only the victim dies (I1), the supervisor answers throughout (I6), what was taken is given back (I7),
 the robot in the world puts out nothing after a stop, everybody else cycles on (hazards SF2, SF14, SF15, SF18).
 
-    real_campaign.py [--flights N] [--seed S] [--only K]
+    real_campaign.py [--flights N] [--seed S] [--only K] [--keep FILE]    FILE: how far it is; goes on from there
     real_campaign.py --hundreds [N]      each of spinning, stopped, unplugged, killed (each subsystem) N times (100), and what it took
 """
 import argparse
@@ -299,19 +299,29 @@ def hundreds(mission, seed, times):
     return violations
 
 
+def outcomes(kept, seed):
+    """{number: whether it passed} of the flights of this seed that were flown already."""
+    lines = kept.read_text(encoding="utf-8").splitlines() if kept and kept.exists() else []
+    return {int(line.split()[1]): line.split()[2] == "passed" for line in lines if int(line.split()[0]) == seed}
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--flights", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", type=int)
+    parser.add_argument("--keep", type=pathlib.Path, help="a line for each flight; those that are in it already are not flown again")
     parser.add_argument("--hundreds", type=int, nargs="?", const=100)
     options = parser.parse_args()
     with flight.MissionCopy({**SPINNABLE, **RESTARTS}) as mission:
         if options.hundreds:
             return 1 if hundreds(mission, options.seed, options.hundreds) else 0
         numbers = [options.only] if options.only is not None else range(options.flights)
-        failed = 0
+        failed, kept = 0, outcomes(options.keep, options.seed)
         for number in numbers:
+            if number in kept:
+                failed += not kept[number]
+                continue
             trial = Trial(options.seed, number)
             print(f"flight {number}: {' '.join(step.__name__ for step in trial.steps)}", flush=True)
             for _ in range(LATE_FLIGHTS):
@@ -320,6 +330,9 @@ def main():
                     break
                 trial = Trial(options.seed, number)
             failed += not outcome
+            if options.keep:
+                with options.keep.open("a", encoding="utf-8") as file:
+                    file.write(f"{options.seed} {number} {'passed' if outcome else 'failed'}\n")
     print(f"{len(numbers) - failed} passed, {failed} failed")
     return 1 if failed else 0
 

@@ -4,6 +4,10 @@
 // goes on to the real ones. std::mutex, streams and fmt stand on them. Trying a lock is no wait, so it is not counted; nor are
 // sockets, which devices and links are spoken to by. What prints by way of another output counts more than once.
 
+#include <features.h>
+// With an optimiser the C library has some of these functions inline, which clang does not let anybody define again.
+#undef __USE_EXTERN_INLINES
+
 #include <dlfcn.h>
 #include <pthread.h>
 #include <semaphore.h>
