@@ -64,9 +64,9 @@ def clock_s(text):
 
 
 def rows(lines):
-    """The table's, by the subsystem's name; what is remarked below it begins with one, too."""
+    """The table's, by the subsystem's name; a remark, behind an empty line, begins with one, too."""
     begin = next(number for number, line in enumerate(lines) if line.split()[:2] == ["SUBSYSTEM", "STATE"]) + 1
-    return {line.split()[1]: line for line in itertools.takewhile(str.strip, lines[begin:])}
+    return {line.split()[1]: line for line in itertools.takewhile(lambda line: line[:3] in (" ● ", " ◆ "), lines[begin:])}
 
 
 class TerminalTest(unittest.TestCase):
