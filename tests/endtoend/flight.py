@@ -335,10 +335,17 @@ class Flight:
 
     def log(self, *words, last=100000):
         """The texts of the log's records, oldest first."""
-        done = self.hirosco("log", "--mission", self.mission, "--json", "--last", str(last), *self._which(), *words)
-        if done.returncode != 0:
-            raise AssertionError(f"hirosco log: {done.stderr}")
-        return [json.loads(line) for line in done.stdout.splitlines()]
+        return list(self.records(*words, last=last))
+
+    def records(self, *words, last):
+        """The same, one by one."""
+        command = [self.binaries / "hirosco", "log", "--mission", self.mission, "--json", "--last", str(last), *self._which(), *words]
+        with tempfile.TemporaryFile("w+") as errors, subprocess.Popen(command, cwd=self.folder, env={**self.environment, MARK: ""},
+                                                                      stdout=subprocess.PIPE, stderr=errors, text=True) as told:
+            yield from map(json.loads, told.stdout)
+            if told.wait() != 0:
+                errors.seek(0)
+                raise AssertionError(f"hirosco log: {errors.read()}")
 
     def processes(self):
         return marked_processes(self.mark)

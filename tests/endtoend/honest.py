@@ -25,8 +25,14 @@ def telecommand(apid, count, service=17, data=b"", ack=ALL, source=HONEST):
     return body + struct.pack(">H", binascii.crc_hqx(body, 0xFFFF))
 
 
+def call(count, function, *arguments):
+    """A function of the supervisor, each argument as its octets."""
+    data = b"".join(bytes([place]) + argument for place, argument in enumerate(arguments, 1))
+    return telecommand(SUPERVISOR, count, 8, function.encode().ljust(16, b"\0") + bytes([len(arguments)]) + data)
+
+
 def safe_all(count):
-    return telecommand(SUPERVISOR, count, 8, b"SAFE_ALL".ljust(16, b"\0") + b"\0")
+    return call(count, "SAFE_ALL")
 
 
 def request_id(packet):
@@ -42,7 +48,7 @@ class Honest:
         self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 64 * 1024)
         self.socket.connect(("127.0.0.1", TELEMETRY_PORT))
         self.socket.settimeout(None)
-        self.count, self.closed, self.gaps = 0, False, 0
+        self.count, self.closed, self.gaps, self.packets = 0, False, 0, 0
         self.reports = {}                                     # request id -> [(subtype, time)]
         self.by_source = collections.Counter()                # (destination, subtype) -> number
         self.housekeeping = {}                                # (apid, structure) -> (number, source data)
@@ -77,6 +83,7 @@ class Honest:
                 self.gaps += 1
             self.sequence[apid] = count
             service, subtype = buffer[at + 7], buffer[at + 8]
+            self.packets += 1
             if service == 1:
                 destination = buffer[at + 11] << 8 | buffer[at + 12]
                 self.by_source[destination, subtype] += 1

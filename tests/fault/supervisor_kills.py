@@ -2,12 +2,14 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """kill -9 of the supervisor, N times (`--kills N`), while the robot pushes on the rail and a client commands without a pause
-(docs/adr/0093). Each time another one goes on with both machines as they are. Every sixth kill falls between TM[1,1] and TM[1,7] of a
-SAFE_ALL. In the end what the client sent and received is compared with each other and with the log."""
+(docs/adr/0093), so that more than a thousand packets a second pass. Each time another one goes on with both machines as they are. Of
+six kills one falls between TM[1,1] and TM[1,7] of a SAFE_ALL, one into a change of the log's strategy, one into the begin of a new
+piece of the log. In the end what the client sent and received is compared with each other and with the log."""
+import collections
 import math
 import os
 import random
-import signal
+import socket
 import struct
 import sys
 import threading
@@ -28,14 +30,23 @@ PUSHES_N = 10.0
 FREE_MM = 22                     # the robot, at its home, is so far from the rail
 POS_SCALE = flight.MANIPULATOR << 16 | 10 << 8 | 8
 TELEPRESENCE = 3
+PIECES = {"64": "4"}             # of the log, in MB, so that one begins every second or two
+SQLITE, ASCII = 0, 1
+SWITCH_S, ROTATION_S = 0.030, 0.005    # what a change of strategy takes, and the begin of a piece
+PACKETS_PER_S = 1000
+
+
+def name_of(request):
+    """(addressee, sequence count) of a request id as the log has them."""
+    apid, count = struct.unpack(">HH", request)
+    return {honest.SUPERVISOR: "SUPERVISOR", flight.MANIPULATOR: "MANIPULATOR", flight.JOYSTICK: "JOYSTICK"}[apid & 0x7FF], f"#{count & 0x3FFF}"
 
 
 class Client:
     """Asks both machines in turn: a ping, which waits for nothing, and the value of a parameter, which waits for the log."""
 
-    def __init__(self, ground, port=honest.TELECOMMAND_PORT):
-        import socket
-        self.ground, self.sent, self.ending = ground, [], False
+    def __init__(self, ground, port=honest.TELECOMMAND_PORT, pause_s=0.005):
+        self.ground, self.sent, self.ending, self.pause_s = ground, [], False, pause_s
         self.mutex = threading.Lock()
         self.socket = socket.create_connection(("127.0.0.1", port))
         self.thread = threading.Thread(target=self.run, daemon=True)
@@ -48,7 +59,7 @@ class Client:
                 self.send(honest.telecommand(apid, self.ground.next()))
             else:
                 self.send(honest.telecommand(apid, self.ground.next(), 20, struct.pack(">BI", 1, POS_SCALE)))
-            time.sleep(0.005)
+            time.sleep(self.pause_s)
 
     def send(self, packet):
         with self.mutex:
@@ -70,7 +81,7 @@ class Accounts(unittest.TestCase):
         self.fail("the robot does not push")
 
     def compare(self, rokviss, ground, sent, most_silent=0):
-        silent, several, accepted_only, unknown = [], [], [], 0
+        silent, several, accepted_only, unknown, answered = [], [], [], 0, collections.Counter()
         for request, times in self.sent_at(sent).items():
             reports = ground.reports.get(request, [])
             # A sequence count comes again after 16384: what is told until then is about the telecommand before.
@@ -84,8 +95,10 @@ class Accounts(unittest.TestCase):
                 if len(ends) > 1:
                     several.append((request.hex(), subtypes))
                 unknown += 8 in subtypes
+                answered[name_of(request)] += bool(subtypes)
         flight.measure(f"ended as unknown: {unknown}, without any report: {len(silent)}")
-        self.is_continuous(rokviss)
+        missing, noted = self.is_continuous(rokviss)
+        self.stands_in_the_log(answered, noted, missing)
         self.assertEqual(several, [], "one end each")
         self.assertEqual(accepted_only, [], "what was accepted has an end")
         self.assertLessEqual(len(silent), most_silent, f"between reading and noting: {silent[:5]}")
@@ -99,9 +112,10 @@ class Accounts(unittest.TestCase):
         return times
 
     def is_continuous(self, rokviss):
-        """Each number of the log once, in a record or in a gap that says so."""
-        expected, missing = None, 0
-        for record in rokviss.log():
+        """Each number of the log once, in a record or in a gap that says so. How many stand in gaps, and the telecommands that stand
+        in records: {(addressee, sequence count): times}."""
+        expected, missing, noted = None, 0, collections.Counter()
+        for record in rokviss.records(last=10_000_000):
             number = record["number"]
             if expected is not None:
                 self.assertEqual(number, expected, record)
@@ -109,50 +123,100 @@ class Accounts(unittest.TestCase):
             if record["kind"] == "gap":
                 missing += int(record["text"].rsplit("number ", 1)[1].split('"')[0]) - number + 1
                 expected = int(record["text"].rsplit("number ", 1)[1].split('"')[0]) + 1
+            elif record["kind"] == "telecommand-received":
+                noted[tuple(record["text"].split(" TC[", 1)[1].split()[1:3])] += 1
         flight.measure(f"numbers of the log that stand in gaps: {missing}")
+        return missing, noted
+
+    def stands_in_the_log(self, answered, noted, missing):
+        """What was answered; an essential telecommand is answered before it stands there, and is in a gap where it never came so far."""
+        absent = {call: (times, noted[call]) for call, times in answered.items() if times > noted[call]}
+        lost = sum(times - there for times, there in absent.values())
+        flight.measure(f"answered, and in a gap of the log: {lost}")
+        self.assertLessEqual(lost, missing, absent)
+        self.assertGreater(sum(noted.values()), 0)
 
 
 class SupervisorKills(Accounts):
+    """Of six kills the kinds of `STROKES`, and three at any moment."""
+
     def test_nothing_is_lost_and_the_robot_stays_coupled(self):
-        draw = random.Random(SEED)
-        with flight.Flight() as rokviss:
+        self.draw = random.Random(SEED)
+        with flight.MissionCopy(PIECES) as mission, flight.Flight(mission) as rokviss:
+            self.rokviss, self.strategy, self.took = rokviss, ASCII, []
             rokviss.wait_commissioned()
             self.push(rokviss)
-            ground = honest.Honest()
-            client = Client(ground)
-            took = []
-            for kill in range(1, KILLS + 1):
-                time.sleep(LIVES_S + draw.uniform(0.0, 0.3))
-                begin = rokviss.count()
-                stopped = kill % 6 == 0
-                if stopped:
-                    packet = client.send(honest.safe_all(ground.next()))
-                    self.assertTrue(ground.wait(lambda: ground.reports.get(packet[:4]), 2.0), "it is accepted")
-                killed = rokviss.kill("hirosco-supervisor")
-                told = rokviss.wait_told("goes on with MANIPULATOR", 5.0, begin)
-                took.append(told.received - killed)
-                self.assertLess(took[-1], ADOPTED_S, f"kill {kill}")
-                if stopped:
-                    rokviss.wait_at_rest("robot", time.monotonic())
-                    self.assertIsNotNone(ground.verdict(packet, 5.0), "SAFE_ALL has an end")
-                    # The robot stands at the rail; the hand comes back before they are coupled again where they are.
-                    rokviss.fault("joystick", "hand", "cartesian", 0, 0, 0.5)
-                    time.sleep(1.0)
-                    self.assertEqual(rokviss.tc("supervisor", "SET_MODE", TELEPRESENCE)[0], 0, f"kill {kill}: up again")
-                    self.push(rokviss, 4)
-                    continue
-                self.assertNotIn("stopped", told.told, f"kill {kill}")
-                self.assertGreater(rokviss.truth("robot")["force"], PUSHES_N, f"kill {kill}: the robot goes on")
+            self.ground = honest.Honest()
+            self.client = Client(self.ground, pause_s=0.0025)
+            began, packets = time.monotonic(), self.ground.packets
+            for self.kill in range(1, KILLS + 1):
+                time.sleep(LIVES_S + self.draw.uniform(0.0, 0.3))
+                self.STROKES.get(self.kill % 6, SupervisorKills.at_any_moment)(self)
             time.sleep(LIVES_S)
-            client.ending = True
-            client.thread.join()
-            sent = list(client.sent)
+            self.client.ending = True
+            self.client.thread.join()
+            took_s = time.monotonic() - began
+            sent = list(self.client.sent)
             for packet, _ in sent[-200:]:
-                ground.verdict(packet, 5.0)
-            self.compare(rokviss, ground, sent, KILLS // 50)
-            took.sort()
-            flight.measure(f"{KILLS} kills of the supervisor, {len(sent)} telecommands, another one went on after "
-                           f"{took[len(took) // 2]:.3f} s, {took[-1]:.3f} s at most")
+                self.ground.verdict(packet, 5.0)
+            self.compare(rokviss, self.ground, sent, KILLS // 50)
+            self.took.sort()
+            rate = (len(sent) + self.ground.packets - packets) / took_s
+            flight.measure(f"{KILLS} kills of the supervisor, {len(sent)} telecommands, {rate:.0f} packets/s, another one went on after "
+                           f"{self.took[len(self.took) // 2]:.3f} s, {self.took[-1]:.3f} s at most")
+            self.assertGreater(rate, PACKETS_PER_S)
+
+    def struck(self):
+        """It is killed, another one goes on in time, and says how it found the craft."""
+        begin = self.rokviss.count()
+        killed = self.rokviss.kill("hirosco-supervisor")
+        told = self.rokviss.wait_told("goes on with MANIPULATOR", 5.0, begin)
+        self.took.append(told.received - killed)
+        self.assertLess(self.took[-1], ADOPTED_S, f"kill {self.kill}")
+        return told.told
+
+    def coupled_on(self, told):
+        self.assertNotIn("stopped", told, f"kill {self.kill}")
+        self.assertGreater(self.rokviss.truth("robot")["force"], PUSHES_N, f"kill {self.kill}: the robot goes on")
+
+    def at_any_moment(self):
+        self.coupled_on(self.struck())
+
+    def before_its_stop_is_done(self):
+        rokviss = self.rokviss
+        packet = self.sent_and_accepted(honest.safe_all(self.ground.next()))
+        self.struck()
+        rokviss.wait_at_rest("robot", time.monotonic())
+        self.assertIsNotNone(self.ground.verdict(packet, 5.0), "SAFE_ALL has an end")
+        # The robot stands at the rail; the hand comes back before they are coupled again where they are.
+        rokviss.fault("joystick", "hand", "cartesian", 0, 0, 0.5)
+        time.sleep(1.0)
+        self.assertEqual(rokviss.tc("supervisor", "SET_MODE", TELEPRESENCE)[0], 0, f"kill {self.kill}: up again")
+        self.push(rokviss, 4)
+
+    def while_the_log_changes_its_strategy(self):
+        packet = self.sent_and_accepted(honest.call(self.ground.next(), "SET_DATABASE", bytes([self.strategy])))
+        self.strategy = SQLITE if self.strategy == ASCII else ASCII
+        time.sleep(self.draw.uniform(0.0, SWITCH_S))
+        told = self.struck()
+        self.assertIsNotNone(self.ground.verdict(packet, 5.0), "SET_DATABASE has an end")
+        self.coupled_on(told)
+
+    def as_a_piece_of_the_log_begins(self):
+        pieces = lambda: set(os.listdir(self.rokviss.folder / "log"))
+        before, end = pieces(), time.monotonic() + 30.0
+        while pieces() <= before:
+            self.assertLess(time.monotonic(), end, f"kill {self.kill}: no new piece of the log")
+            time.sleep(0.0002)
+        time.sleep(self.draw.uniform(0.0, ROTATION_S))
+        self.coupled_on(self.struck())
+
+    def sent_and_accepted(self, packet):
+        self.client.send(packet)
+        self.assertTrue(self.ground.wait(lambda: self.ground.reports.get(packet[:4]), 2.0), "it is accepted")
+        return packet
+
+    STROKES = {0: before_its_stop_is_done, 1: while_the_log_changes_its_strategy, 2: as_a_piece_of_the_log_begins}
 
 
 if __name__ == "__main__":
