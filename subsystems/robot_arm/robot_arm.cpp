@@ -336,6 +336,7 @@ void RobotArm::bind_functions() {
   on_function("SET_PAYLOAD", [this](double mass_kg, std::array<double, 3> place_m) -> Outcome {
     payload_values_.store({mass_kg, place_m});
     if (observer_) observer_->reset();
+    if (laws_) laws_->forget_learnt();  // else it would be held twice
     return ok();
   });
   on_function("SET_TOOL", [this](std::array<double, 3> place_m) -> Outcome {
