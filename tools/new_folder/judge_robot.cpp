@@ -99,6 +99,34 @@ class Statics {
   robotics::MassMatrix matrix_;
 };
 
+/// Whether the tool goes straight from there, along each axis to both sides, without haste of any joint: README and page try that next.
+/// Of arms that cannot keep their tool's orientation nobody asks it.
+[[nodiscard]] bool goes_straight(const robotics::Model& model, robotics::FrameId tip, const JointVector& from) {
+  constexpr double way_m = 0.03, speed_m_s = 0.1, share_of_speed = 0.5;
+  constexpr int joints_of_a_pose = 6;
+  if (model.joint_count() < joints_of_a_pose) return true;
+  robotics::InverseKinematics inverse{model, tip, {.tolerance = 1e-6, .most_iterations = 20}};
+  robotics::Dynamics dynamics{model, robotics::Base::Fixed};
+  robotics::State state;
+  state.q = from;
+  state.qd = JointVector::Zero(model.joint_count());
+  dynamics.update(state);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {way_m, -way_m}) {
+      robotics::Pose wanted = dynamics.frame_pose(tip);
+      wanted.position[axis] += side;
+      JointVector there = from;
+      if (!inverse.solve(wanted, from, there)) return false;
+      for (int i = 0; i < model.joint_count(); ++i) {
+        const auto& joint = model.joints()[static_cast<std::size_t>(i)];
+        const auto [lower, upper] = range_of(joint);
+        const double most = share_of_speed * *joint.limits.velocity * way_m / speed_m_s;
+        if (std::abs(there[i] - from[i]) > most || there[i] < lower + way_m || there[i] > upper - way_m) return false;
+      }
+    }
+  return true;
+}
+
 class Judge {
  public:
   Judge(std::filesystem::path file, robotics::urdf::Robot robot, std::string text, JudgedRobot& judged)
@@ -346,35 +374,6 @@ class Judge {
                           too_heavy[i], postures_looked_at, joint.name, most_load, *joint.limits.effort),
               "there its arm is stopped by TORQUE_LIMIT");
     }
-  }
-
-  /// Whether the tool goes straight from there, along each axis to both sides, without haste of any joint: README and page try that next.
-  /// Of arms that cannot keep their tool's orientation nobody asks it.
-  [[nodiscard]] static bool goes_straight(const robotics::Model& model, robotics::FrameId tip,
-                                          const JointVector& from) {
-    constexpr double way_m = 0.03, speed_m_s = 0.1, share_of_speed = 0.5;
-    constexpr int joints_of_a_pose = 6;
-    if (model.joint_count() < joints_of_a_pose) return true;
-    robotics::InverseKinematics inverse{model, tip, {.tolerance = 1e-6, .most_iterations = 20}};
-    robotics::Dynamics dynamics{model, robotics::Base::Fixed};
-    robotics::State state;
-    state.q = from;
-    state.qd = JointVector::Zero(model.joint_count());
-    dynamics.update(state);
-    for (int axis = 0; axis < 3; ++axis)
-      for (const double side : {way_m, -way_m}) {
-        robotics::Pose wanted = dynamics.frame_pose(tip);
-        wanted.position[axis] += side;
-        JointVector there = from;
-        if (!inverse.solve(wanted, from, there)) return false;
-        for (int i = 0; i < model.joint_count(); ++i) {
-          const auto& joint = model.joints()[static_cast<std::size_t>(i)];
-          const auto [lower, upper] = range_of(joint);
-          const double most = share_of_speed * *joint.limits.velocity * way_m / speed_m_s;
-          if (std::abs(there[i] - from[i]) > most || there[i] < lower + way_m || there[i] > upper - way_m) return false;
-        }
-      }
-    return true;
   }
 
   /// Towards the middles of the ranges, less far where it would be heavy; elsewhere near by where the tool could not go straight from there.
