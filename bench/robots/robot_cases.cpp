@@ -217,6 +217,8 @@ class Flown {
     for (const std::string& line : lines)
       if (device == nullptr || !device->fault(line)) return problem("its world does not take '" + line + "'");
     if (!flight_.commission()) return problem("it was not commissioned: " + flight_.story().text());
+    // Nobody declares it while the arm still swings from what it found hanging there.
+    static_cast<void>(flight_.craft().run_until([] { return false; }, 1s));
     if (wanted.declared_kg > 0 && !command("SET_PAYLOAD", {wanted.declared_kg, 0.0, 0.0, 0.0}, 10s)) return;
     if (wanted.loaded && !command("SET_CONTACT", {std::uint8_t{1}, contact_limit}, 10s)) return;
     for (const auto& [goal, loaded] : task_.goals) {

@@ -30,8 +30,8 @@ class MovingSubsystem : public Subsystem {
   /// Whatever else belongs to a motion ends with it.
   virtual void motion_ended() noexcept {}
   template <FailureEnumeration Code>
-  void end_motion(Code why) noexcept {
-    if (motion_) abort(*motion_, why);
+  void end_motion(Code why, const char* text = "", std::int64_t number = 0) noexcept {
+    if (motion_) abort(*motion_, why, text, number);
     motion_.reset();
     motion_ended();
   }

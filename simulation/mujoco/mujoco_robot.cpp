@@ -55,6 +55,7 @@ std::expected<void, std::string> MujocoRobot::build(std::span<const Obstacle> ob
     model.dof_armature[joint.dof] = joint.rotor;
     model.dof_solref[mjNREF * joint.dof] = MujocoSpec::friction_s;
     model.dof_solimp[mjNIMP * joint.dof] = model.dof_solimp[mjNIMP * joint.dof + 1] = friction_rigid;
+    model.jnt_solref[mjNREF * id] = MujocoSpec::end_s;
   }
   if (model_ != nullptr) std::ranges::copy_n(model_->opt.gravity, 3, model.opt.gravity);
   for (int geom = 0; geom < model.ngeom; ++geom) model.geom_solref[mjNREF * geom] = softness_s_;

@@ -39,6 +39,8 @@ class MujocoSpec {
  public:
   static constexpr double longest_sub_step_s = 0.0005;
   static constexpr double friction_s = 0.001;  ///< time constant by which dry friction and mimics give way
+  static constexpr double end_s =
+      0.002;  ///< by which the ends of ranges do: MuJoCo's own lets light fingers millimetres beyond theirs
   static constexpr const char* payload_body = "hirosco_payload";
 
   /// In words why there is none.

@@ -119,16 +119,20 @@ void RobotArm::advance() noexcept {
   motion_values_.store({static_cast<std::uint8_t>(setpoints_->kind()), setpoints_->duration_s(), progressed});
   if (setpoints_->at_rest()) at_rest_for_stop();
   if (!motion_) return;
-  if (setpoints_->off_line_m() > most_off_line_m) {
-    end_motion(Trouble::line_lost);
-    setpoints_->brake();
-    return;
-  }
+  if (setpoints_->off_line_m() > most_off_line_m) return lose_line();
   if (arrives_ && !half_reported_ && progressed >= 0.5) {
     half_reported_ = true;
     progress(*motion_, 1);
   }
   if (setpoints_->at_rest()) arrive();
+}
+
+/// What is in the way can be seen from here alone: where it would be, a line needs another posture.
+void RobotArm::lose_line() noexcept {
+  if (const auto joint = setpoints_->joint_in_the_way())
+    end_motion(Trouble::line_lost, "on the line ends the range of joint", static_cast<std::int64_t>(*joint + 1));
+  else end_motion(Trouble::line_lost, "on the line is a singular posture, after mm", millimetres(setpoints_->gone_m()));
+  setpoints_->brake();
 }
 
 /// The end of a path is not yet the goal: a motion is done when it is measured there, and rests. Who gives way is wherever he was
@@ -332,6 +336,7 @@ void RobotArm::bind_functions() {
   on_function("SET_PAYLOAD", [this](double mass_kg, std::array<double, 3> place_m) -> Outcome {
     payload_values_.store({mass_kg, place_m});
     if (observer_) observer_->reset();
+    if (laws_) laws_->forget_learnt();  // else it would be held twice
     return ok();
   });
   on_function("SET_TOOL", [this](std::array<double, 3> place_m) -> Outcome {

@@ -83,6 +83,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   void end_retract() noexcept;
   [[nodiscard]] robot_arm::JointVector ahead_of_setpoint() const noexcept;
   void watch_clearance() noexcept;
+  void lose_line() noexcept;
   void arrive() noexcept;
   [[nodiscard]] bool in_range(const robot_arm::JointVector& goal) const noexcept;
   [[nodiscard]] Outcome may_move() const noexcept;

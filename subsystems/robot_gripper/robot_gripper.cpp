@@ -134,7 +134,9 @@ void RobotGripper::advance() noexcept {
 /// A motion is done when it is measured at its goal, and rests.
 void RobotGripper::follow_path() noexcept {
   if (!motion_) return;
-  const double behind_m = std::abs(opening_.now().width_m - width_m_);
+  // Who springs open from what it pressed on is ahead: nothing is in his way.
+  const double off_m = opening_.now().width_m - width_m_, left_m = goal_m_ - opening_.now().width_m;
+  const double behind_m = off_m * left_m < 0 ? 0 : std::abs(off_m);
   behind_s_ = behind_m > following_limit_m_.load() ? behind_s_ + cycle_s_ : 0;
   if (behind_s_ >= obstructed_after_s) {
     end_motion(Trouble::obstructed);
@@ -252,7 +254,7 @@ Outcome RobotGripper::move_to(double width_m, double speed_m_s, const Call& call
     return refused(Trouble::too_slow, "it would take longer, s", static_cast<std::int64_t>(longest_motion_s));
   if (grip_.law() != Law::Width) {
     opening_.rest(width_m_);
-    grip_.keep();
+    grip_.let_go();
   }
   if (const auto planned = opening_.go(width_m, speed_m_s); !planned)
     return refused(Trouble::no_goal, planned.error().text, planned.error().value);

@@ -11,6 +11,7 @@
 
 #include "hirosco/xml/reader.hpp"
 #include "robotics/dynamics/dynamics.hpp"
+#include "robotics/motion/inverse_kinematics.hpp"
 #include "robotics/urdf/named_robot.hpp"
 #include "tools/new_folder/robot.hpp"
 
@@ -30,6 +31,8 @@ constexpr int postures_looked_at = 400;
 /// From the ends of a range, so that measured is within it.
 constexpr double inset_share = 0.05;
 constexpr double goal_share = 0.2, goal_farthest = 0.3;
+/// How far a goal may be on the way to another posture.
+constexpr double bent_share = 0.6;
 /// Where a joint turns on and on, and where postures and pages end.
 constexpr double turn_rad = 3.14;
 /// Of moments: the world takes what is on the border, and nothing beyond.
@@ -95,6 +98,34 @@ class Statics {
   robotics::Coordinates held_;
   robotics::MassMatrix matrix_;
 };
+
+/// Whether the tool goes straight from there, along each axis to both sides, without haste of any joint: README and page try that next.
+/// Of arms that cannot keep their tool's orientation nobody asks it.
+[[nodiscard]] bool goes_straight(const robotics::Model& model, robotics::FrameId tip, const JointVector& from) {
+  constexpr double way_m = 0.03, speed_m_s = 0.1, share_of_speed = 0.5;
+  constexpr int joints_of_a_pose = 6;
+  if (model.joint_count() < joints_of_a_pose) return true;
+  robotics::InverseKinematics inverse{model, tip, {.tolerance = 1e-6, .most_iterations = 20}};
+  robotics::Dynamics dynamics{model, robotics::Base::Fixed};
+  robotics::State state;
+  state.q = from;
+  state.qd = JointVector::Zero(model.joint_count());
+  dynamics.update(state);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {way_m, -way_m}) {
+      robotics::Pose wanted = dynamics.frame_pose(tip);
+      wanted.position[axis] += side;
+      JointVector there = from;
+      if (!inverse.solve(wanted, from, there)) return false;
+      for (int i = 0; i < model.joint_count(); ++i) {
+        const auto& joint = model.joints()[static_cast<std::size_t>(i)];
+        const auto [lower, upper] = range_of(joint);
+        const double most = share_of_speed * *joint.limits.velocity * way_m / speed_m_s;
+        if (std::abs(there[i] - from[i]) > most || there[i] < lower + way_m || there[i] > upper - way_m) return false;
+      }
+    }
+  return true;
+}
 
 class Judge {
  public:
@@ -327,7 +358,7 @@ class Judge {
     warn_of_weight(model, too_heavy);
     made.posture = numbers(best);
     made.acceleration = std::max(least_acceleration, std::floor(acceleration * 10) / 10);
-    made.goal = numbers(find_goal(model, statics, best));
+    made.goal = numbers(find_goal(model, statics, tip, best));
     static_cast<void>(statics.load(best));
     made.tip_z_m = statics.tip().z();
     made.reach_m = std::max(made.reach_m, statics.tip().norm());
@@ -345,9 +376,11 @@ class Judge {
     }
   }
 
-  /// Towards the middles of the ranges, less far where it would be heavy.
-  [[nodiscard]] static JointVector find_goal(const robotics::Model& model, Statics& statics, const JointVector& from) {
+  /// Towards the middles of the ranges, less far where it would be heavy; elsewhere near by where the tool could not go straight from there.
+  [[nodiscard]] JointVector find_goal(const robotics::Model& model, Statics& statics, robotics::FrameId tip,
+                                      const JointVector& from) {
     const JointVector towards = middle(model);
+    std::optional<JointVector> light;
     for (double share = 1; share > 0.1; share /= 2) {
       JointVector goal = from;
       for (int i = 0; i < model.joint_count(); ++i) {
@@ -355,8 +388,17 @@ class Judge {
         const double step = share * std::min(goal_share * (upper - lower), goal_farthest);
         goal[i] += towards[i] >= from[i] ? step : -step;
       }
-      if (statics.load(goal).share <= most_load) return goal;
+      if (statics.load(goal).share > most_load) continue;
+      if (goes_straight(model, tip, goal)) return goal;
+      if (!light) light = goal;
     }
+    for (int looked = 0; looked < postures_looked_at; ++looked) {
+      // Farther and farther off.
+      const double part = bent_share * (looked + 1) / postures_looked_at;
+      const JointVector goal = from + part * (random_posture(model) - from);
+      if (statics.load(goal).share <= most_load && goes_straight(model, tip, goal)) return goal;
+    }
+    if (light) return *light;
     JointVector goal = from;
     goal[0] += towards[0] >= from[0] ? 0.01 : -0.01;
     return goal;

@@ -10,6 +10,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "robotics/dynamics/dynamics.hpp"
+
 /// What an arm needs besides what the reader of URDF files wants, each refusal with its place.
 namespace hirosco::tools {
 namespace {
@@ -52,6 +54,21 @@ TEST(NewRobot, BeginsWhereItsDrivesHoldItAndGoesWhereTheyDoToo) {
   EXPECT_THAT(rod.robot->goal, ElementsAre(0.3));
   EXPECT_NEAR(rod.robot->reach_m, 1, 1e-9);
   EXPECT_EQ(rod.robot->acceleration, 4) << "45 - 9.81 N m are left for 0.67 kg m2";
+}
+
+TEST(NewRobot, GoesToWhereItsToolCanGoStraightOn) {
+  const auto arm = judged(in_repository("subsystems/robot_arm/robot_arm.urdf"));
+  ASSERT_TRUE(arm.robot);
+  robotics::Dynamics dynamics{arm.robot->model, robotics::Base::Fixed};
+  robotics::State state;
+  state.q = Eigen::Map<const Eigen::VectorXd>(arm.robot->goal.data(), 6);
+  state.qd = robotics::JointVector::Zero(6);
+  dynamics.update(state);
+  robotics::Jacobian jacobian;
+  dynamics.jacobian(*arm.robot->model.find_frame(arm.robot->tip), jacobian);
+  robotics::Matrix6 square;
+  square.noalias() = jacobian.lazyProduct(jacobian.transpose());
+  EXPECT_GT(square.determinant(), 1e-5) << "a stretched arm has 0";
 }
 
 TEST(NewRobot, SpeedsUpAsSlowlyAsItsDrivesAreWeak) {

@@ -15,6 +15,11 @@ constexpr double not_learnt = 0.05;
 /// Of what a joint's integral may give, what others' integrals and another posture may make of it.
 constexpr double most_beyond = 1.5;
 
+/// The integral's to learn, of a joint: at rest it has to overcome dry friction, too, of which nobody knows then which way it acts.
+[[nodiscard]] double most_learnt(const Law::Settings& settings, const JointBounds& bounds, double friction) noexcept {
+  return std::min(settings.integral_share * bounds.effort + friction, bounds.effort);
+}
+
 [[nodiscard]] double rotor_of(const Law::Settings& settings, Eigen::Index joint) noexcept {
   const auto i = static_cast<std::size_t>(joint);
   return i < settings.rotor.size() ? settings.rotor[i] : 0;
@@ -39,10 +44,14 @@ void Law::learn(const JointVector& error, const Setpoint& wanted, const Measured
   // What it gives to each joint: of coupled ones each has to answer for what the others' does to it, so it is the torque that is bounded.
   JointVector given;
   given.noalias() = mass_.lazyProduct(integral_);
+  const auto most_of = [&](Eigen::Index i) {
+    const auto joint = static_cast<std::size_t>(i);
+    return most_learnt(settings, bounds[joint], model_->joints()[joint].friction);
+  };
   double within = 1;
   for (Eigen::Index i = 0; i < error.size(); ++i) {
     given[i] = w * w * w * (given[i] + rotor_of(settings, i) * integral_[i]);
-    const double most = settings.integral_share * bounds[static_cast<std::size_t>(i)].effort;
+    const double most = most_of(i);
     if (std::abs(given[i]) > most_beyond * most) within = std::min(within, most_beyond * most / std::abs(given[i]));
   }
   integral_ *= within;
@@ -50,8 +59,7 @@ void Law::learn(const JointVector& error, const Setpoint& wanted, const Measured
     const bool rests = std::abs(wanted.velocity[i]) < at_rest;
     if (rests && std::abs(error[i]) < left_alone && std::abs(measured.velocity[i]) < friction_knee) continue;
     if (!(std::abs(error[i]) < not_learnt) || saturated_) continue;
-    const double most = settings.integral_share * bounds[static_cast<std::size_t>(i)].effort;
-    if (std::abs(given[i]) >= most && given[i] * error[i] > 0) continue;
+    if (const double most = most_of(i); std::abs(given[i]) >= most && given[i] * error[i] > 0) continue;
     integral_[i] += error[i] * cycle_s_;
   }
 }

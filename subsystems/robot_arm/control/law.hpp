@@ -22,7 +22,7 @@ class Law {
  public:
   struct Settings {
     double bandwidth_rad_s{40};
-    /// Of a joint's effort, so much is the integral's to learn; at most half as much again in another posture, or by what coupled joints have learnt.
+    /// Of a joint's effort, and its dry friction besides, so much is the integral's to learn; at most half as much again in another posture, or by what coupled joints have learnt.
     double integral_share{0.3};
     /// Of each joint: what its drive moves besides links, behind the gear, kg m2 or kg; empty: nothing. The URDF file does not have it.
     std::span<const double> rotor{};

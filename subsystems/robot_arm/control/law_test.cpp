@@ -73,6 +73,22 @@ TEST_F(LawTest, HoldsALinksATenthHeavierWithFrictionWithinAMilliradian) {
   EXPECT_LT(error(plant), 1e-3);
 }
 
+TEST_F(LawTest, ComesToItsSetpointThoughAJointsDryFrictionIsMoreThanItsShareOfTheIntegral) {
+  // A light joint of a weak drive that sticks: where it is said to, its friction is the model's, too.
+  auto sticks = testing::described(testing::six_joints);
+  sticks.joints[5].limits.effort = 2.8;
+  sticks.joints[5].friction = 2.0;
+  model = robotics::Model::make(sticks).value();
+  bounds = bounds_of(model);
+  ASSERT_LT(settings.integral_share * bounds[5].effort, 1);
+  Plant plant{model};
+  JointVector beside = wanted.position;
+  beside[5] -= 0.005;
+  plant.place(beside);
+  run(plant, 3);
+  EXPECT_LT(error(plant), 1e-3);
+}
+
 TEST_F(LawTest, HoldsAPayloadThatItWasToldOfFromTheFirstCycleOn) {
   payload = {2, {0.05, 0.1, -0.02}};
   const JointVector zeros = JointVector::Zero(6);

@@ -19,6 +19,8 @@ class Laws {
 
   /// Begins anew with the law of positions: for an arm that its brakes held.
   void reset() noexcept;
+  /// What was learnt of what hangs at the tool is known from now on.
+  void forget_learnt() noexcept { law_.reset(); }
   static constexpr double smooth_s = 0.3;
   void set(LawKind kind, double over_s = smooth_s) noexcept;
   void set(LawKind kind, const Impedance& impedance) noexcept;

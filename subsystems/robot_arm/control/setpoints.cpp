@@ -11,6 +11,8 @@ namespace {
 constexpr double pace_per_s = 2;
 /// With which a setpoint that is beside its line comes back to it, 1/s.
 constexpr double back_to_line_per_s = 50;
+/// Near a singular posture a line is gone slowly rather than left.
+constexpr double on_line_singular = 0.02, on_line_damping = 0.02;
 /// On a line the speed is reached in this time, the acceleration in this share of it.
 constexpr double ramp_s = 0.4;
 constexpr double ramp_share = 0.25;
@@ -34,7 +36,8 @@ Setpoints::Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds
       bounds_{bounds},
       cycle_s_{cycle_s},
       dynamics_{model, robotics::Base::Fixed},
-      kinematics_{model, tip, {}} {
+      kinematics_{model, tip, {}},
+      on_line_{model, tip, {.singular = on_line_singular, .damping = on_line_damping}} {
   JointVector zeros;
   zeros.setZero(model.joint_count());
   jog_ = posture_ = met_ = end_ = zeros;
@@ -89,6 +92,7 @@ Result<> Setpoints::go_straight(const robotics::Pose& goal, const LineSpeed& spe
   // From 0 to 1, as fast as the slower of the two goes.
   const double rate = std::min(length > no_way ? speed.linear_m_s / length : HUGE_VAL,
                                angle_ > no_way ? speed.angular_rad_s / angle_ : HUGE_VAL);
+  line_rate_ = rate;
   const double acceleration = rate / ramp_s;
   const std::array limits{robotics::MotionLimits{rate, acceleration, acceleration / (ramp_share * ramp_s)}};
   HIROSCO_TRY_LET(path_, robotics::PointToPoint::plan(JointVector::Zero(1), JointVector::Ones(1), limits));
@@ -195,7 +199,7 @@ const Setpoint& Setpoints::advance() noexcept {
     case Kind::JointPath: advance_path(); break;
     case Kind::Line: advance_line(); break;
     case Kind::JointJog: advance_jog(jog_); break;
-    case Kind::TipJog: advance_jog(braking_ ? jog_ : tip_rates(twist_)); break;
+    case Kind::TipJog: advance_jog(braking_ ? jog_ : tip_rates(kinematics_, twist_, posture_)); break;
     case Kind::Retract: advance_jog(way_back()); break;
   }
   if (kind_ != Kind::Rest && kind_ != Kind::Retract) trail_.record(now_.position);
@@ -222,7 +226,8 @@ void Setpoints::advance_path() noexcept {
   if (path_s_ >= path_.duration_s() || pace_ <= 0) come_to_rest();
 }
 
-JointVector Setpoints::tip_rates(const Vector6& twist) noexcept {
+JointVector Setpoints::tip_rates(const robotics::InverseKinematics& kinematics, const Vector6& twist,
+                                 const JointVector& posture) noexcept {
   state_.q = now_.position;
   dynamics_.update(state_);
   // The same motion, told of the tip's origin.
@@ -231,8 +236,20 @@ JointVector Setpoints::tip_rates(const Vector6& twist) noexcept {
   const Vector3 turning = twist.head<3>();
   of_tip.tail<3>() -= turning.cross(lever);
   JointVector rates;
-  kinematics_.rates(dynamics_, of_tip, now_.position, posture_, rates);
+  kinematics.rates(dynamics_, of_tip, now_.position, posture, rates);
   return rates;
+}
+
+std::optional<std::size_t> Setpoints::joint_in_the_way() const noexcept {
+  const double margin = robotics::InverseKinematicsOptions{}.margin;
+  for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    const double left = now_.velocity[i] > 0   ? bounds_[joint].highest - now_.position[i]
+                        : now_.velocity[i] < 0 ? now_.position[i] - bounds_[joint].lowest
+                                               : HUGE_VAL;
+    if (left < margin) return joint;
+  }
+  return std::nullopt;
 }
 
 void Setpoints::keep_pace(double wanted) noexcept {
@@ -253,7 +270,9 @@ void Setpoints::advance_line() noexcept {
   Vector6 twist;
   twist.head<3>() = rate * angle_ * axis_ + back_to_line_per_s * rotation_vector(rotation * here.rotation.transpose());
   twist.tail<3>() = rate * way_m_ + back_to_line_per_s * beside;
-  JointVector rates = tip_rates(twist);
+  // Joints that the tool leaves free are drawn while it goes, and stand when it does.
+  const JointVector drawn = now_.position + rate / line_rate_ * (posture_ - now_.position);
+  JointVector rates = tip_rates(on_line_, twist, drawn);
   double permitted = 1;
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
     const double speed = std::abs(rates[static_cast<Eigen::Index>(i)]);

@@ -60,6 +60,10 @@ class Setpoints {
   [[nodiscard]] double duration_s() const noexcept { return path_.duration_s(); }
   /// How far the setpoint's tool is from where its line has it, m; 0 without one.
   [[nodiscard]] double off_line_m() const noexcept { return off_line_m_; }
+  /// How far its line has led it.
+  [[nodiscard]] double gone_m() const noexcept { return kind_ == Kind::Line ? sample_.position[0] * way_m_.norm() : 0; }
+  /// Of a line that cannot be followed: who is near an end of its range and on the way there; nobody: a singular posture is in the way.
+  [[nodiscard]] std::optional<std::size_t> joint_in_the_way() const noexcept;
   /// Where the tool of the setpoint is.
   [[nodiscard]] robotics::Pose tool() noexcept;
   /// Where the tool is in the tip's frame; while nothing moves.
@@ -70,7 +74,8 @@ class Setpoints {
   void advance_line() noexcept;
   void advance_jog(const JointVector& wanted) noexcept;
   [[nodiscard]] JointVector way_back() noexcept;
-  [[nodiscard]] JointVector tip_rates(const Vector6& twist) noexcept;
+  [[nodiscard]] JointVector tip_rates(const robotics::InverseKinematics& kinematics, const Vector6& twist,
+                                      const JointVector& posture) noexcept;
   void follow(const JointVector& velocity) noexcept;
   void keep_pace(double wanted) noexcept;
   void come_to_rest() noexcept;
@@ -80,6 +85,7 @@ class Setpoints {
   double cycle_s_;
   robotics::Dynamics dynamics_;
   robotics::InverseKinematics kinematics_;
+  robotics::InverseKinematics on_line_;  ///< who leaves a line has lost it, so it goes slower instead
   robotics::State state_;
   Setpoint now_;
   Kind kind_{Kind::Rest};
@@ -95,6 +101,7 @@ class Setpoints {
   Vector3 way_m_{Vector3::Zero()};
   Vector3 axis_{Vector3::UnitZ()};
   double angle_{0};
+  double line_rate_{1};  ///< of its share in full motion, 1/s
   double off_line_m_{0};
   JointVector posture_;
   JointVector jog_;

@@ -140,6 +140,19 @@ TEST_F(SetpointsTest, SaysThatItLeavesALineThatTheArmCannotFollow) {
     off_m = setpoints.off_line_m();
   }
   EXPECT_GE(off_m, 0.002);
+  EXPECT_EQ(setpoints.joint_in_the_way(), std::nullopt) << "it is stretched out";
+  EXPECT_GT(setpoints.gone_m(), 0.05);
+}
+
+TEST_F(SetpointsTest, SaysWhichJointsRangeALineLeadsOutOf) {
+  start[5] = before[5] = bounds[5].highest - 0.3;
+  setpoints.rest(start);
+  robotics::Pose goal = setpoints.tool();
+  goal.rotation = goal.rotation * Eigen::AngleAxisd{1.5, Vector3::UnitY()};  // the axis of the last joint
+  ASSERT_TRUE(setpoints.go_straight(goal, {0.1, 0.5}));
+  for (int i = 0; i < 6000 && !setpoints.at_rest() && setpoints.joint_in_the_way() == std::nullopt; ++i)
+    static_cast<void>(setpoints.advance());
+  EXPECT_EQ(setpoints.joint_in_the_way(), 5);
 }
 
 TEST_F(SetpointsTest, JogsEachJointToTheEndOfItsRangeAndNotBeyond) {

@@ -31,7 +31,13 @@ constexpr double friction_from_m_s = 0.001;
 
 void Grip::keep() noexcept {
   law_ = Law::Width;
-  integral_n_ = settled_s_ = 0;
+  integral_n_ = settled_s_ = leaves_n_ = 0;
+}
+
+void Grip::let_go() noexcept {
+  const double pressed_n = law_ == Law::Press ? std::max(0.0, pressing_n_ + trim_n_) : 0;
+  keep();
+  leaves_n_ = leaving_n_ = pressed_n;
 }
 
 void Grip::grip(double force_n, double speed_m_s) noexcept {
@@ -40,7 +46,7 @@ void Grip::grip(double force_n, double speed_m_s) noexcept {
   settled_s_ = 0;
   if (law_ == Law::Press) return;
   law_ = Law::Reach;
-  integral_n_ = reaching_m_s_ = reached_s_ = stalled_s_ = 0;
+  integral_n_ = reaching_m_s_ = reached_s_ = stalled_s_ = leaves_n_ = 0;
   met_ = gone_ = 0;
 }
 
@@ -57,11 +63,17 @@ Joints Grip::torques(const Opening::Wanted& wanted, const Measured& measured) no
   const double force_n = fingers_.force(measured.torque);
   double closing_n = 0;
   switch (law_) {
-    case Law::Width: closing_n = keep_width(wanted, width_m, speed_m_s); break;
+    case Law::Width: closing_n = keep_width(wanted, width_m, speed_m_s) + leave(); break;
     case Law::Reach: closing_n = reach(speed_m_s, force_n); break;
     case Law::Press: closing_n = press(speed_m_s, force_n); break;
   }
   return fingers_.torques(closing_n, measured, settings_.bandwidth_rad_s);
+}
+
+/// What it pressed on is a spring: of whoever lets it go at once it throws the fingers open.
+double Grip::leave() noexcept {
+  leaves_n_ = std::max(0.0, leaves_n_ - leaving_n_ / build_up_s * settings_.cycle_s);
+  return leaves_n_;
 }
 
 /// An error meets three poles at -bandwidth; the integral is for friction and for what pulls.

@@ -31,6 +31,8 @@ class Grip {
 
   /// Keeps a width from now on.
   void keep() noexcept;
+  /// Keeps the width; what it presses with goes bit by bit.
+  void let_go() noexcept;
   /// Closes until it presses; who presses already does so with the new force.
   void grip(double force_n, double speed_m_s) noexcept;
   /// Presses at once with what it pressed with when it was interrupted.
@@ -46,6 +48,7 @@ class Grip {
 
  private:
   [[nodiscard]] double keep_width(const Opening::Wanted& wanted, double width_m, double speed_m_s) noexcept;
+  [[nodiscard]] double leave() noexcept;
   [[nodiscard]] double reach(double speed_m_s, double force_n) noexcept;
   [[nodiscard]] double press(double speed_m_s, double force_n) noexcept;
 
@@ -59,6 +62,7 @@ class Grip {
   double reached_s_{0}, stalled_s_{0};
   std::uint8_t met_{0}, gone_{0};  ///< last three samples, one bit each
   double pressing_n_{0}, trim_n_{0};
+  double leaves_n_{0}, leaving_n_{0};  ///< of what it lets go: what is left of it, and what it was
   double settled_s_{0};
 };
 
