@@ -130,7 +130,7 @@ export function surroundings(kit) {
 /// What the fingertip slides along and what it is hooked to: it hides the finger, so it is drawn with the arm as well.
 export function obstacles(kit, {contour, surface_x_m, springs}) {
   const M = kit.material, group = kit.group(), {from_y_m: from, to_y_m: to, rail_x_m: rail, depth_m: depth} = contour;
-  const along = Array.from({length: 73}, (_, i) => from + (to - from) * i / 72);
+  const steps = kit.detail < 1 ? 32 : 72, along = Array.from({length: steps + 1}, (_, i) => from + (to - from) * i / steps);
   group.add(kit.plate(kit.outline([[rail + depth, from], ...along.map((y) => [surface_x_m(contour, y), y]), [rail + depth, to]]), 0.05, 0.0018, M.plastic, 0.081),
     kit.plate(kit.outline([...along.map((y) => [surface_x_m(contour, y) - 0.0008, y]), ...along.toReversed().map((y) => [surface_x_m(contour, y) + 0.002, y])]), 0.014, 0, M.gold, plane_z_m));
   for (let i = 0; i <= 30; ++i) {

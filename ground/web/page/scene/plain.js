@@ -3,7 +3,7 @@
 //
 // A robot's parts as a processor can draw them: lit at their corners, and all of one link at once. Each call to draw costs such a processor as
 // much as a thousand corners.
-import {BufferGeometry, Color, Float32BufferAttribute, Mesh, MeshLambertMaterial, ShaderMaterial} from 'three';
+import {BufferGeometry, Color, Float32BufferAttribute, Mesh, MeshBasicMaterial, MeshLambertMaterial, ShaderMaterial} from 'three';
 import {mergeGeometries} from 'three/addons/utils/BufferGeometryUtils.js';
 import {sun_from} from './space.js';
 
@@ -34,7 +34,7 @@ function lit_at_corners(uniforms, tinted = false) {
 const plain = new Map();
 export function affordable(material, software) {
   if (!software || !material.isMeshStandardMaterial) return material;
-  if (!plain.has(material)) plain.set(material, material.map ? new MeshLambertMaterial({color: material.color, map: material.map, transparent: material.transparent,
+  if (!plain.has(material)) plain.set(material, material.map ? new (material.transparent ? MeshBasicMaterial : MeshLambertMaterial)({color: material.color, map: material.map, transparent: material.transparent,
     polygonOffset: material.polygonOffset, polygonOffsetFactor: material.polygonOffsetFactor}) : lit_at_corners({colour: {value: colour_of(material)}, gloss: {value: gloss_of(material)}}));
   return plain.get(material);
 }
@@ -56,17 +56,19 @@ export function joined(whole) {
   return whole;
 }
 
-/// All corners in one cell as one, and no triangle that has become a line: a fifth of them, of nearly the same outline. A processor that draws
-/// pays for each.
+/// All corners in one cell as one in their middle, and no triangle that has become a line: a fifth of them, of nearly the same outline. A processor
+/// that draws pays for each.
 export function coarse(geometry, cell_m) {
-  const {position} = geometry.attributes, known = new Map(), places = [], index = [];
+  const {position} = geometry.attributes, known = new Map(), sums = [], index = [];
   const of_cell = Array.from({length: position.count}, (_, i) => {
     const at = [position.getX(i), position.getY(i), position.getZ(i)], key = at.map((value) => Math.round(value / cell_m)).join();
     if (!known.has(key)) {
       known.set(key, known.size);
-      places.push(...at);
+      sums.push([0, 0, 0, 0]);
     }
-    return known.get(key);
+    const cell = known.get(key);
+    [...at, 1].forEach((value, k) => { sums[cell][k] += value; });
+    return cell;
   });
   const corner = geometry.index ? (i) => of_cell[geometry.index.getX(i)] : (i) => of_cell[i], drawn = new Set();
   for (let i = 0, end = geometry.index?.count ?? position.count; i + 2 < end; i += 3) {
@@ -77,18 +79,38 @@ export function coarse(geometry, cell_m) {
     drawn.add(key);
     index.push(a, b, c);
   }
-  return new BufferGeometry().setAttribute('position', new Float32BufferAttribute(places, 3)).setIndex(index);
+  return new BufferGeometry().setAttribute('position', new Float32BufferAttribute(sums.flatMap(([x, y, z, count]) => [x / count, y / count, z / count]), 3)).setIndex(index);
 }
 
-const hiding_cell = 0.02;
-/// The parts of `whole` (kit.js merged()) as one mesh of a material that asks for no more than where it is.
-export function one_mesh(whole, material) {
-  const geometries = whole.children.filter((part) => part.isMesh).map(({geometry}) => {
-    geometry.computeBoundingSphere();
-    return coarse(geometry, geometry.boundingSphere.radius * hiding_cell);
+const hiding_cell = 0.15, most_hiding_cell_m = 0.007, least_hiding_m = 0.008;
+const unseen = new MeshBasicMaterial({colorWrite: false}), before_all = -3;
+
+function hiding(geometry, scale) {
+  geometry.computeBoundingSphere();
+  const {radius} = geometry.boundingSphere;
+  return radius > least_hiding_m * scale ? coarse(geometry, Math.min(radius * hiding_cell, most_hiding_cell_m * scale)) : null;
+}
+
+/// What `group` hides, as one unseen mesh: what is small against a metre of `scale` hides nothing, and edges need no roundness.
+export function hider_of(group, scale) {
+  group.updateMatrixWorld(true);
+  const home = group.matrixWorld.clone().invert(), geometries = [];
+  group.traverse((part) => {
+    if (!part.isMesh || part.userData.label) return;
+    const geometry = hiding(part.geometry.clone().applyMatrix4(home.clone().multiply(part.matrixWorld)), scale);
+    if (geometry) geometries.push(geometry);
   });
-  const mesh = new Mesh(mergeGeometries(geometries), material);
-  whole.clear();
-  whole.add(mesh);
+  if (!geometries.length) return null;
+  const mesh = new Mesh(mergeGeometries(geometries), unseen);
+  mesh.renderOrder = before_all;
   return mesh;
+}
+
+/// The same of what `group` shows itself; its halo and shadow, which hang on its parts, stay.
+export function become_hider(group, scale) {
+  for (const part of group.children) {
+    if (!part.isMesh) continue;
+    if (part.userData.label) part.visible = false;
+    else Object.assign(part, {geometry: hiding(part.geometry, scale) ?? part.geometry, material: unseen, renderOrder: before_all});
+  }
 }
