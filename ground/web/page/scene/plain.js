@@ -3,7 +3,7 @@
 //
 // A robot's parts as a processor can draw them: lit at their corners, and all of one link at once. Each call to draw costs such a processor as
 // much as a thousand corners.
-import {BufferGeometry, Color, Float32BufferAttribute, Mesh, MeshBasicMaterial, MeshLambertMaterial, ShaderMaterial} from 'three';
+import {BufferGeometry, Color, Float32BufferAttribute, Mesh, MeshBasicMaterial, MeshLambertMaterial, ShaderMaterial, Vector3} from 'three';
 import {mergeGeometries} from 'three/addons/utils/BufferGeometryUtils.js';
 import {sun_from} from './space.js';
 
@@ -39,6 +39,19 @@ export function affordable(material, software) {
   return plain.get(material);
 }
 
+const sliver_m = 2e-4;
+/// No triangle that is a line: parts that are turned on a lathe have one for each of their sides at both ends.
+function drop_slivers(geometry) {
+  const {position} = geometry.attributes, {index} = geometry, a = new Vector3(), b = new Vector3();
+  const apart = (i, j) => a.fromBufferAttribute(position, i).distanceToSquared(b.fromBufferAttribute(position, j)) > sliver_m ** 2;
+  const kept = [];
+  for (let i = 0; i + 2 < index.count; i += 3) {
+    const [first, second, third] = [index.getX(i), index.getX(i + 1), index.getX(i + 2)];
+    if (apart(first, second) && apart(second, third) && apart(third, first)) kept.push(first, second, third);
+  }
+  geometry.setIndex(kept);
+}
+
 let tinted_skin = null;
 const may_be_joined = ({isMesh, material, children, userData}) => isMesh && material.isMeshStandardMaterial && !material.map && !material.transparent && !children.length && !userData.label;
 
@@ -49,6 +62,7 @@ export function joined(whole) {
   const geometries = parts.map(({geometry, material}) => {
     const made = geometry.clone(), count = made.attributes.position.count, {r, g, b} = colour_of(material), gloss = gloss_of(material);
     for (const name of Object.keys(made.attributes)) if (!['position', 'normal'].includes(name)) made.deleteAttribute(name);
+    drop_slivers(made);
     return made.setAttribute('tint', new Float32BufferAttribute(Array.from({length: count}, () => [r, g, b, gloss]).flat(), 4));
   });
   whole.remove(...parts);
