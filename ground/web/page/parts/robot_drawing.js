@@ -9,7 +9,7 @@ import {ACESFilmicToneMapping, Color, PCFShadowMap, PerspectiveCamera, Scene, Ve
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {asset} from '../api.js';
 import {mission_code} from '../mission_files.js';
-import {commands, replay, values} from '../store.js';
+import {commands, replay, values, with_picture} from '../store.js';
 import {surroundings_in_steps} from '../scene/around.js';
 import {Contact} from '../scene/contact.js';
 import {Goal, goal_of} from '../scene/goal.js';
@@ -223,6 +223,7 @@ export class RobotView {
   draw_soon() { this.pace.soon(); }
 
   draw(began_ms) {
+    with_picture();
     for (const robot of this.robots) {
       const posed = robot.pose(began_ms);
       robot.show_limits(this.show.limits);

@@ -75,6 +75,12 @@ export class Kit {
     return mesh;
   }
 
+  /// What lies on or in another part: it hides nothing that the other does not.
+  flush(...parts) {
+    for (const part of parts) part.userData.flush = true;
+    return parts;
+  }
+
   box([x, y, z], material, at, turned, radius = Math.min(x, y, z) * 0.12) {
     return this.mesh(this.sparing ? new BoxGeometry(x, y, z) : new RoundedBoxGeometry(x, y, z, this.detail < 1 ? 1 : 2, radius), material, at, turned);
   }

@@ -110,7 +110,7 @@ export function hider_of(group, scale) {
   group.updateMatrixWorld(true);
   const home = group.matrixWorld.clone().invert(), geometries = [];
   group.traverse((part) => {
-    if (!part.isMesh || part.userData.label) return;
+    if (!part.isMesh || part.userData.label || part.userData.flush) return;
     const geometry = hiding(part.geometry.clone().applyMatrix4(home.clone().multiply(part.matrixWorld)), scale);
     if (geometry) geometries.push(geometry);
   });
@@ -120,11 +120,12 @@ export function hider_of(group, scale) {
   return mesh;
 }
 
-/// The same of what `group` shows itself; its halo and shadow, which hang on its parts, stay.
-export function become_hider(group, scale) {
-  for (const part of group.children) {
-    if (!part.isMesh) continue;
+/// `dress`, made of `parts`, shows nothing itself any more and hides as they do; its halo and shadow, which hang on it, stay.
+export function become_hider(dress, parts, scale) {
+  const meshes = dress.children.filter((part) => part.isMesh), nothing = new BufferGeometry().setAttribute('position', new Float32BufferAttribute([], 3));
+  const hider = hider_of(parts, scale)?.geometry ?? nothing;
+  meshes.forEach((part) => {
     if (part.userData.label) part.visible = false;
-    else Object.assign(part, {geometry: hiding(part.geometry, scale) ?? part.geometry, material: unseen, renderOrder: before_all});
-  }
+    else Object.assign(part, {geometry: part === meshes[0] ? hider : nothing, material: unseen, renderOrder: before_all});
+  });
 }

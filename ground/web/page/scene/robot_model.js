@@ -101,6 +101,7 @@ export class RobotModel {
   constructor(about, text, parts, {environment, software}) {
     this.about = about;
     this.#text = text;
+    this.parts = parts;
     this.body = parsed_urdf(text);
     this.bones = dress(this.body, parts, environment, software);
     // Unseen until the first telemetry says how it stands.
@@ -164,7 +165,7 @@ export class RobotModel {
     this.body.updateMatrixWorld(true);
     const still = still_links(this.body);
     return Object.entries(this.body.links).filter(([name, link]) => parts[name] && still.includes(link)).map(([name, link]) => {
-      become_hider(link.children.find((child) => child.userData.dress), scale);
+      become_hider(link.children.find((child) => child.userData.dress), this.parts[name], scale);
       const whole = merged(parts[name]);
       whole.applyMatrix4(link.matrixWorld);
       return whole;

@@ -75,7 +75,7 @@ export class Halo {
   set shown(value) { for (const skin of this.#skins) skin.visible = value; }
 }
 
-const shadow_cell = 0.09;
+const shadow_cell = 0.13;
 /// What is smaller hides behind what is not.
 const least_shadow_m = 0.045;
 /// For pictures that are composed of a still one and a transparent one above it, which has no light of its own to be dimmed.
