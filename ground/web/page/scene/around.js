@@ -18,6 +18,7 @@ import {module_of, module_places, usual_surroundings} from './usual.js';
 export function surroundings_in_steps(view) {
   const {software, far, scale, description, own} = view, light_at = new Vector3().fromArray(description.camera.to_m);
   return [
+    ...(software ? [() => view.finish()] : []),
     () => far.add(...sky(scale), ...(software ? lights({target: light_at, reach_m: 0.62 * scale, shadow: false}) : [])),
     () => {
       const kit = new Kit(software ? mirrored_cube() : view.mirror, software ? 0.7 : 1), around = own.surroundings?.(kit) ?? usual_surroundings(kit, view.robots.length > 0);
@@ -26,10 +27,9 @@ export function surroundings_in_steps(view) {
       far.add(around);
       if (!software) return;
       if (own.obstacles) {
-        const obstacles = own.obstacles(kit, {...description, surface_x_m}), hider = hider_of(obstacles, scale);
-        far.add(merged(obstacles));
-        view.obstacles.clear();
-        if (hider) view.obstacles.add(hider);
+        const about = {...description, surface_x_m}, hider = hider_of(own.obstacles(view.kit, about), scale);
+        far.add(merged(own.obstacles(kit, about)));
+        if (hider) view.scene.add(hider);
       }
       for (const robot of view.robots) if (!robot.about.inset) far.add(...robot.stand_still(own.links?.[robot.about.urdf]?.(kit) ?? {}, scale));
       view.contact.stand_still(far, () => view.camera_moved(true));

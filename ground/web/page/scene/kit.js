@@ -22,9 +22,9 @@ function phong({envMap, roughness = 0.5, metalness = 0, envMapIntensity = 1, col
 /// Materials by name; `environment` is what metals mirror: filtered, or a cube for a processor, or null.
 export function materials(environment, plain) {
   const M = plain ? (options) => phong({envMap: environment, ...options}) : (options) => new MeshStandardMaterial({envMap: environment, ...options});
-  const foil = foil_normals();
+  let foil = null;
   const blanket = (color, roughness, scale, repeat) => {
-    const normalMap = foil.clone();
+    const normalMap = (foil ??= foil_normals()).clone();
     normalMap.repeat.set(...repeat);
     normalMap.needsUpdate = true;
     return M({color, roughness, metalness: 0.93, normalMap, normalScale: new Vector2(scale, scale), envMapIntensity: 0.95});

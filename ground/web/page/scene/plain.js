@@ -55,10 +55,11 @@ function drop_slivers(geometry) {
 let tinted_skin = null;
 const may_be_joined = ({isMesh, material, children, userData}) => isMesh && material.isMeshStandardMaterial && !material.map && !material.transparent && !children.length && !userData.label;
 
-/// The parts of `whole` (kit.js merged()) that differ in colour only as one mesh, each corner with its own.
+/// The parts of `whole` (kit.js merged()) that differ in colour only as one mesh, each corner with its own; also a single one, so that all robots
+/// take one program.
 export function joined(whole) {
   const parts = whole.children.filter(may_be_joined);
-  if (parts.length < 2) return whole;
+  if (!parts.length) return whole;
   const geometries = parts.map(({geometry, material}) => {
     const made = geometry.clone(), count = made.attributes.position.count, {r, g, b} = colour_of(material), gloss = gloss_of(material);
     for (const name of Object.keys(made.attributes)) if (!['position', 'normal'].includes(name)) made.deleteAttribute(name);
@@ -70,12 +71,14 @@ export function joined(whole) {
   return whole;
 }
 
+const most_cells = 65536;
 /// All corners in one cell as one in their middle, and no triangle that has become a line: a fifth of them, of nearly the same outline. A processor
 /// that draws pays for each.
 export function coarse(geometry, cell_m) {
   const {position} = geometry.attributes, known = new Map(), sums = [], index = [];
   const of_cell = Array.from({length: position.count}, (_, i) => {
-    const at = [position.getX(i), position.getY(i), position.getZ(i)], key = at.map((value) => Math.round(value / cell_m)).join();
+    const at = [position.getX(i), position.getY(i), position.getZ(i)];
+    const key = at.reduce((sum, value) => sum * most_cells + Math.round(value / cell_m) + most_cells / 2, 0);
     if (!known.has(key)) {
       known.set(key, known.size);
       sums.push([0, 0, 0, 0]);
@@ -88,7 +91,7 @@ export function coarse(geometry, cell_m) {
   for (let i = 0, end = geometry.index?.count ?? position.count; i + 2 < end; i += 3) {
     const [a, b, c] = [corner(i), corner(i + 1), corner(i + 2)];
     if (a === b || b === c || c === a) continue;
-    const key = [a, b, c].sort((one, other) => one - other).join();
+    const least = Math.min(a, b, c), most = Math.max(a, b, c), key = (least * sums.length + a + b + c - least - most) * sums.length + most;
     if (drawn.has(key)) continue;
     drawn.add(key);
     index.push(a, b, c);
@@ -126,6 +129,6 @@ export function become_hider(dress, parts, scale) {
   const hider = hider_of(parts, scale)?.geometry ?? nothing;
   meshes.forEach((part) => {
     if (part.userData.label) part.visible = false;
-    else Object.assign(part, {geometry: part === meshes[0] ? hider : nothing, material: unseen, renderOrder: before_all});
+    else Object.assign(part, {userData: {...part.userData, shown_once: part.geometry}, geometry: part === meshes[0] ? hider : nothing, material: unseen, renderOrder: before_all});
   });
 }

@@ -172,6 +172,11 @@ export class RobotModel {
     });
   }
 
+  /// Numbers and words on its parts: another program, which the first picture does not wait for.
+  show_labels(shown) {
+    this.body.traverse((part) => { if (part.userData.label) part.visible = shown; });
+  }
+
   show_limits(shown) {
     for (const dial of this.dials) if (dial) dial.group.visible = shown;
   }

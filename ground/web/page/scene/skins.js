@@ -64,15 +64,22 @@ export function make_ghost(robot, skin) {
   robot.traverse((part) => { if (part.userData.label) part.visible = false; });
 }
 
+/// Made when it is first to be seen: most flights never show it.
 export class Halo {
-  #skins;
+  #skins = [];
+  #shown = false;
   constructor(robot, count) {
-    const materials = halo_skins(count);
-    this.#skins = meshes_of(robot).flatMap((part) => materials.map((material) => wrapped(part, material, 3)));
-    this.shown = false;
+    Object.assign(this, {robot, count});
   }
-  get shown() { return this.#skins[0]?.visible ?? false; }
-  set shown(value) { for (const skin of this.#skins) skin.visible = value; }
+  set shown(value) {
+    if (value === this.#shown) return;
+    this.#shown = value;
+    if (value && !this.#skins.length) {
+      const materials = halo_skins(this.count);
+      this.#skins = meshes_of(this.robot).flatMap((part) => materials.map((material) => wrapped(part, material, 3, part.userData.shown_once ?? part.geometry)));
+    }
+    for (const skin of this.#skins) skin.visible = value;
+  }
 }
 
 const shadow_cell = 0.13;
