@@ -299,6 +299,33 @@ describe('a flight that means well', () => {
     await page.waitForSelector('[data-test=favourites]', {state: 'detached'});
   });
 
+  it('sends a stack row by row, ends at the row that is refused, and writes it for the terminal', async () => {
+    await go(page, 'commands/MANIPULATOR/MOVE_TO');
+    for (const [field, text] of Object.entries({Q1: '-1', Q2: '0.5', STEPS: '4'})) await page.fill(`[data-test=field-${field}]`, text);
+    await page.click('[data-test=to-stack]');
+    await go(page, 'commands/MANIPULATOR/HOLD');
+    await page.click('[data-test=to-stack]');
+    await page.click('[data-test=to-stack]');
+    await page.click('[aria-label="row 1 down"]');
+    await page.fill('[data-test=stack-name]', 'two holds');
+    await page.click('[data-test=stack-keep]');
+    await page.click('[data-test=stack-run]');
+    await holds(page, () => document.querySelectorAll('[data-test=stack-verdict]').length === 2 && document.querySelector('[data-test=stack-run]').textContent === 'Go on from row 2');
+    assert.deepEqual(await page.locator('[data-test=stack-verdict]').allTextContents(), ['completed', 'failed: setpoint owned by a link (code 15)']);
+    await page.click('[data-test=stack-as-text]');
+    const script = await page.inputValue('[data-test=stack-text]');
+    assert.deepEqual(script.split('\n').slice(2), ['set -e', 'hirosco tc MANIPULATOR HOLD', 'hirosco tc MANIPULATOR MOVE_TO Q1=-1 Q2=0.5 STEPS=4', 'hirosco tc MANIPULATOR HOLD', '']);
+    await page.fill('[data-test=stack-text]', script.replace('STEPS=4', 'STEPS=-4'));
+    await page.click('[data-test=stack-take]');
+    assert.match(await page.textContent('[data-test=stack-problem]'), /telecommand 2, MOVE_TO: STEPS: outside/);
+    await page.fill('[data-test=stack-text]', 'hirosco tc joystick set_state Pre-Operational');
+    await page.click('[data-test=stack-take]');
+    await holds(page, () => document.querySelector('[data-test=stack-row] .words')?.textContent === 'STATE Pre-Operational');
+    await page.selectOption('[data-test=stack-open]', 'two holds');
+    await holds(page, () => document.querySelectorAll('[data-test=stack-row]').length === 3);
+    await page.click('[data-test=stack-empty]');
+  });
+
   it('calls values by their names in the history, and puts them back into the form', async () => {
     await go(page, 'commands/JOYSTICK/CONFIGURE');
     await page.click('[data-test=send]');
