@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, expressions
-// of parameters, when the next picture is drawn.
+// of parameters, stacks of telecommands as text, when the next picture is drawn.
 import assert from 'node:assert/strict';
 import {join} from 'node:path';
 import {describe, it} from 'node:test';
@@ -14,6 +14,7 @@ const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numb
 const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
 const {ticks_text} = await of_page('format.js');
 const {parse, reckon} = await of_page('parts/expression.js');
+const {most_rows, read_stack, stack_text, words_of} = await of_page('parts/stack_text.js');
 
 const near = (one, other, what = '') => assert.ok(Math.hypot(...one.map((value, i) => value - other[i])) < 1e-4, `${what} ${one} instead of ${other}`);
 
@@ -137,6 +138,29 @@ describe('an expression of parameters', () => {
     const {t, v} = reckon(program, [{t: [1, 2, 3, 9], v: [10, 20, null, 30]}, {t: [1.5, 2, 4, 8.5], v: [2, 4, 0, 5]}], [2, 2]);
     assert.deepEqual(t, [1, 1.5, 2, 3, 4, 8.5, 9]);
     assert.deepEqual(v, [null, 5, 5, null, null, null, 6]);
+  });
+});
+
+describe('a stack of telecommands as text', () => {
+  const action = {name: 'SET', arguments: [{name: 'MODE', type: 'UINT8'}, {name: 'GOAL', type: 'DOUBLE', count: 2}, {name: 'NOTE', type: 'TEXT'}]};
+  const find = (subsystem, name) => subsystem.toLowerCase() !== 'arm' ? `there is no subsystem ${subsystem}` : name.toLowerCase() !== 'set' ? `no ${name}` :
+    {subsystem: 'ARM', action, choices: ({name: of}) => of === 'MODE' ? [{name: 'Safe-Operational', value: 4}] : []};
+
+  it('comes back as it was written, whatever its texts are', () => {
+    const note = `it's "so" $HOME \\ # 1; é`, text = stack_text('one\ntwo', 'ROKVISS', [{subsystem: 'ARM', function: 'SET', values: {MODE: 4, GOAL: [0.5, -1], NOTE: note}}]);
+    assert.deepEqual(read_stack(text, find), {rows: [{subsystem: 'ARM', function: 'SET', texts: {MODE: '4', GOAL: '0.5 -1', NOTE: note}}]});
+  });
+
+  it('takes what hirosco tc takes: small letters, arguments by their places, values by their names', () => {
+    assert.deepEqual(read_stack('arm set safe-operational note="a \\"b" 1,2  # so', find).rows[0].texts, {MODE: '4', NOTE: 'a "b', GOAL: '1 2'});
+  });
+
+  it('says which line is wrong, and why, and takes nothing of it', () => {
+    for (const [text, why] of [['arm', /line 1: "arm" is no line of "hirosco tc/], ['\n# so\nhirosco tc leg SET', /line 3: there is no subsystem leg/], [`arm set 'a`, /line 1: a quote is not closed/],
+      ['arm set 1 2 3 4', /line 1: SET has 3 arguments, and "4" is none/], ['arm set\n'.repeat(most_rows + 1), new RegExp(`line ${most_rows + 1}: more than`)], ['x'.repeat(1e6), /longer than/]]) {
+      assert.match(read_stack(text, find).problem, why);
+    }
+    assert.deepEqual(words_of(`a 'b c'\\ d "" #e`), ['a', 'b c d', '']);
   });
 });
 

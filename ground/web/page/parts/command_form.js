@@ -10,7 +10,7 @@ import {html} from '../html.js';
 import {commands, mission, mode_of, operator, outcome_of, replay, slow, status_of, subsystem_of, values} from '../store.js';
 import {command_is, commander, i_ask, may_send, take_command} from '../people.js';
 import {arguments_text, choices_of} from './arguments.js';
-import {as_python, as_tc, is_favourite, toggle_favourite} from './favourites.js';
+import {is_favourite, toggle_favourite} from './favourites.js';
 import {JogPad} from './jog_pad.js';
 import {jog_of} from './jog_steps.js';
 import {JointRows} from './joint_rows.js';
@@ -20,6 +20,7 @@ import {joints_of} from './robot_file.js';
 import {numbers_in} from './numbers.js';
 import {scene_of_mission} from './scene_file.js';
 import {fill_form, kept_texts, typed} from './typed.js';
+import {as_python, as_tc} from './written.js';
 
 const first_text = (argument, choices) => {
   if (argument.default !== undefined && argument.default !== null) {

@@ -3,7 +3,7 @@
 //
 // A stack of telecommands as a script of the shell: a line of `hirosco tc` each, which ends at the first that fails. Read back from it, or
 // from any lines of `hirosco tc` that somebody has.
-import {as_tc} from './favourites.js';
+import {as_tc} from './written.js';
 
 export const most_rows = 50;
 const most_characters = 20000;
