@@ -9,7 +9,7 @@ import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, describe, it} from 'node:test';
 import {gzipSync} from 'node:zlib';
-import {at_view, go, holds, open_browser, open_page, patience_ms, serious_findings, small, take_hold, until, views} from './browser.mjs';
+import {at_view, count_clicks, go, holds, open_browser, open_page, patience_ms, serious_findings, small, take_hold, until, views} from './browser.mjs';
 
 const [server_file, page_folder] = [process.env.HIROSCO_PAGE_SERVER, process.env.HIROSCO_PAGE];
 
@@ -163,6 +163,15 @@ describe('a flight that means well', () => {
     }, Object.keys(legal));
     const {state, open} = await shown.jsonValue();
     assert.deepEqual(open.sort(), legal[state].sort());
+  });
+
+  it('plots one parameter by one click on its name', async () => {
+    await go(page, 'subsystems/MANIPULATOR');
+    const clicks = await count_clicks(page);
+    await page.click('[data-test=values] a:has-text("CUR_VALUES.POSITION[1]")');
+    await holds(page, () => document.querySelectorAll('main.plots [data-test=plot]').length === 1);
+    assert.equal(await clicks(), 1);
+    assert.match(await page.textContent('[data-test=legend]'), /CUR_VALUES.POSITION\[1\]/);
   });
 
   it('follows the keys', async () => {
