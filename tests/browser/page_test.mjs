@@ -5,10 +5,7 @@
 // replay, accessibility, sizes.
 import assert from 'node:assert/strict';
 import {spawn} from 'node:child_process';
-import {readFileSync, readdirSync} from 'node:fs';
-import {join} from 'node:path';
 import {after, before, describe, it} from 'node:test';
-import {gzipSync} from 'node:zlib';
 import {at_view, count_clicks, go, holds, open_browser, open_page, patience_ms, serious_findings, small, take_hold, until, views} from './browser.mjs';
 
 const [server_file, page_folder] = [process.env.HIROSCO_PAGE_SERVER, process.env.HIROSCO_PAGE];
@@ -491,23 +488,5 @@ describe('a page slower than the telemetry', () => {
     await page.close();
     served.end();
     assert.ok(batches <= 5, `${batches} batches stood before the newest`);
-  });
-});
-
-describe('the bundle', () => {
-  it('is smaller than 120 kB without 3D and 350 kB in all, compressed', () => {
-    const sizes = readdirSync(page_folder).filter((name) => /\.(js|css|html)$/.test(name))
-        .map((name) => [name, gzipSync(readFileSync(join(page_folder, name))).length]);
-    const sum = (list) => list.reduce((total, [, size]) => total + size, 0);
-    const without = sum(sizes.filter(([name]) => !name.startsWith('robot_drawing')));
-    console.log(`measured: ${(without / 1000).toFixed(0)} kB without 3D, ${(sum(sizes) / 1000).toFixed(0)} kB in all`);
-    assert.ok(without < 120e3);
-    assert.ok(sum(sizes) < 350e3);
-  });
-
-  it('holds no address of another host that it would ask', () => {
-    const html_text = readFileSync(join(page_folder, 'index.html'), 'utf8');
-    assert.doesNotMatch(html_text, /https?:\/\//);
-    assert.doesNotMatch(html_text, /<script(?![^>]*src=)/);
   });
 });

@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, expressions
-// of parameters, stacks of telecommands as text, when the next picture is drawn.
+// of parameters, stacks of telecommands as text, when the next picture is drawn; how large
+// it is.
 import assert from 'node:assert/strict';
+import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 import {describe, it} from 'node:test';
 import {pathToFileURL} from 'node:url';
+import {gzipSync} from 'node:zlib';
+
+const page_folder = process.env.HIROSCO_PAGE;
 
 const of_page = (file) => import(pathToFileURL(join(process.env.HIROSCO_SOURCES, 'ground/web/page', file)));
 const {beyond_rad, reach} = await of_page('scene/reach.js');
@@ -185,5 +190,23 @@ describe('the next picture', () => {
     asked.shift()();
     assert.equal(drawn, 3);
     pace.close();
+  });
+});
+
+describe('the bundle', () => {
+  it('is smaller than 120 kB without 3D and 350 kB in all, compressed', () => {
+    const sizes = readdirSync(page_folder).filter((name) => /\.(js|css|html)$/.test(name))
+        .map((name) => [name, gzipSync(readFileSync(join(page_folder, name))).length]);
+    const sum = (list) => list.reduce((total, [, size]) => total + size, 0);
+    const without = sum(sizes.filter(([name]) => !name.startsWith('robot_drawing')));
+    console.log(`measured: ${(without / 1000).toFixed(0)} kB without 3D, ${(sum(sizes) / 1000).toFixed(0)} kB in all`);
+    assert.ok(without < 120e3);
+    assert.ok(sum(sizes) < 350e3);
+  });
+
+  it('holds no address of another host that it would ask', () => {
+    const html_text = readFileSync(join(page_folder, 'index.html'), 'utf8');
+    assert.doesNotMatch(html_text, /https?:\/\//);
+    assert.doesNotMatch(html_text, /<script(?![^>]*src=)/);
   });
 });
