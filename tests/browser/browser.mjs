@@ -67,6 +67,19 @@ export async function go(page, view) {
   await holds(page, (to) => document.querySelector('nav a.on')?.getAttribute('href') === `#/${to}`, view.split(/[/?]/)[0]);
 }
 
+/// Counts what somebody has to click: real ones only, of whatever is in the page. Hands out what tells how many there were since.
+export async function count_clicks(page) {
+  await page.evaluate(() => {
+    window.clicked = 0;
+    window.count_click ??= (event) => { if (event.isTrusted && event.detail > 0) ++window.clicked; };
+    document.addEventListener('click', window.count_click, {capture: true});
+  });
+  return () => page.evaluate(() => window.clicked);
+}
+
+/// Whether what is in the window's panels stands where it stood: nobody had to scroll.
+export const unscrolled = (page) => page.evaluate(() => [document.scrollingElement, ...document.querySelectorAll('main *')].every((node) => node.scrollTop === 0 || node.matches('ol, ul, table')));
+
 /// A line to the socket of a simulated device, by the gateway.
 export const inject = (page, device, line) => page.evaluate(async ([one, words]) => {
   const answer = await fetch('/api/faults', {method: 'POST', body: JSON.stringify({device: one, line: words}),

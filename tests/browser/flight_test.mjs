@@ -5,7 +5,7 @@
 // move the arm, unplug the joystick, read why, replay.
 import assert from 'node:assert/strict';
 import {after, before, describe, it} from 'node:test';
-import {at_view, bring_up, go, holds, open_browser, open_page, small, until} from './browser.mjs';
+import {at_view, bring_up, count_clicks, go, holds, open_browser, open_page, small, unscrolled, until} from './browser.mjs';
 import {fly} from './flight.mjs';
 
 describe('the page on a real flight', () => {
@@ -77,8 +77,16 @@ describe('the page on a real flight', () => {
     await other.close();
   });
 
-  it('brings the standalone network up by one button, step by step', async () => {
-    await bring_up(page, 'standalone');
+  it('changes the mode by two clicks, in whichever view, and says beforehand what that does', async () => {
+    const clicks = await count_clicks(page);
+    await page.click('[data-test=mode]');
+    await page.hover('[data-test=mode-standalone]');
+    await page.waitForSelector('[data-test=mode-go]:has-text("Go standalone"):enabled');
+    assert.ok(await page.locator('[data-test=mode-steps] li').count() > 3);
+    await page.click('[data-test=mode-go]');
+    assert.equal(await clicks(), 2);
+    await go(page, 'overview');
+    await page.waitForSelector('[data-test=mode-progress]', {state: 'detached'});
     await state_is('MANIPULATOR', 'Operational');
     await holds(page, () => document.querySelector('[data-test=mode] b').textContent === 'standalone');
   });
@@ -94,18 +102,22 @@ describe('the page on a real flight', () => {
     assert.match(await page.textContent('[data-test=verdict]'), /TOO_FAST/);
   });
 
-  it('moves the arm by telecommand and shows the whole chain of verdicts', async () => {
-    await go(page, 'commands/MANIPULATOR/MOVE_TO');
-    await page.fill('[data-test=field-Q1]', '-1');
-    await page.fill('[data-test=field-Q2]', '1.9');
-    await page.fill('[data-test=field-DURATION]', '1');
+  it('moves the arm by its fields and one click beside its picture, without scrolling, and shows the whole chain of verdicts', async () => {
+    await go(page, 'overview');
+    await page.waitForSelector('.quick [data-test=field-Q1]');
+    const clicks = await count_clicks(page), fields = {Q1: '-1', Q2: '1.9', DURATION: '1'};
+    for (const [name, text] of Object.entries(fields)) {
+      await page.click(`.quick [data-test=field-${name}]`, {clickCount: 3});
+      await page.keyboard.type(text);
+    }
     await page.waitForSelector('[data-test=permission].yes');
-    const began = performance.now();
+    const typed = await clicks(), began = performance.now();
     await page.click('[data-test=send]');
+    assert.equal(await clicks(), typed + 1);
+    assert.ok(await unscrolled(page));
     await page.waitForSelector('[data-test=verdict] .accepted');
     console.log(`measured: click to acceptance on the screen ${(performance.now() - began).toFixed(0)} ms`);
     await page.waitForSelector('[data-test=verdict].completed');
-    await go(page, 'overview');
     await holds(page, () => /q1 −1\.00/.test(document.querySelector('.readout')?.textContent));
   });
 

@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, expressions
-// of parameters, when the next picture is drawn.
+// of parameters, stacks of telecommands as text, when the next picture is drawn; how large
+// it is.
 import assert from 'node:assert/strict';
+import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 import {describe, it} from 'node:test';
 import {pathToFileURL} from 'node:url';
+import {gzipSync} from 'node:zlib';
+
+const page_folder = process.env.HIROSCO_PAGE;
 
 const of_page = (file) => import(pathToFileURL(join(process.env.HIROSCO_SOURCES, 'ground/web/page', file)));
 const {beyond_rad, reach} = await of_page('scene/reach.js');
@@ -14,6 +19,7 @@ const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numb
 const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
 const {ticks_text} = await of_page('format.js');
 const {parse, reckon} = await of_page('parts/expression.js');
+const {most_rows, read_stack, stack_text, words_of} = await of_page('parts/stack_text.js');
 
 const near = (one, other, what = '') => assert.ok(Math.hypot(...one.map((value, i) => value - other[i])) < 1e-4, `${what} ${one} instead of ${other}`);
 
@@ -140,6 +146,29 @@ describe('an expression of parameters', () => {
   });
 });
 
+describe('a stack of telecommands as text', () => {
+  const action = {name: 'SET', arguments: [{name: 'MODE', type: 'UINT8'}, {name: 'GOAL', type: 'DOUBLE', count: 2}, {name: 'NOTE', type: 'TEXT'}]};
+  const find = (subsystem, name) => subsystem.toLowerCase() !== 'arm' ? `there is no subsystem ${subsystem}` : name.toLowerCase() !== 'set' ? `no ${name}` :
+    {subsystem: 'ARM', action, choices: ({name: of}) => of === 'MODE' ? [{name: 'Safe-Operational', value: 4}] : []};
+
+  it('comes back as it was written, whatever its texts are', () => {
+    const note = `it's "so" $HOME \\ # 1; é`, text = stack_text('one\ntwo', 'ROKVISS', [{subsystem: 'ARM', function: 'SET', values: {MODE: 4, GOAL: [0.5, -1], NOTE: note}}]);
+    assert.deepEqual(read_stack(text, find), {rows: [{subsystem: 'ARM', function: 'SET', texts: {MODE: '4', GOAL: '0.5 -1', NOTE: note}}]});
+  });
+
+  it('takes what hirosco tc takes: small letters, arguments by their places, values by their names', () => {
+    assert.deepEqual(read_stack('arm set safe-operational note="a \\"b" 1,2  # so', find).rows[0].texts, {MODE: '4', NOTE: 'a "b', GOAL: '1 2'});
+  });
+
+  it('says which line is wrong, and why, and takes nothing of it', () => {
+    for (const [text, why] of [['arm', /line 1: "arm" is no line of "hirosco tc/], ['\n# so\nhirosco tc leg SET', /line 3: there is no subsystem leg/], [`arm set 'a`, /line 1: a quote is not closed/],
+      ['arm set 1 2 3 4', /line 1: SET has 3 arguments, and "4" is none/], ['arm set\n'.repeat(most_rows + 1), new RegExp(`line ${most_rows + 1}: more than`)], ['x'.repeat(1e6), /longer than/]]) {
+      assert.match(read_stack(text, find).problem, why);
+    }
+    assert.deepEqual(words_of(`a 'b c'\\ d "" #e`), ['a', 'b c d', '']);
+  });
+});
+
 describe('the next picture', () => {
   it('waits its turn also when drawing itself asks for it, and comes after a picture that failed', async () => {
     const asked = [];
@@ -161,5 +190,23 @@ describe('the next picture', () => {
     asked.shift()();
     assert.equal(drawn, 3);
     pace.close();
+  });
+});
+
+describe('the bundle', () => {
+  it('is smaller than 120 kB without 3D and 350 kB in all, compressed', () => {
+    const sizes = readdirSync(page_folder).filter((name) => /\.(js|css|html)$/.test(name))
+        .map((name) => [name, gzipSync(readFileSync(join(page_folder, name))).length]);
+    const sum = (list) => list.reduce((total, [, size]) => total + size, 0);
+    const without = sum(sizes.filter(([name]) => !name.startsWith('robot_drawing')));
+    console.log(`measured: ${(without / 1000).toFixed(0)} kB without 3D, ${(sum(sizes) / 1000).toFixed(0)} kB in all`);
+    assert.ok(without < 120e3);
+    assert.ok(sum(sizes) < 350e3);
+  });
+
+  it('holds no address of another host that it would ask', () => {
+    const html_text = readFileSync(join(page_folder, 'index.html'), 'utf8');
+    assert.doesNotMatch(html_text, /https?:\/\//);
+    assert.doesNotMatch(html_text, /<script(?![^>]*src=)/);
   });
 });

@@ -5,7 +5,7 @@
 // many of them as HIROSCO_STOPS says. In a view without the picture, which is cheap to draw: the banner stands in every one.
 import assert from 'node:assert/strict';
 import {after, before, describe, it} from 'node:test';
-import {at_view, coupled, holds, inject, is_coupled, open_browser, open_page, small, until} from './browser.mjs';
+import {at_view, count_clicks, coupled, holds, inject, is_coupled, open_browser, open_page, small, until} from './browser.mjs';
 import {fly, process_of} from './flight.mjs';
 
 describe('whatever stopped the craft', () => {
@@ -54,10 +54,12 @@ describe('whatever stopped the craft', () => {
       await holds(page, () => document.querySelector('[data-test=mode-stopped]'));
       await holds(page, (words) => new RegExp(words).test(document.querySelector('[data-test=stop-title]')?.textContent), told.source);
       await mend();
+      const clicks = await count_clicks(page);
       await page.click('[data-test=stop-bring-up]');
       const failed = page.locator('[data-test=stop-failed]');
       await holds(page, () => !document.querySelector('[data-test=stop-banner]') || document.querySelector('[data-test=stop-failed]'));
       assert.equal(await failed.count() === 0 ? 'it is up' : await failed.textContent(), 'it is up');
+      assert.equal(await clicks(), 1);
       // It stays up: another stop, of a host that is late, has a banner of its own.
       const another = page.locator('[data-test=stop-title]');
       await until('coupled', async () => await another.count() > 0 || page.evaluate(is_coupled));

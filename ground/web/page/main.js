@@ -15,7 +15,6 @@ import {StopBanner} from './parts/stop_banner.js';
 import {calling, live, mission, now_s, problem, replay_from, start} from './store.js';
 import {switch_theme, theme} from './theme.js';
 import {Tour, tour_from_url} from './tour.js';
-import {Commands} from './views/commands.js';
 import {Events} from './views/events.js';
 import {Overview} from './views/overview.js';
 
@@ -37,7 +36,7 @@ function later(name) {
     return html`<main class="starting">Waiting for the gateway …</main>`;
   };
 }
-const [Help, Links, Plots, Subsystems, Timeline] = ['Help', 'Links', 'Plots', 'Subsystems', 'Timeline'].map(later);
+const [Commands, Help, Links, Plots, Subsystems, Timeline] = ['Commands', 'Help', 'Links', 'Plots', 'Subsystems', 'Timeline'].map(later);
 
 const views = {
   overview: ['Overview', Overview, 'o'], subsystems: ['Subsystems', Subsystems, 's'], plots: ['Plots', Plots, 'p'],

@@ -9,7 +9,7 @@ import {get, introduce, seat, token} from './api.js';
 const most_events = 10000;
 const most_commands = 500;
 const most_gaps = 1000;
-const slow_period_ms = 200;
+const slow_period_ms = 200, pictures_ms = 120;
 
 export const mission = signal(null);
 export const status = signal(null);
@@ -34,6 +34,22 @@ export const flights = signal([]);
 export const fast = signal(0);
 /// The same at 5 Hz, for numbers that people read, and for ages.
 export const slow = signal(0);
+
+let slow_due = false, picture_ms = -Infinity;
+function tell_slow() {
+  slow_due = false;
+  slow.value = slow.peek() + 1;
+}
+/// What is due is told with a picture of the robot that is drawn now: a page that changes at two moments is put together twice.
+export function with_picture() {
+  picture_ms = performance.now();
+  if (slow_due) tell_slow();
+}
+function slow_tick() {
+  if (document.hidden) return;
+  if (!slow_due && performance.now() - picture_ms < pictures_ms) slow_due = true;
+  else tell_slow();
+}
 
 /// NAME -> {v, t}; v is a number, true or false, or words. Not a signal: read it after `fast` or `slow`.
 export const values = new Map();
@@ -341,7 +357,7 @@ export function start() {
   url.searchParams.set('token', token());
   url.searchParams.set('seat', seat);
   worker.postMessage({kind: 'connect', url: url.href});
-  setInterval(() => { if (!document.hidden) slow.value = slow.peek() + 1; }, slow_period_ms);
+  setInterval(slow_tick, slow_period_ms);
   // Without an answer there is no socket either: say why.
   fetch_present();
 }

@@ -9,10 +9,10 @@ const elbow_m = 0.25, plane_z_m = 0.075;
 function mount(kit) {
   const M = kit.material, group = kit.group();
   group.add(kit.turned([[0, 0], [0.066, 0], [0.066, 0.009], [0.0645, 0.0105], [0.05, 0.0105], [0.05, 0.016], [0.046, 0.02], [0.046, 0.04], [0.048, 0.042], [0.048, 0.046], [0, 0.046]], M.joint),
-    kit.bolts(12, 0.058, 0.0125, 0.0042, 0.005, M.steel), kit.turned([[0.0485, 0.046], [0.0485, 0.0505], [0, 0.0505]], M.gold));
+    ...kit.flush(kit.bolts(12, 0.058, 0.0125, 0.0042, 0.005, M.steel)), kit.turned([[0.0485, 0.046], [0.0485, 0.0505], [0, 0.0505]], M.gold));
   for (let i = 0; i < 5; ++i) {
     const z = 0.0235 + i * 0.0034;
-    group.add(kit.turned([[0.0462, z], [0.0475, z + 0.0007], [0.0475, z + 0.0021], [0.0462, z + 0.0028]], M.dark, 40));
+    group.add(...kit.flush(kit.turned([[0.0462, z], [0.0475, z + 0.0007], [0.0475, z + 0.0021], [0.0462, z + 0.0028]], M.dark, 40)));
   }
   group.add(kit.box([0.03, 0.022, 0.024], M.dark, [-0.058, 0.012, 0.026], [0, 0, -0.2]),
     kit.tube([[-0.072, 0.016, 0.026], [-0.1, 0.03, 0.022], [-0.125, 0.06, 0.012], [-0.15, 0.12, 0.006], [-0.155, 0.19, 0.005]], 0.0042, M.cable),
@@ -130,9 +130,9 @@ export function surroundings(kit) {
 /// What the fingertip slides along and what it is hooked to: it hides the finger, so it is drawn with the arm as well.
 export function obstacles(kit, {contour, surface_x_m, springs}) {
   const M = kit.material, group = kit.group(), {from_y_m: from, to_y_m: to, rail_x_m: rail, depth_m: depth} = contour;
-  const along = Array.from({length: 73}, (_, i) => from + (to - from) * i / 72);
+  const steps = kit.detail < 1 ? 32 : 72, along = Array.from({length: steps + 1}, (_, i) => from + (to - from) * i / steps);
   group.add(kit.plate(kit.outline([[rail + depth, from], ...along.map((y) => [surface_x_m(contour, y), y]), [rail + depth, to]]), 0.05, 0.0018, M.plastic, 0.081),
-    kit.plate(kit.outline([...along.map((y) => [surface_x_m(contour, y) - 0.0008, y]), ...along.toReversed().map((y) => [surface_x_m(contour, y) + 0.002, y])]), 0.014, 0, M.gold, plane_z_m));
+    ...kit.flush(kit.plate(kit.outline([...along.map((y) => [surface_x_m(contour, y) - 0.0008, y]), ...along.toReversed().map((y) => [surface_x_m(contour, y) + 0.002, y])]), 0.014, 0, M.gold, plane_z_m)));
   for (let i = 0; i <= 30; ++i) {
     const long = i % 5 ? 0.006 : 0.011;
     group.add(kit.mesh(new kit.three.BoxGeometry(long, 0.0009, 0.0006), M.dark, [0.38 - long / 2, from + 0.005 + i * 0.00967, 0.1063]));

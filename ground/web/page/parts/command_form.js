@@ -4,70 +4,23 @@
 // A telecommand from its descriptor: one field for each argument, judged while it is typed, the octets and the supervisor's
 // answer to "permitted now?" before sending, the chain of verdicts after.
 import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
-import {copy, preview, send, send_and_say, state_name} from '../commanding.js';
-import {brief_text, clock_text, hex_text, number_text, state_text, unit_text} from '../format.js';
+import {copy, preview, say, send, send_and_say, state_name} from '../commanding.js';
+import {clock_text, hex_text, state_text, unit_text} from '../format.js';
 import {html} from '../html.js';
 import {commands, mission, mode_of, operator, outcome_of, replay, slow, status_of, subsystem_of, values} from '../store.js';
 import {command_is, commander, i_ask, may_send, take_command} from '../people.js';
 import {arguments_text, choices_of} from './arguments.js';
-import {as_python, as_tc, is_favourite, toggle_favourite} from './favourites.js';
+import {is_favourite, toggle_favourite} from './favourites.js';
 import {JogPad} from './jog_pad.js';
 import {jog_of} from './jog_steps.js';
 import {JointRows} from './joint_rows.js';
 import {mode_wanted} from './mode_menu.js';
+import {judged, range_of, range_text} from './judged.js';
 import {joints_of} from './robot_file.js';
 import {numbers_in} from './numbers.js';
 import {scene_of_mission} from './scene_file.js';
 import {fill_form, kept_texts, typed} from './typed.js';
-
-const integer_ranges = {UINT8: [0, 255], UINT16: [0, 65535], UINT32: [0, 4294967295], INT8: [-128, 127], INT16: [-32768, 32767],
-  INT32: [-2147483648, 2147483647], UINT64: [0n, 2n ** 64n - 1n], INT64: [-(2n ** 63n), 2n ** 63n - 1n]};
-
-/// A Number does not hold them all: they are a BigInt here, and on their way to the station a text where a Number would round.
-const is_wide = (argument) => argument.type === 'UINT64' || argument.type === 'INT64';
-const sent_whole = (value) => value >= Number.MIN_SAFE_INTEGER && value <= Number.MAX_SAFE_INTEGER ? Number(value) : String(value);
-
-export function range_of(argument) {
-  const [low, high] = integer_ranges[argument.type] ?? [-Infinity, Infinity];
-  const limit = (given) => is_wide(argument) ? BigInt(given) : given;
-  const least = limit(argument.min ?? low), most = limit(argument.max ?? high);
-  return [least > low ? least : low, most < high ? most : high];
-}
-
-const range_text = (argument) => {
-  const [low, high] = range_of(argument);
-  if (low === -Infinity && high === Infinity) return '';
-  const brief = (value) => typeof value === 'bigint' ? String(value) : Math.abs(value) === Infinity ? '' : brief_text(value);
-  return `${brief(low)} … ${brief(high)}`;
-};
-
-/// {value} or {error}: what was typed, by the argument's type and range; arrays as values with blanks between them, text as it is.
-export function judged(argument, text) {
-  if (argument.type === 'TEXT') {
-    const octets = new TextEncoder().encode(text ?? '').length;
-    return octets <= argument.octets ? {value: String(text ?? '')} : {error: `${octets} octets, at most ${argument.octets}`};
-  }
-  if ((argument.count ?? 1) <= 1) return judged_one(argument, text);
-  const words = String(text ?? '').trim().split(/[\s;]+/).filter(Boolean);
-  if (words.length !== argument.count) return {error: `needs ${argument.count} values with blanks between them`};
-  const results = words.map((word) => judged_one(argument, word));
-  return results.find((result) => result.error) ?? {value: results.map((result) => result.value)};
-}
-
-function judged_one(argument, text) {
-  const words = String(text ?? '').trim().replace('−', '-').replace(',', '.');
-  if (words === '') return {error: 'needs a value'};
-  const named = argument.enumeration?.find((one) => one.name.toLowerCase() === words.toLowerCase());
-  if (named) return {value: named.value};
-  if (!/^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$/.test(words)) return {error: 'not a number'};
-  const digits = /^[+-]?\d+$/.test(words);
-  if (is_wide(argument) && !digits) return {error: 'a whole number'};
-  const value = is_wide(argument) ? BigInt(words.replace('+', '')) : Number(words);
-  if (argument.type in integer_ranges && !is_wide(argument) && !Number.isInteger(value)) return {error: 'a whole number'};
-  const [low, high] = range_of(argument);
-  if (!(value >= low && value <= high)) return {error: `outside ${range_text(argument)} ${unit_text(argument.unit)}`.trim()};
-  return {value: is_wide(argument) ? sent_whole(value) : value};
-}
+import {as_python, as_tc} from './written.js';
 
 const first_text = (argument, choices) => {
   if (argument.default !== undefined && argument.default !== null) {
@@ -157,8 +110,15 @@ function Words({subsystem, action, texts, values}) {
   if (!values) return null;
   const one = {subsystem, function: action.name, texts};
   return html`<p class="words_of"><button type="button" class="link" data-test="favourite" aria-pressed=${is_favourite(one)} onClick=${() => toggle_favourite(one)}>${is_favourite(one) ? 'kept at hand ✓' : 'keep at hand'}</button>
+    <button type="button" class="link" data-test="to-stack" title="the list at the right is sent row by row" onClick=${() => to_stack(one)}>to the stack</button>
     <button type="button" class="link" data-test="copy-tc" title=${as_tc(subsystem, action.name, values)} onClick=${() => copy(as_tc(subsystem, action.name, values), 'copied for the terminal')}>copy as hirosco tc</button>
     <button type="button" class="link" data-test="copy-python" title=${as_python(subsystem, action.name, values)} onClick=${() => copy(as_python(subsystem, action.name, values), 'copied for Python')}>as Python</button></p>`;
+}
+
+/// The stack is of another view, which comes later.
+async function to_stack(one) {
+  const {add_row} = await import('./stack.js');
+  if (add_row(one)) say(`${one.function} is in the stack, under Commands`);
 }
 
 const preview_after_ms = 180, confirm_within_ms = 6000;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The timeline: modes, states, links, commands and events over time, from the archive. A click replays from there.
-import {signal} from '@preact/signals';
+import {signal, useComputed} from '@preact/signals';
 import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import {get} from '../api.js';
 import {state_name} from '../commanding.js';
@@ -82,7 +82,9 @@ export function Lanes({window_s = 120, end = null, on_view = null, big = false, 
   const [width, set_width] = useState(900);
   const [hint, set_hint] = useState(null);
   const data = useTimeline(window_s, end);
-  slow.value;
+  // Drawn again when the end has gone on by a point: a long time goes slowly.
+  const point_s = useRef(0);
+  useComputed(() => (slow.value, Math.floor(now_s() / Math.max(0.1, point_s.current)) || 0)).value;
   useLayoutEffect(() => {
     const observer = new ResizeObserver(() => set_width(Math.max(300, node.current.clientWidth)));
     observer.observe(node.current);
@@ -99,6 +101,7 @@ export function Lanes({window_s = 120, end = null, on_view = null, big = false, 
   const boot = small ? boot_of(data, earliest) : null;
   const from = boot ? boot.to : end !== null || window_s < shortest_s ? earliest : Math.max(earliest, Math.min(first_s(data) - 1, to - shortest_s));
   const left = label_width + (boot ? boot_px + break_px : 0), plot_width = width - left - 14;
+  point_s.current = end === null ? (to - from) / plot_width : 0;
   const x = (t) => boot && t < boot.to ? label_width + Math.max(0, (t - boot.from) / (boot.to - boot.from)) * boot_px :
     left + Math.max(0, Math.min(1, (t - from) / (to - from))) * plot_width;
   const time_at = (event) => {

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// The mode, where it is changed: a click opens the modes and what the supervisor would do for the chosen one (TC[129,4]), a second goes.
+// The mode, where it is changed: a click opens the modes and what the supervisor would do for the one that is pointed at (TC[129,4]), a second
+// goes.
 import {signal} from '@preact/signals';
-import {useEffect, useState} from 'preact/hooks';
+import {useEffect, useRef, useState} from 'preact/hooks';
 import {mode_preview} from '../api.js';
 import {finished, send} from '../commanding.js';
 import {state_text} from '../format.js';
@@ -11,6 +12,8 @@ import {html} from '../html.js';
 import {commands, link, mission, mode_of, operator, outcome_of, replay} from '../store.js';
 import {fallen} from '../stop_story.js';
 import {usePopup} from './popup.js';
+
+const meant_ms = 200;
 
 /// What the supervisor is told to change to: {name, id (of the telecommand), steps, failed}; null when nothing is under way.
 const changing = signal(null);
@@ -70,10 +73,18 @@ function Menu({on_close}) {
   const modes = mission.value?.modes ?? [];
   const [chosen, set_chosen] = useState(modes.find((one) => one.name === mode_wanted.value) ?? modes.find((one) => one.name !== mode_of.value.name && one.commission?.length) ?? modes[0]);
   const answer = usePreview(chosen);
+  // What a mouse only passes on its way to "Go" is not meant.
+  const pointed = useRef(0);
+  const leave = () => clearTimeout(pointed.current);
+  useEffect(() => leave, []);
+  const point_at = (mode) => ({pointerType}) => {
+    leave();
+    if (pointerType === 'mouse') pointed.current = setTimeout(() => set_chosen(mode), meant_ms);
+  };
   const refused = !answer || answer.problem || answer.reasons.length > 0;
   return html`<div class="menu" role="dialog" aria-label="change the mode" data-test="mode-menu">
     <div class="list">${modes.map((mode) => html`<button key=${mode.name} class=${mode === chosen ? 'on' : ''} aria-pressed=${mode === chosen}
-      data-test=${`mode-${mode.name}`} onClick=${() => set_chosen(mode)}><b>${mode.name}</b><span>${about(mode, mode_of.value.name)}</span></button>`)}</div>
+      data-test=${`mode-${mode.name}`} onClick=${() => set_chosen(mode)} onPointerEnter=${point_at(mode)} onPointerLeave=${leave}><b>${mode.name}</b><span>${about(mode, mode_of.value.name)}</span></button>`)}</div>
     <div class="what"><h3>${mode_of.value.name} → ${chosen?.name}</h3><${Steps} answer=${answer} />
       <div class="choice"><button class="quiet" onClick=${on_close}>Cancel</button>
         ${operator.value ? html`<button class="primary" data-test="mode-go" disabled=${refused || !operator.value || replay.value !== null || link.value.state !== 'up'}

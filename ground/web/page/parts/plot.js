@@ -189,7 +189,8 @@ export function TimePlot({names: all_names, window_s = 60, range = null, on_zoom
   };
   drawn.current.on_zoom = on_zoom;
   slow.value;
-  useEffect(draw);
+  // At once: what came after the page's next picture would be put together by itself.
+  useLayoutEffect(draw);
   useEffect(() => pins.subscribe(() => drawn.current.plot?.redraw(false)), []);
   const edges = drawn.current.plot?.bbox, ratio = devicePixelRatio || 1;
   return html`<div class="plot" ref=${node} data-test="plot" style=${names.length ? undefined : {display: 'none'}} />

@@ -4,11 +4,10 @@ import {useEffect, useRef, useState} from 'preact/hooks';
 import {fault} from '../commanding.js';
 import {age_text, fixed_text} from '../format.js';
 import {html} from '../html.js';
-import {mission_folder} from '../mission_files.js';
 import {target_line} from './hand.js';
 import {usual_description} from '../scene/usual.js';
 import {goal_where_it_stands} from './goal_form.js';
-import {drawing_code, scene_of_mission} from './scene_file.js';
+import {drawing_code, opens_with_robot, scene_of_mission} from './scene_file.js';
 import {typed} from './typed.js';
 import {fallen, fallen_text, inhibited_text} from '../stop_story.js';
 import {columns, commands, fast, freshness, mission, operator, outcome_of, replay, slow, status_of, values} from '../store.js';
@@ -79,7 +78,7 @@ function picture_of(description) {
     leads: node('svg', {class: 'leads', 'aria-hidden': 'true'}, 'http://www.w3.org/2000/svg'), tags: node('div', {class: 'readout'})};
   const picture = kept = {description, nodes, view: null, ready: null, entered: null, leave: null};
   picture.ready = drawing_code().then(async ({RobotView}) => {
-    picture.view = new RobotView(nodes, mission_folder, description);
+    picture.view = new RobotView(nodes, description);
     picture.entered?.();
     await picture.view.load();
     nodes.stage.dataset.loaded = 'yes';
@@ -90,6 +89,9 @@ function picture_of(description) {
   });
   return picture;
 }
+
+// A page that opens with the robot in it makes its picture while the rest of the page is made.
+if (opens_with_robot) scene_of_mission.subscribe((description) => { if (description) picture_of(description).ready.catch(() => {}); });
 
 export function Robot() {
   const home = useRef(null), stage = useRef(null), window_ref = useRef(null);

@@ -7,9 +7,8 @@
 // the views that show it. Realtime: none.
 import {ACESFilmicToneMapping, Color, PCFShadowMap, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
-import {asset} from '../api.js';
-import {mission_code} from '../mission_files.js';
-import {commands, replay, values} from '../store.js';
+import {mission_code, mission_text} from '../mission_files.js';
+import {commands, replay, values, with_picture} from '../store.js';
 import {surroundings_in_steps} from '../scene/around.js';
 import {Contact} from '../scene/contact.js';
 import {Goal, goal_of} from '../scene/goal.js';
@@ -18,7 +17,6 @@ import {Arrow, colours} from '../scene/instruments.js';
 import {Kit, merged} from '../scene/kit.js';
 import {Pace} from '../scene/pace.js';
 import {Readout} from '../scene/readout.js';
-import {affordable} from '../scene/plain.js';
 import {RobotModel} from '../scene/robot_model.js';
 import {cast_on_plane} from '../scene/skins.js';
 import {environment, lights, sun_from} from '../scene/space.js';
@@ -27,6 +25,8 @@ import {surface_x_m} from './hand.js';
 import {typed} from './typed.js';
 
 const still_after_ms = 250, resized_after_ms = 200;
+/// What is around the robot waits until it was seen to move, or for as long.
+const first_poses = 4, patience_ms = 1500;
 
 function drawn_by_processor(context) {
   const about = context.getExtension('WEBGL_debug_renderer_info');
@@ -45,8 +45,8 @@ function new_renderer() {
 
 export class RobotView {
   /// `nodes`: {stage, still, tags, leads}: where it draws, the canvas behind, what lies above; `window`, where the inset is, comes with each view.
-  constructor(nodes, folder, description) {
-    Object.assign(this, {nodes, folder, description, robots: [], frames: 0, show: {goal: true, limits: true, force: true, trail: true, frames: false}});
+  constructor(nodes, description) {
+    Object.assign(this, {nodes, description, robots: [], frames: 0, poses: 0, show: {goal: true, limits: true, force: true, trail: true, frames: false}});
     [this.renderer, this.software] = new_renderer();
     const {renderer} = this;
     renderer.toneMapping = ACESFilmicToneMapping;
@@ -71,6 +71,8 @@ export class RobotView {
     this.camera.position.fromArray(camera.from_m);
     this.size = new Vector2();
     this.pace = new Pace((now_ms) => this.draw(now_ms), this.software);
+    // Until it is entered.
+    this.pace.close();
     this.readout = new Readout(this, () => this.draw_soon());
     this.make_inset();
     const target = new Vector3().fromArray(camera.to_m);
@@ -101,7 +103,7 @@ export class RobotView {
 
   async load() {
     const {description} = this;
-    const [own, ...texts] = await Promise.all([description.parts ? mission_code(description.parts) : {}, ...description.robots.map(async ({urdf}) => (await asset(`${this.folder}/${urdf}`)).text())]);
+    const [own, ...texts] = await Promise.all([description.parts ? mission_code(description.parts) : {}, ...description.robots.map(({urdf}) => mission_text(urdf))]);
     this.own = own;
     this.mirror = this.software ? null : environment(this.renderer, 128);
     const kit = new Kit(this.mirror, this.software ? 0.3 : 1);
@@ -112,23 +114,36 @@ export class RobotView {
       this.readout.add_robot(robot);
       this.nodes.stage.dataset.bones = robot.bones + Number(this.nodes.stage.dataset.bones ?? 0);
       this.scene_of(robot).add(robot.body);
-      if (this.software && !about.inset) cast_on_plane(robot.body, sun_from, 0.0006);
+      robot.show_labels(!this.software);
       this.robots.push(robot);
     }
-    if (own.obstacles) {
-      this.obstacles = merged(own.obstacles(kit, {...description, surface_x_m}));
-      this.obstacles.traverse((part) => { if (part.isMesh) part.castShadow = part.receiveShadow = true; });
-      this.scene.add(this.obstacles);
+    this.kit = kit;
+    if (!this.software) {
+      const obstacles = merged(own.obstacles?.(kit, {...description, surface_x_m}) ?? kit.group());
+      obstacles.traverse((part) => { if (part.isMesh) part.castShadow = part.receiveShadow = true; });
+      this.scene.add(obstacles);
+      this.finish();
     }
-    for (const spring of description.springs ?? []) this.contact.add_spring(kit, spring, this.software);
-    if (this.software) this.obstacles?.traverse((part) => { if (part.isMesh) part.material = affordable(part.material, true); });
     this.resize();
     this.update();
-    this.add_surroundings_later();
+    if (this.software) this.surroundings_timer = setTimeout(() => this.add_surroundings_later(), patience_ms);
+    else this.add_surroundings_later();
+  }
+
+  /// What a processor that draws by itself makes after the first pictures: each kind of it takes a program of its own.
+  finish() {
+    for (const spring of this.description.springs ?? []) this.contact.add_spring(this.kit, spring, this.software);
+    for (const robot of this.software ? this.robots : []) {
+      robot.show_labels(true);
+      if (!robot.about.inset) cast_on_plane(robot.body, sun_from, 0.0006);
+    }
+    this.finished = true;
   }
 
   /// The robot moves first; what is around it takes a second to make without a graphics card.
   add_surroundings_later() {
+    clearTimeout(this.surroundings_timer);
+    this.surroundings_timer = null;
     const later = globalThis.requestIdleCallback ?? ((then) => setTimeout(then, 50));
     const steps = surroundings_in_steps(this);
     const next = () => {
@@ -223,10 +238,13 @@ export class RobotView {
   draw_soon() { this.pace.soon(); }
 
   draw(began_ms) {
+    with_picture();
     for (const robot of this.robots) {
       const posed = robot.pose(began_ms);
-      robot.show_limits(this.show.limits);
-      if (robot.frame) robot.frame.visible = this.show.frames || !robot.about.inset && this.show.limits;
+      if (posed && this.surroundings_timer && ++this.poses >= first_poses) this.add_surroundings_later();
+      const limits = this.finished && this.show.limits;
+      robot.show_limits(limits);
+      if (robot.frame) robot.frame.visible = this.show.frames || !robot.about.inset && limits;
       if (!robot.tip || !robot.body.visible) { this.follow_stick(robot); continue; }
       this.contact.follow(robot, posed, this.camera, this.show);
       if (robot.make_goal) this.follow_goal(robot);

@@ -3,7 +3,7 @@
 //
 // scene.json of the mission's page folder: what there is to be seen, and which parameters move it (docs/guide/ground_station.md).
 import {signal} from '@preact/signals';
-import {mission_has, mission_json} from '../mission_files.js';
+import {mission_code, mission_has, mission_json, mission_text} from '../mission_files.js';
 
 /// scene.json of the mission; null when there is none, undefined while it is not known.
 export const scene_of_mission = signal(undefined);
@@ -12,11 +12,17 @@ export const scene_of_mission = signal(undefined);
 export const plot_names = (plot) => Array.isArray(plot) ? plot : (plot?.curves ?? []).map((one) => one.name);
 export const drawing_code = () => import('./robot_drawing.js');
 // A page that opens with the robot in it asks for the code before it knows what to draw.
-const opens_with_robot = !/^#\/(?!overview)/.test(location.hash);
+export const opens_with_robot = !/^#\/(?!overview)/.test(location.hash);
 mission_has('scene.json').then((there) => {
   if (!there) return null;
   if (opens_with_robot) drawing_code().catch(() => {});
   return mission_json('scene.json');
 })
-    .then((description) => { scene_of_mission.value = description; })
+    .then((description) => {
+      // What it names is on its way while the page is put together.
+      if (description && opens_with_robot) {
+        for (const ahead of [...description.robots.map(({urdf}) => mission_text(urdf)), description.parts ? mission_code(description.parts) : null]) ahead?.catch(() => {});
+      }
+      scene_of_mission.value = description;
+    })
     .catch(() => { scene_of_mission.value = null; });

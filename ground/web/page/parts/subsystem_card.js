@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+import {computed} from '@preact/signals';
 import {state_name, state_names} from '../commanding.js';
 import {duration_text, rate_text, state_text} from '../format.js';
 import {html} from '../html.js';
@@ -25,9 +26,8 @@ export function configuration_of(name) {
 
 export const waits_text = (waits) => Array.isArray(waits) ? waits.join(', ') : waits ? String(waits) : '';
 
-export function is_known() {
-  return link.value.state === 'up' || replay.value !== null;
-}
+const known = computed(() => link.value.state === 'up' || replay.value !== null);
+export const is_known = () => known.value;
 
 /// "18.2 µs" with its unit in the colour of units.
 function Quantity({text}) {

@@ -3,14 +3,14 @@
 //
 // What stands around the robot: sky and spacecraft, made after the robot moves, for without a graphics card that takes a second; and the
 // modules of a mission that shows no robot.
-import {MeshBasicMaterial, Vector3} from 'three';
+import {Vector3} from 'three';
 import {state_name} from '../commanding.js';
 import {state_text} from '../format.js';
 import {mission, status_of} from '../store.js';
 import {surface_x_m} from '../parts/hand.js';
 import {colours} from './instruments.js';
 import {Kit, merged} from './kit.js';
-import {one_mesh} from './plain.js';
+import {hider_of} from './plain.js';
 import {lights, mirrored_cube, sky} from './space.js';
 import {module_of, module_places, usual_surroundings} from './usual.js';
 
@@ -18,23 +18,24 @@ import {module_of, module_places, usual_surroundings} from './usual.js';
 export function surroundings_in_steps(view) {
   const {software, far, scale, description, own} = view, light_at = new Vector3().fromArray(description.camera.to_m);
   return [
+    ...(software ? [() => view.finish()] : []),
     () => far.add(...sky(scale), ...(software ? lights({target: light_at, reach_m: 0.62 * scale, shadow: false}) : [])),
     () => {
       const kit = new Kit(software ? mirrored_cube() : view.mirror, software ? 0.7 : 1), around = own.surroundings?.(kit) ?? usual_surroundings(kit, view.robots.length > 0);
       if (description.modules) view.modules = new Modules(view, kit, around);
       around.traverse((part) => { if (part.isMesh) part.castShadow = part.receiveShadow = !software; });
       far.add(around);
-      if (!software || !own.obstacles) return;
-      far.add(merged(own.obstacles(kit, {...description, surface_x_m})));
-      hide_behind(view.obstacles);
+      if (!software) return;
+      if (own.obstacles) {
+        const about = {...description, surface_x_m}, hider = hider_of(own.obstacles(view.kit, about), scale);
+        far.add(merged(own.obstacles(kit, about)));
+        if (hider) view.scene.add(hider);
+      }
+      for (const robot of view.robots) if (!robot.about.inset) far.add(...robot.stand_still(own.links?.[robot.about.urdf]?.(kit) ?? {}, scale));
+      view.contact.stand_still(far, () => view.camera_moved(true));
     },
     () => view.still?.grown(),
   ];
-}
-
-/// What the still picture shows hides the robot where it stands before it.
-function hide_behind(obstacles) {
-  if (obstacles?.children.length) one_mesh(obstacles, new MeshBasicMaterial({colorWrite: false})).renderOrder = -3;
 }
 
 /// A module for each subsystem: its name and state stand at it, its lamp tells whether it deviates.

@@ -14,6 +14,8 @@ const force_m = [0.03, 0.35];
 export class Contact {
   #springs = [];
   #turned = false;
+  #hooked = null;
+  #changed = () => {};
 
   constructor(scene, description, thick) {
     Object.assign(this, {scene, description});
@@ -30,10 +32,20 @@ export class Contact {
       coil.rotation.z = Math.atan2(y - from_m[1], x - from_m[0]);
       coil.scale.x = Math.hypot(x - from_m[0], y - from_m[1]);
     };
-    const spring = {reach, rest: () => reach(to_m[0], to_m[1])};
+    const spring = {coil, reach, rest: () => reach(to_m[0], to_m[1])};
     spring.rest();
     this.#springs.push(spring);
     this.scene.add(coil);
+  }
+
+  /// Where what stands still is a picture: springs that nothing hangs on are in `far`, which is `changed()` when one is taken or laid down.
+  stand_still(far, changed) {
+    for (const spring of this.#springs) {
+      spring.still = spring.coil.clone();
+      far.add(spring.still);
+    }
+    this.#changed = changed;
+    this.#hooked = null;
   }
 
   /// The camera turned: a ribbon faces it.
@@ -52,7 +64,21 @@ export class Contact {
     this.#turned = false;
     this.trail.mesh.visible = show.trail;
     const hooked = values.get(this.description.hooked)?.v ?? 0;
-    this.#springs.forEach((spring, i) => hooked === i + 1 ? spring.reach(robot.tip.x, robot.tip.y) : spring.rest());
+    if (hooked) this.#springs[hooked - 1]?.reach(robot.tip.x, robot.tip.y);
+    if (hooked !== this.#hooked) this.#take(hooked);
+  }
+
+  #take(hooked) {
+    const before = this.#hooked;
+    this.#hooked = hooked;
+    this.#springs.forEach((spring, i) => {
+      const taken = hooked === i + 1;
+      if (!taken) spring.rest();
+      if (!spring.still) return;
+      spring.still.visible = !taken;
+      spring.coil.visible = taken;
+    });
+    if (before !== null) this.#changed();
   }
 
   #follow_force(robot, show) {

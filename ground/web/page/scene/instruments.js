@@ -10,7 +10,8 @@ import {mergeGeometries} from 'three/addons/utils/BufferGeometryUtils.js';
 
 export const colours = {measured: 0xffffff, goal: 0x6cb0ff, touched: 0x46d6c8, felt: 0xb9a2ff, limit: 0xb08d45, near: 0xf5b544, wrong: 0xff4f48};
 const flat = (colour, more = {}) => new MeshBasicMaterial({color: colour, toneMapped: false, ...more});
-const painted = (more = {}) => new MeshBasicMaterial({vertexColors: true, transparent: true, toneMapped: false, side: DoubleSide, ...more});
+// Flat things have one layer: drawn in two passes, as is usual for two sides, they would cost twice as much.
+const painted = (more = {}) => new MeshBasicMaterial({vertexColors: true, transparent: true, toneMapped: false, side: DoubleSide, forceSinglePass: true, ...more});
 
 function with_colour(geometry, colour, opacity) {
   const {r, g, b} = new Color(colour), count = geometry.attributes.position.count, list = new Float32Array(4 * count);
@@ -21,7 +22,7 @@ function with_colour(geometry, colour, opacity) {
 }
 
 function sector(inner, outer, from, to, colour, opacity, z) {
-  const geometry = with_colour(new RingGeometry(inner, outer, Math.max(2, Math.ceil((to - from) * 18)), 1, from, to - from), colour, opacity);
+  const geometry = with_colour(new RingGeometry(inner, outer, Math.max(2, Math.ceil((to - from) * 12)), 1, from, to - from), colour, opacity);
   geometry.translate(0, 0, z);
   return geometry;
 }
@@ -169,7 +170,7 @@ export class GoalPath {
 
 /// A ring where something is touched.
 export function contact_ring(scale) {
-  const ring = new Mesh(new RingGeometry(0.006 * scale, 0.0105 * scale, 28), flat(colours.touched, {transparent: true, opacity: 0.9, side: DoubleSide}));
+  const ring = new Mesh(new RingGeometry(0.006 * scale, 0.0105 * scale, 28), flat(colours.touched, {transparent: true, opacity: 0.9, side: DoubleSide, forceSinglePass: true}));
   ring.visible = false;
   ring.renderOrder = 8;
   return ring;

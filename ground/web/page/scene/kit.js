@@ -4,7 +4,7 @@
 // Parts to build a spacecraft of, by code: no file is loaded. A mission's parts.js gets `Kit` and makes its links and surroundings with it.
 // Lengths in metres, z is up.
 import {
-  BoxGeometry, BufferGeometry, CatmullRomCurve3, Color, CylinderGeometry, ExtrudeGeometry, Group, LatheGeometry, Mesh, MeshBasicMaterial, MeshPhongMaterial, MeshStandardMaterial, MultiplyOperation, Path, PlaneGeometry, Shape, SphereGeometry, TorusGeometry, TubeGeometry, Vector2, Vector3,
+  BoxGeometry, BufferGeometry, CatmullRomCurve3, CircleGeometry, Color, CylinderGeometry, ExtrudeGeometry, Group, LatheGeometry, Mesh, MeshBasicMaterial, MeshPhongMaterial, MeshStandardMaterial, MultiplyOperation, Path, PlaneGeometry, Shape, SphereGeometry, TorusGeometry, TubeGeometry, Vector2, Vector3,
 } from 'three';
 import {RoundedBoxGeometry} from 'three/addons/geometries/RoundedBoxGeometry.js';
 import {mergeGeometries, mergeVertices} from 'three/addons/utils/BufferGeometryUtils.js';
@@ -22,9 +22,9 @@ function phong({envMap, roughness = 0.5, metalness = 0, envMapIntensity = 1, col
 /// Materials by name; `environment` is what metals mirror: filtered, or a cube for a processor, or null.
 export function materials(environment, plain) {
   const M = plain ? (options) => phong({envMap: environment, ...options}) : (options) => new MeshStandardMaterial({envMap: environment, ...options});
-  const foil = foil_normals();
+  let foil = null;
   const blanket = (color, roughness, scale, repeat) => {
-    const normalMap = foil.clone();
+    const normalMap = (foil ??= foil_normals()).clone();
     normalMap.repeat.set(...repeat);
     normalMap.needsUpdate = true;
     return M({color, roughness, metalness: 0.93, normalMap, normalScale: new Vector2(scale, scale), envMapIntensity: 0.95});
@@ -54,11 +54,13 @@ export class Kit {
     this.three = {BoxGeometry, BufferGeometry, Group, Mesh, MeshBasicMaterial, Path, Shape, Vector3};
     this.material = materials(environment, environment?.isCubeTexture ?? false);
     this.detail = detail;
+    // Drawn again with each picture by a processor: what is a few points wide needs no roundness.
+    this.sparing = detail < 0.5;
     this.random = new Random(7);
     this.Random = Random;
   }
 
-  #segments(count) { return Math.max(8, Math.round(count * this.detail)); }
+  #segments(count) { return Math.max(Math.min(count, 8), Math.round(count * this.detail)); }
 
   group(...parts) {
     const group = new Group();
@@ -73,8 +75,14 @@ export class Kit {
     return mesh;
   }
 
+  /// What lies on or in another part: it hides nothing that the other does not.
+  flush(...parts) {
+    for (const part of parts) part.userData.flush = true;
+    return parts;
+  }
+
   box([x, y, z], material, at, turned, radius = Math.min(x, y, z) * 0.12) {
-    return this.mesh(new RoundedBoxGeometry(x, y, z, this.detail < 1 ? 1 : 2, radius), material, at, turned);
+    return this.mesh(this.sparing ? new BoxGeometry(x, y, z) : new RoundedBoxGeometry(x, y, z, this.detail < 1 ? 1 : 2, radius), material, at, turned);
   }
 
   /// Along z, its middle at `at`.
@@ -100,12 +108,14 @@ export class Kit {
   }
 
   ring(radius, thickness, material, at) {
-    return this.mesh(new TorusGeometry(radius, thickness, this.#segments(10), this.#segments(40)), material, at);
+    return this.mesh(new TorusGeometry(radius, thickness, this.sparing ? 5 : this.#segments(10), this.#segments(40)), material, at);
   }
 
   bolts(count, radius, z, size, height, material) {
     const all = Array.from({length: count}, (_, i) => {
-      const geometry = new CylinderGeometry(size, size, height, 6);
+      // Nobody sees one from below.
+      const geometry = this.sparing ? mergeGeometries([new CylinderGeometry(size, size, height, 5, 1, true), new CircleGeometry(size, 5).rotateX(-quarter_turn).translate(0, height / 2, 0)]) :
+        new CylinderGeometry(size, size, height, 6);
       geometry.rotateX(quarter_turn);
       geometry.translate(radius * Math.cos(i / count * 2 * half_turn), radius * Math.sin(i / count * 2 * half_turn), z);
       return geometry;
@@ -146,7 +156,7 @@ export class Kit {
 
   tube(points, radius, material, segments = 48) {
     const curve = new CatmullRomCurve3(points.map((point) => new Vector3(...point)));
-    return new Mesh(new TubeGeometry(curve, this.#segments(segments), radius, this.detail < 1 ? 5 : 8), material);
+    return new Mesh(new TubeGeometry(curve, this.#segments(segments), radius, this.sparing ? 4 : this.detail < 1 ? 5 : 8), material);
   }
 
   /// Along +x instead of +z.

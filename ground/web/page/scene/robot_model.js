@@ -7,7 +7,7 @@ import URDFLoader from 'urdf-loader';
 import {merged} from './kit.js';
 import {Dial, triad} from './instruments.js';
 import {Motion} from './motion.js';
-import {affordable, joined} from './plain.js';
+import {affordable, become_hider, joined} from './plain.js';
 import {reach} from './reach.js';
 import {Halo} from './skins.js';
 
@@ -84,10 +84,15 @@ export function dress(body, parts, environment, software) {
       part.material = affordable(part.material, software);
       part.castShadow = part.receiveShadow = !software && !part.userData.label;
     });
+    whole.userData.dress = true;
     link.add(whole);
   }
   return count;
 }
+
+const is_fixed = (child) => child.isURDFJoint && child.jointType === 'fixed';
+/// The links that no joint moves.
+const still_links = (link) => [link, ...link.children.filter(is_fixed).flatMap((joint) => joint.children.filter((one) => one.isURDFLink).flatMap(still_links))];
 
 export class RobotModel {
   #text;
@@ -96,6 +101,7 @@ export class RobotModel {
   constructor(about, text, parts, {environment, software}) {
     this.about = about;
     this.#text = text;
+    this.parts = parts;
     this.body = parsed_urdf(text);
     this.bones = dress(this.body, parts, environment, software);
     // Unseen until the first telemetry says how it stands.
@@ -152,6 +158,23 @@ export class RobotModel {
     this.body.updateMatrixWorld(true);
     if (this.tip) this.body.links[this.about.tip].getWorldPosition(this.tip);
     return true;
+  }
+
+  /// Where what stands still is a picture: the links that do are in it, of `parts`, and only hide what is behind them. What is to be added to it.
+  stand_still(parts, scale) {
+    this.body.updateMatrixWorld(true);
+    const still = still_links(this.body);
+    return Object.entries(this.body.links).filter(([name, link]) => parts[name] && still.includes(link)).map(([name, link]) => {
+      become_hider(link.children.find((child) => child.userData.dress), this.parts[name], scale);
+      const whole = merged(parts[name]);
+      whole.applyMatrix4(link.matrixWorld);
+      return whole;
+    });
+  }
+
+  /// Numbers and words on its parts: another program, which the first picture does not wait for.
+  show_labels(shown) {
+    this.body.traverse((part) => { if (part.userData.label) part.visible = shown; });
   }
 
   show_limits(shown) {

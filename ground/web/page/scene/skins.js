@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Other ways to draw the parts of a robot: as the ghost of where it shall go, with a halo where it is stopped, as its shadow on a plate.
-import {BackSide, Color, CustomBlending, DoubleSide, LessEqualDepth, MaxEquation, Mesh, MeshBasicMaterial, OneFactor, ShaderMaterial, Vector3, ZeroFactor} from 'three';
+import {BackSide, Color, CustomBlending, LessEqualDepth, MaxEquation, Mesh, MeshBasicMaterial, OneFactor, ShaderMaterial, Vector3, ZeroFactor} from 'three';
 import {coarse} from './plain.js';
 
 const world = 'vec4 p = modelMatrix * vec4(position, 1.); vec3 k = normalize(mat3(viewMatrix) * mat3(modelMatrix) * normal);';
@@ -29,9 +29,10 @@ function halo_skins(count) {
       }`}));
 }
 
-/// Where the sun's rays through each point meet the plane z: the darkest of all that falls on a place counts, not their sum.
+/// Where the sun's rays through each point meet the plane z: the darkest of all that falls on a place counts, not their sum. What faces the sun
+/// covers it all, and lies on the plane as it faces who looks from above.
 function shadow_skin(sun, z, strength) {
-  return new ShaderMaterial({transparent: true, depthWrite: false, side: DoubleSide, blending: CustomBlending, blendEquation: MaxEquation, blendSrc: OneFactor, blendDst: OneFactor,
+  return new ShaderMaterial({transparent: true, depthWrite: false, blending: CustomBlending, blendEquation: MaxEquation, blendSrc: OneFactor, blendDst: OneFactor,
     blendEquationAlpha: MaxEquation, blendSrcAlpha: OneFactor, blendDstAlpha: ZeroFactor, uniforms: {sun: {value: sun}, z: {value: z}, strength: {value: strength}},
     vertexShader: `uniform vec3 sun; uniform float z; void main() { vec4 p = modelMatrix * vec4(position, 1.); p.xyz -= sun * (p.z - z) / sun.z; gl_Position = projectionMatrix * viewMatrix * p; }`,
     fragmentShader: 'uniform float strength; void main() { gl_FragColor = vec4(0., 0., 0., strength); }'});
@@ -63,18 +64,25 @@ export function make_ghost(robot, skin) {
   robot.traverse((part) => { if (part.userData.label) part.visible = false; });
 }
 
+/// Made when it is first to be seen: most flights never show it.
 export class Halo {
-  #skins;
+  #skins = [];
+  #shown = false;
   constructor(robot, count) {
-    const materials = halo_skins(count);
-    this.#skins = meshes_of(robot).flatMap((part) => materials.map((material) => wrapped(part, material, 3)));
-    this.shown = false;
+    Object.assign(this, {robot, count});
   }
-  get shown() { return this.#skins[0]?.visible ?? false; }
-  set shown(value) { for (const skin of this.#skins) skin.visible = value; }
+  set shown(value) {
+    if (value === this.#shown) return;
+    this.#shown = value;
+    if (value && !this.#skins.length) {
+      const materials = halo_skins(this.count);
+      this.#skins = meshes_of(this.robot).flatMap((part) => materials.map((material) => wrapped(part, material, 3, part.userData.shown_once ?? part.geometry)));
+    }
+    for (const skin of this.#skins) skin.visible = value;
+  }
 }
 
-const shadow_cell = 0.09;
+const shadow_cell = 0.13;
 /// What is smaller hides behind what is not.
 const least_shadow_m = 0.045;
 /// For pictures that are composed of a still one and a transparent one above it, which has no light of its own to be dimmed.

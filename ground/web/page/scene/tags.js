@@ -50,8 +50,7 @@ export class Tags {
     for (const tag of this.list) {
       const seen = tag.shown && tag.at && tag.at[0] > 0 && tag.at[1] > 0 && tag.at[0] < width && tag.at[1] < height;
       if (!seen) {
-        if (tag.shown) tag.node.style.visibility = 'hidden';
-        tag.line.setAttribute('visibility', 'hidden');
+        this.#hide(tag);
         continue;
       }
       let box = this.#box(tag, tag.place);
@@ -66,18 +65,35 @@ export class Tags {
       }
       // Rather no number than one upon another.
       if (tag.crowded) {
-        tag.node.style.visibility = 'hidden';
-        tag.line.setAttribute('visibility', 'hidden');
+        this.#hide(tag);
         continue;
       }
       set.push(box);
-      tag.node.style.visibility = '';
-      tag.node.style.transform = `translate(${Math.round(box.left)}px, ${Math.round(box.top)}px)`;
+      this.#put(tag, 'seen', tag.node.style, 'visibility', '');
+      this.#put(tag, 'moved', tag.node.style, 'transform', `translate(${Math.round(box.left)}px, ${Math.round(box.top)}px)`);
       const end = [Math.max(box.left, Math.min(box.right, tag.at[0])), Math.max(box.top, Math.min(box.bottom, tag.at[1]))];
       const far = Math.hypot(end[0] - tag.at[0], end[1] - tag.at[1]) > lead_from_px;
-      tag.line.setAttribute('visibility', far ? 'visible' : 'hidden');
+      this.#lead(tag, far ? 'visible' : 'hidden');
       if (far) for (const [name, value] of [['x1', tag.at[0]], ['y1', tag.at[1]], ['x2', end[0]], ['y2', end[1]]]) tag.line.setAttribute(name, value.toFixed(1));
     }
+  }
+
+  /// What is as it was is not written: a browser would style and lay out all the same, twenty times a second.
+  #put(tag, key, target, name, value) {
+    if (tag[key] === value) return;
+    tag[key] = value;
+    target[name] = value;
+  }
+
+  #lead(tag, visibility) {
+    if (tag.led === visibility) return;
+    tag.led = visibility;
+    tag.line.setAttribute('visibility', visibility);
+  }
+
+  #hide(tag) {
+    if (tag.shown) this.#put(tag, 'seen', tag.node.style, 'visibility', 'hidden');
+    this.#lead(tag, 'hidden');
   }
 
   #box(tag, place) {

@@ -8,6 +8,7 @@ import {arguments_text} from '../parts/arguments.js';
 import {again, CommandForm, edit, VerdictChain} from '../parts/command_form.js';
 import {favourite_text, favourites, toggle_favourite} from '../parts/favourites.js';
 import {Panel} from '../parts/panel.js';
+import {StackPanel} from '../parts/stack_panel.js';
 import {fill_form} from '../parts/typed.js';
 import {commands, mission, mode_of, operator, outcome_of, replay} from '../store.js';
 
@@ -51,8 +52,9 @@ export function Commands({rest}) {
       ${chosen ? html`<${CommandForm} key=${`${chosen.subsystem.name}.${chosen.action.name}`} subsystem=${chosen.subsystem.name} action=${chosen.action} focus />
         ${chosen.action.states?.length ? html`<p class="about">Taken in ${chosen.action.states.map(state_text).join(', ')}.</p>` : null}` : html`<p class="empty">Nothing found.</p>`}
     </${Panel}>
+    <div class="column"><${StackPanel} />
     <${Panel} title="History" hint="of all operators" tools=${html`<label class="sender_name">you are <input aria-label="your name" maxlength="32"
-      placeholder="operator" value=${operator_name.value} onInput=${(event) => name_operator(event.currentTarget.value)} /></label>`}><${History} /></${Panel}>
+      placeholder="operator" value=${operator_name.value} onInput=${(event) => name_operator(event.currentTarget.value)} /></label>`}><${History} /></${Panel}></div>
   </main>`;
 }
 
