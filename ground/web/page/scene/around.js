@@ -31,7 +31,8 @@ export function surroundings_in_steps(view) {
         far.add(merged(own.obstacles(kit, about)));
         if (hider) view.scene.add(hider);
       }
-      for (const robot of view.robots) if (!robot.about.inset) far.add(...robot.stand_still(own.links?.[robot.about.urdf]?.(kit) ?? {}, scale));
+      const standing = view.robots.filter((robot) => !robot.about.inset).flatMap((robot) => robot.stand_still(own.links?.[robot.about.urdf]?.(kit) ?? {}, scale));
+      if (standing.length) far.add(...standing);    // three.js minds when there is nothing to add
       view.contact.stand_still(far, () => view.camera_moved(true));
     },
     () => view.still?.grown(),
