@@ -60,21 +60,21 @@ TEST(NewRobot, GoesToWhereItsToolCanGoStraightOn) {
   int arms = 0;
   for (const auto& entry : fs::recursive_directory_iterator{fs::path{HIROSCO_SOURCE_DIR} / "subsystems"}) {
     if (entry.path().extension() != ".urdf") continue;
-    const auto arm = judged(descriptor::file_system()(entry.path()).value());
-    if (!arm.robot || arm.robot->goal.size() != 6) continue;
+    const auto made = judged(descriptor::file_system()(entry.path()).value());
+    if (!made.robot || made.robot->goal.size() != 6) continue;
     ++arms;
-    robotics::Dynamics dynamics{arm.robot->model, robotics::Base::Fixed};
+    robotics::Dynamics dynamics{made.robot->model, robotics::Base::Fixed};
     robotics::State state;
-    state.q = Eigen::Map<const Eigen::VectorXd>(arm.robot->goal.data(), 6);
+    state.q = Eigen::Map<const Eigen::VectorXd>(made.robot->goal.data(), 6);
     state.qd = robotics::JointVector::Zero(6);
     dynamics.update(state);
     robotics::Jacobian jacobian;
-    dynamics.jacobian(*arm.robot->model.find_frame(arm.robot->tip), jacobian);
+    dynamics.jacobian(*made.robot->model.find_frame(made.robot->tip), jacobian);
     robotics::Matrix6 square;
     square.noalias() = jacobian.lazyProduct(jacobian.transpose());
     EXPECT_GT(square.determinant(), 1e-5) << entry.path() << ": a stretched arm has 0";
   }
-  EXPECT_GT(arms, 0) << "of six joints";
+  EXPECT_GT(arms, 0) << "one with six goals";
 }
 
 TEST(NewRobot, SpeedsUpAsSlowlyAsItsDrivesAreWeak) {
