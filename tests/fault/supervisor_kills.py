@@ -22,6 +22,10 @@ import honest
 KILLS = int(sys.argv.pop(sys.argv.index("--kills") + 1)) if "--kills" in sys.argv else 6
 if "--kills" in sys.argv:
     sys.argv.remove("--kills")
+# The slice of a check: no kill into the log's work, and fewer packets.
+PLAIN = "--plain" in sys.argv
+if PLAIN:
+    sys.argv.remove("--plain")
 SEED = 20261124
 ADOPTED_S = 1.0
 # A supervisor that lives for 2 s is no part of a crash loop (supervisor/keeper/kept.hpp).
@@ -142,16 +146,17 @@ class SupervisorKills(Accounts):
 
     def test_nothing_is_lost_and_the_robot_stays_coupled(self):
         self.draw = random.Random(SEED)
-        with flight.MissionCopy(PIECES) as mission, flight.Flight(mission) as rokviss:
+        with flight.MissionCopy({} if PLAIN else PIECES) as mission, flight.Flight(mission) as rokviss:
             self.rokviss, self.strategy, self.took = rokviss, ASCII, []
             rokviss.wait_commissioned()
             self.push(rokviss)
             self.ground = honest.Honest()
-            self.client = Client(self.ground, pause_s=0.0025)
+            self.client = Client(self.ground, pause_s=0.005 if PLAIN else 0.0025)
+            strokes = {0: SupervisorKills.before_its_stop_is_done} if PLAIN else self.STROKES
             began, packets = time.monotonic(), self.ground.packets
             for self.kill in range(1, KILLS + 1):
                 time.sleep(LIVES_S + self.draw.uniform(0.0, 0.3))
-                self.STROKES.get(self.kill % 6, SupervisorKills.at_any_moment)(self)
+                strokes.get(self.kill % 6, SupervisorKills.at_any_moment)(self)
             time.sleep(LIVES_S)
             self.client.ending = True
             self.client.thread.join()
@@ -164,7 +169,8 @@ class SupervisorKills(Accounts):
             rate = (len(sent) + self.ground.packets - packets) / took_s
             flight.measure(f"{KILLS} kills of the supervisor, {len(sent)} telecommands, {rate:.0f} packets/s, another one went on after "
                            f"{self.took[len(self.took) // 2]:.3f} s, {self.took[-1]:.3f} s at most")
-            self.assertGreater(rate, PACKETS_PER_S)
+            if not PLAIN:
+                self.assertGreater(rate, PACKETS_PER_S)
 
     def struck(self):
         """It is killed, another one goes on in time, and says how it found the craft."""
