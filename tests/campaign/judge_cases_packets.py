@@ -230,11 +230,6 @@ def a_flight_that_ends_while_the_disk_fails(w):
     ended_without_disk(w, "failing")
 
 
-@case(LOG_RULE)
-def a_flight_that_ends_while_what_is_written_is_deleted(w):
-    ended_without_disk(w, "deleted")
-
-
 @case(LOG_RULE, found="2 reports came to ground and are not in the log")
 def a_flight_that_ends_behind_a_disk_that_works_again(w):
     ended_without_disk(w, "full", "heal")

@@ -77,7 +77,7 @@ def given_up(flight, victims):
 def unstored_from(flight):
     """When the disk stopped taking what came until the end of the flight: whoever ends it then has that on ground only."""
     last = next((d for d in reversed(flight.did) if d[1][0] == "log"), None)
-    return last[0] if last and last[1][1] in ("failing", "full", "slow", "deleted") and flight.mark("calm") is None else flight.end + 1
+    return last[0] if last and last[1][1] in ("failing", "full", "slow") and flight.mark("calm") is None else flight.end + 1
 
 
 def i3_everything_is_logged_once(flight, victims):
