@@ -180,8 +180,8 @@ def parse(words=None):
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--fly-plan", default=os.environ.get("HIROSCO_FLY_PLAN", str(default)))
     arguments = parser.parse_args(words)
-    if arguments.keep and arguments.only is not None:
-        parser.error("--only flies those of earlier batches first: it does not go on from --keep; the plans that failed are in --out")
+    if arguments.keep and (arguments.only is not None or arguments.plan):
+        parser.error("--keep is of a whole campaign: not with --only, which flies those of earlier batches first, nor with --plan")
     return arguments
 
 

@@ -313,6 +313,8 @@ def main():
     parser.add_argument("--keep", type=pathlib.Path, help="a line for each flight; those that are in it already are not flown again")
     parser.add_argument("--hundreds", type=int, nargs="?", const=100)
     options = parser.parse_args()
+    if options.keep and (options.hundreds or options.only is not None):
+        parser.error("--keep is of flights that are flown one after the other: not with --hundreds or --only")
     with flight.MissionCopy({**SPINNABLE, **RESTARTS}) as mission:
         if options.hundreds:
             return 1 if hundreds(mission, options.seed, options.hundreds) else 0

@@ -103,6 +103,7 @@ class Statics {
 /// Of arms that cannot keep their tool's orientation nobody asks it.
 [[nodiscard]] bool goes_straight(const robotics::Model& model, robotics::FrameId tip, const JointVector& from) {
   constexpr double way_m = 0.03, speed_m_s = 0.1, share_of_speed = 0.5;
+  constexpr double from_ends = 0.03;  // of ranges, rad or m
   constexpr int joints_of_a_pose = 6;
   if (model.joint_count() < joints_of_a_pose) return true;
   robotics::InverseKinematics inverse{model, tip, {.tolerance = 1e-6, .most_iterations = 20}};
@@ -121,7 +122,8 @@ class Statics {
         const auto& joint = model.joints()[static_cast<std::size_t>(i)];
         const auto [lower, upper] = range_of(joint);
         const double most = share_of_speed * *joint.limits.velocity * way_m / speed_m_s;
-        if (std::abs(there[i] - from[i]) > most || there[i] < lower + way_m || there[i] > upper - way_m) return false;
+        if (std::abs(there[i] - from[i]) > most || there[i] < lower + from_ends || there[i] > upper - from_ends)
+          return false;
       }
     }
   return true;
