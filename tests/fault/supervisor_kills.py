@@ -2,9 +2,10 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """kill -9 of the supervisor, N times (`--kills N`), while the robot pushes on the rail and a client commands without a pause
-(docs/adr/0093), so that more than a thousand packets a second pass (`--plain`: fewer, and no kill into the log's work). Each time another one goes on with both machines as they are. Of
+(docs/adr/0093), so that more than a thousand packets a second pass. Each time another one goes on with both machines as they are. Of
 six kills one falls between TM[1,1] and TM[1,7] of a SAFE_ALL, one into a change of the log's strategy, one into the begin of a new
-piece of the log. In the end what the client sent and received is compared with each other and with the log."""
+piece of the log (`--plain`: fewer packets, and no kill into the log's work). In the end what the client sent and received is compared
+with each other and with the log."""
 import collections
 import math
 import os
