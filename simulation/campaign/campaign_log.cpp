@@ -16,14 +16,13 @@ class FaultyDatabase final : public supervisor::Database {
 
  private:
   Result<> do_append(std::span<const LogRecord> batch) override {
+    if (disk_.fault == DiskFault::Deleted) begin_anew();
     trouble_.present = disk_.fault != DiskFault::None;
     if (trouble_.present) {
       // As the real store answers: nothing counts as durable, the same records come again.
       if (noted_ != disk_.fault) ++trouble_.count;
       noted_ = disk_.fault;
-      trouble_.fault = disk_.fault == DiskFault::Full      ? supervisor::StoreFault::Full
-                       : disk_.fault == DiskFault::Deleted ? supervisor::StoreFault::Deleted
-                                                           : supervisor::StoreFault::Damaged;
+      trouble_.fault = disk_.fault == DiskFault::Full ? supervisor::StoreFault::Full : supervisor::StoreFault::Damaged;
       trouble_.error = {ErrorCode::Unavailable, "the disk takes nothing"};
       trouble_.text = "the disk takes nothing";
       return fail(trouble_.error);
@@ -38,6 +37,26 @@ class FaultyDatabase final : public supervisor::Database {
   }
   [[nodiscard]] std::string_view do_strategy() const noexcept override { return "memory"; }
   [[nodiscard]] supervisor::StoreTrouble do_trouble() const override { return trouble_; }
+
+  /// As the real store does (adr 0036): what was there is one gap, and what comes is stored behind it.
+  void begin_anew() {
+    disk_.fault = DiskFault::None;
+    std::uint64_t lost = 0;
+    for (const LogRecord& record : disk_.records) lost += record.kind == supervisor::LogKind::Gap ? record.lost : 1;
+    if (lost == 0) return;
+    LogRecord gap = disk_.records.front();
+    gap.kind = supervisor::LogKind::Gap;
+    gap.source = gap.peer = 0;
+    gap.packet = {};
+    gap.lost = static_cast<std::uint32_t>(lost);
+    gap.note = "the log was deleted or moved away with these";
+    disk_.records.assign(1, std::move(gap));
+    ++trouble_.count;
+    trouble_.fault = supervisor::StoreFault::Deleted;
+    trouble_.lost = lost;
+    trouble_.error = {ErrorCode::NotFound, "the log's file is gone", 0};
+    trouble_.text = "the log was deleted: begun anew";
+  }
 
   Disk& disk_;
   DiskFault noted_{DiskFault::None};

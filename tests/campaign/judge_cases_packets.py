@@ -246,6 +246,16 @@ def a_log_that_was_deleted_in_flight(w):
     ended_without_disk(w, "deleted")
 
 
+@case(LOG_RULE)
+def an_acknowledged_request_that_went_with_a_deleted_log(w):
+    w.record(700 * MS, "gap", lost=2).down(700 * MS, ROBOT, 1, 1, 0x180AC005, logged=False).at(800 * MS, "did log deleted")
+
+
+@case(LOG_RULE, found="was acknowledged and is not in the log")
+def an_acknowledged_request_that_came_after_the_log_was_deleted(w):
+    w.record(700 * MS, "gap", lost=2).at(800 * MS, "did log deleted").down(900 * MS, ROBOT, 1, 1, 0x180AC005, logged=False)
+
+
 @case(LOG_RULE, found="1 reports came to ground and are not in the log")
 def a_report_before_the_disk_failed(w):
     w.down(700 * MS, ROBOT, 17, 2, logged=False)
@@ -370,6 +380,13 @@ def a_report_on_a_structure_is_no_housekeeping(w):
 @case(BACK_RULE)
 def counts_go_round(w):
     told(w, *((count % 16384, HOUSEKEEPING, count) for count in range(10, 40000, 4000)))
+
+
+@case(BACK_RULE)
+def more_than_half_a_round_went_into_a_gap_of_the_log(w):
+    told(w, (0, HOUSEKEEPING, 0))
+    w.record(1500 * MS, "gap", lost=12000)
+    w.report(2 * S, ROBOT, *HOUSEKEEPING, bytes(4), count=12001, onboard=2).report(3 * S, ROBOT, *ANSWER, bytes(4), count=12002, onboard=3)
 
 
 @case(BACK_RULE)

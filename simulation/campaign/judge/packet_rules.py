@@ -105,7 +105,9 @@ def i3_everything_is_logged_once(flight, victims):
     if len(missing) > lost_records(flight):
         time, apid, count = missing[0][:3]
         yield time, f"{len(missing)} reports came to ground and are not in the log, the first {name_of(flight, apid)} {count}"
-    accepted = {(down[5], down[6]) for down in flight.down if down[3] == 1 and down[4] == 1 and down[5] == 0 and down[0] < unstored}
+    deleted = max((time for time, words in flight.did if words == ["log", "deleted"]), default=-1)
+    accepted = {(down[5], down[6]) for down in flight.down
+                if down[3] == 1 and down[4] == 1 and down[5] == 0 and deleted < down[0] < unstored}
     for key in accepted:
         if received[key] == 0:
             yield 0, f"request {key[1]:08x} was acknowledged and is not in the log"
@@ -241,7 +243,9 @@ def kind_of(report):
 def i11_nothing_goes_back(flight, victims):
     newest, before, times, stored, monotonic = {}, {}, {}, 0, -10**9
     for record in flight.log:
-        if record.kind != "gap" and (record.time < monotonic or record.stored < stored):
+        if record.kind == "gap":  # half the range of a count, or more, may lie in it
+            newest.clear(), before.clear()
+        elif record.time < monotonic or record.stored < stored:
             yield record.time, "the times of the log go back"
         monotonic, stored = max(record.time, monotonic), max(record.stored, stored)
         if record.report is None:
