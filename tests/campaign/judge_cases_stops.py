@@ -347,6 +347,26 @@ def a_partner_goes_on_after_an_unplug(w):
 
 
 @case(NETWORK_RULE)
+def an_unplug_that_nobody_can_tell_before_the_service_loop_goes_on(w):
+    w.at(900 * MS, "did stick MANIPULATOR")
+    unplug(w)
+    w.at(2 * S, "did unstick MANIPULATOR").at(3900 * MS, f"state JOYSTICK {OFFLINE}")
+
+
+@case(NETWORK_RULE, found="JOYSTICK is not Offline 2 s after fault robot unplug")
+def an_unplug_that_nobody_told_though_the_service_loop_went_on(w):
+    w.at(900 * MS, "did stick MANIPULATOR")
+    unplug(w)
+    w.at(2 * S, "did unstick MANIPULATOR").at(4100 * MS, f"state JOYSTICK {OFFLINE}")
+
+
+@case(NETWORK_RULE, found="JOYSTICK is not Offline 2 s after fault robot unplug")
+def an_unplug_long_after_the_service_loop_stood_still(w):
+    w.at(100 * MS, "did stick MANIPULATOR").at(200 * MS, "did unstick MANIPULATOR")
+    unplug(w)
+
+
+@case(NETWORK_RULE)
 def an_unplug_of_what_is_not_in_use(w):
     w.at(900 * MS, f"state MANIPULATOR {SAFE}")
     unplug(w)

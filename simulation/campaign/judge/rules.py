@@ -10,6 +10,7 @@ SAFE_ALL_US = 500_000
 # The longest declared stop and the time to answer (450 ms), who has not stopped is ended then, and 500 ms after that.
 SAFE_ALL_ENDS_US = 950_000
 OFFLINE_US = 2_000_000
+SERVICE_HANG_US = 3_100_000    # a service loop that stands still is found after 3 s
 
 
 def i1_only_victims_die(flight, victims):
@@ -96,6 +97,19 @@ def networks(flight, time):
     return groups
 
 
+def told_at(flight, name, time):
+    """When the others can hear of what its cycle has seen: at once, or when its service loop goes on or is found to stand still."""
+    stuck = None
+    for at, words in flight.did:
+        if words == ["stick", name] and at <= time:
+            stuck = at
+        elif words in (["unstick", name], ["kill", name]) and stuck is not None:
+            if at > time:
+                return min(at, max(time, stuck + SERVICE_HANG_US))
+            stuck = None
+    return time if stuck is None else max(time, stuck + SERVICE_HANG_US)
+
+
 def i4_a_network_goes_down_with_its_member(flight, victims):
     """Death, hang or unplugged device of a member: the others of its network are Offline within two seconds."""
     for time, words in flight.did:
@@ -106,14 +120,15 @@ def i4_a_network_goes_down_with_its_member(flight, victims):
         if words[0] == "fault" and (flight.state[struck].at(time) != OPERATIONAL or "shut_down_network" not in flight.mission.high_plan):
             continue
         group = next(group for group in networks(flight, time - 1) if struck in group)
-        if time + OFFLINE_US > min(flight.finished(), flight.mark("calm") or flight.end):
+        until = (told_at(flight, struck, time) if words[0] == "fault" else time) + OFFLINE_US
+        if until > min(flight.finished(), flight.mark("calm") or flight.end):
             continue
-        if meets(victims["SUPERVISOR"], time - OFFLINE_US, time + OFFLINE_US):
+        if meets(victims["SUPERVISOR"], time - OFFLINE_US, until):
             continue
         for name in group - {struck, flight.mission.ground}:
-            if meets(victims[name], time - 1, time + OFFLINE_US):
+            if meets(victims[name], time - 1, until):
                 continue
-            if OFFLINE not in flight.state[name].during(time, time + OFFLINE_US):
+            if OFFLINE not in flight.state[name].during(time, until):
                 yield time, (f"{name} is not Offline 2 s after {' '.join(words)}, but "
                              f"{STATES[flight.state[name].at(time + OFFLINE_US)]}")
 
