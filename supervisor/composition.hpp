@@ -110,7 +110,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Commissioning commissioning{means};
   Modes modes{{means, own, power.ledger(), commissioning}};
   UnderWay under_way{commissioning, modes};
-  Shutdown shutdown{{means, own, under_way, telecommands}};
+  Shutdown shutdown{{means, own, under_way, telecommands, reception}};
   // event handling
   Reactions reactions{means, own};
   SafeAll safe_all{craft, own, own_telecommands, {&under_way, &restoration, &losses}};

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/modes/shutdown.hpp"
 
+#include <utility>
+
+#include "supervisor/supervision/data_handling/reception.hpp"
 #include "supervisor/supervision/procedures/step_kinds.hpp"
 
 namespace hirosco::supervisor {
@@ -44,15 +47,24 @@ void Shutdown::request() {
                  .on_failure = Procedure::OnFailure::GoOn,
                  .finished = [this](const ProcedureEnd& done) {
                    if (!done.success) craft_.tell("shutdown: " + done.text());
-                   bring_down_ground_link();
+                   others_down_ = true;
                  }});
+}
+
+/// Not while somebody's channel is read. Of whom it is said that its outcome is unknown nothing is heard any more: each
+/// telecommand has one end.
+void Shutdown::end_others() {
+  for (Member& member : craft_.members) {
+    if (craft_.is_ground_link(member)) continue;
+    parts_.reception.read(member);  // its last words
+    member.died();  // closing the channel ends the process
+    parts_.accounts.outcome_unknown(member.apid());
+  }
 }
 
 /// Last, so that the ground sees the others go, and hears what became of what it had asked them.
 void Shutdown::bring_down_ground_link() {
   parts_.accounts.refuse_waiting();
-  for (const Member& member : craft_.members)
-    if (!craft_.is_ground_link(member)) parts_.accounts.outcome_unknown(member.apid());
   Stage ground;
   if (const Member* link = craft_.ground_link(); link != nullptr && link->alive())
     ground.push_back(to_state(link->apid(), State::Offline));
@@ -67,7 +79,7 @@ void Shutdown::end() {
   parts_.accounts.refuse_waiting();
   for (Member& member : craft_.members) {
     parts_.accounts.outcome_unknown(member.apid());
-    member.died();  // closing the channel ends the process
+    member.died();
   }
   ended_ = true;
 }
@@ -76,6 +88,9 @@ void Shutdown::enforce(TimePoint now) {
   if (!craft_.shutting_down || finished_) return;
   if (ended_) {
     finished_ = true;
+  } else if (std::exchange(others_down_, false)) {
+    end_others();
+    bring_down_ground_link();
   } else if (now > deadline_) {
     craft_.tell("shutdown: time limit, ending what is left");
     for (Member& member : craft_.members)

@@ -12,6 +12,8 @@
 
 namespace hirosco::supervisor {
 
+class Reception;
+
 /// The orderly end of a flight: everybody back to Offline, the ground link last, within a time. Thread: the supervisor's.
 class Shutdown final {
  public:
@@ -20,6 +22,7 @@ class Shutdown final {
     OwnSubsystem& own;
     UnderWay& under_way;
     Accounts& accounts;
+    Reception& reception;
   };
   explicit Shutdown(const Parts& parts) : parts_{parts}, craft_{parts.means.craft}, runner_{parts.means} {}
 
@@ -34,6 +37,7 @@ class Shutdown final {
   [[nodiscard]] std::string waiting_for() const { return runner_.waiting_for(); }
 
  private:
+  void end_others();
   void bring_down_ground_link();
   void end();
 
@@ -41,6 +45,7 @@ class Shutdown final {
   Craft& craft_;
   ProcedureRunner runner_;
   TimePoint deadline_{};
+  bool others_down_{false};
   bool ended_{false};
   bool finished_{false};
 };

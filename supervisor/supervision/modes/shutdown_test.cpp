@@ -32,6 +32,8 @@ TEST_F(ShutdownTest, WhoActsIsMadeSafeFirstThenAllGoDownAndTheGroundLinkLast) {
   EXPECT_EQ(craft.member(arm)->state(), Offline);
   EXPECT_THAT(texts(camera), IsEmpty()) << "the ground sees the others go";
   obey(hand);
+  parts.shutdown.enforce(clock.now());
+  EXPECT_FALSE(craft.member(arm)->alive());
   EXPECT_FALSE(parts.shutdown.finished());
   obey(camera);
   over();
@@ -43,6 +45,7 @@ TEST_F(ShutdownTest, WhoActsIsMadeSafeFirstThenAllGoDownAndTheGroundLinkLast) {
 TEST_F(ShutdownTest, TheFlightIsOverOneStepAfterTheLastMemberSoThatWhatIsSaidOfThatIsLogged) {
   start_all(Offline);
   parts.shutdown.request();
+  parts.shutdown.enforce(clock.now());
   obey(camera);
   parts.shutdown.enforce(clock.now());
   EXPECT_TRUE(parts.shutdown.finished());
@@ -67,7 +70,23 @@ TEST_F(ShutdownTest, WhatWasAskedOfWhoIsEndedHasAnUnknownOutcome) {
   const auto asked = telecommand(arm, 17, 1, {});
   parts.telecommands.take({.packet = asked, .origin = Origin::ground()});
   parts.shutdown.request();
+  parts.shutdown.enforce(clock.now());
   EXPECT_THAT(own_failures(), ElementsAre(static_cast<std::uint16_t>(pus::FailureCode::OutcomeUnknown)));
+}
+
+TEST_F(ShutdownTest, WhoAnswersJustBeforeItIsEndedHasAnsweredAndHasNoSecondEnd) {
+  start_all(Offline);
+  parts.telecommands.take({.packet = telecommand(arm, 17, 1, {}), .origin = Origin::ground()});
+  parts.shutdown.request();
+  const Received sent = received(arm).at(0);
+  std::array<std::byte, 4> request{};
+  OctetWriter{request}.put(sent.request);
+  std::array<std::byte, pus::max_telemetry_octets> buffer{};
+  const auto completed =
+      pus::write_telemetry(buffer, {.apid = arm, .service = 1, .subtype = 7, .destination = sent.source}, request);
+  ASSERT_TRUE(played[arm].channel.subsystem_end().send({.packet = *completed}));
+  parts.shutdown.enforce(clock.now());
+  EXPECT_THAT(own_failures(), IsEmpty());
 }
 
 TEST_F(ShutdownTest, ItIsAskedForOnce) {
