@@ -147,6 +147,18 @@ def a_telecommand_that_only_ground_knows_the_fate_of(w):
 
 
 @case(FINAL_RULE)
+def a_telecommand_that_wanted_no_report_and_went_with_a_deleted_log(w):
+    vanished(w)
+    w.at(1100 * MS, "did log deleted")
+
+
+@case(FINAL_RULE, found="TC[17,1] of ground vanished")
+def a_telecommand_that_vanishes_after_the_log_was_deleted(w):
+    w.at(900 * MS, "did log deleted")
+    vanished(w)
+
+
+@case(FINAL_RULE)
 def a_telecommand_that_vanishes_on_a_link_that_is_down(w):
     w.at(990 * MS, f"state COMMUNICATION {OFFLINE}")
     vanished(w)

@@ -52,7 +52,7 @@ def i2_one_final_report(flight, victims):
             yield 0, f"request {key[1]:08x} of source {key[0]} has {number} final reports"
     for sent in flight.sent:
         quiet = sent.origin == "ground" and ground_link_works(flight, victims, sent.time, sent.time + PING_US)
-        if quiet and sent.time < late and sent.key not in logged | reported:
+        if quiet and flight.forgotten_until() < sent.time < late and sent.key not in logged | reported:
             yield sent.time, f"TC[{sent.service},{sent.subtype}] of ground vanished without a word"
             break
 
@@ -105,9 +105,8 @@ def i3_everything_is_logged_once(flight, victims):
     if len(missing) > lost_records(flight):
         time, apid, count = missing[0][:3]
         yield time, f"{len(missing)} reports came to ground and are not in the log, the first {name_of(flight, apid)} {count}"
-    deleted = max((time for time, words in flight.did if words == ["log", "deleted"]), default=-1)
     accepted = {(down[5], down[6]) for down in flight.down
-                if down[3] == 1 and down[4] == 1 and down[5] == 0 and deleted < down[0] < unstored}
+                if down[3] == 1 and down[4] == 1 and down[5] == 0 and flight.forgotten_until() < down[0] < unstored}
     for key in accepted:
         if received[key] == 0:
             yield 0, f"request {key[1]:08x} was acknowledged and is not in the log"

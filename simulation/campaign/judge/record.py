@@ -143,6 +143,10 @@ class Record:
         """When the supervisor began to end the flight."""
         return self.ending
 
+    def forgotten_until(self):
+        """When the log was deleted last: what came before went with it."""
+        return max((time for time, words in self.did if words == ["log", "deleted"]), default=-1)
+
     def mode(self):
         series = Series(self.mission.initial_mode)
         for record in self.log:
