@@ -41,19 +41,22 @@ class FaultyDatabase final : public supervisor::Database {
   /// As the real store does (adr 0036): what was there is one gap, and what comes is stored behind it.
   void begin_anew() {
     disk_.fault = DiskFault::None;
-    std::uint64_t lost = 0;
-    for (const LogRecord& record : disk_.records) lost += record.kind == supervisor::LogKind::Gap ? record.lost : 1;
-    if (lost == 0) return;
+    if (disk_.records.empty()) return;
+    constexpr std::string_view note = "the log was deleted or moved away with these";
     LogRecord gap = disk_.records.front();
     gap.kind = supervisor::LogKind::Gap;
     gap.source = gap.peer = 0;
     gap.packet = {};
-    gap.lost = static_cast<std::uint32_t>(lost);
-    gap.note = "the log was deleted or moved away with these";
+    gap.lost = 0;
+    gap.note = note;
+    for (LogRecord& record : disk_.records) {
+      gap.lost += record.kind == supervisor::LogKind::Gap ? record.lost : 1;
+      if (record.note.view() != note) disk_.deleted.push_back(std::move(record));
+    }
     disk_.records.assign(1, std::move(gap));
     ++trouble_.count;
     trouble_.fault = supervisor::StoreFault::Deleted;
-    trouble_.lost = lost;
+    trouble_.lost = disk_.records.front().lost;
     trouble_.error = {ErrorCode::NotFound, "the log's file is gone", 0};
     trouble_.text = "the log was deleted: begun anew";
   }

@@ -17,6 +17,7 @@ enum class DiskFault : std::uint8_t { None, Failing, Full, Deleted };
 /// The disk, as it was before and after everything that happened to it.
 struct Disk {
   std::vector<supervisor::LogRecord> records;
+  std::vector<supervisor::LogRecord> deleted{};  ///< what nobody can read any more, for who judges the flight
   DiskFault fault{DiskFault::None};
   Duration delay{};                  ///< until a record is durable; Duration::max(): it stands still
   /// For planted defects: false keeps a record from the disk.

@@ -147,18 +147,6 @@ def a_telecommand_that_only_ground_knows_the_fate_of(w):
 
 
 @case(FINAL_RULE)
-def a_telecommand_that_wanted_no_report_and_went_with_a_deleted_log(w):
-    vanished(w)
-    w.at(1100 * MS, "did log deleted")
-
-
-@case(FINAL_RULE, found="TC[17,1] of ground vanished")
-def a_telecommand_that_vanishes_after_the_log_was_deleted(w):
-    w.at(900 * MS, "did log deleted")
-    vanished(w)
-
-
-@case(FINAL_RULE)
 def a_telecommand_that_vanishes_on_a_link_that_is_down(w):
     w.at(990 * MS, f"state COMMUNICATION {OFFLINE}")
     vanished(w)
@@ -259,13 +247,17 @@ def a_log_that_was_deleted_in_flight(w):
 
 
 @case(LOG_RULE)
-def an_acknowledged_request_that_went_with_a_deleted_log(w):
-    w.record(700 * MS, "gap", lost=2).down(700 * MS, ROBOT, 1, 1, 0x180AC005, logged=False).at(800 * MS, "did log deleted")
+def what_went_with_a_deleted_log_was_logged(w):
+    w.down(700 * MS, ROBOT, 1, 1, w.command(600 * MS, "received", ROBOT, 17, 1))
+    w.delete_log()
+    w.action(900 * MS, "begun anew")
 
 
-@case(LOG_RULE, found="was acknowledged and is not in the log")
-def an_acknowledged_request_that_came_after_the_log_was_deleted(w):
-    w.record(700 * MS, "gap", lost=2).at(800 * MS, "did log deleted").down(900 * MS, ROBOT, 1, 1, 0x180AC005, logged=False)
+@case(LOG_RULE, found="1 records and 1 lost are not the")
+def a_deleted_log_whose_gap_tells_of_less(w):
+    w.down(700 * MS, ROBOT, 1, 1, w.command(600 * MS, "received", ROBOT, 17, 1))
+    w.delete_log(told=1)
+    w.action(900 * MS, "begun anew")
 
 
 @case(LOG_RULE, found="1 reports came to ground and are not in the log")

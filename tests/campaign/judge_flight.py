@@ -6,7 +6,7 @@ import collections, pathlib, struct, sys, tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "simulation" / "campaign" / "judge"))
 from descriptors import OPERATIONAL, PRE, SAFE, read_mission  # noqa: E402
-from record import START_NS, Record  # noqa: E402
+from record import DELETED, START_NS, Record  # noqa: E402
 
 MISSION = read_mission(HERE.parents[1] / "missions" / "rokviss")
 SUPERVISOR, COMMUNICATION, ROBOT, JOYSTICK = 1, 2, 10, 11
@@ -25,7 +25,7 @@ class Written:
 
     def __init__(self, mission=MISSION):
         self.mission = mission
-        self.trace, self.log, self.numbers, self.counts = [], [], 0, collections.Counter()
+        self.trace, self.log, self.gone, self.numbers, self.counts = [], [], [], 0, collections.Counter()
         self.at(0, "device robot MANIPULATOR period_ns=500000", "device joystick JOYSTICK period_ns=500000")
         for apid, name in NAMES.items():
             self.at(0, f"alive {name} 1")
@@ -72,6 +72,12 @@ class Written:
                                f"{packet.hex() or '-'} {note}"))
         return self
 
+    def delete_log(self, told=None):
+        """What is in the log by now goes; the gap that the store leaves tells of all of it, or of so many."""
+        self.gone, first = self.log, self.log[0]
+        words = first[1].split(" ", 8)
+        self.log = [(first[0], " ".join([*words[:3], "gap", "0", "0", str(told or self.numbers), "-", DELETED]))]
+
     def action(self, time, note, peer=SUPERVISOR):
         return self.record(time, "action", peer=peer, note=note)
 
@@ -103,6 +109,8 @@ class Written:
         lines = lambda entries: "".join(f"{line}\n" for line in entries)
         (pathlib.Path(folder) / "trace.txt").write_text(lines(f"{time} {text}" for time, text in sorted(self.trace, key=lambda e: e[0])))
         (pathlib.Path(folder) / "log.txt").write_text(lines(text for _, text in self.log))
+        if self.gone:
+            (pathlib.Path(folder) / "deleted.txt").write_text(lines(text for _, text in self.gone))
 
     def read(self):
         with tempfile.TemporaryDirectory() as folder:

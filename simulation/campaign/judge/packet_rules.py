@@ -14,8 +14,8 @@ OUTCOME_UNKNOWN = bytes([2, 6])
 VALUE_NOT_ACCEPTABLE, DATA_LENGTH = bytes([1, 5]), bytes([0, 8])
 
 
-def lost_records(flight):
-    return sum(record.lost for record in flight.log if record.kind == "gap")
+def lost_records(records):
+    return sum(record.lost for record in records if record.kind == "gap")
 
 
 def i2_one_final_report(flight, victims):
@@ -52,7 +52,7 @@ def i2_one_final_report(flight, victims):
             yield 0, f"request {key[1]:08x} of source {key[0]} has {number} final reports"
     for sent in flight.sent:
         quiet = sent.origin == "ground" and ground_link_works(flight, victims, sent.time, sent.time + PING_US)
-        if quiet and flight.forgotten_until() < sent.time < late and sent.key not in logged | reported:
+        if quiet and sent.time < late and sent.key not in logged | reported:
             yield sent.time, f"TC[{sent.service},{sent.subtype}] of ground vanished without a word"
             break
 
@@ -92,21 +92,21 @@ def i3_everything_is_logged_once(flight, victims):
             packets.add(record.packet)
         if record.kind == "telecommand-received":
             received[record.telecommand.key] += 1
-    kept = sum(record.kind != "gap" for record in flight.log)
     last = max(numbers, default=0)
-    if kept + lost_records(flight) != last:
-        yield flight.end, f"{kept} records and {lost_records(flight)} lost are not the {last} that were numbered"
+    for records in (flight.log, flight.standing):
+        kept, lost = sum(record.kind != "gap" for record in records), lost_records(records)
+        if kept + lost != last:
+            yield flight.end, f"{kept} records and {lost} lost are not the {last} that were numbered"
     for key, number in received.items():
         if number > 1:
             yield 0, f"request {key[1]:08x} of source {key[0]} was received {number} times"
     in_log = {(r.report.apid, r.report.count) for r in flight.log if r.report is not None}
     unstored = unstored_from(flight)
     missing = [down for down in flight.down if (down[1], down[2]) not in in_log and down[0] < unstored]
-    if len(missing) > lost_records(flight):
+    if len(missing) > lost_records(flight.log):
         time, apid, count = missing[0][:3]
         yield time, f"{len(missing)} reports came to ground and are not in the log, the first {name_of(flight, apid)} {count}"
-    accepted = {(down[5], down[6]) for down in flight.down
-                if down[3] == 1 and down[4] == 1 and down[5] == 0 and flight.forgotten_until() < down[0] < unstored}
+    accepted = {(down[5], down[6]) for down in flight.down if down[3] == 1 and down[4] == 1 and down[5] == 0 and down[0] < unstored}
     for key in accepted:
         if received[key] == 0:
             yield 0, f"request {key[1]:08x} was acknowledged and is not in the log"

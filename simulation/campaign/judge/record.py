@@ -7,6 +7,7 @@ from packets import report, telecommand
 
 START_NS = 1_000_000_000  # of the craft's clock
 AFTERMATH_US = 1_000_000   # what an end of a fault or a new process may still bring about
+DELETED = "the log was deleted or moved away with these"  # of a gap
 NO_FAULTS = ("hook", "release", "hand")  # of the world, which the craft has to live with
 
 
@@ -93,7 +94,10 @@ class Record:
         self.end = 0
         for line in (folder / "trace.txt").read_text().splitlines():
             self.take(line.split())
-        self.log = [self.logged(line) for line in (folder / "log.txt").read_text().splitlines()]
+        self.standing = self.read_log(folder / "log.txt")
+        # What the flight itself has no more, because its log was deleted, still happened.
+        deleted = folder / "deleted.txt"
+        self.log = self.standing if not deleted.exists() else self.read_log(deleted) + [r for r in self.standing if r.note != DELETED]
         self.ending = next((r.time for r in self.log if r.kind == "action" and r.note.startswith("shutdown")), self.end)
 
     def take(self, words):
@@ -129,6 +133,9 @@ class Record:
         elif what in ("calm", "recovered", "up", "flown", "end"):
             self.marks[what].append((time, rest))
 
+    def read_log(self, path):
+        return [self.logged(line) for line in path.read_text().splitlines()]
+
     def logged(self, line):
         number, stored, time, kind, source, peer, lost, packet, note = line.split(" ", 8)
         octets = b"" if packet == "-" else bytes.fromhex(packet)
@@ -142,10 +149,6 @@ class Record:
     def finished(self):
         """When the supervisor began to end the flight."""
         return self.ending
-
-    def forgotten_until(self):
-        """When the log was deleted last: what came before went with it."""
-        return max((time for time, words in self.did if words == ["log", "deleted"]), default=-1)
 
     def mode(self):
         series = Series(self.mission.initial_mode)
