@@ -92,29 +92,30 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   lives_changed();
 }
 
-bool Guard::take_over(std::uint16_t apid, const AdoptedSubsystem& adopted, bool may_go_on) {
+std::string_view Guard::take_over(std::uint16_t apid, const AdoptedSubsystem& adopted, std::string_view against) {
   adopt(apid, adopted.launched);
   const LockGuard lock{mutex_};
   GuardedMember* member = find(apid);
-  if (member == nullptr || member->permit == nullptr) return false;
+  if (member == nullptr || member->permit == nullptr) return "it has no pages";
   member->epoch = adopted.epoch;
   PermitPage& page = *member->permit;
   page.epoch.store(adopted.epoch, std::memory_order_release);
   page.powered.store(adopted.powered, std::memory_order_release);
-  const auto relaxed = std::memory_order_relaxed;
-  const bool moves = member->state() == State::Operational && member->vital->inhibited.load(relaxed) == 0 &&
-                     member->vital->seen_epoch.load(relaxed) == adopted.epoch;
+  const std::string_view rests = member->why_it_rests();
   member->service_moved = watched_at(parts_.clock.now());
   page.stop.store(adopted.stopped ? 1 : 0, std::memory_order_release);
-  if (!adopted.permitted) return false;
-  if (adopted.stopped || !may_go_on || !moves) {
+  if (!adopted.permitted) return "it was not permitted";
+  if (const std::string_view why = adopted.stopped    ? "it was stopped"
+                                   : !against.empty() ? against
+                                                      : rests;
+      !why.empty()) {
     member->fence();
-    return false;
+    return why;
   }
   page.go.store(permission_word(adopted.epoch), std::memory_order_release);
   member->released = member->seen_operational = true;
   member->released_at = watched_at(parts_.clock.now());
-  return true;
+  return {};
 }
 
 bool Guard::has_stopped_by_itself(std::uint16_t apid) const {

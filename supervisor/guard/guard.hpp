@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hirosco/utilities/os/mutex.hpp"
@@ -68,9 +69,10 @@ class Guard {
   /// It was started: its pages are taken over, nothing is permitted.
   void adopt(std::uint16_t apid, const LaunchedSubsystem& launched);
   /// It goes on after the guard that held it is gone (docs/adr/0093): under the same epoch, so that nothing that has stopped meanwhile
-  /// can begin to move by this; and permitted only if it was, and is Operational, and `may_go_on`.
-  /// \return it is permitted.
-  bool take_over(std::uint16_t apid, const AdoptedSubsystem& adopted, bool may_go_on);
+  /// can begin to move by this; and permitted only if it was, and is Operational, and nothing stands against it.
+  /// \param against Why it may not go on; empty: it may.
+  /// \return why it is not permitted; empty: it is.
+  std::string_view take_over(std::uint16_t apid, const AdoptedSubsystem& adopted, std::string_view against);
   /// It is permitted, and a device of it says that it does not put out what it is told: it stopped while nobody told it that it may.
   [[nodiscard]] bool has_stopped_by_itself(std::uint16_t apid) const;
   /// It has ended: its devices stay inhibited.

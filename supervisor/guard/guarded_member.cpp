@@ -97,6 +97,14 @@ bool GuardedMember::stands_fenced() const noexcept {
          permit->epoch.load(relaxed) == epoch;
 }
 
+std::string_view GuardedMember::why_it_rests() const noexcept {
+  constexpr auto relaxed = std::memory_order_relaxed;
+  if (state() != State::Operational) return "it is not Operational";
+  if (vital->inhibited.load(relaxed) != 0) return "it inhibits its actuators itself";
+  if (vital->seen_epoch.load(relaxed) != epoch) return "it has not seen its permit of now";
+  return {};
+}
+
 void GuardedMember::fence() noexcept {
   ++fences;
   for (WatchedDevice& device : devices)

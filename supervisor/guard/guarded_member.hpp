@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
@@ -107,6 +108,8 @@ struct GuardedMember {
   [[nodiscard]] std::uint32_t hang_limit() const noexcept;
 
   [[nodiscard]] bool stands_fenced() const noexcept;
+  /// By its own page, under the epoch that it has; empty: it acts.
+  [[nodiscard]] std::string_view why_it_rests() const noexcept;
   void fence() noexcept;
   void release(TimePoint now) noexcept;
   /// A permission is for one stay in Operational: it ends with it.

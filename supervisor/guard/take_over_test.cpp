@@ -19,7 +19,7 @@ struct TakeOver : GuardTest {
   std::map<std::uint16_t, PermitPage*> pages;
 
   /// The guard before has let go of its flows; this one finds ARM as it is.
-  bool take_over(std::uint16_t apid, bool may_go_on = true) {
+  std::string_view take_over(std::uint16_t apid, std::string_view against = {}) {
     const Life& life = lives[apid];
     AdoptedSubsystem adopted;
     adopted.epoch = life.permit->epoch.load();
@@ -33,7 +33,7 @@ struct TakeOver : GuardTest {
       if (described.subsystem.id == apid && !next.holds(apid)) {
         EXPECT_TRUE(next.add(described, apid == camera));
       }
-    return next.take_over(apid, adopted, may_go_on);
+    return next.take_over(apid, adopted, against);
   }
   [[nodiscard]] bool permits(std::uint16_t apid) { return pages[apid]->permits(pages[apid]->epoch.load()); }
   void operational(std::uint16_t apid) {
@@ -47,7 +47,7 @@ struct TakeOver : GuardTest {
 TEST_F(TakeOver, WhoWasPermittedGoesOnUnderTheEpochThatItHad) {
   operational(hand);
   const auto epoch = lives[hand].permit->epoch.load();
-  EXPECT_TRUE(take_over(hand));
+  EXPECT_EQ(take_over(hand), "");
   EXPECT_TRUE(permits(hand));
   EXPECT_EQ(pages[hand]->epoch.load(), epoch);
   static_cast<void>(next.step(clock.now()));
@@ -59,41 +59,42 @@ TEST_F(TakeOver, WhoWasPermittedGoesOnUnderTheEpochThatItHad) {
 
 TEST_F(TakeOver, NobodyWhoWasNotPermittedIsAndNobodyGetsAnEpochBelowTheOneItHad) {
   cycling(hand);
-  EXPECT_FALSE(take_over(hand));
+  EXPECT_EQ(take_over(hand), "it was not permitted");
   EXPECT_FALSE(permits(hand));
   EXPECT_GE(pages[hand]->epoch.load(), lives[hand].permit->epoch.load());
 }
 
 TEST_F(TakeOver, WhatStandsAgainstItStopsItUnderAHigherEpoch) {
-  const auto refuse = [&](const char* what, auto change, bool may_go_on = true) {
+  const auto refuse = [&](const char* what, auto change, std::string_view against = {}) {
     lives.erase(hand);
     start(hand);
     operational(hand);
     change();
     const auto epoch = lives[hand].permit->epoch.load();
-    EXPECT_FALSE(take_over(hand, may_go_on)) << what;
+    EXPECT_EQ(take_over(hand, against), what);
     EXPECT_FALSE(permits(hand)) << what;
     EXPECT_GT(pages[hand]->epoch.load(), epoch) << what;
     EXPECT_EQ(pages[hand]->stop.load(), 1u) << what;
     next.forget(hand);
   };
-  refuse("it may not", [] {}, false);
-  refuse("another state", [&] { lives[hand].vital->state = static_cast<std::uint32_t>(State::ErrorOperational); });
-  refuse("inhibited", [&] { lives[hand].vital->inhibited = inhibited_by_link; });
-  refuse("it looks at another epoch", [&] { lives[hand].vital->seen_epoch = 17; });
+  refuse("a stop was under way", [] {}, "a stop was under way");
+  refuse("it is not Operational",
+         [&] { lives[hand].vital->state = static_cast<std::uint32_t>(State::ErrorOperational); });
+  refuse("it inhibits its actuators itself", [&] { lives[hand].vital->inhibited = inhibited_by_link; });
+  refuse("it has not seen its permit of now", [&] { lives[hand].vital->seen_epoch = 17; });
 }
 
 TEST_F(TakeOver, AStopOfTheGuardBeforeHolds) {
   operational(hand);
   guard.fence(hand);
-  EXPECT_FALSE(take_over(hand));
+  EXPECT_EQ(take_over(hand), "it was not permitted");
   EXPECT_FALSE(permits(hand));
   EXPECT_EQ(pages[hand]->stop.load(), 1u);
 }
 
 TEST_F(TakeOver, AFenceOfItReachesWhoGoesOn) {
   operational(hand);
-  ASSERT_TRUE(take_over(hand));
+  ASSERT_EQ(take_over(hand), "");
   next.fence(hand);
   EXPECT_FALSE(permits(hand));
   EXPECT_TRUE(next.fenced(hand));

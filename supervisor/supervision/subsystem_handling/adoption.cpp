@@ -80,14 +80,19 @@ void Adoption::go_on() {
   owes_ = false;
 }
 
-bool Adoption::may_go_on(const Member& member) const {
-  if (craft_.is_ground_link(member)) return true;
-  return remembered_ && !stop_asked_ && !commissioning_ && !shutting_down_ && !stopped_.contains(member.apid()) &&
-         !parts_.modes.was_moving(member.apid());
+std::string_view Adoption::against(const Member& member) const {
+  if (craft_.is_ground_link(member)) return {};
+  if (!remembered_) return "nothing tells what was under way";
+  if (stop_asked_) return "a stop was under way";
+  if (commissioning_) return "it was being commissioned";
+  if (shutting_down_) return "the flight was being ended";
+  if (stopped_.contains(member.apid())) return "its network was being recovered";
+  if (parts_.modes.was_moving(member.apid())) return "the mode was being changed";
+  return {};
 }
 
 void Adoption::take_over(Member& member) {
-  const auto adopted = parts_.processes.adopt(member, may_go_on(member));
+  const auto adopted = parts_.processes.adopt(member, against(member));
   if (!adopted) return;
   asked_devices_at_ = craft_.now + devices_answer;
   Page& page = pages_[member.apid()];

@@ -77,8 +77,8 @@ class Adoption final : public Watch, public Remembered, public Succession {
   };
   void take_over(Member& member);
   void hand_over(Member& member, Page& page);
-  /// Those that a stop was under way for are not let go on.
-  [[nodiscard]] bool may_go_on(const Member& member) const;
+  /// Why it is not let go on; empty: it is.
+  [[nodiscard]] std::string_view against(const Member& member) const;
   void go_on();
   void ask_devices();
   void finish_what_was_begun();

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <utility>
 
@@ -93,7 +95,7 @@ Result<> Processes::launch(Member& member) {
   return ok();
 }
 
-std::optional<MemoryHandle> Processes::adopt(Member& member, bool may_go_on) {
+std::optional<MemoryHandle> Processes::adopt(Member& member, std::string_view against) {
   const std::string& name = member.descriptor().name;
   auto adopted = craft_.launcher.adopt(member.described());
   if (!adopted) return std::nullopt;
@@ -105,11 +107,13 @@ std::optional<MemoryHandle> Processes::adopt(Member& member, bool may_go_on) {
       return std::nullopt;
     }
   static_cast<void>(parts_.resources.claim(member));  // it has it already
-  const bool permitted = craft_.guard.take_over(member.apid(), *adopted, may_go_on);
+  const std::string_view why = craft_.guard.take_over(member.apid(), *adopted, against);
   member.started(std::move(adopted->launched));
   member.enter_mode(craft_.mode_epoch);
   const bool operational = member.state() == State::Operational;
-  craft_.tell("goes on with " + name + (permitted || !operational ? "" : ", stopped"), member.apid());
+  craft_.tell(fmt::format("goes on with {}{}{}", name,
+                          why.empty() || !operational ? "" : ", stopped: ", operational ? why : std::string_view{}),
+              member.apid());
   return std::move(adopted->permit);
 }
 

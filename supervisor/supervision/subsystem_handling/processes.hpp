@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
@@ -50,7 +51,7 @@ class Processes final : public Watch {
   Result<> start(std::uint16_t apid);
   /// One that runs since the supervisor before; empty: it does not, or cannot be held.
   /// \return its new permit page, which it has to be handed.
-  [[nodiscard]] std::optional<MemoryHandle> adopt(Member& member, bool may_go_on);
+  [[nodiscard]] std::optional<MemoryHandle> adopt(Member& member, std::string_view against);
   /// It ran when the supervisor before died, and does no longer.
   void found_dead(Member& member) { died(member, {}); }
   /// One in Offline: its channel is closed, so that it ends by itself, and nobody reacts to that.
