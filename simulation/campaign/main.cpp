@@ -9,7 +9,7 @@
 #include "simulation/campaign/planned_flight.hpp"
 
 /// hirosco-fly-plan MISSION PLAN FOLDER [DEFECT]: flies the plan, with a planted defect where one is named, and leaves
-/// log.txt, trace.txt and story.txt in the folder, and deleted.txt where the log was deleted. Without arguments: the names of the planted defects.
+/// log.txt, deleted.txt (what of it was deleted in flight), trace.txt and story.txt in the folder. Without arguments: the names of the planted defects.
 namespace {
 
 using namespace hirosco;
@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   campaign::PlannedFlight flight{*reading.value, std::move(modules), std::move(*plan), std::move(defect)};
   flight.fly();
   write_log(flight.disk().records, folder / "log.txt");
-  if (!flight.disk().deleted.empty()) write_log(flight.disk().deleted, folder / "deleted.txt");
+  write_log(flight.disk().deleted, folder / "deleted.txt");
   std::ofstream{folder / "trace.txt"} << flight.trace().text();
   std::ofstream{folder / "story.txt"} << flight.story();
   return 0;

@@ -29,6 +29,18 @@ def a_death_at_the_end(w):
     w.action(1 * S, "shutdown asked for").at(1 * S, "alive JOYSTICK 0")
 
 
+@case("i1_only_victims_die")
+def a_death_at_an_end_that_the_disk_did_not_take(w):
+    w.sent(1 * S, SUPERVISOR, 8, 1, "SHUTDOWN")
+    w.at(1010 * MS, "alive JOYSTICK 0")
+
+
+@case("i1_only_victims_die", found="JOYSTICK died")
+def a_death_long_after_a_shutdown_that_was_refused(w):
+    w.sent(1 * S, SUPERVISOR, 8, 1, "SHUTDOWN")
+    w.at(2 * S, "alive JOYSTICK 0").at(8 * S, "end")
+
+
 # --- I5 --------------------------------------------------------------------------------------------------------------------
 STALE_RULE = "i5_no_stale_sample_is_used"
 

@@ -109,8 +109,7 @@ class Written:
         lines = lambda entries: "".join(f"{line}\n" for line in entries)
         (pathlib.Path(folder) / "trace.txt").write_text(lines(f"{time} {text}" for time, text in sorted(self.trace, key=lambda e: e[0])))
         (pathlib.Path(folder) / "log.txt").write_text(lines(text for _, text in self.log))
-        if self.gone:
-            (pathlib.Path(folder) / "deleted.txt").write_text(lines(text for _, text in self.gone))
+        (pathlib.Path(folder) / "deleted.txt").write_text(lines(text for _, text in self.gone))
 
     def read(self):
         with tempfile.TemporaryDirectory() as folder:

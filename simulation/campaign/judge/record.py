@@ -7,6 +7,7 @@ from packets import report, telecommand
 
 START_NS = 1_000_000_000  # of the craft's clock
 AFTERMATH_US = 1_000_000   # what an end of a fault or a new process may still bring about
+SHUTDOWN_US = 6_000_000    # who has not gone by then is ended
 DELETED = "the log was deleted or moved away with these"  # of a gap
 NO_FAULTS = ("hook", "release", "hand")  # of the world, which the craft has to live with
 
@@ -96,9 +97,10 @@ class Record:
             self.take(line.split())
         self.standing = self.read_log(folder / "log.txt")
         # What the flight itself has no more, because its log was deleted, still happened.
-        deleted = folder / "deleted.txt"
-        self.log = self.standing if not deleted.exists() else self.read_log(deleted) + [r for r in self.standing if r.note != DELETED]
-        self.ending = next((r.time for r in self.log if r.kind == "action" and r.note.startswith("shutdown")), self.end)
+        self.log = self.read_log(folder / "deleted.txt") + [record for record in self.standing if record.note != DELETED]
+        # A disk that takes nothing does not tell of it: then it began with the request that the flight's end followed.
+        asked = [sent.time for sent in self.sent if sent.function == "SHUTDOWN" and sent.time > self.end - SHUTDOWN_US]
+        self.ending = next((r.time for r in self.log if r.kind == "action" and r.note.startswith("shutdown")), min(asked, default=self.end))
 
     def take(self, words):
         time, what, rest = int(words[0]), words[1], words[2:]
