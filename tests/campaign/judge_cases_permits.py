@@ -73,6 +73,12 @@ def what_another_mode_permitted_in_the_same_instant(w):
 
 
 @case(PERMIT_RULE)
+def what_the_mode_permits_in_spite_of_one_that_was_impossible(w):
+    w.action(200 * MS, "mode telepresence is impossible: MANIPULATOR is in a recovery")
+    runs(w, "MOVE_TO", mode="standalone", time=1 * S)
+
+
+@case(PERMIT_RULE)
 def a_ping_is_everybodys(w):
     runs(w, service=17, data=b"", mode="safe", source=JOYSTICK)
 

@@ -155,7 +155,8 @@ class Record:
     def mode(self):
         series = Series(self.mission.initial_mode)
         for record in self.log:
-            if record.kind == "action" and record.note.startswith("mode "):
+            # Another line tells of a mode that is impossible, and why.
+            if record.kind == "action" and record.note.startswith("mode ") and record.note[5:] in self.mission.modes:
                 series.set(record.time, record.note[5:])
         return series
 
