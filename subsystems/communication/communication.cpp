@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "subsystems/communication/delay_line.hpp"
+#include "subsystems/communication/told_ends.hpp"
 
 namespace hirosco {
 namespace {
@@ -131,12 +132,13 @@ class Communication final : public Subsystem, private communication::GroundTraff
   }
 
   void telemetry(Octets packet) override {
-    if (transport_) transport_->telemetry(packet);
+    if (transport_ && ends_.goes_down(packet)) transport_->telemetry(packet);
   }
 
   communication::Taken telecommand(communication::ClientId client, Octets packet) override {
     // What the supervisor does not take now stays with its client: nothing that was received is lost.
     if (!submit_ground_telecommand(client, packet)) return communication::Taken::Later;
+    ends_.went_up(packet);
     last_rx_ = now_;
     return communication::Taken::Yes;
   }
@@ -244,6 +246,7 @@ class Communication final : public Subsystem, private communication::GroundTraff
   communication::DelayLine<JoystickSet> up_;
   communication::DelayLine<RobotSet> down_;
   communication::Loss loss_;
+  communication::ToldEnds ends_;
   bool remote_{false};
   bool relay_lost_{false};
   // Single-writer cells of the service loop: the wait-free hand-over to the cycle.

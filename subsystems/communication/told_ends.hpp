@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "hirosco/utilities/octets.hpp"
+
+namespace hirosco::communication {
+
+/// The ends of telecommands that went down to ground. A supervisor that goes on for one that died cannot know whether the last ends
+/// which that one handed over here went down, and tells them as unknown (docs/adr/0134): where the true end did, ground needs no second.
+/// It holds the newest ends; one that is older than these stands against nothing.  Thread: the ground link's service loop. Realtime: bounded.
+class ToldEnds {
+ public:
+  static constexpr std::size_t most = 1024;
+  /// A telecommand goes up: what went down before with its request id, which comes again after 16,384, was of another one.
+  void went_up(Octets telecommand) noexcept;
+  /// A report is to go down, and is remembered if it tells an end (TM[1,2], [1,4], [1,7], [1,8], [1,10]).
+  /// \return false: it tells an outcome as unknown that has gone down already.
+  [[nodiscard]] bool goes_down(Octets report) noexcept;
+
+ private:
+  /// Of a telecommand: its first four octets, and who sent it. 0 is no telecommand's.
+  struct End {
+    std::uint32_t request{0};
+    std::uint16_t source{0};
+    bool operator==(const End&) const = default;
+  };
+  std::array<End, most> ends_{};
+  std::size_t next_{0};
+};
+
+}  // namespace hirosco::communication
