@@ -11,8 +11,6 @@
 #include <thread>
 #include <vector>
 
-#include "hirosco/data_transfer/memory/sealed_memory.hpp"
-
 namespace hirosco::lending {
 namespace {
 
@@ -278,94 +276,6 @@ TEST_F(LoanedLinkTest, ACountThatGoesBackIsNoNewSample) {
   EXPECT_EQ(sample.flow, Flow::Old);
   EXPECT_EQ(sample.count, 3u);
   EXPECT_TRUE(is_sample(reader_.look(), 3));
-}
-
-TEST(LoanedLinkInSealedMemory, OneMebiOctetIsLookedAtWhereItWasMade) {
-  const LinkLayout layout = layout_of(1U << 20);
-  SealedMemory provider;
-  const LoanedLink mechanism;
-  const MemoryHandle shared = mechanism.establish(provider, layout).value();
-  const auto writer = mechanism.lend(provider, shared, layout).value();
-  const auto reader = mechanism.borrow(provider, shared, layout).value();
-  EXPECT_FALSE(mechanism.lend(provider, shared, layout)) << "sealed";
-  fill(writer->lend(), 1);
-  writer->publish(TimePoint{1us}, LinkStatus::Valid);
-  ASSERT_EQ(reader->newest().flow, Flow::New);
-  EXPECT_TRUE(is_sample(reader->look(), 1));
-  EXPECT_TRUE(reader->whole());
-  // Two mappings of one memory: what is made later in the same place is seen there, and told.
-  const Octets place = reader->look();
-  for (std::uint64_t n = 2; n <= 1 + loaned_memory::places; ++n) {
-    fill(writer->lend(), n);
-    writer->publish(TimePoint{1us}, LinkStatus::Valid);
-  }
-  EXPECT_TRUE(is_sample(place, 1 + loaned_memory::places));
-  EXPECT_FALSE(reader->whole());
-}
-
-TEST(LoanedLinkInSealedMemory, WhoCopiesHasLostNothingBeforeItsFirstSample) {
-  const LinkLayout layout = layout_of(payload_octets);
-  SealedMemory provider;
-  const LoanedLink mechanism;
-  const MemoryHandle shared = mechanism.establish(provider, layout).value();
-  const auto writer = mechanism.lend(provider, shared, layout).value();
-  const auto reader = mechanism.consume(provider, shared, layout).value();
-  constexpr std::byte untouched{0x5A};
-  std::vector<std::byte> copy(payload_octets, untouched);
-  EXPECT_EQ(reader->read(copy).flow, Flow::None);
-  EXPECT_EQ(std::ranges::count(copy, untouched), payload_octets);
-  for (std::uint64_t n = 1; n <= 3; ++n) {
-    fill(writer->lend(), n);
-    writer->publish(TimePoint{1us}, LinkStatus::Valid);
-  }
-  const LinkSample first = reader->read(copy);
-  EXPECT_EQ(first.count, 3u);
-  EXPECT_EQ(first.lost, 0u);
-  for (int n = 4; n <= 6; ++n) {
-    static_cast<void>(writer->lend());
-    writer->publish(TimePoint{1us}, LinkStatus::Valid);
-  }
-  EXPECT_EQ(reader->read(copy).lost, 2u);
-  const LinkSample again = reader->read(copy);
-  EXPECT_EQ(again.flow, Flow::Old);
-  EXPECT_EQ(again.lost, 0u);
-}
-
-TEST(LoanedLinkInSealedMemory, WhatEndsWithinAWordIsCopiedToItsLastOctetAndNoFurther) {
-  constexpr std::uint32_t octets = 13;
-  const LinkLayout layout = layout_of(octets);
-  SealedMemory provider;
-  const LoanedLink mechanism;
-  const MemoryHandle shared = mechanism.establish(provider, layout).value();
-  const auto writer = mechanism.produce(provider, shared, layout).value();
-  const auto reader = mechanism.consume(provider, shared, layout).value();
-  std::vector<std::byte> made(octets), copy(octets);
-  for (std::size_t i = 0; i < made.size(); ++i) made[i] = static_cast<std::byte>(i + 1);
-  writer->write(made, TimePoint{1us}, LinkStatus::Valid);
-  ASSERT_EQ(reader->read(copy).flow, Flow::New);
-  EXPECT_EQ(copy, made);
-}
-
-TEST(LoanedLinkInSealedMemory, OtherKindsLendNothing) {
-  struct Copying final : LinkMechanism {
-    [[nodiscard]] LinkMethod method() const noexcept override { return LinkMethod::SharedMemory; }
-    [[nodiscard]] LinkKind kind() const noexcept override { return LinkKind::Latest; }
-    Result<MemoryHandle> establish(MemoryProvider&, const LinkLayout&) const override { return MemoryHandle{}; }
-    Result<std::unique_ptr<LinkWriter>> produce(MemoryProvider&, const MemoryHandle&,
-                                                const LinkLayout&) const override {
-      return fail(ErrorCode::Unavailable, "");
-    }
-    Result<std::unique_ptr<LinkReader>> consume(MemoryProvider&, const MemoryHandle&,
-                                                const LinkLayout&) const override {
-      return fail(ErrorCode::Unavailable, "");
-    }
-    Result<std::unique_ptr<LinkView>> look(MemoryProvider&, const MemoryHandle&) const override {
-      return fail(ErrorCode::Unavailable, "");
-    }
-  };
-  SealedMemory provider;
-  EXPECT_EQ(Copying{}.lend(provider, {}, layout_of(8)).error().code, ErrorCode::NotPermitted);
-  EXPECT_EQ(Copying{}.borrow(provider, {}, layout_of(8)).error().code, ErrorCode::NotPermitted);
 }
 
 // --- two processors --------------------------------------------------------------------------------------------------

@@ -10,7 +10,6 @@
 #include <cstring>
 #include <vector>
 
-#include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/testing/slice.hpp"
 
 namespace hirosco::queueing {
@@ -409,24 +408,6 @@ TEST(QueuedLinkDamage, ACountWhoseDoubleIsThatOfASampleIsNone) {
   EXPECT_EQ(reader.read(seen).count, 1u);
   writer.write(sample(2), {}, LinkStatus::Valid);
   EXPECT_EQ(reader.read(seen).count, 2u);
-}
-
-// --- real memory -----------------------------------------------------------------------------------------------------
-
-TEST(QueuedLinkInSealedMemory, ItsConsumerMapsReadOnlyAndItsProducerIsTheOnlyOne) {
-  SealedMemory provider;
-  const QueuedLink mechanism;
-  const LinkLayout layout = layout_of(payload_octets);
-  const MemoryHandle shared = mechanism.establish(provider, layout).value();
-  EXPECT_FALSE(mechanism.consume(provider, shared, layout)) << "a second producer may yet come";
-  const auto writer = mechanism.produce(provider, shared, layout).value();
-  EXPECT_FALSE(mechanism.produce(provider, shared, layout));
-  const auto reader = mechanism.consume(provider, shared, layout).value();
-  EXPECT_FALSE(mechanism.consume(provider, shared, layout_of(payload_octets, depth + 1)));
-  writer->write(sample(1), TimePoint{1us}, LinkStatus::Valid);
-  Payload seen{};
-  EXPECT_EQ(reader->read(seen).flow, Flow::New);
-  EXPECT_EQ(seen, sample(1));
 }
 
 }  // namespace
