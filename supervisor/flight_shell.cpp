@@ -20,6 +20,7 @@
 #include "hirosco/utilities/memory_reserve.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
+#include "hirosco/utilities/os/life.hpp"
 #include "hirosco/utilities/os/shared_memory.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
@@ -183,6 +184,11 @@ class Kept {
   }
   /// False: they have no room. The next supervisor reads the files.
   bool note(const TextsInForce::Texts& texts) { return !texts_ || texts_->note(texts); }
+  /// The keeper hears of the end of the calling thread before the system has given this process's memory back (docs/adr/0135).
+  void watch_this_thread() const noexcept {
+    page_->guarded.store(page_->starts.load(), std::memory_order_release);
+    static_cast<void>(hold_life(page_->guard_life));
+  }
   /// From the keeper, which has told the devices what the guard before had told them.
   void take_inhibits(const Clock& clock) const {
     constexpr Duration longest = 100ms;
@@ -340,8 +346,9 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   } else {
     supervisor.start();
   }
-  const auto guard_thread =
-      GuardShell::start(guard, clock, options.runtime, [&] { page.stops_taken.store(page.stops_asked.load()); });
+  const auto guard_thread = GuardShell::start(guard, clock, options.runtime,
+                                              {.on_begin = [&] { keeper.watch_this_thread(); },
+                                               .on_signal = [&] { page.stops_taken.store(page.stops_asked.load()); }});
   if (!guard_thread) {
     fmt::print(stderr, "hirosco: the guard cannot start: {} ({})\n", guard_thread.error().text,
                guard_thread.error().value);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <vector>
 
 #include "hirosco/pus/packet/packet.hpp"
@@ -44,7 +45,7 @@ struct Ends : ::testing::Test {
 };
 
 TEST_F(Ends, AnOutcomeIsNotToldAsUnknownOnceItIsKnown) {
-  for (const std::uint8_t end : {2, 4, 7, 8, 10}) {
+  for (const std::uint8_t end : std::array<std::uint8_t, 5>{2, 4, 7, 8, 10}) {
     EXPECT_TRUE(told.goes_down(report(end, end, pus::FailureCode::ExecutionError)));
     EXPECT_FALSE(told.goes_down(unknown(end)));
   }

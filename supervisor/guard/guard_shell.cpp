@@ -52,11 +52,10 @@ void keep_code_in_memory() noexcept {
 }
 
 Result<std::unique_ptr<GuardShell>> GuardShell::start(Guard& guard, const Clock& clock,
-                                                      const std::filesystem::path& folder,
-                                                      std::function<void()> on_signal) {
+                                                      const std::filesystem::path& folder, Calls calls) {
   HIROSCO_TRY_LET(WakeEvent ending, WakeEvent::create());
   std::unique_ptr<GuardShell> shell{new GuardShell{guard, clock, std::move(ending)}};
-  shell->on_signal_ = std::move(on_signal);
+  shell->calls_ = std::move(calls);
   sigset_t set;
   sigemptyset(&set);
   sigaddset(&set, SIGUSR1);
@@ -98,6 +97,7 @@ Result<> GuardShell::listen(const std::filesystem::path& folder) {
 void GuardShell::run() {
   // Where it is not granted the reduced promise holds, as for the cycles.
   static_cast<void>(set_fifo_priority(priority));
+  if (calls_.on_begin) calls_.on_begin();
   while (!ended_.load()) {
     const TimePoint wake = guard_.step(clock_.now());
     answer_clients(clock_.now());
@@ -113,7 +113,7 @@ void GuardShell::run() {
     }
     if (!asked) continue;
     guard_.stop_all(GuardFinding::Kind::StopAsked);
-    if (on_signal_) on_signal_();
+    if (calls_.on_signal) calls_.on_signal();
   }
 }
 

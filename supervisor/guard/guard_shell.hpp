@@ -27,11 +27,14 @@ class GuardShell {
  public:
   /// Above all cycles (1 to 89), below the kernel's own.
   static constexpr int priority = 90;
-  /// An empty `folder`: no socket. `on_signal`: after a stop by signal was carried out. Thread: the guard's. SIGUSR1 must be
-  /// blocked in the process. SystemFailure: socket, thread.
+  /// What is done in the guard's thread besides; either may be empty.
+  struct Calls {
+    std::function<void()> on_begin{};  ///< before its first step
+    std::function<void()> on_signal{};  ///< after a stop by signal was carried out
+  };
+  /// An empty `folder`: no socket. SIGUSR1 must be blocked in the process. SystemFailure: socket, thread.
   [[nodiscard]] static Result<std::unique_ptr<GuardShell>> start(Guard& guard, const Clock& clock,
-                                                                 const std::filesystem::path& folder,
-                                                                 std::function<void()> on_signal = {});
+                                                                 const std::filesystem::path& folder, Calls calls);
   ~GuardShell();
   GuardShell(const GuardShell&) = delete;
   GuardShell& operator=(const GuardShell&) = delete;
@@ -54,7 +57,7 @@ class GuardShell {
   Guard& guard_;
   const Clock& clock_;
   std::filesystem::path socket_path_;
-  std::function<void()> on_signal_;
+  Calls calls_;
   FileDescriptor signals_;
   FileDescriptor listener_;
   std::vector<Client> clients_;

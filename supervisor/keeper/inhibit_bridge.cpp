@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/keeper/inhibit_bridge.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
 #include "hirosco/data_transfer/device/enable_frame.hpp"
 #include "hirosco/subsystem/author/states.hpp"
 #include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/life.hpp"
+#include "hirosco/utilities/os/process.hpp"
 
 namespace hirosco::supervisor {
 
@@ -15,6 +18,8 @@ namespace {
 /// That of the guard.
 constexpr int bridge_priority = 90;
 constexpr std::size_t bridge_stack_octets = std::size_t{256} << 10;
+/// Nothing depends on it: a wake-up that gets lost costs no more.
+constexpr Duration longest_sleep = std::chrono::milliseconds{100};
 }  // namespace
 
 InhibitBridge::InhibitBridge(KeeperPage& page, FlowFactory& flows, std::vector<FlowAddress> endnodes)
@@ -25,36 +30,56 @@ InhibitBridge::InhibitBridge(KeeperPage& page, FlowFactory& flows, std::vector<F
 
 InhibitBridge::~InhibitBridge() {
   ending_.store(true);
+  wake_waiters(told_);
   thread_.join();
 }
 
-void InhibitBridge::begin() {
-  ending_.store(true);
-  thread_.join();
-  ending_.store(false);
-  await_next();
+void InhibitBridge::watch(int supervisor) {
+  supervisor_.store(supervisor);
+  if (thread_.joinable()) return;
   if (auto thread = Thread::start("inhibits", [this] { run(); }, bridge_stack_octets)) thread_ = std::move(*thread);
+}
+
+void InhibitBridge::begin() {
+  told_.store(page_.starts.load(), std::memory_order_release);
+  wake_waiters(told_);
+}
+
+std::optional<std::uint32_t> InhibitBridge::lost() const noexcept {
+  // Of those before the one that is waited for it is known.
+  const std::uint32_t newest = std::max(start_, 1U);
+  if (const std::uint32_t told = told_.load(std::memory_order_acquire); told >= newest) return told;
+  // In order, or with everything that it has started: nobody goes on.
+  if (forbidden_.load() || page_.finished.load() != 0 || page_.alone.load() != 0) return std::nullopt;
+  const std::uint32_t guarded = page_.guarded.load(std::memory_order_acquire);
+  const bool gone = life_of(page_.guard_life.load(std::memory_order_acquire)) == Life::Ended;
+  return gone && guarded >= newest ? std::optional{guarded} : std::nullopt;
 }
 
 void InhibitBridge::stop() noexcept {
   for (KeptInhibit& inhibit : page_.inhibits) inhibit.go.store(0, std::memory_order_release);
 }
 
-void InhibitBridge::await_next() {
-  start_ = page_.starts.load() + 1;
+void InhibitBridge::await(std::uint32_t start) {
+  start_ = start;
   // Whoever has died before its guard told anything puts nothing off.
   if (start_ <= 2 || page_.wants_inhibits.load() == start_ - 1) until_.reset();
 }
 
 void InhibitBridge::begin_at(TimePoint now) {
-  await_next();
+  await(page_.starts.load() + 1);
   open(now);
 }
 
 void InhibitBridge::open(TimePoint now) {
   if (!until_) until_ = now + supervisor_silence_limit;
   for (Line& line : lines_)
-    if (auto flow = flows_.open(line.address, FlowSide::Subsystem)) line.flow = std::move(*flow);
+    if (line.flow == nullptr)
+      if (auto flow = flows_.open(line.address, FlowSide::Subsystem)) line.flow = std::move(*flow);
+}
+
+bool InhibitBridge::has_all() const noexcept {
+  return std::ranges::none_of(lines_, [](const Line& line) { return line.flow == nullptr; });
 }
 
 void InhibitBridge::let_go() noexcept {
@@ -64,9 +89,31 @@ void InhibitBridge::let_go() noexcept {
 
 void InhibitBridge::run() {
   static_cast<void>(set_fifo_priority(bridge_priority));
+  while (!ending_.load()) {
+    const std::array words{SeenWord{&page_.guard_life, page_.guard_life.load(std::memory_order_acquire)},
+                           SeenWord{&told_, told_.load(std::memory_order_acquire)}};
+    if (const auto start = lost()) {
+      go_between(*start);
+    } else if (!wait_for_change(words, longest_sleep)) {
+      sleep_until(SystemClock{}.now() + pace);
+    }
+  }
+}
+
+void InhibitBridge::go_between(std::uint32_t lost) {
   const SystemClock clock;
-  open(clock.now());
-  while (!ending_.load() && step(clock.now())) sleep_until(clock.now() + pace);
+  // What it holds of endnodes it gives back last of all.
+  if (const int process = supervisor_.load(); page_.starts.load() == lost) hurry_end(process);
+  const TimePoint began = clock.now();
+  await(lost + 1);
+  open(began);
+  while (!ending_.load() && step(clock.now())) {
+    const bool opens = !has_all() && clock.now() - began < longest_opening;
+    sleep_until(clock.now() + (opens ? pace_of_opening : pace));
+    if (opens) open(clock.now());
+    // Another one that died before its guard told anything.
+    if (const std::uint32_t told = told_.load(std::memory_order_acquire); told >= start_) await(told + 1);
+  }
   let_go();
 }
 

@@ -22,26 +22,38 @@ class InhibitBridge {
  public:
   /// A device takes what it was told for withdrawn after 50 ms.
   static constexpr Duration pace = std::chrono::milliseconds{5};
+  /// While the dying process still has endnodes, and how long that may be.
+  static constexpr Duration pace_of_opening = std::chrono::milliseconds{1};
+  static constexpr Duration longest_opening = std::chrono::milliseconds{200};
 
   InhibitBridge(KeeperPage& page, FlowFactory& flows, std::vector<FlowAddress> endnodes);
   ~InhibitBridge();
   InhibitBridge(const InhibitBridge&) = delete;
   InhibitBridge& operator=(const InhibitBridge&) = delete;
 
-  /// There is no guard any more. Does nothing where no thread can be had: the devices stop.
+  /// A supervisor was started: the end of its guard's thread begins it, before the system tells of the end of the process, which on a busy
+  /// computer comes when the devices have stopped (docs/adr/0135). Does nothing where no thread can be had: the devices stop.
+  void watch(int supervisor);
+  /// That supervisor has ended, as its process handle tells.
   void begin();
+  /// The flight ends with the supervisor that it has: what the end of its guard begins would keep devices enabled for nobody.
+  void nobody_goes_on() noexcept { forbidden_.store(true); }
   /// Nothing is enabled any more. Also before begin().
   void stop() noexcept;
+  /// Whose end leaves nobody who tells the devices, and this has not seen to it yet: the number of that start.
+  [[nodiscard]] std::optional<std::uint32_t> lost() const noexcept;
   /// The same for whoever steps it himself.
   void begin_at(TimePoint now);
   /// Tells all once, or lets go of them.  \return false when there is nothing to do any more. Thread: the bridge's, or a test's.
   bool step(TimePoint now) noexcept;
 
  private:
-  void await_next();
+  void await(std::uint32_t start);
   void open(TimePoint now);
+  [[nodiscard]] bool has_all() const noexcept;
   void let_go() noexcept;
   void run();
+  void go_between(std::uint32_t lost);
 
   struct Line {
     FlowAddress address;
@@ -51,7 +63,10 @@ class InhibitBridge {
   FlowFactory& flows_;
   std::vector<Line> lines_;
   std::optional<TimePoint> until_;
-  std::uint32_t start_{0};  ///< the supervisor that is waited for
+  std::uint32_t start_{0};  ///< the supervisor that is waited for, or has taken over
+  std::atomic<std::uint32_t> told_{0};  ///< the newest start whose end is known
+  std::atomic<int> supervisor_{0};  ///< its process
+  std::atomic<bool> forbidden_{false};
   std::atomic<bool> ending_{false};
   Thread thread_;
 };

@@ -177,6 +177,7 @@ class Flight {
     supervisor_.emplace(std::move(process));
     progress_ = Progress{supervisor_patience};
     began_ = clock_.now();
+    bridge_.watch(supervisor_->pid());
     if (asked_) static_cast<void>(supervisor_->send_signal(SIGTERM));
     return ok();
   }
@@ -273,6 +274,7 @@ class Flight {
     static_cast<void>(supervisor_->send_signal(asked_ ? SIGKILL : SIGTERM));
     if (!asked_) asked_at_ = now;
     asked_ = true;
+    bridge_.nobody_goes_on();
   }
 
   /// Its guard stops everything; where there is none now, nothing is enabled any more, and the next one carries it out.

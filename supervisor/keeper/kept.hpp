@@ -79,6 +79,8 @@ struct KeeperPage {
   std::atomic<std::uint32_t> alone{
       0};  ///< 1: nothing that the supervisor has started outlives it, so nobody goes on for it
   std::atomic<std::uint32_t> starts{0};  ///< supervisors that were started
+  std::atomic<std::uint32_t> guard_life{0};  ///< a life word (os/life.hpp), held by the thread of the guard
+  std::atomic<std::uint32_t> guarded{0};  ///< the start whose guard holds it
   std::atomic<std::uint32_t> wants_inhibits{0};  ///< the start that takes the second inhibits over
   std::atomic<std::uint32_t> left_inhibits{0};  ///< the start for which the keeper has let go of them
   std::atomic<std::int64_t> log_run{0};  ///< of the records of this flight's log, as on-board time in ns; 0: none yet

@@ -10,10 +10,12 @@
 
 #include <array>
 #include <optional>
+#include <thread>
 
 #include "hirosco/data_transfer/device/enable_frame.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/subsystem/author/states.hpp"
+#include "hirosco/utilities/os/life.hpp"
 #include "supervisor/keeper/inhibit_bridge.hpp"
 #include "supervisor/keeper/kept_store.hpp"
 
@@ -200,6 +202,53 @@ TEST_F(Bridged, AStopHoldsBeforeItBeginsAndAfter) {
   static_cast<void>(told());
   ASSERT_TRUE(bridge.step(now));
   EXPECT_EQ(told()->enabled, 0);
+}
+
+/// A guard's thread that has held its life word and ended, as the system marked it.
+void guard_ends(KeeperPage& page) {
+  page.guarded.store(page.starts.load());
+  std::thread{[&] { static_cast<void>(hold_life(page.guard_life)); }}.join();
+}
+
+TEST_F(Bridged, TheEndOfTheGuardsThreadBeginsItWhateverTheProcessStillHolds) {
+  EXPECT_FALSE(bridge.lost());
+  guard_ends(page);
+  EXPECT_EQ(bridge.lost(), 1u);
+}
+
+TEST_F(Bridged, WhereNobodyGoesOnTheEndOfTheGuardsThreadBeginsNothing) {
+  guard_ends(page);
+  page.finished.store(1);
+  EXPECT_FALSE(bridge.lost()) << "it ends in order";
+  page.finished.store(0);
+  page.alone.store(1);
+  EXPECT_FALSE(bridge.lost()) << "all that it has started ends with it";
+  page.alone.store(0);
+  bridge.nobody_goes_on();
+  EXPECT_FALSE(bridge.lost()) << "the flight was asked to end";
+}
+
+TEST_F(Bridged, EachSupervisorIsLostOnce) {
+  guard_ends(page);
+  bridge.begin();
+  ASSERT_EQ(bridge.lost(), 1u);
+  bridge.begin_at(now);
+  page.starts.store(2);
+  page.wants_inhibits.store(2);
+  ASSERT_FALSE(bridge.step(now));
+  EXPECT_FALSE(bridge.lost()) << "the word is still that of the first";
+  guard_ends(page);
+  EXPECT_EQ(bridge.lost(), 2u);
+}
+
+TEST_F(Bridged, OneWhoseGuardNeverBeganIsLostByItsProcessHandle) {
+  guard_ends(page);
+  bridge.begin_at(now);
+  page.starts.store(2);
+  page.wants_inhibits.store(2);
+  ASSERT_FALSE(bridge.step(now));
+  bridge.begin();
+  EXPECT_EQ(bridge.lost(), 2u);
 }
 
 TEST_F(Bridged, TheNextGuardFindsTheEndnodeFree) {

@@ -14,7 +14,7 @@
 #include "hirosco/data_transfer/link/queued_link.hpp"
 
 /// Links in memory of their own, of which nobody but the producer maps a writable page. Linux.
-namespace hirosco {
+namespace hirosco::sealing {
 namespace {
 
 constexpr std::uint32_t payload_octets = 4096;
@@ -140,4 +140,4 @@ TEST(QueuedLinkInSealedMemory, ItsConsumerMapsReadOnlyAndItsProducerIsTheOnlyOne
 }
 
 }  // namespace
-}  // namespace hirosco
+}  // namespace hirosco::sealing

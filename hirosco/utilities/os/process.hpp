@@ -80,4 +80,8 @@ class Process {
   std::optional<ExitStatus> ended_;
 };
 
+/// Of a process that is ending: its threads come before all ordinary ones and after everything of real time, so that on a busy computer, too,
+/// it gives back soon what it holds. Where that is not permitted it takes its time. Realtime: no.
+void hurry_end(int pid) noexcept;
+
 }  // namespace hirosco

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/utilities/os/process.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <linux/close_range.h>
 #include <poll.h>
@@ -14,7 +15,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <csignal>
+#include <cstdio>
+#include <string_view>
 
 namespace hirosco {
 namespace {
@@ -244,6 +248,21 @@ Result<> Process::send_signal(int signal) noexcept {
   if (::syscall(SYS_pidfd_send_signal, handle_.get(), signal, nullptr, 0) != 0)
     return fail(failure_of(errno), "signal to a process", errno);
   return ok();
+}
+
+void hurry_end(int pid) noexcept {
+  std::array<char, 32> path{};
+  std::snprintf(path.data(), path.size(), "/proc/%d/task", pid);
+  DIR* threads = ::opendir(path.data());
+  if (threads == nullptr) return;
+  const sched_param lowest{.sched_priority = ::sched_get_priority_min(SCHED_FIFO)};
+  while (const dirent* entry = ::readdir(threads)) {
+    const std::string_view name{entry->d_name};
+    int thread = 0;
+    if (std::from_chars(name.data(), name.data() + name.size(), thread).ec != std::errc{}) continue;
+    (void)::sched_setscheduler(thread, SCHED_FIFO, &lowest);
+  }
+  ::closedir(threads);
 }
 
 }  // namespace hirosco

@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@
 #include <csignal>
 #include <filesystem>
 
+#include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
 
 namespace hirosco {
@@ -185,6 +187,15 @@ TEST(Process, RefusesDescriptorsWithoutMeaning) {
   EXPECT_EQ(Process::spawn(start).error().code, ErrorCode::AlreadyExists);
   start.inherited = {{0, 1 << 20}};
   EXPECT_EQ(Process::spawn(start).error().code, ErrorCode::InvalidArgument);
+}
+
+TEST(Process, OneThatIsHurriedComesBeforeOrdinaryOnesAndNobodyMindsOneThatIsGone) {
+  auto process = Process::spawn({.executable = "/bin/sleep", .arguments = {"60"}}).value();
+  hurry_end(process.pid());
+  EXPECT_EQ(::sched_getscheduler(process.pid()), realtime_permitted() ? SCHED_FIFO : SCHED_OTHER);
+  ASSERT_TRUE(process.send_signal(SIGKILL));
+  static_cast<void>(end_of(process));
+  hurry_end(process.pid());
 }
 
 TEST(Process, AnAdoptedProcessOfOthersEndsAsUnknown) {
