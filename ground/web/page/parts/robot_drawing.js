@@ -27,7 +27,7 @@ import {typed} from './typed.js';
 
 const still_after_ms = 250, resized_after_ms = 200;
 /// What is around the robot waits until it was seen to move, or for as long.
-const first_poses = 4, patience_ms = 1500;
+const first_poses = 8, patience_ms = 1500;
 
 /// A context of WebGL, or null where the browser has none, and whether a processor draws it by itself.
 function probe() {

@@ -7,7 +7,7 @@ import {BackSide, DoubleSide, Matrix4, Vector3} from 'three';
 import {Raster, Texture} from './raster.js';
 import {sun_from} from './space.js';
 
-const numbers = 9, shades = 16384, step_px = 64, usual_gloss = 0.2, black = {r: 0, g: 0, b: 0};
+const numbers = 9, shades = 16384, step_px = 64, usual_gloss = 0.2, depth_step = 1.2e-7, black = {r: 0, g: 0, b: 0};
 /// What `userData.raster` of a material says; of three.js' own ones those that light falls on are lit.
 const kind_of = (material) => material.userData.raster ?? (material.isMeshStandardMaterial || material.isMeshLambertMaterial || material.isMeshPhongMaterial ? 'lit' : 'flat');
 const sun = sun_from.clone().normalize();
@@ -109,7 +109,7 @@ export class LivePicture {
     if (!count || !most) return;
     const c = raster.room(count);
     const how = {write: material.colorWrite === false ? '' : material.transparent ? 'blend' : 'opaque', side: material.side === DoubleSide ? 0 : material.side === BackSide ? -1 : 1,
-      test: material.depthTest, keep: material.depthTest && material.depthWrite, lean: material.polygonOffset ? -material.polygonOffsetFactor : 0, texture: null};
+      test: material.depthTest, keep: material.depthTest && material.depthWrite, lean: material.polygonOffset ? -material.polygonOffsetFactor : 0, nearer: material.polygonOffset ? -material.polygonOffsetUnits * depth_step : 0, texture: null};
     if (kind === 'shadow') this.#project_shadow(part, c, count, material.uniforms);
     else this.#project(part, c, count, kind === 'halo' ? material.uniforms.grown.value : 0);
     if (part.isLine) return this.#draw_line(c, material.color);

@@ -46,9 +46,9 @@ export class Raster {
   }
 
   /// Triangles of `index`, or of each three corners. `side`: 1 those that face the eye, -1 the others, 0 both. `write`: '' hides only, 'opaque',
-  /// 'blend', or 'darkest', of which the most that falls on a point counts. `test` and `keep` depth; `lean` steps of it towards the eye are taken off.
-  triangles(index, count, {write = 'opaque', side = 1, test = true, keep = true, lean = 0, texture = null}) {
-    const {corners: c} = this, quick = keep && test && !lean && !texture && (write === 'opaque' || write === '');
+  /// 'blend', or 'darkest', of which the most that falls on a point counts. `test` and `keep` depth; `lean` slopes of it and `nearer` are taken off.
+  triangles(index, count, {write = 'opaque', side = 1, test = true, keep = true, lean = 0, nearer = 0, texture = null}) {
+    const {corners: c} = this, quick = keep && test && !lean && !nearer && !texture && (write === 'opaque' || write === '');
     for (let i = 0; i + 2 < count; i += 3) {
       const a = corner_numbers * (index ? index[i] : i), b = corner_numbers * (index ? index[i + 1] : i + 1), d = corner_numbers * (index ? index[i + 2] : i + 2);
       const area = (c[b] - c[a]) * (c[d + 1] - c[a + 1]) - (c[d] - c[a]) * (c[b + 1] - c[a + 1]);
@@ -56,7 +56,7 @@ export class Raster {
       if (!(side === 1 ? area < -least_area : side === -1 ? area > least_area : Math.abs(area) > least_area)) continue;
       if (quick && write) this.#opaque(a, b, d, 1 / area);
       else if (quick) this.#hiding(a, b, d, 1 / area);
-      else this.#any(a, b, d, 1 / area, write, test, keep, lean, texture);
+      else this.#any(a, b, d, 1 / area, write, test, keep, lean, nearer, texture);
     }
   }
 
@@ -133,7 +133,7 @@ export class Raster {
     if (to - 1 > this.bottom) this.bottom = to - 1;
   }
 
-  #any(a, b, d, inverse, write, test, keep, lean, texture) {
+  #any(a, b, d, inverse, write, test, keep, lean, nearer, texture) {
     if (!this.#edges(a, b, d)) return;
     const {corners: c, width, depth, middle_x} = this, e = this.#edge, from = e[0], to = e[1], ym = e[2], long = e[3], begin = e[4], upper = e[5], lower = e[6], k = this.#light;
     const ax = c[a], ay = c[a + 1], bx = (c[b] - ax) * inverse, by = (c[b + 1] - ay) * inverse, dx = (c[d] - ax) * inverse, dy = (c[d + 1] - ay) * inverse;
@@ -143,8 +143,9 @@ export class Raster {
       k[2 * n] = nb * dy - nd * by;
       k[2 * n + 1] = nd * bx - nb * dx;
     }
-    const leaned = lean * (Math.max(Math.abs(k[0]), Math.abs(k[1])) + least_depth);
+    const leaned = lean * (Math.max(Math.abs(k[0]), Math.abs(k[1])) + least_depth) + nearer;
     const level = texture?.level(Math.max(Math.abs(k[10]), Math.abs(k[11])), Math.max(Math.abs(k[12]), Math.abs(k[13])));
+    const {points} = this, dark = write === 'darkest' ? Math.round(255 * c[a + 6]) << 24 : 0;
     let left = width, right = -1;
     for (let y = from; y < to; ++y) {
       const at = y + 0.5, one = begin + at * long, other = middle_x + (at - ym) * (at < ym ? upper : lower);
@@ -152,19 +153,21 @@ export class Raster {
       if (x0 >= x1) continue;
       if (x0 < left) left = x0;
       if (x1 > right) right = x1;
-      for (let x = x0; x < x1; ++x) {
-        const i = y * width + x, px = x + 0.5 - ax, py = at - ay, z = c[a + 2] + k[0] * px + k[1] * py - leaned;
+      const px = x0 + 0.5 - ax, py = at - ay, first = y * width + x0, end = y * width + x1;
+      let z = c[a + 2] + k[0] * px + k[1] * py - leaned;
+      if (dark) {
+        for (let i = first; i < end; ++i, z += k[0]) if (points[i] === 0 && z <= depth[i]) points[i] = dark;
+        continue;
+      }
+      for (let i = first; i < end; ++i, z += k[0]) {
         if (test && z > depth[i]) continue;
         if (keep) depth[i] = z;
-        if (write === 'darkest') {
-          if (this.points[i] === 0) this.points[i] = Math.round(255 * c[a + 6]) << 24;
-          continue;
-        }
         if (!write) continue;
-        const r = c[a + 3] + k[2] * px + k[3] * py, g = c[a + 4] + k[4] * px + k[5] * py, blue = c[a + 5] + k[6] * px + k[7] * py, o = c[a + 6] + k[8] * px + k[9] * py;
+        const x = px + i - first;
+        const r = c[a + 3] + k[2] * x + k[3] * py, g = c[a + 4] + k[4] * x + k[5] * py, blue = c[a + 5] + k[6] * x + k[7] * py, o = c[a + 6] + k[8] * x + k[9] * py;
         if (!texture) this.#blend(i, r, g, blue, o);
         else {
-          const t = level.at(c[a + 7] + k[10] * px + k[11] * py, c[a + 8] + k[12] * px + k[13] * py);
+          const t = level.at(c[a + 7] + k[10] * x + k[11] * py, c[a + 8] + k[12] * x + k[13] * py);
           this.#blend(i, r * t[0] / 255, g * t[1] / 255, blue * t[2] / 255, write === 'opaque' ? 1 : o * t[3] / 255);
         }
       }
@@ -174,10 +177,15 @@ export class Raster {
 
   /// Over what is there, which is kept as colours that are not multiplied by their opacity.
   #blend(i, r, g, b, o) {
-    const before = this.points[i], there = (before >>> 24) / 255, rest = there * (1 - o), all = o + rest;
+    const {points} = this, before = points[i];
+    if (before === 0 || o >= 1) {
+      points[i] = Math.round(255 * Math.min(1, o)) << 24 | (b & 255) << 16 | (g & 255) << 8 | r & 255;
+      return;
+    }
+    const rest = (before >>> 24) / 255 * (1 - o), all = o + rest;
     if (!(all > 0)) return;
-    const mix = (value, shift) => Math.max(0, Math.min(255, (value * o + (before >>> shift & 255) * rest) / all)) & 255;
-    this.points[i] = Math.round(255 * Math.min(1, all)) << 24 | mix(b, 16) << 16 | mix(g, 8) << 8 | mix(r, 0);
+    const own = o / all, other = rest / all;
+    points[i] = Math.round(255 * all) << 24 | (b * own + (before >>> 16 & 255) * other & 255) << 16 | (g * own + (before >>> 8 & 255) * other & 255) << 8 | r * own + (before & 255) * other & 255;
   }
 
   /// One point wide, above everything.

@@ -13,10 +13,12 @@ function known_as(kind, material) {
   return material;
 }
 
-const ghost_depth = new MeshBasicMaterial({colorWrite: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2});
+// What turns around an axis that both have lies in the same place: there the robot is seen, not both in stripes.
+const behind_robot = (units) => ({polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: units});
+const ghost_depth = new MeshBasicMaterial({colorWrite: false, ...behind_robot(1500)});
 /// One layer of translucent colour, brighter at the edges: behind it stands its own depth, so that no inner face is seen.
 export function ghost_skin(colour) {
-  return known_as('ghost', new ShaderMaterial({transparent: true, depthWrite: false, depthFunc: LessEqualDepth, uniforms: {colour: {value: new Color(colour)}, opacity: {value: 0.34}},
+  return known_as('ghost', new ShaderMaterial({transparent: true, depthWrite: false, depthFunc: LessEqualDepth, ...behind_robot(1400), uniforms: {colour: {value: new Color(colour)}, opacity: {value: 0.34}},
     vertexShader: `varying vec3 n, v; void main() { ${world} vec4 c = viewMatrix * p; n = k; v = normalize(-c.xyz); gl_Position = projectionMatrix * c; }`,
     fragmentShader: `uniform vec3 colour; uniform float opacity; varying vec3 n, v;
       void main() { float f = 1. - abs(dot(normalize(n), normalize(v))); gl_FragColor = vec4(colour * (.62 + .6 * f), opacity * (.7 + .9 * f * f) + .1);
