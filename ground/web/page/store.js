@@ -30,6 +30,8 @@ export const authority = signal(null);
 /// {id, from} of the flight that is flown now, and all that the archive has.
 export const flight = signal(null);
 export const flights = signal([]);
+/// [{name, text, t, who}]: telecommands that somebody keeps at the station, as lines of `hirosco tc`.
+export const kept_stacks = signal([]);
 /// Counts batches of values; a view that draws at telemetry rate reads it.
 export const fast = signal(0);
 /// The same at 5 Hz, for numbers that people read, and for ages.
@@ -209,6 +211,7 @@ function take(list) {
     if (message.type === 'authority') take_authority(message);
     if (message.type === 'alarm') alarms.value = [message, ...alarms.value.filter((one) => one.id !== message.id || one.apid !== message.apid)];
     if (message.type === 'alarms') take_alarms(message);
+    if (message.type === 'stacks') kept_stacks.value = message.stacks;
     if (message.type === 'flight' && take_flight(message)) begin_anew();
     if (message.type === 'values') {
       heard(message.t);
