@@ -67,13 +67,13 @@ const boot_px = 250, break_px = 16, longest_boot_s = 30;
 function boot_of(data, from) {
   const up = data.states.filter((one) => state_name(one.state) === 'Operational').map((one) => one.t);
   const first = first_s(data);
-  // Without the states on the way there is nothing to be shown of it.
-  const on_the_way = data.states.some((one) => state_name(one.state) !== 'Operational' && one.t >= first && one.t < Math.max(...up));
-  if (!up.length || !on_the_way || !(first > from) || first > Math.min(...up)) return null;
+  if (!up.length || !(first > from) || first > Math.min(...up)) return null;
   const each = new Map();
   for (const one of data.states) if (state_name(one.state) === 'Operational' && !each.has(one.subsystem)) each.set(one.subsystem, one.t);
   const end = Math.max(...[...each.values()].filter((t) => t - first < longest_boot_s));
-  return end - first < longest_boot_s && end > first ? {from: first, to: end + (end - first) * 0.05} : null;
+  // Without the states on the way there is nothing to be shown of it: a station that came later, and a way up of later.
+  const on_the_way = data.states.some((one) => state_name(one.state) !== 'Operational' && one.t >= first && one.t < end);
+  return on_the_way && end - first < longest_boot_s && end > first ? {from: first, to: end + (end - first) * 0.05} : null;
 }
 
 /// `end` null follows the newest; `on_view({span_s, end})` hears of the wheel: with it, one looks from 1 ms to a day.

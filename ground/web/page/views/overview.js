@@ -106,7 +106,7 @@ export function Overview() {
   const subsystems = mission.value?.subsystems ?? [];
   const wanted = plots.length ? plots : [{title: 'Plot', names: [], about: {}}];
   return html`<main class="overview">
-    <${Panel} title="Subsystems" hint=${`${operational()} of ${subsystems.length} Operational`} area="subsystems" href="#/subsystems">
+    <${Panel} title="Subsystems" hint=${`${operational()} / ${subsystems.length} Operational`} area="subsystems" href="#/subsystems">
       ${subsystems.map((one) => html`<${SubsystemCard} key=${one.name} name=${one.name} />`)}</${Panel}>
     <${Panel} title="3D" area="robot" bare titleless><${Robot} /></${Panel}>
     <${Panel} title="Telecommand" area="command" href="#/commands"><${QuickCommand} /></${Panel}>
