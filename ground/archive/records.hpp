@@ -70,11 +70,11 @@ struct StoredFault {
 struct StoredMark {
   OnboardTime t{};
   std::string kind;                  ///< "alarm", "authority", "flight", "stack"
-  std::string name;                  ///< of the alarm "APID/EVENT", of the flight its number, of the stack its own, "" of who commands
+  std::string name;  ///< of the alarm "APID/EVENT", of the flight its number, of the stack its own, "" of who commands
   std::string action;
   std::string who;
   std::string note;
-  OnboardTime until{};               ///< of what has an end
+  OnboardTime until{};  ///< of what has an end
 };
 /// A span of time and what is wanted of it.
 struct Span {

@@ -29,12 +29,8 @@ Answered<json> Stacks::keep(const json& body, const std::string& who, OnboardTim
   if (text.empty() && !known) return refuse(404, "name: there is no stack of this name");
   if (!text.empty() && !known && kept_.size() == most_stacks)
     return refuse(409, "there are 64 stacks: forget one before another is kept");
-  const StoredMark mark{.t = now,
-                        .kind = "stack",
-                        .name = name,
-                        .action = text.empty() ? "forgot" : "kept",
-                        .who = who,
-                        .note = text};
+  const StoredMark mark{
+      .t = now, .kind = "stack", .name = name, .action = text.empty() ? "forgot" : "kept", .who = who, .note = text};
   archive_.add(mark);
   archive_.commit();
   apply(mark);

@@ -16,7 +16,7 @@ namespace hirosco::ground {
 class Stacks {
  public:
   static constexpr std::size_t most_stacks = 64;
-  static constexpr std::size_t longest_name = 80;     ///< octets
+  static constexpr std::size_t longest_name = 80;  ///< octets
   static constexpr std::size_t longest_text = 20'000;  ///< octets
 
   /// Those that the archive has.
