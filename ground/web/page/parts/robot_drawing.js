@@ -132,6 +132,8 @@ export class RobotView {
     // The context that was looked at has no edges that are smooth.
     this.context.getExtension('WEBGL_lose_context')?.loseContext();
     Object.assign(this, {renderer, mirror, context: null});
+    // Its place may have been measured before it came.
+    if (this.size.x) renderer.setSize(this.size.x, this.size.y, false);
   }
 
   /// What a processor that draws by itself makes after the first pictures: each kind of it takes a program of its own.
