@@ -129,6 +129,12 @@ void post_flight(const Question& asked, const Respond& respond) {
   respond(outcome(asked.session.name_flight(asked.body)));
 }
 
+void get_stacks(const Question& asked, const Respond& respond) { respond(answer(asked.session.stacks().list())); }
+
+void post_stack(const Question& asked, const Respond& respond) {
+  respond(outcome(asked.session.keep_stack(asked.body)));
+}
+
 void get_marks(const Question& asked, const Respond& respond) {
   const auto filter = filter_of(asked.target);
   nlohmann::json marks = nlohmann::json::array();
@@ -245,6 +251,16 @@ constexpr std::array table{
           "FlightName",
           unknown_or_not_this_one,
           post_flight},
+    Route{"/api/stacks", get, "Lists of telecommands that are kept here", {}, "", 200, "Stacks", {}, get_stacks},
+    Route{"/api/stacks",
+          post,
+          "Keep a list of telecommands for everybody, or forget it",
+          {},
+          "StackRequest",
+          200,
+          "Stacks",
+          unknown_or_not_this_one,
+          post_stack},
     Route{
         "/api/marks", get, "What people did at this station, newest first", of_marks, "", 200, "Marks", {}, get_marks},
     Route{"/api/commands",

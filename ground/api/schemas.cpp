@@ -297,8 +297,16 @@ void add_people(const Basic& is, json& into) {
                                   {"name", described(is.text, "at most 80 characters")},
                                   {"sender", is.text, May::BeAbsent}});
   into["FlightName"] = object({{"flight", is.whole}, {"name", is.text}});
+  into["Stacks"] = object({{"stacks", list_of(object({{"name", is.text},
+                                                      {"text", described(is.text, "lines of hirosco tc")},
+                                                      {"t", described(is.time, "when it was kept")},
+                                                      {"who", is.text}}))}});
+  into["StackRequest"] =
+      object({{"name", described(is.text, "1 to 80 octets")},
+              {"text", described(is.text, "at most 20,000 octets; none: it is forgotten"), May::BeAbsent},
+              {"sender", is.text, May::BeAbsent}});
   into["Marks"] = object({{"marks", list_of(object({{"t", is.time},
-                                                    {"kind", one_of({"alarm", "authority", "flight"})},
+                                                    {"kind", one_of({"alarm", "authority", "flight", "stack"})},
                                                     {"name", is.text},
                                                     {"action", is.text},
                                                     {"who", is.text},

@@ -41,6 +41,7 @@ Session::Session(Parts parts)
                  .first_count = parts_.first_count}},
       flights_{parts_.catalogue, parts_.archive},
       alarms_{parts_.archive, flights_.began()},
+      stacks_{parts_.archive},
       authority_{[this](const StoredMark& mark) { keep(mark); }} {
   if (const auto extent = parts_.archive.extent()) archived_until_ = extent->to;
 }
@@ -209,6 +210,15 @@ Answered<json> Session::alarm(const json& body) {
   message["type"] = message.contains("alarms") ? "alarms" : "alarm";
   broadcast(message);
   return alarms_.list();
+}
+
+Answered<json> Session::keep_stack(const json& body) {
+  auto done = stacks_.keep(body, seat_of(body).name, now());
+  if (!done) return done;
+  json message = *done;
+  message["type"] = "stacks";
+  broadcast(message);
+  return done;
 }
 
 Answered<json> Session::name_flight(const json& body) { return flights_.name(body, seat_of(body).name, now()); }

@@ -20,6 +20,7 @@
 #include "ground/model/model.hpp"
 #include "ground/people/alarms.hpp"
 #include "ground/people/authority.hpp"
+#include "ground/people/stacks.hpp"
 #include "ground/replay/flights.hpp"
 
 /// The ground station without sockets: takes octets and points in time, says what to send. Thread: one.
@@ -80,6 +81,7 @@ class Session {
   [[nodiscard]] nlohmann::json authority() const;
   [[nodiscard]] Answered<nlohmann::json> authority(const nlohmann::json& body);
   [[nodiscard]] Answered<nlohmann::json> alarm(const nlohmann::json& body);
+  [[nodiscard]] Answered<nlohmann::json> keep_stack(const nlohmann::json& body);
   [[nodiscard]] Answered<nlohmann::json> name_flight(const nlohmann::json& body);
   /// Answers through `done`, at the latest after 2 s.
   void preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
@@ -93,6 +95,7 @@ class Session {
   [[nodiscard]] Archive& archive() const noexcept { return parts_.archive; }
   [[nodiscard]] const Model& model() const noexcept { return model_; }
   [[nodiscard]] const Alarms& alarms() const noexcept { return alarms_; }
+  [[nodiscard]] const Stacks& stacks() const noexcept { return stacks_; }
   [[nodiscard]] const Flights& flights() const noexcept { return flights_; }
   [[nodiscard]] const Clock& clock() const noexcept { return parts_.clock; }
   [[nodiscard]] bool connected() const noexcept { return connected_; }
@@ -120,6 +123,7 @@ class Session {
   Commands commands_;
   Flights flights_;
   Alarms alarms_;
+  Stacks stacks_;
   Authority authority_;
   bool connected_{false};
   TimePoint newest_received_{};

@@ -66,15 +66,15 @@ struct StoredFault {
   std::string line;
   std::string answer;
 };
-/// What somebody at the station did, or the station itself: of an alarm, of who commands, of a flight.
+/// What somebody at the station did, or the station itself: of an alarm, of who commands, of a flight, of a stack.
 struct StoredMark {
   OnboardTime t{};
-  std::string kind;                  ///< "alarm", "authority", "flight"
-  std::string name;                  ///< of the alarm "APID/EVENT", of the flight its number, "" of who commands
+  std::string kind;                  ///< "alarm", "authority", "flight", "stack"
+  std::string name;  ///< of the alarm "APID/EVENT", of the flight its number, of the stack its own, "" of who commands
   std::string action;
   std::string who;
   std::string note;
-  OnboardTime until{};               ///< of what has an end
+  OnboardTime until{};  ///< of what has an end
 };
 /// A span of time and what is wanted of it.
 struct Span {

@@ -46,7 +46,7 @@ json mark_json(const StoredMark& mark) {
           {"name", mark.name},
           {"action", mark.action},
           {"who", mark.who},
-          {"note", mark.note},
+          {"note", mark.kind == "stack" ? "" : mark.note},  // its text would be most of an answer
           {"until", mark.until != OnboardTime{} ? json(json_time(mark.until)) : json(nullptr)}};
 }
 

@@ -5,7 +5,7 @@
 // packages that stand beside this file. The same sources give the same octets. The 3D part is a chunk of its own. Names hold the hash
 // of what is in the file, so that a browser keeps it for good; each file stands there compressed as well (docs/adr/0100).
 import {build} from 'esbuild';
-import {cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {cpSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync} from 'node:fs';
 import {basename, dirname, join, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {brotliCompressSync, constants, gzipSync} from 'node:zlib';
@@ -23,25 +23,40 @@ const fonts = {name: 'fonts', setup(bundler) {
   bundler.onLoad({filter: /.*/, namespace: 'font'}, async ({path}) => ({contents: await subset(join(here, 'node_modules'), path.replace('.woff2', '')), loader: 'file'}));
 }};
 
+/// Of three.js what draws by a graphics card is for scene/card.js alone, and so a chunk that the first pictures do not wait for.
+const three = {name: 'three', setup(bundler) {
+  bundler.onResolve({filter: /^three$/}, ({importer}) => ({path: join(here, 'node_modules/three/build', basename(importer) === 'card.js' ? 'three.module.js' : 'three.core.js'), sideEffects: false}));
+}};
+
 const common = {absWorkingDir: sources, nodePaths: [join(here, 'node_modules')], outdir: out, bundle: true, format: 'esm', target: 'es2022', minify: true,
   legalComments: 'linked', logLevel: 'warning'};
 const {metafile} = await build({...common, entryPoints: {main: 'page/main.js', style: 'page/style.css'}, entryNames: '[name]-[hash]',
-  assetNames: '[name]-[hash]', splitting: true, plugins: [fonts], metafile: true});
+  assetNames: '[name]-[hash]', splitting: true, plugins: [fonts, three], metafile: true});
 await build({...common, entryPoints: {feed_worker: 'page/feed_worker.js'}});
 
-const made = Object.entries(metafile.outputs).map(([path, {entryPoint}]) => ({name: basename(path), entry: entryPoint}));
-const entry = (source) => made.find((one) => one.entry === source).name;
-// The 3D part comes while the rest starts: most visits begin with the robot, and its code is most of the octets.
-const drawing = made.find(({name}) => /^robot_drawing-.*\.js$/.test(name)).name;
-const font_files = made.filter(({name}) => name.endsWith('.woff2')).map(({name}) => name).sort();
-// What the page begins with is asked for at once, and not when the file that needs it has come.
-const needed = Object.entries(metafile.outputs).find(([, {entryPoint}]) => entryPoint === 'page/main.js')[1].imports.filter(({kind}) => kind === 'import-statement').map(({path}) => basename(path));
+const outputs = Object.entries(metafile.outputs).map(([path, {entryPoint, imports}]) => ({name: basename(path), entry: entryPoint,
+  needs: imports.filter(({kind}) => kind === 'import-statement').map((one) => basename(one.path))}));
+const with_needs = (name) => [name, ...outputs.find((one) => one.name === name).needs.flatMap(with_needs)];
+const entry = (source) => outputs.find((one) => one.entry === source).name;
+// What the page begins with is asked for at once, and not when the file that needs it has come. The 3D part comes while the rest starts: most visits
+// begin with the robot, and its code is most of the octets.
+const of_page = new Set(with_needs(entry('page/main.js'))), drawing = outputs.find(({name}) => /^robot_drawing-.*\.js$/.test(name)).name;
+const of_robot = [...new Set(with_needs(drawing))].filter((name) => !of_page.has(name));
+// What is the robot's alone says so by its name.
+const said = (name) => of_robot.includes(name) ? name.replace('chunk-', 'robot_space-') : name;
+for (const {name} of outputs.filter((one) => one.name.endsWith('.js'))) {
+  const text = readFileSync(join(out, name), 'utf8');
+  const changed = of_robot.reduce((all, one) => all.replaceAll(one, said(one)), text);
+  if (changed !== text) writeFileSync(join(out, name), changed);
+  if (said(name) !== name) renameSync(join(out, name), join(out, said(name)));
+}
+const font_files = outputs.filter(({name}) => name.endsWith('.woff2')).map(({name}) => name).sort();
 // Octets and log lines alone are in the other typeface: it comes when they are seen.
 const wanted_at_once = font_files.filter((name) => name.startsWith('inter'));
 writeFileSync(join(out, 'index.html'), readFileSync(join(sources, 'page/index.html'), 'utf8')
     .replace('style.css', entry('page/style.css')).replace('main.js', entry('page/main.js'))
     .replace('</head>', `${wanted_at_once.map((name) => `  <link rel="preload" as="font" type="font/woff2" crossorigin href="${name}">\n`).join('')}` +
-        [...needed, drawing].map((name) => `  <link rel="modulepreload" href="${name}">\n`).join('') + '</head>'));
+        [...[...of_page].filter((name) => name !== entry('page/main.js')), ...of_robot.map(said)].map((name) => `  <link rel="modulepreload" href="${name}">\n`).join('') + '</head>'));
 cpSync(join(sources, 'page/icon.svg'), join(out, 'icon.svg'));
 
 /// Notices of what is bundled: each licence asks to be carried along.
@@ -66,7 +81,7 @@ for (const name of readdirSync(out).filter((one) => /\.(js|css|html|svg|txt)$/.t
   writeFileSync(join(out, `${name}.br`), brotli);
   if (!/\.(js|css|html)$/.test(name)) continue;
   all += brotli.length;
-  if (!name.startsWith('robot_drawing')) first += brotli.length;
+  if (!/^(robot_|card)/.test(name)) first += brotli.length;
 }
 const letters = font_files.reduce((sum, name) => sum + readFileSync(join(out, name)).length, 0);
 console.log(`ground page: ${(first / 1024).toFixed(0)} KiB without 3D, ${(all / 1024).toFixed(0)} KiB in all (brotli), typefaces ${(letters / 1024).toFixed(0)} KiB`);

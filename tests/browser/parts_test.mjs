@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, expressions
-// of parameters, stacks of telecommands as text, when the next picture is drawn; how large
-// it is.
+// of parameters, stacks of telecommands as text, triangles, when the next picture is drawn; how large it is.
 import assert from 'node:assert/strict';
 import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
-import {describe, it} from 'node:test';
+import {before, describe, it} from 'node:test';
 import {pathToFileURL} from 'node:url';
 import {gzipSync} from 'node:zlib';
 
@@ -193,12 +192,80 @@ describe('the next picture', () => {
   });
 });
 
+describe('triangles that a processor draws', () => {
+  const white = [254, 254, 254, 1];
+  let raster;
+  before(async () => {
+    globalThis.ImageData = class { constructor(width, height) { Object.assign(this, {width, height, data: new Uint8ClampedArray(4 * width * height)}); } };
+    raster = new (await of_page('scene/raster.js')).Raster();
+  });
+  /// `corners`: [x, y, depth, red, green, blue, opacity] each.
+  const draw = (corners, how = {}) => {
+    const c = raster.room(corners.length);
+    corners.forEach((one, i) => [...one, 0, 0].slice(0, 9).forEach((value, k) => { c[9 * i + k] = value; }));
+    raster.triangles(null, corners.length, {side: 0, ...how});
+  };
+  const at = (x, y) => [...raster.image.data.slice(4 * (y * raster.width + x), 4 * (y * raster.width + x) + 4)];
+  const square = ([x0, y0, x1, y1], depth, colour) => {
+    const [a, b, c, d] = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map((place) => [...place, depth, ...colour]);
+    return [a, b, c, a, c, d];
+  };
+
+  it('cover each point whose middle is in them, once, whatever edge they share', () => {
+    raster.begin(40, 30);
+    draw(square([3.2, 4.7, 20.6, 17.4], 0, [...white.slice(0, 3), 0.5]), {write: 'blend', keep: false});
+    const covered = [...raster.points].filter(Boolean);
+    // Middles from 3.5 to 20.5 and from 5.5 to 16.5; a point that was drawn twice would be less clear.
+    assert.equal(covered.length, 18 * 12);
+    assert.deepEqual([...new Set(covered.map((one) => one >>> 24))], [128]);
+    assert.deepEqual(raster.drawn(), {left: 3, top: 5, width: 18, height: 12});
+  });
+
+  it('hide what is farther, also where they show nothing themselves', () => {
+    raster.begin(40, 30);
+    draw(square([0, 0, 20, 30], -0.5, white), {write: ''});
+    draw(square([0, 0, 40, 30], 0, [200, 10, 20, 1]));
+    assert.deepEqual(at(10, 10), [0, 0, 0, 0]);
+    assert.deepEqual(at(30, 10), [200, 10, 20, 255]);
+    draw(square([0, 0, 40, 30], 0.5, white));
+    assert.deepEqual(at(30, 10), [200, 10, 20, 255]);
+  });
+
+  it('go from corner to corner in colour', () => {
+    raster.begin(100, 2);
+    draw([[0, -50, 0, 0, 0, 0, 1], [200, 1, 0, 200, 100, 50, 1], [0, 52, 0, 0, 0, 0, 1]]);
+    for (const x of [10, 50, 90]) near(at(x, 1).slice(0, 3).map((value) => value / 255), [200, 100, 50].map((value) => Math.floor(value * (x + 0.5) / 200) / 255));
+  });
+
+  it('mix with what is there by their opacity; of shadows the darkest counts', () => {
+    raster.begin(4, 4);
+    draw(square([0, 0, 4, 4], 0, [200, 200, 200, 1]));
+    draw(square([0, 0, 4, 4], -0.1, [0, 100, 0, 0.25]), {write: 'blend', keep: false});
+    assert.deepEqual(at(1, 1), [150, 175, 150, 255]);
+    raster.begin(4, 4);
+    for (let i = 0; i < 2; ++i) draw(square([0, 0, 4, 4], 0, [0, 0, 0, 0.4]), {write: 'darkest', keep: false});
+    assert.deepEqual(at(1, 1), [0, 0, 0, 102]);
+  });
+
+  it('leave out what is behind the eye, out of the picture, or turned away', () => {
+    raster.begin(8, 8);
+    draw([[NaN, NaN, NaN, ...white], [8, 0, 0, ...white], [0, 8, 0, ...white]]);
+    draw(square([-500, -500, -2, 800], 0, white));
+    draw([[0, 0, 0, ...white], [8, 0, 0, ...white], [0, 8, 0, ...white]], {side: 1});
+    assert.equal(raster.drawn(), null);
+    draw([[0, 0, 0, ...white], [8, 0, 0, ...white], [0, 8, 0, ...white]], {side: -1});
+    assert.deepEqual(at(1, 1), [254, 254, 254, 255]);
+    raster.begin(8, 8);
+    assert.ok(raster.points.every((one) => one === 0));
+  });
+});
+
 describe('the bundle', () => {
   it('is smaller than 120 kB without 3D and 350 kB in all, compressed', () => {
     const sizes = readdirSync(page_folder).filter((name) => /\.(js|css|html)$/.test(name))
         .map((name) => [name, gzipSync(readFileSync(join(page_folder, name))).length]);
     const sum = (list) => list.reduce((total, [, size]) => total + size, 0);
-    const without = sum(sizes.filter(([name]) => !name.startsWith('robot_drawing')));
+    const without = sum(sizes.filter(([name]) => !/^(robot_|card)/.test(name)));
     console.log(`measured: ${(without / 1000).toFixed(0)} kB without 3D, ${(sum(sizes) / 1000).toFixed(0)} kB in all`);
     assert.ok(without < 120e3);
     assert.ok(sum(sizes) < 350e3);

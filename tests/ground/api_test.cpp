@@ -172,7 +172,8 @@ TEST_F(GroundStation, AnswersAsItsOpenApiDocumentSays) {
   const std::map<std::string, json> bodies{
       {"/api/alarms", {{"subsystem", alarm["subsystem"]}, {"event", alarm["name"]}, {"action", "acknowledge"}}},
       {"/api/authority", {{"action", "take"}, {"seat", "a"}}},
-      {"/api/flights", {{"flight", 1}, {"name", "a name"}}}};
+      {"/api/flights", {{"flight", 1}, {"name", "a name"}}},
+      {"/api/stacks", {{"name", "home"}, {"text", "hirosco tc MANIPULATOR HOLD"}}}};
   std::size_t asked = 0;
   for (const auto& [path, methods] : document["paths"].items())
     for (const auto& [method, operation] : methods.items()) {

@@ -44,7 +44,7 @@ let next_id = 1;
 // What people at the station share, as the gateway has it: here only as far as one page needs.
 const authority = {holder: null, asking: null};
 const acts = new Map();
-let seen_until = null, marks = [];
+let seen_until = null, marks = [], stacks = [];
 const earlier_t = first_t - 4000;
 const flight_of_now = {id: 2, from: first_t};
 
@@ -202,6 +202,10 @@ const server = createServer(async (request, response) => {
     '/api/alarms': () => request.method === 'POST' ? act_on_alarm(body) : state === 'fresh' ? {alarms: [], seen_until: null} : alarms(),
     '/api/authority': () => request.method === 'POST' ? act_on_authority(body) : authority,
     '/api/marks': () => ({marks}),
+    '/api/stacks': () => {
+      if (request.method === 'POST') stacks = [...(body.text ? [{name: body.name, text: body.text, t: now, who: body.sender ?? 'operator'}] : []), ...stacks.filter((one) => one.name !== body.name)];
+      return {stacks};
+    },
     '/api/flights': () => request.method === 'POST' ? {flight: body.flight, name: body.name} : {flights: state === 'fresh' ? [] : [{id: 2, from: first_t, to: now, name: '', named_by: '', high: 0, medium: 0, commands: commands.length},
       {id: 1, from: earlier_t, to: first_t - 600, name: 'first light', named_by: 'anna', high: 2, medium: 1, commands: 14}]},
     '/api/log': () => {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// What several people at one station share: who commands, alarms that somebody has seen, names of flights. All of it is the station's, which
+// What several people at one station share: who commands, alarms that somebody has seen, names of flights, stacks of telecommands. All of it is the station's, which
 // keeps it and tells every page (docs/adr/0105).
 import {computed} from '@preact/signals';
 import {post, seat} from './api.js';
 import {say, signed} from './commanding.js';
-import {authority, flights, operator, replay} from './store.js';
+import {authority, flights, kept_stacks, operator, replay} from './store.js';
 
 /// Whether this page commands, another one does ('other'), or nobody ('free').
 export const command_is = computed(() => {
@@ -42,6 +42,13 @@ export const unshelve = (alarm) => act('/api/alarms', {subsystem: alarm.subsyste
 
 export async function name_flight(flight, name) {
   if (await act('/api/flights', {flight, name})) flights.value = flights.value.map((one) => one.id === flight ? {...one, name} : one);
+}
+
+/// For everybody at this station; without a text it is forgotten.
+export async function keep_stack(name, text) {
+  const answer = await act('/api/stacks', {name, text});
+  if (answer) kept_stacks.value = answer.stacks;
+  return Boolean(answer);
 }
 
 /// Whether a telecommand of this page would be taken by the station: what is essential always is.

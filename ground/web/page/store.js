@@ -30,20 +30,34 @@ export const authority = signal(null);
 /// {id, from} of the flight that is flown now, and all that the archive has.
 export const flight = signal(null);
 export const flights = signal([]);
+/// [{name, text, t, who}]: telecommands that somebody keeps at the station, as lines of `hirosco tc`.
+export const kept_stacks = signal([]);
 /// Counts batches of values; a view that draws at telemetry rate reads it.
 export const fast = signal(0);
 /// The same at 5 Hz, for numbers that people read, and for ages.
 export const slow = signal(0);
 
-let slow_due = false, picture_ms = -Infinity;
+let slow_due = false, status_due = null, picture_ms = -Infinity;
 function tell_slow() {
   slow_due = false;
-  slow.value = slow.peek() + 1;
+  batch(() => {
+    if (status_due) status.value = status_due;
+    status_due = null;
+    slow.value = slow.peek() + 1;
+  });
 }
 /// What is due is told with a picture of the robot that is drawn now: a page that changes at two moments is put together twice.
 export function with_picture() {
   picture_ms = performance.now();
   if (slow_due) tell_slow();
+}
+/// Who is in which state: what is news at once, while ages and counters of a status wait for the other numbers.
+const news_of = ({mode, link: now, subsystems = []}) => [mode, now?.connected, ...subsystems.map(({state, configuration, inhibited}) => [state, configuration, inhibited])].join();
+function take_status(message) {
+  status_due = message;
+  if (status.value && performance.now() - picture_ms < pictures_ms && news_of(status.value) === news_of(message)) return;
+  status.value = message;
+  status_due = null;
 }
 function slow_tick() {
   if (document.hidden) return;
@@ -197,6 +211,7 @@ function take(list) {
     if (message.type === 'authority') take_authority(message);
     if (message.type === 'alarm') alarms.value = [message, ...alarms.value.filter((one) => one.id !== message.id || one.apid !== message.apid)];
     if (message.type === 'alarms') take_alarms(message);
+    if (message.type === 'stacks') kept_stacks.value = message.stacks;
     if (message.type === 'flight' && take_flight(message)) begin_anew();
     if (message.type === 'values') {
       heard(message.t);
@@ -222,7 +237,7 @@ function take(list) {
     }
   }
   batch(() => {
-    if (newest_status) status.value = newest_status;
+    if (newest_status) take_status(newest_status);
     if (values_came) fast.value = ++batches;
     if (fresh_events.length) events.value = [...fresh_events.reverse(), ...events.value].slice(0, most_events);
     if (reports !== commands.value) commands.value = reports;
@@ -367,7 +382,7 @@ function forget_time() {
     values.clear();
     events.value = [];
     commands.value = [];
-    status.value = null;
+    status.value = status_due = null;
     clock.t = NaN;
   });
 }

@@ -38,6 +38,7 @@ const did = {
 };
 function subject({kind, name}) {
   if (kind === 'flight') return `flight ${name}`;
+  if (kind === 'stack') return `the stack ${name}`;
   if (kind !== 'alarm') return '';
   const [apid, id] = name.split('/').map(Number);
   const subsystem = mission.value?.subsystems.find((one) => one.id === apid);

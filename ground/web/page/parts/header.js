@@ -9,7 +9,7 @@ import {Commander} from './commander.js';
 import {Severity} from './icons.js';
 import {Mode} from './mode_menu.js';
 
-const hold_ms = 800;
+const hold_ms = 800, longest_age_s = 1e8;
 
 const link_words = {
   up: 'Link up', silent: 'Link silent', down: 'No spacecraft', gateway: 'No gateway', waiting: 'Waiting',
@@ -24,7 +24,7 @@ function LinkState() {
   const title = rx === undefined ? words : `${rx} packets received, ${lost} lost, ${damaged} damaged, ${tx} sent${
       unkept ? `; the archive failed ${archive_failures} times: is the disk full or the file damaged?` : ''}`;
   return html`<span class=${`pill link ${look}`} title=${title} data-test="link"><i class="lamp" />${words}<small>${replaying ? 'not live' :
-      state === 'gateway' || state === 'silent' ? `for ${age_text(age_s)}` : `${age_text(age_s)} ago`}</small></span>`;
+      state === 'gateway' || state === 'silent' ? `for ${age_text(age_s)}` : age_s < longest_age_s ? `${age_text(age_s)} ago` : ''}</small></span>`;
 }
 
 function Clock() {

@@ -17,7 +17,7 @@ const refresh_ms = 2000, zoomed_ms = 120;
 const shortest_span_s = 0.001, longest_span_s = 86400;
 const usual_label_width = 118;
 const longest_ahead_s = 30;
-const shortest_s = 20;
+const shortest_s = 20, least_shown_s = 1;
 
 /// The newest on-board time that the ground knows, also while a replay shows an older one.
 export const end_of_time = signal(NaN);
@@ -67,13 +67,13 @@ const boot_px = 250, break_px = 16, longest_boot_s = 30;
 function boot_of(data, from) {
   const up = data.states.filter((one) => state_name(one.state) === 'Operational').map((one) => one.t);
   const first = first_s(data);
-  // Without the states on the way there is nothing to be shown of it.
-  const on_the_way = data.states.some((one) => state_name(one.state) !== 'Operational' && one.t >= first && one.t < Math.max(...up));
-  if (!up.length || !on_the_way || !(first > from) || first > Math.min(...up)) return null;
+  if (!up.length || !(first > from) || first > Math.min(...up)) return null;
   const each = new Map();
   for (const one of data.states) if (state_name(one.state) === 'Operational' && !each.has(one.subsystem)) each.set(one.subsystem, one.t);
   const end = Math.max(...[...each.values()].filter((t) => t - first < longest_boot_s));
-  return end - first < longest_boot_s && end > first ? {from: first, to: end + (end - first) * 0.05} : null;
+  // Without the states on the way there is nothing to be shown of it: a station that came later, and a way up of later.
+  const on_the_way = data.states.some((one) => state_name(one.state) !== 'Operational' && one.t >= first && one.t < end);
+  return on_the_way && end - first < longest_boot_s && end > first ? {from: first, to: end + (end - first) * 0.05} : null;
 }
 
 /// `end` null follows the newest; `on_view({span_s, end})` hears of the wheel: with it, one looks from 1 ms to a day.
@@ -99,7 +99,7 @@ export function Lanes({window_s = 120, end = null, on_view = null, big = false, 
   const began = end === null && !replay.value ? flight.value?.from ?? -Infinity : -Infinity;
   const earliest = end !== null ? to - window_s : Math.max(began, to - Math.max(window_s, replay.value ? data.to - data.from : 0));
   const boot = small ? boot_of(data, earliest) : null;
-  const from = boot ? boot.to : end !== null || window_s < shortest_s ? earliest : Math.max(earliest, Math.min(first_s(data) - 1, to - shortest_s));
+  const from = boot ? boot.to : end !== null || window_s < shortest_s ? earliest : Math.min(to - least_shown_s, Math.max(earliest, Math.min(first_s(data) - 1, to - shortest_s)));
   const left = label_width + (boot ? boot_px + break_px : 0), plot_width = width - left - 14;
   point_s.current = end === null ? (to - from) / plot_width : 0;
   const x = (t) => boot && t < boot.to ? label_width + Math.max(0, (t - boot.from) / (boot.to - boot.from)) * boot_px :

@@ -39,10 +39,10 @@ function Hand({description, window_ref}) {
   const robot = description.robots.find((one) => one.inset);
   const down = fallen.value.some((one) => one.subsystem === robot?.subsystem);
   const lost = down && /lost|unplug|silent|device/i.test(fallen_text(robot.subsystem));
-  const felt = Math.hypot(...(robot?.torque ?? []).map((name) => values.get(name)?.v ?? 0));
+  const known = (robot?.torque ?? []).filter((name) => values.has(name)), felt = Math.hypot(...known.map((name) => values.get(name).v));
   const first = robot && Object.values(robot.joints)[0];
   return html`<div class=${`hand ${down ? 'bad' : ''}`}><h3>${description.inset.title}</h3><div class="window" ref=${window_ref} />
-    <p>${down ? html`<b>${lost ? 'Device lost' : 'Stopped'}</b><span>${age_text(freshness(first).age_s)} ago</span>` : html`felt<span><b>${fixed_text(felt, 3)}</b> N m</span>`}</p></div>`;
+    <p>${down ? html`<b>${lost ? 'Device lost' : 'Stopped'}</b><span>${age_text(freshness(first).age_s)} ago</span>` : html`felt<span><b>${known.length ? fixed_text(felt, 3) : '–'}</b> N m</span>`}</p></div>`;
 }
 
 /// What the picture alone would not say: that it is old, and that nothing there can move.

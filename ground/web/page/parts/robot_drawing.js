@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The robot in 3D: where it is in orbit, what it touches, where it shall go. Draws only while a joint or the camera moves. With a graphics
-// card all of it at each frame; a processor that draws by itself draws what stands still once for a camera, as a picture behind a transparent
-// one of what moves. It is made once: a view that is left leaves it behind, and finds it as it was. A chunk of its own: three.js is loaded by
+// card all of it at each frame; a processor that draws by itself draws what moves (live.js) before a picture of what stands still, which is drawn
+// once for a camera. It is made once: a view that is left leaves it behind, and finds it as it was. A chunk of its own: three.js is loaded by
 // the views that show it. Realtime: none.
-import {ACESFilmicToneMapping, Color, PCFShadowMap, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
+import {Color, PerspectiveCamera, Scene, Vector2, Vector3} from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {mission_code, mission_text} from '../mission_files.js';
 import {commands, replay, values, with_picture} from '../store.js';
@@ -15,53 +15,50 @@ import {Goal, goal_of} from '../scene/goal.js';
 import {Grips} from '../scene/grips.js';
 import {Arrow, colours} from '../scene/instruments.js';
 import {Kit, merged} from '../scene/kit.js';
+import {LivePicture} from '../scene/live.js';
 import {Pace} from '../scene/pace.js';
 import {Readout} from '../scene/readout.js';
 import {RobotModel} from '../scene/robot_model.js';
 import {cast_on_plane} from '../scene/skins.js';
-import {environment, lights, sun_from} from '../scene/space.js';
+import {lights, sun_from} from '../scene/space.js';
 import {StillPicture} from '../scene/still.js';
 import {surface_x_m} from './hand.js';
 import {typed} from './typed.js';
 
 const still_after_ms = 250, resized_after_ms = 200;
 /// What is around the robot waits until it was seen to move, or for as long.
-const first_poses = 4, patience_ms = 1500;
+const first_poses = 8, patience_ms = 1500;
 
-function drawn_by_processor(context) {
-  const about = context.getExtension('WEBGL_debug_renderer_info');
-  const name = about ? String(context.getParameter(about.UNMASKED_RENDERER_WEBGL)) : '';
-  return /swiftshader|llvmpipe|software/i.test(name);
+/// A context of WebGL, or null where the browser has none, and whether a processor draws it by itself.
+function probe() {
+  const context = document.createElement('canvas').getContext('webgl2', {antialias: false, powerPreference: 'high-performance'});
+  const about = context?.getExtension('WEBGL_debug_renderer_info'), name = about ? String(context.getParameter(about.UNMASKED_RENDERER_WEBGL)) : '';
+  return [context, !context || /swiftshader|llvmpipe|software/i.test(name)];
 }
+const card_code = () => import('../scene/card.js');
 
-/// Without a graphics card smooth edges cost as much as all the rest, and a second context a tenth of a second.
-function new_renderer() {
-  const first = new WebGLRenderer({antialias: false, alpha: true, powerPreference: 'high-performance'});
-  if (drawn_by_processor(first.getContext())) return [first, true];
-  first.dispose();
-  first.forceContextLoss();
-  return [new WebGLRenderer({antialias: true, powerPreference: 'high-performance'}), false];
+function live_canvas(stage) {
+  const canvas = document.createElement('canvas');
+  canvas.className = 'live';
+  stage?.append(canvas);
+  return canvas;
 }
 
 export class RobotView {
   /// `nodes`: {stage, still, tags, leads}: where it draws, the canvas behind, what lies above; `window`, where the inset is, comes with each view.
   constructor(nodes, description) {
     Object.assign(this, {nodes, description, robots: [], frames: 0, poses: 0, show: {goal: true, limits: true, force: true, trail: true, frames: false}});
-    [this.renderer, this.software] = new_renderer();
-    const {renderer} = this;
-    renderer.toneMapping = ACESFilmicToneMapping;
-    renderer.setPixelRatio(this.software ? 1 : Math.min(devicePixelRatio, 2));
-    renderer.shadowMap.enabled = !this.software;
-    renderer.shadowMap.type = PCFShadowMap;
-    renderer.autoClear = false;
-    this.canvas = renderer.domElement;
+    [this.context, this.software] = probe();
+    // A graphics card draws into it; a processor does not, and it is where the mouse is all the same.
+    this.canvas = document.createElement('canvas');
     this.canvas.setAttribute('aria-label', 'the robot in 3D');
     nodes.stage.appendChild(this.canvas);
+    if (this.software) this.live = new LivePicture(live_canvas(nodes.stage));
     nodes.stage.dataset.tier = this.software ? 'software' : 'graphics card';
     this.scene = new Scene();
     this.far = this.software ? new Scene() : this.scene;
     if (!this.software) this.scene.background = new Color(0x04060a);
-    this.still = this.software ? new StillPicture(renderer, this.far, nodes.still) : null;
+    this.still = this.software && this.context ? new StillPicture(this.far, nodes.still) : null;
     const {camera} = description;
     this.scale = new Vector3().fromArray(camera.from_m).distanceTo(new Vector3().fromArray(camera.to_m));
     // Lines are as thick as seen from a metre away.
@@ -96,6 +93,7 @@ export class RobotView {
     this.inset.camera.up.set(0, 0, 1);
     this.inset.camera.position.fromArray(inset.from_m);
     this.inset.camera.lookAt(...inset.to_m);
+    if (this.software) this.inset.live = new LivePicture(this.inset.canvas = live_canvas(null));
     this.inset.scene.add(...lights({target: new Vector3(), reach_m: 0.3, shadow: false}));
     this.felt = new Arrow(colours.felt, 0.0036);
     this.inset.scene.add(this.felt.group);
@@ -103,13 +101,13 @@ export class RobotView {
 
   async load() {
     const {description} = this;
-    const [own, ...texts] = await Promise.all([description.parts ? mission_code(description.parts) : {}, ...description.robots.map(({urdf}) => mission_text(urdf))]);
+    const [own, card, ...texts] = await Promise.all([description.parts ? mission_code(description.parts) : {}, this.software ? null : card_code(), ...description.robots.map(({urdf}) => mission_text(urdf))]);
     this.own = own;
-    this.mirror = this.software ? null : environment(this.renderer, 128);
-    const kit = new Kit(this.mirror, this.software ? 0.3 : 1);
+    if (card) this.take_card(card.card_renderer(this.canvas));
+    const kit = new Kit(this.mirror ?? null, this.software ? 0.3 : 1);
     for (const [i, about] of description.robots.entries()) {
       const parts = () => own.links?.[about.urdf]?.(kit) ?? {};
-      const robot = new RobotModel(about, texts[i], parts(), {environment: this.mirror, software: this.software});
+      const robot = new RobotModel(about, texts[i], parts(), {environment: this.mirror ?? null, software: this.software});
       robot.make_goal = about.goal ? () => new Goal(robot, texts[i], parts(), {scale: this.thick, contour: description.contour}) : null;
       this.readout.add_robot(robot);
       this.nodes.stage.dataset.bones = robot.bones + Number(this.nodes.stage.dataset.bones ?? 0);
@@ -130,6 +128,14 @@ export class RobotView {
     else this.add_surroundings_later();
   }
 
+  take_card({renderer, mirror}) {
+    // The context that was looked at has no edges that are smooth.
+    this.context.getExtension('WEBGL_lose_context')?.loseContext();
+    Object.assign(this, {renderer, mirror, context: null});
+    // Its place may have been measured before it came.
+    if (this.size.x) renderer.setSize(this.size.x, this.size.y, false);
+  }
+
   /// What a processor that draws by itself makes after the first pictures: each kind of it takes a program of its own.
   finish() {
     for (const spring of this.description.springs ?? []) this.contact.add_spring(this.kit, spring, this.software);
@@ -144,6 +150,12 @@ export class RobotView {
   add_surroundings_later() {
     clearTimeout(this.surroundings_timer);
     this.surroundings_timer = null;
+    if (!this.still?.renderer && this.context) return card_code().then((card) => {
+      if (this.closed) return;
+      this.renderer = this.still.renderer = card.unseen_renderer(this.context);
+      this.renderer.setSize(this.size.x, this.size.y, false);
+      this.add_surroundings_later();
+    });
     const later = globalThis.requestIdleCallback ?? ((then) => setTimeout(then, 50));
     const steps = surroundings_in_steps(this);
     const next = () => {
@@ -161,7 +173,7 @@ export class RobotView {
     if (!width || !height) return;
     const {width: wide_before, height: tall_before} = this.inset?.box ?? {}, same = this.size.x === width && this.size.y === height;
     this.size.set(width, height);
-    if (!same) this.renderer.setSize(width, height, false);
+    if (!same) this.renderer?.setSize(width, height, false);
     const fov = this.description.camera.fov_deg ?? 34;
     this.camera.aspect = width / height;
     // The robot keeps its size in a narrow panel.
@@ -262,10 +274,16 @@ export class RobotView {
   }
 
   draw_live() {
-    const {renderer, inset} = this, {x: width, y: height} = this.size;
+    const {renderer, inset, live} = this, {x: width, y: height} = this.size;
+    if (live) {
+      live.draw(this.scene, this.camera, width, height);
+      if (inset?.box.width) inset.live.draw(inset.scene, inset.camera, Math.round(inset.box.width), Math.round(inset.box.height));
+      return;
+    }
+    if (!renderer) return;
     renderer.setScissorTest(false);
     renderer.setViewport(0, 0, width, height);
-    renderer.setClearColor(0, this.software ? 0 : 1);
+    renderer.setClearColor(0, 1);
     renderer.clear();
     renderer.render(this.scene, this.camera);
     if (!inset || !inset.box.width) return;
@@ -315,6 +333,7 @@ export class RobotView {
   /// Stands in the place of a view, whose picture of the hand is in `window`.
   enter(window) {
     this.window = window;
+    if (window && this.inset?.canvas) window.append(this.inset.canvas);
     this.pace.open();
     this.forget();
     this.resize();
@@ -342,9 +361,10 @@ export class RobotView {
         for (const material of [part.material].flat()) material?.dispose?.();
       });
     }
-    this.renderer.dispose();
-    this.renderer.forceContextLoss();
-    this.canvas.remove();
+    this.renderer?.dispose();
+    (this.context ?? this.renderer?.getContext())?.getExtension('WEBGL_lose_context')?.loseContext();
+    this.nodes.stage.replaceChildren();
+    this.inset?.canvas?.remove();
     this.nodes.tags.replaceChildren();
     this.nodes.leads.replaceChildren();
   }

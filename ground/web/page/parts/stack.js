@@ -1,21 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// Stacks of telecommands: a list that is built from forms, kept by this browser for its mission, and sent row by row. The first row that
+// Stacks of telecommands: a list that is built from forms, kept by the station for everybody there, and sent row by row. The first row that
 // fails ends it. It goes on when its view is left, and ends with the page.
 import {signal} from '@preact/signals';
 import {finished, say, send} from '../commanding.js';
-import {may_send} from '../people.js';
-import {mission, subsystem_of} from '../store.js';
+import {get} from '../api.js';
+import {keep_stack, may_send} from '../people.js';
+import {kept_stacks, mission, subsystem_of} from '../store.js';
 import {choices_of} from './arguments.js';
 import {judged} from './judged.js';
-import {most_rows, read_stack} from './stack_text.js';
+import {most_rows, read_stack, stack_text} from './stack_text.js';
 
-const kept = 'hirosco-stacks', most_stacks = 24, longest_s = 600;
+const longest_s = 600;
 
-/// [{mission, name, rows: [{subsystem, function, texts}]}]
-const all = signal(JSON.parse(localStorage.getItem(kept) ?? '[]'));
-export const stacks = () => all.value.filter((one) => one.mission === mission.value?.name);
+/// Of everybody at this station: [{name, text, t, who}]. Asked for when the first form is shown; told after that.
+export const stacks = () => kept_stacks.value;
+let asked_for = false;
+export function ask_for_stacks() {
+  if (asked_for) return;
+  asked_for = true;
+  get('/api/stacks').then((answer) => { kept_stacks.value = answer.stacks; }, () => { asked_for = false; });
+}
 /// The one in front: {name, rows}, rows with the `outcome` of when they were sent last.
 export const stack = signal({name: '', rows: []});
 /// Which row waits for its verdict, and whether others follow: {at, more} or null.
@@ -42,17 +48,17 @@ export function move_row(i, by) {
 export const empty = () => { stack.value = {name: '', rows: []}; };
 export const rename = (name) => { stack.value = {...stack.value, name: name.slice(0, 40)}; };
 
-export const is_kept = () => stacks().some((one) => one.name === stack.value.name && JSON.stringify(one.rows) === JSON.stringify(stack.value.rows.map(bare)));
-function store(list) {
-  all.value = list;
-  localStorage.setItem(kept, JSON.stringify(list));
-}
-const others = (name) => all.value.filter((one) => one.mission !== mission.value.name || one.name !== name);
-export const keep = () => store([{mission: mission.value.name, name: stack.value.name, rows: stack.value.rows.map(bare)}, ...others(stack.value.name)].slice(0, most_stacks));
-export const forget = (name) => store(others(name));
+export const text_now = () => stack_text(stack.value.name, mission.value.name, stack.value.rows.map((row) => ({...row, values: values_of(row).values ?? row.texts})));
+export const is_kept = () => stacks().some((one) => one.name === stack.value.name && one.text === text_now());
+export const keep = () => keep_stack(stack.value.name.trim(), text_now());
+export const forget = (name) => keep_stack(name, '');
 export function open(name) {
   const found = stacks().find((one) => one.name === name);
-  if (found) stack.value = {name, rows: found.rows};
+  if (!found) return;
+  const problem = take_text(found.text);
+  // Another mission, or a descriptor that has changed since.
+  if (problem) say(`The stack ${name}: ${problem}`, 'bad');
+  else stack.value = {...stack.value, name};
 }
 
 export const action_of = (row) => subsystem_of(row.subsystem)?.functions.find((one) => one.name === row.function);

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-import {useState} from 'preact/hooks';
+import {useEffect, useState} from 'preact/hooks';
 import {copy} from '../commanding.js';
 import {html} from '../html.js';
 import {command_is, commander} from '../people.js';
-import {mission, operator, replay} from '../store.js';
+import {operator, replay} from '../store.js';
 import {arguments_text} from './arguments.js';
 import {Panel} from './panel.js';
-import {stack_text} from './stack_text.js';
-import {action_of, empty, forget, halt, is_kept, keep, move_row, open, rename, run, running, stack, stacks, take_out, take_text, values_of} from './stack.js';
+import {action_of, ask_for_stacks, empty, forget, halt, is_kept, keep, move_row, open, rename, run, running, stack, stacks, take_out, take_text, text_now, values_of} from './stack.js';
 
 const words_of = (outcome) => !outcome ? '' : outcome.stage === 'failed' ? `failed: ${outcome.reason ?? ''}${outcome.code ? ` (code ${outcome.code})` : ''}` : outcome.stage;
 const confirm_within_ms = 6000;
@@ -26,9 +25,8 @@ function Row({row, i, last, locked}) {
 }
 
 /// The same as lines of `hirosco tc`, to be taken elsewhere or pasted here.
-function AsText({rows, on_done}) {
-  const told = stack_text(stack.value.name, mission.value.name, rows.map((row) => ({...row, values: values_of(row).values ?? row.texts})));
-  const [text, set_text] = useState(told), [problem, set_problem] = useState('');
+function AsText({on_done}) {
+  const [text, set_text] = useState(text_now()), [problem, set_problem] = useState('');
   const take = () => {
     const wrong = take_text(text);
     set_problem(wrong);
@@ -41,12 +39,13 @@ function AsText({rows, on_done}) {
 }
 
 function Kept() {
-  const list = stacks(), {name, rows} = stack.value;
+  const list = stacks(), {name, rows} = stack.value, may = operator.value && !replay.value;
+  useEffect(ask_for_stacks, []);
   return html`<div class="row kept"><input aria-label="name of the stack" data-test="stack-name" maxlength="40" placeholder="name" value=${name} onInput=${(event) => rename(event.currentTarget.value)} />
-    <button type="button" class="chip" data-test="stack-keep" disabled=${!name.trim() || !rows.length || is_kept()} onClick=${keep}>${is_kept() ? 'kept' : 'keep'}</button>
+    <button type="button" class="chip" data-test="stack-keep" disabled=${!may || !name.trim() || !rows.length || is_kept()} title="for everybody at this station" onClick=${keep}>${is_kept() ? 'kept' : 'keep'}</button>
     ${list.length ? html`<select aria-label="stacks that are kept" data-test="stack-open" value="" onChange=${(event) => open(event.currentTarget.value)}>
-      <option value="">open …</option>${list.map((one) => html`<option value=${one.name}>${one.name}</option>`)}</select>` : null}
-    ${list.some((one) => one.name === name) ? html`<button type="button" class="chip" onClick=${() => forget(name)}>forget</button>` : null}</div>`;
+      <option value="">open …</option>${list.map((one) => html`<option value=${one.name} title=${`kept by ${one.who}`}>${one.name}</option>`)}</select>` : null}
+    ${may && list.some((one) => one.name === name) ? html`<button type="button" class="chip" data-test="stack-forget" onClick=${() => forget(name)}>forget</button>` : null}</div>`;
 }
 
 export function StackPanel() {
@@ -68,7 +67,7 @@ export function StackPanel() {
   const title = busy ? 'Stop after this one' : asked ? 'Really? Once more' : from > 0 ? `Go on from row ${from + 1}` : `Send all ${rows.length}`;
   return html`<${Panel} title="Stack" hint=${rows.length ? `${rows.length} row${rows.length > 1 ? 's' : ''}` : ''} area="stack"
     tools=${html`<button type="button" class=${`chip ${text ? 'on' : ''}`} aria-pressed=${text} data-test="stack-as-text" onClick=${() => set_text(!text)}>as text</button>`}>
-    ${text ? html`<${AsText} rows=${rows} on_done=${() => set_text(false)} />` : html`
+    ${text ? html`<${AsText} on_done=${() => set_text(false)} />` : html`
       ${rows.length ? html`<ol class="stack" data-test="stack">${rows.map((row, i) => html`<${Row} key=${i} row=${row} i=${i} last=${i === rows.length - 1} locked=${locked} />`)}</ol>` :
         html`<p class="empty">"to the stack" in a form adds a row; "as text" takes lines of hirosco tc.</p>`}
       <${Kept} />

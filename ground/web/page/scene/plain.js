@@ -13,7 +13,7 @@ const gloss_of = ({roughness = 0.5}) => (1 - roughness) * 0.55;
 
 /// Lit by the sun and the sky of space.js, and toned there. `tinted`: colour and gloss come with each corner.
 function lit_at_corners(uniforms, tinted = false) {
-  return new ShaderMaterial({
+  const skin = new ShaderMaterial({
     uniforms: {...uniforms, sun: {value: sun_from.clone().normalize()}},
     vertexShader: `${tinted ? 'attribute vec4 tint;' : 'uniform vec3 colour; uniform float gloss;'} uniform vec3 sun; varying vec3 seen;
       #include <common>
@@ -28,6 +28,8 @@ function lit_at_corners(uniforms, tinted = false) {
         gl_Position = projectionMatrix * viewMatrix * p;
       }`,
     fragmentShader: 'varying vec3 seen; void main() { gl_FragColor = vec4(seen, 1.); }'});
+  skin.userData.raster = tinted ? 'tinted' : 'lit';
+  return skin;
 }
 
 /// Materials of a graphics card, or the same colours as a processor can draw them.

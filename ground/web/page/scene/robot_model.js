@@ -191,6 +191,8 @@ export class Phantom {
     this.body = parsed_urdf(text);
     this.body.position.fromArray(about.at_m ?? [0, 0, 0]);
     if (parts) dress(this.body, parts, null, true);
+    // What no joint moves stands where the robot's does.
+    for (const link of still_links(this.body)) for (const child of link.children) if (child.userData.dress) child.visible = false;
     this.tip = about.tip;
     this.tip_link = this.body.links[about.tip];
     for (const joint of Object.values(this.body.joints)) joint.ignoreLimits = true;

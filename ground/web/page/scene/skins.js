@@ -7,35 +7,43 @@ import {coarse} from './plain.js';
 
 const world = 'vec4 p = modelMatrix * vec4(position, 1.); vec3 k = normalize(mat3(viewMatrix) * mat3(modelMatrix) * normal);';
 
-const ghost_depth = new MeshBasicMaterial({colorWrite: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2});
+/// For live.js, which knows no programs.
+function known_as(kind, material) {
+  material.userData.raster = kind;
+  return material;
+}
+
+// What turns around an axis that both have lies in the same place: there the robot is seen, not both in stripes.
+const behind_robot = (units) => ({polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: units});
+const ghost_depth = new MeshBasicMaterial({colorWrite: false, ...behind_robot(1500)});
 /// One layer of translucent colour, brighter at the edges: behind it stands its own depth, so that no inner face is seen.
 export function ghost_skin(colour) {
-  return new ShaderMaterial({transparent: true, depthWrite: false, depthFunc: LessEqualDepth, uniforms: {colour: {value: new Color(colour)}, opacity: {value: 0.34}},
+  return known_as('ghost', new ShaderMaterial({transparent: true, depthWrite: false, depthFunc: LessEqualDepth, ...behind_robot(1400), uniforms: {colour: {value: new Color(colour)}, opacity: {value: 0.34}},
     vertexShader: `varying vec3 n, v; void main() { ${world} vec4 c = viewMatrix * p; n = k; v = normalize(-c.xyz); gl_Position = projectionMatrix * c; }`,
     fragmentShader: `uniform vec3 colour; uniform float opacity; varying vec3 n, v;
       void main() { float f = 1. - abs(dot(normalize(n), normalize(v))); gl_FragColor = vec4(colour * (.62 + .6 * f), opacity * (.7 + .9 * f * f) + .1);
       #include <colorspace_fragment>
-      }`});
+      }`}));
 }
 
 const halo_hulls = [[0.0028, 0.95], [0.007, 0.34], [0.013, 0.16]];
 /// Hulls grown along the normals and seen from inside, so a red rim without a second pass over the picture.
 function halo_skins(count) {
-  return halo_hulls.slice(0, count).map(([grown, opacity]) => new ShaderMaterial({transparent: true, side: BackSide, depthWrite: false,
+  return halo_hulls.slice(0, count).map(([grown, opacity]) => known_as('halo', new ShaderMaterial({transparent: true, side: BackSide, depthWrite: false,
     uniforms: {colour: {value: new Color(0xff4f48)}, opacity: {value: opacity}, grown: {value: grown}},
     vertexShader: `uniform float grown; void main() { ${world} vec4 c = viewMatrix * p; c.xyz += k * grown; gl_Position = projectionMatrix * c; }`,
     fragmentShader: `uniform vec3 colour; uniform float opacity; void main() { gl_FragColor = vec4(colour, opacity);
       #include <colorspace_fragment>
-      }`}));
+      }`})));
 }
 
 /// Where the sun's rays through each point meet the plane z: the darkest of all that falls on a place counts, not their sum. What faces the sun
 /// covers it all, and lies on the plane as it faces who looks from above.
 function shadow_skin(sun, z, strength) {
-  return new ShaderMaterial({transparent: true, depthWrite: false, blending: CustomBlending, blendEquation: MaxEquation, blendSrc: OneFactor, blendDst: OneFactor,
+  return known_as('shadow', new ShaderMaterial({transparent: true, depthWrite: false, blending: CustomBlending, blendEquation: MaxEquation, blendSrc: OneFactor, blendDst: OneFactor,
     blendEquationAlpha: MaxEquation, blendSrcAlpha: OneFactor, blendDstAlpha: ZeroFactor, uniforms: {sun: {value: sun}, z: {value: z}, strength: {value: strength}},
     vertexShader: `uniform vec3 sun; uniform float z; void main() { vec4 p = modelMatrix * vec4(position, 1.); p.xyz -= sun * (p.z - z) / sun.z; gl_Position = projectionMatrix * viewMatrix * p; }`,
-    fragmentShader: 'uniform float strength; void main() { gl_FragColor = vec4(0., 0., 0., strength); }'});
+    fragmentShader: 'uniform float strength; void main() { gl_FragColor = vec4(0., 0., 0., strength); }'}));
 }
 
 const meshes_of = (robot) => {

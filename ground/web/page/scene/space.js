@@ -3,7 +3,7 @@
 //
 // Where it all is: sun, stars, the Earth's limb, and what metals mirror of it.
 import {
-  AdditiveBlending, BackSide, BufferAttribute, BufferGeometry, Color, CubeTexture, DataTexture, DataUtils, DirectionalLight, DoubleSide, Group, HalfFloatType, HemisphereLight, LinearFilter, LinearSRGBColorSpace, Mesh, MeshBasicMaterial, PlaneGeometry, PMREMGenerator,
+  AdditiveBlending, BackSide, BufferAttribute, BufferGeometry, Color, CubeTexture, DataTexture, DataUtils, DirectionalLight, DoubleSide, Group, HalfFloatType, HemisphereLight, LinearFilter, LinearSRGBColorSpace, Mesh, MeshBasicMaterial, PlaneGeometry,
   Points, PointsMaterial, RGBAFormat, Scene, ShaderMaterial, SphereGeometry, Vector3,
 } from 'three';
 import {cloud_tile, Random} from './surfaces.js';
@@ -15,8 +15,8 @@ const mirrored = [[9, 7, 0xfff1dc, 9, [-0.75, -0.5, 0.9]], [14, 3, 0xdfe9ff, 2.2
   [16, 7, 0xcfd8e6, 0.55, [0.1, -1, -0.25]], [22, 16, 0x5d94d8, 0.9, [0.2, 0.5, -1]], [18, 2, 0xa9d2ff, 2, [0, 1, -0.1]]];
 const mirrored_at_m = 12, void_colour = 0x0b0e13;
 
-/// For a graphics card: filtered for every roughness.
-export function environment(renderer, size) {
+/// For a graphics card, by three.js' own `PMREMGenerator`: filtered for every roughness.
+export function environment(renderer, size, PMREMGenerator) {
   const scene = new Scene();
   const lit = (colour, strength) => new MeshBasicMaterial({color: new Color(colour).multiplyScalar(strength), side: DoubleSide});
   scene.add(new Mesh(new SphereGeometry(30, 16, 12), new MeshBasicMaterial({color: void_colour, side: BackSide})));

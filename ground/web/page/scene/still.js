@@ -8,8 +8,9 @@ const bands = 8, coarse = 0.34;
 const background = 0x04060a;
 
 export class StillPicture {
-  constructor(renderer, scene, canvas) {
-    Object.assign(this, {renderer, scene, canvas, band: 0, wanted: false, held: false, whole: false, unseen: null});
+  /// `renderer` is given to it before there is something in `scene`.
+  constructor(scene, canvas) {
+    Object.assign(this, {renderer: null, scene, canvas, band: 0, wanted: false, held: false, whole: false, unseen: null});
   }
 
   /// The camera moved, or there is more to be seen.
@@ -27,7 +28,7 @@ export class StillPicture {
 
   /// One step of it; true when there is more to do. The renderer's own canvas is spoiled by it.
   draw(camera, {x: width, y: height}, turning) {
-    if (!this.wanted || !this.scene.children.length) return false;
+    if (!this.wanted || !this.renderer || !this.scene.children.length) return false;
     const {canvas} = this;
     if (canvas.width !== width || canvas.height !== height) this.#stretch(width, height);
     if (this.unseen === null) this.unseen = kinds_of(this.scene);

@@ -13,7 +13,7 @@ import {fill_form} from '../parts/typed.js';
 import {commands, mission, mode_of, operator, outcome_of, replay} from '../store.js';
 
 /// Whether the mode's list permits it at all; the supervisor's own answer stands in the form.
-function listed(subsystem, action) {
+export function listed(subsystem, action) {
   const permits = mode_of.value.permits;
   if (action.essential || !Array.isArray(permits)) return true;
   return permits.some((permit) => [subsystem, '*'].includes(permit.subsystem) &&

@@ -6,7 +6,14 @@ import {html} from '../html.js';
 import {LinkGraph, is_wanted, live_link, network_of} from '../parts/link_graph.js';
 import {Panel} from '../parts/panel.js';
 import {is_known} from '../parts/subsystem_card.js';
-import {mission, operator, replay, slow} from '../store.js';
+import {mission, operator, replay, slow, subsystem_of} from '../store.js';
+import {listed} from './commands.js';
+
+/// Whether the mode permits to make or to cut one; what no descriptor tells of the station judges.
+function may_now(name) {
+  const action = subsystem_of('SUPERVISOR')?.functions?.find((one) => one.name === name);
+  return !action || listed('SUPERVISOR', action);
+}
 
 export function Links() {
   slow.value;
@@ -23,7 +30,7 @@ export function Links() {
           <td class="number">${rate_text(now.rate_hz ?? NaN)}</td><td class="number">${Number.isFinite(now.age_cycles) ? now.age_cycles.toFixed(1) : '–'} cycles</td>
           <td class="number">${number_text(link.age_limit_cycles)} cycles</td><td class="number" data-test=${`latency-${link.id}`}>${duration_text(now.latency_mean_ns ?? NaN)}${up ? html` <small>≤ ${duration_text(now.latency_max_ns)}</small>` : null}</td><td class="number" data-test=${`jitter-${link.id}`}>${duration_text(now.jitter_ns ?? NaN)}</td><td class="number">${number_text(now.lost)}</td>
           <td>${[...network_of(link.from)].join(', ')}</td>
-          <td><button class="chip" disabled=${locked} data-test=${`link-${link.id}`} onClick=${() => send_and_say('SUPERVISOR', up ? 'UNLINK' : 'LINK', {LINK: link.id})}>${up ? 'cut' : 'make'}</button></td></tr>`;
+          <td><button class="chip" disabled=${locked || !may_now(up ? 'UNLINK' : 'LINK')} title=${locked || may_now(up ? 'UNLINK' : 'LINK') ? undefined : 'not in this mode'} data-test=${`link-${link.id}`} onClick=${() => send_and_say('SUPERVISOR', up ? 'UNLINK' : 'LINK', {LINK: link.id})}>${up ? 'cut' : 'make'}</button></td></tr>`;
       })}</tbody></table>
       ${mission.value?.links?.length ? null : html`<p class="empty">This mission has no real-time links.</p>`}
       <p class="about">Links join parameters of two subsystems cycle by cycle, without the ground and without the supervisor. Who misses a required one for longer than its limit stops its own actuators. A mode permits cutting and making links, commissioning for example.</p></${Panel}>

@@ -42,8 +42,9 @@ export function first_plots() {
     const base = column.name.replace(/\[\d+\]$/, '');
     by_parameter.set(base, [...(by_parameter.get(base) ?? []), column.name]);
   }
-  return [...by_parameter.entries()].sort(([, a], [, b]) => worth(b[0]) - worth(a[0]))
-      .map(([, names]) => ({names: names.slice(0, 4), title: plot_title(names.slice(0, 4)), about: {}})).slice(0, 3);
+  const found = [...by_parameter.entries()].sort(([, a], [, b]) => worth(b[0]) - worth(a[0])).map(([, names]) => ({names: names.slice(0, 4), title: plot_title(names.slice(0, 4)), about: {}})).slice(0, 3);
+  // Two of one name are told apart by whose they are.
+  return found.map((one) => found.some((other) => other !== one && other.title === one.title) ? {...one, title: `${one.names[0].split('.')[0]} ${one.title}`} : one);
 }
 
 /// A plot of scene.json: names alone, or {title, hint, curves: [{name, label, look, times}], range, least}.
@@ -106,7 +107,7 @@ export function Overview() {
   const subsystems = mission.value?.subsystems ?? [];
   const wanted = plots.length ? plots : [{title: 'Plot', names: [], about: {}}];
   return html`<main class="overview">
-    <${Panel} title="Subsystems" hint=${`${operational()} of ${subsystems.length} Operational`} area="subsystems" href="#/subsystems">
+    <${Panel} title="Subsystems" hint=${`${operational()} / ${subsystems.length} Operational`} area="subsystems" href="#/subsystems">
       ${subsystems.map((one) => html`<${SubsystemCard} key=${one.name} name=${one.name} />`)}</${Panel}>
     <${Panel} title="3D" area="robot" bare titleless><${Robot} /></${Panel}>
     <${Panel} title="Telecommand" area="command" href="#/commands"><${QuickCommand} /></${Panel}>

@@ -150,9 +150,9 @@ function Picker({on_pick: pick}) {
   // The mission's own subsystems before those that every mission has.
   const own = mission.value?.subsystems.filter((one) => one.id >= 10) ?? [], common = mission.value?.subsystems.filter((one) => one.id < 10) ?? [];
   const groups = [...own, ...common].map(({name}) => [name, by_base(found.filter((column) => column.subsystem === name))]).filter(([, list]) => list.length);
-  const button = (column, name) => html`<button class="action" title=${column.name} onClick=${(event) => on_pick(column.name, event.shiftKey)}><span>${
+  const button = (column, name) => html`<button class="action" title=${`${column.name}: a click adds it, with Shift in a plot of its own`} onClick=${(event) => on_pick(column.name, event.shiftKey)}><span>${
     column.name.slice(name.length + 1)}</span><small>${unit_text(column.unit)}</small></button>`;
-  return html`<${Panel} title="Parameters" hint=${text === null ? 'Shift: a new plot' : 'a click writes its name'}
+  return html`<${Panel} title="Parameters" hint=${text === null ? null : 'click: its name'}
     tools=${text === null ? html`<button class="chip" title="plot what is reckoned of parameters" data-test="expression-open" onClick=${() => set_text('')}>f(x)</button>` : null}>
     ${text === null ? null : html`<${Writer} text=${text} set_text=${set_text} node=${node} on_pick=${pick} />`}
     <input class="search" type="search" placeholder="search  /" aria-label="search parameters" data-search value=${search} onInput=${(event) => set_search(event.currentTarget.value)} />
