@@ -56,7 +56,7 @@ constexpr const char* world_program = "hirosco-sim-mujoco";
                                                      const fs::path& from) {
   const auto source = descriptor::file_system();
   const fs::path file = options.urdf.empty() ? referred(from, "page/newpart.urdf") : fs::path{options.urdf};
-  JudgedRobot judged = judge_robot(file, source, options.tip, options.gripper, package_folders(options));
+  JudgedRobot judged = judge_robot(file, source, options.tip, options.gripper, package_folders(options), options.chain);
   const bool colour = ::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   for (const auto* list : {&judged.problems, &judged.warnings})
     for (const auto& problem : *list) fmt::print(stderr, "{}", descriptor::render(problem, source, colour));
@@ -89,10 +89,15 @@ int make_new(const NewOptions& options) {
     return exit_usage;
   }
   if (!kind->of_urdf &&
-      !(options.urdf.empty() && options.tip.empty() && options.gripper.empty() && options.packages.empty())) {
+      !(options.urdf.empty() && options.tip.empty() && options.gripper.empty() && options.packages.empty() && !options.chain)) {
     fmt::print(stderr,
-               "hirosco new: --urdf, --tip, --gripper and --packages are of a robot: hirosco new robot {} --urdf FILE\n",
+               "hirosco new: --urdf, --tip, --gripper, --chain and --packages are of a robot: hirosco new robot {} "
+               "--urdf FILE\n",
                options.name);
+    return exit_usage;
+  }
+  if (options.chain && options.tip.empty() && options.gripper.empty()) {
+    fmt::print(stderr, "hirosco new: --chain is of a tool: --tip LINK --chain\n");
     return exit_usage;
   }
   const fs::path from = find_shipped("templates") / kind->name;

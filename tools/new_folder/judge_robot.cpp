@@ -6,10 +6,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <iterator>
+#include <span>
 #include <utility>
 
 #include "hirosco/xml/reader.hpp"
 #include "robotics/urdf/named_robot.hpp"
+#include "tools/new_folder/chain.hpp"
 #include "tools/new_folder/meshes.hpp"
 #include "tools/new_folder/postures.hpp"
 #include "tools/new_folder/robot.hpp"
@@ -31,6 +33,15 @@ class Judge {
   Judge(std::filesystem::path file, robotics::urdf::Robot robot, std::string text, JudgedRobot& judged)
       : file_{std::move(file)}, robot_{std::move(robot)}, text_{std::move(text)}, judged_{judged} {
     if (auto tree = xml::read_tree(text_)) root_ = std::move(*tree);
+  }
+
+  void say_who_stands(const std::vector<std::string>& joints) {
+    constexpr std::size_t most_named = 8;
+    const std::span named{joints.data(), std::min(joints.size(), most_named)};
+    warning(place(root_), "U0609",
+            fmt::format("{} joints stand at 0, fixed in the file that is written: {}{}", joints.size(),
+                        fmt::join(named, ", "), joints.size() > most_named ? ", ..." : ""),
+            "what they move is part of what carries it; the tool of --tip is moved by the others alone");
   }
 
   void take(TakenMeshes meshes) {
@@ -245,17 +256,40 @@ class Judge {
   xml::Element root_;
 };
 
+/// Of a robot that has more joints than an arm: which arms there are.
+void say_which_chains(std::string_view text, Diagnostic& problem) {
+  constexpr std::size_t most_named = 6;
+  std::vector<std::string> named;
+  for (const ChainEnd& end : chain_ends(text)) {
+    if (named.size() == most_named) break;
+    if (end.joints <= robotics::max_joints) named.push_back(fmt::format("{} ({} joints)", end.link, end.joints));
+  }
+  if (!named.empty())
+    problem.hint += fmt::format("; or fly one arm of it while the others stand still, by --tip LINK --chain: {}",
+                                fmt::join(named, ", "));
+}
+
 }  // namespace
 
 JudgedRobot judge_robot(const std::filesystem::path& file, const descriptor::FileSource& source, const std::string& tip,
-                        const std::string& gripper, std::span<const std::filesystem::path> packages) {
-  const auto text = source(file);
+                        const std::string& gripper, std::span<const std::filesystem::path> packages, bool chain) {
+  auto text = source(file);
+  const auto fingers = robotics::urdf::listed_names(gripper);
+  std::vector<std::string> standing;
+  if (chain && text && (tip.empty() || has_link(*text, tip))) {
+    auto kept = keep_chain(*text, tip, fingers);
+    text = std::move(kept.urdf);
+    standing = std::move(kept.standing);
+  }
   auto reading = text ? robotics::urdf::read(file, *text) : robotics::urdf::read(file, source);
   JudgedRobot judged{.robot = {}, .problems = std::move(reading.problems), .warnings = std::move(reading.warnings)};
+  for (Diagnostic& problem : judged.problems)
+    if (problem.code == "U0309" && text) say_which_chains(*text, problem);
   if (!reading.value) return judged;
   Judge judge{file, *reading.value, *text, judged};
+  if (!standing.empty()) judge.say_who_stands(standing);
   judge.take(take_meshes(file, *text, source, packages));
-  judge.judge(tip, robotics::urdf::listed_names(gripper));
+  judge.judge(tip, fingers);
   // Said more gravely by U0604.
   if (std::ranges::find(judged.problems, std::string_view{"U0604"}, &Diagnostic::code) != judged.problems.end())
     std::erase_if(judged.warnings, [](const Diagnostic& one) { return one.code == "U0504" || one.code == "U0508"; });

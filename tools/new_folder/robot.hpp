@@ -32,7 +32,7 @@ struct NewGripper {
 /// A robot that can be flown.
 struct NewRobot {
   std::string name;  ///< as its file says
-  std::string urdf;  ///< the file, as it is but for where its meshes are
+  std::string urdf;  ///< the file, as it is but for where its meshes are, and for what stands
   std::vector<std::pair<std::string, std::string>> meshes;  ///< beside it: names and octets
   robotics::Model model;  ///< of the arm: without what is the gripper's
   std::optional<NewGripper> hand;
@@ -59,10 +59,11 @@ struct JudgedRobot {
 
 /// Reads the file strictly and judges what its reader leaves open: tip, drives, ranges, what MuJoCo refuses, whether it can hold itself.
 /// `tip`: a link, or empty where only one end moves. `gripper`: joints (NAME,NAME) that are a subsystem of their own, at whose link the tool is
-/// then where none is named; or empty. `packages`: folders in which those of its meshes lie. Every posture that is looked at is the same at each call.
+/// then where none is named; or empty. `packages`: folders in which those of its meshes lie. `chain`: only what moves tool and gripper is the robot's,
+/// all other joints are fixed. Every posture that is looked at is the same at each call.
 [[nodiscard]] JudgedRobot judge_robot(const std::filesystem::path& file, const descriptor::FileSource& source,
                                       const std::string& tip, const std::string& gripper = {},
-                                      std::span<const std::filesystem::path> packages = {});
+                                      std::span<const std::filesystem::path> packages = {}, bool chain = false);
 
 /// What of it stands in the templates, and the files that are its own: URDF and scene of the page.
 [[nodiscard]] NewParts parts_of(const NewRobot& robot, const NewName& name);

@@ -10,6 +10,7 @@
 #include "hirosco/xml/reader.hpp"
 #include "robotics/shapes/mesh.hpp"
 #include "tools/new_folder/meshes.hpp"
+#include "tools/new_folder/other_values.hpp"
 
 namespace hirosco::tools {
 
@@ -21,18 +22,6 @@ namespace fs = std::filesystem;
 constexpr const char* package_file = "package.xml";
 /// Of a name in the new folder.
 constexpr std::size_t longest_stem = 60;
-
-/// Where a place of the reader's is among the octets: lines and columns count from 1, columns in characters.
-[[nodiscard]] std::size_t octet_of(std::string_view text, xml::Position at) {
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  std::size_t octet = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
-  for (int line = 1; line < at.line; ++line) octet = std::min(text.find('\n', octet), text.size() - 1) + 1;
-  const auto goes_on = [&] { return octet < text.size() && (static_cast<unsigned char>(text[octet]) & 0xC0U) == 0x80U; };
-  for (int column = 1; column < at.column && octet < text.size(); ++column)
-    do ++octet;
-    while (goes_on());
-  return octet;
-}
 
 /// Letters, digits, '_', '-' and '.', as no file system and no XML minds.
 [[nodiscard]] std::string plain_name(const fs::path& file) {
@@ -74,7 +63,7 @@ class Taking {
         if (link.name == "link")
           for (const xml::Element& part : link.children)
             if (part.name == "collision") take_all(link, part);
-    rename();
+    taken_.urdf = with_values(text_, renamed_);
     return std::move(taken_);
   }
 
@@ -82,11 +71,6 @@ class Taking {
   struct Root {
     fs::path folder;
     bool may_be_package;
-  };
-  /// Octets of a value, and what stands there then.
-  struct Renamed {
-    std::size_t at, length;
-    std::string name;
   };
 
   void take_all(const xml::Element& link, const xml::Element& element) {
@@ -98,10 +82,7 @@ class Taking {
       const auto* name = link.find("name");
       known = known_.emplace(named->value, take_one(*named, name != nullptr ? name->value : std::string{})).first;
     }
-    if (known->second.empty()) return;
-    const std::size_t at = octet_of(text_, named->value_at);
-    const auto end = at > 0 && at <= text_.size() ? text_.find(text_[at - 1], at) : std::string_view::npos;
-    if (end != std::string_view::npos) renamed_.push_back({at, end - at, known->second});
+    if (!known->second.empty()) renamed_.push_back({named->value_at, known->second});
   }
 
   /// Its name in the new folder; empty: it stays where it is, which was told.
@@ -180,17 +161,6 @@ class Taking {
     return "meshes/" + name;
   }
 
-  void rename() {
-    std::ranges::sort(renamed_, {}, &Renamed::at);
-    std::size_t done = 0;
-    for (const Renamed& each : renamed_) {
-      taken_.urdf += text_.substr(done, each.at - done);
-      taken_.urdf += each.name;
-      done = each.at + each.length;
-    }
-    taken_.urdf += text_.substr(done);
-  }
-
   const fs::path& file_;
   std::string_view text_;
   const descriptor::FileSource& source_;
@@ -198,7 +168,7 @@ class Taking {
   std::map<std::string, std::string> known_;  ///< names in the new folder by those in the file
   std::map<fs::path, std::string> taken_at_;  ///< the same by where they are
   std::set<std::string> names_;
-  std::vector<Renamed> renamed_;
+  std::vector<OtherValue> renamed_;
   std::size_t octets_{0};
   TakenMeshes taken_;
 };
