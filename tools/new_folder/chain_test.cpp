@@ -33,7 +33,7 @@ using ::testing::IsEmpty;
   for (int i = 1; i <= joints_of_right; ++i) text += joint(fmt::format("right_{}", i), std::exchange(parent, fmt::format("right_{}", i)));
   return text + "</robot>";
 }
-[[nodiscard]] JudgedRobot judged(const std::string& text, const std::string& tip, const std::string& gripper = "",
+[[nodiscard]] JudgedRobot judged_chain(const std::string& text, const std::string& tip, const std::string& gripper = "",
                                  bool chain = true) {
   return judge_robot(
       "two.urdf", [&](const std::filesystem::path&) -> Result<std::string> { return text; }, tip, gripper, {}, chain);
@@ -71,25 +71,25 @@ TEST(Chain, WhoIsFollowedOrFollowsAFingerMovesToo) {
 
 TEST(Chain, IsAnArmOfARobotWithMoreJointsThanAnArmMayHave) {
   const std::string text = two_arms(14);
-  const auto refused = judged(text, "hand", "", false);
+  const auto refused = judged_chain(text, "hand", "", false);
   ASSERT_FALSE(refused.robot);
   EXPECT_EQ(refused.problems.front().code, "U0309");
   EXPECT_THAT(refused.problems.front().hint, HasSubstr("--tip LINK --chain: right_14 (15 joints), thumb (4 joints)"));
-  const auto arm = judged(text, "hand");
+  const auto arm = judged_chain(text, "hand");
   ASSERT_TRUE(arm.robot) << arm.problems.front().message;
   EXPECT_EQ(arm.robot->model.joint_count(), 3);
   EXPECT_THAT(arm.robot->world_joints, ElementsAre("j_torso", "j_left", "j_hand"));
   const auto said = std::ranges::find(arm.warnings, std::string{"U0609"}, &descriptor::Diagnostic::code);
   ASSERT_NE(said, arm.warnings.end());
   EXPECT_THAT(said->message, HasSubstr("16 joints stand at 0"));
-  const auto hand = judged(text, "", "j_thumb");
+  const auto hand = judged_chain(text, "", "j_thumb");
   ASSERT_TRUE(hand.robot) << hand.problems.front().message;
   EXPECT_EQ(hand.robot->tip, "hand");
   EXPECT_EQ(hand.robot->world_joints.size(), 4u);
 }
 
 TEST(Chain, OfALinkThatIsNotThereIsSaid) {
-  const auto wrong = judged(two_arms(), "hnad");
+  const auto wrong = judged_chain(two_arms(), "hnad");
   ASSERT_FALSE(wrong.robot);
   EXPECT_THAT(wrong.problems.front().message, HasSubstr("no link 'hnad'"));
 }
