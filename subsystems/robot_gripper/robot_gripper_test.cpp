@@ -195,6 +195,23 @@ TEST_F(RobotGripperTest, GivesUpWhereSomethingIsInTheWay) {
   EXPECT_EQ(rig.inhibited(), 0u);
 }
 
+TEST_F(RobotGripperTest, WhoIsAheadOfItsPathIsNotObstructed) {
+  operate();
+  ASSERT_EQ(done("MOVE_TO", {0.02, 0.1}), "1 3 5:0001 7");
+  const auto open = rig.call("OPEN", {0.02});
+  cycle(300);
+  plant.pulled_open_n = 11.5;  // more than moves it, and so it goes ahead
+  double width_m = 0;
+  for (int i = 0; i < 1500; ++i) {
+    cycle();
+    if (i == 700) width_m = plant.width_m();
+  }
+  EXPECT_GT(width_m, 0.05) << "its path is at 0.03 then";
+  plant.pulled_open_n = 0;
+  finish(open);
+  EXPECT_EQ(rig.outcome(open), "1 3 5:0001 7");
+}
+
 TEST_F(RobotGripperTest, DoesOneThingAtATimeUntilItIsToldToHold) {
   operate();
   const auto grip = rig.call("GRIP", {10, 0.1});
