@@ -115,8 +115,7 @@ class Planner {
       const JointVector before = posture;
       robotics::Pose wanted = begin;
       wanted.position += way * (static_cast<double>(i) / steps);
-      if (!inverse_.solve(wanted, before, posture) || !within(posture) || !holds(posture) ||
-          !itself_.is_clear(posture))
+      if (!inverse_.solve(wanted, before, posture) || !within(posture) || !holds(posture) || !itself_.is_clear(posture))
         return false;
       for (int joint = 0; joint < model_.joint_count(); ++joint) {
         const double rate = std::abs(posture[joint] - before[joint]) / (way.norm() / steps) * line_m_s;
@@ -140,7 +139,8 @@ class Planner {
             limits.lower && limits.upper ? std::min(farthest, 0.3 * (*limits.upper - *limits.lower)) : farthest;
         to[joint] += far * (2 * static_cast<double>(random_()) / static_cast<double>(random_.max()) - 1);
       }
-      if ((loaded ? goes(from, to) : within(to) && holds(to) && itself_.is_clear(from, to)) && !lines(to).empty()) return numbers(to);
+      if ((loaded ? goes(from, to) : within(to) && holds(to) && itself_.is_clear(from, to)) && !lines(to).empty())
+        return numbers(to);
     }
     return {};
   }

@@ -156,11 +156,12 @@ TEST(MujocoRobot, MovesWhatMimicsAJointWithIt) {
 }
 
 TEST(MujocoRobot, EndsOfRangesHoldALightFingerThatIsDrivenAgainstThem) {
-  auto robot = MujocoRobot::make(R"(<robot name="finger"><link name="palm"/><link name="tip"><inertial><mass value="0.1"/>
+  auto robot =
+      MujocoRobot::make(R"(<robot name="finger"><link name="palm"/><link name="tip"><inertial><mass value="0.1"/>
     <inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/></inertial></link>
     <joint name="slide" type="prismatic"><parent link="palm"/><child link="tip"/><axis xyz="1 0 0"/>
     <limit lower="0" upper="0.04" velocity="1" effort="20"/></joint></robot>)")
-                   .value();
+          .value();
   ASSERT_TRUE(robot.place(std::array{0.03}));
   double farthest_m = 0;
   for (int i = 0; i < 500; ++i) {

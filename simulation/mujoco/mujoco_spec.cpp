@@ -327,7 +327,8 @@ std::expected<void, std::string> MujocoSpec::leave_out_pairs() {
           fmt::format("contact of links '{}' and '{}', which are at each other where all joints are at 0",
                       name_of(model, pair.first), name_of(model, pair.second)));
     }
-  if (hulls) left_out_.emplace_back("contact of links with each other where one is a mesh: hulls are larger than links");
+  if (hulls)
+    left_out_.emplace_back("contact of links with each other where one is a mesh: hulls are larger than links");
   for (const auto& [one, other] : pairs) {
     if (model.body_geomnum[one] == 0 || model.body_geomnum[other] == 0) continue;
     mjsExclude& exclude = *mjs_addExclude(spec_.get());

@@ -88,8 +88,8 @@ int make_new(const NewOptions& options) {
     fmt::print(stderr, "hirosco new: '{}' is no name for it: {}\n", options.name, name.error());
     return exit_usage;
   }
-  if (!kind->of_urdf &&
-      !(options.urdf.empty() && options.tip.empty() && options.gripper.empty() && options.packages.empty() && !options.chain)) {
+  if (!kind->of_urdf && !(options.urdf.empty() && options.tip.empty() && options.gripper.empty() &&
+                          options.packages.empty() && !options.chain)) {
     fmt::print(stderr,
                "hirosco new: --urdf, --tip, --gripper, --chain and --packages are of a robot: hirosco new robot {} "
                "--urdf FILE\n",

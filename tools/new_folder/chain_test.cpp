@@ -30,11 +30,12 @@ using ::testing::IsEmpty;
                      joint("hand", "left") + joint("thumb", "hand", "", "prismatic") +
                      joint("finger", "hand", "<mimic joint='j_thumb'/>", "prismatic");
   std::string parent = "torso";
-  for (int i = 1; i <= joints_of_right; ++i) text += joint(fmt::format("right_{}", i), std::exchange(parent, fmt::format("right_{}", i)));
+  for (int i = 1; i <= joints_of_right; ++i)
+    text += joint(fmt::format("right_{}", i), std::exchange(parent, fmt::format("right_{}", i)));
   return text + "</robot>";
 }
 [[nodiscard]] JudgedRobot judged_chain(const std::string& text, const std::string& tip, const std::string& gripper = "",
-                                 bool chain = true) {
+                                       bool chain = true) {
   return judge_robot(
       "two.urdf", [&](const std::filesystem::path&) -> Result<std::string> { return text; }, tip, gripper, {}, chain);
 }

@@ -79,8 +79,7 @@ void replace_all(std::string& text, std::string_view word, const std::string& by
       return fmt::format("{} cannot be written", made.back().string());
   }
   for (const auto& [as_in_template, text] : parts.files)
-    if (!make(named_text(as_in_template, name), text))
-      return fmt::format("{} cannot be written", made.back().string());
+    if (!make(named_text(as_in_template, name), text)) return fmt::format("{} cannot be written", made.back().string());
   for (const auto& [named, text] : parts.files_as_named)
     if (!make(named, text)) return fmt::format("{} cannot be written", made.back().string());
   if (failed) return fmt::format("{}: {}", from.string(), failed.message());

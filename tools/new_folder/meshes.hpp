@@ -20,7 +20,8 @@ inline constexpr std::size_t most_taken_meshes = 200, most_taken_octets = 64 * 1
 
 struct TakenMeshes {
   std::string urdf;  ///< as it was, but for the names of what is in `files`
-  std::vector<std::pair<std::string, std::string>> files;  ///< names beside the URDF file, "meshes/base.stl", and octets
+  std::vector<std::pair<std::string, std::string>>
+      files;  ///< names beside the URDF file, "meshes/base.stl", and octets
   /// Of each that stays where it is: in which place it is named, or wrong, and why. Its link is not seen (docs/urdf-errors.md).
   std::vector<descriptor::Diagnostic> warnings;
 };

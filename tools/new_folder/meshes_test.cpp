@@ -61,9 +61,8 @@ TEST(TakenMeshes, AreFoundInPackagesAboveTheFileAndOnlyTheirNamesAreOthers) {
 }
 
 TEST(TakenMeshes, AreFoundHoweverTheyAreNamed) {
-  const Disk disk{{"/robots/meshes/a.obj", box(1, 1, 1)},
-                  {"/ros/tool/A.OBJ", box(2, 1, 1)},
-                  {"/robots/package.xml", "<package/>"}};
+  const Disk disk{
+      {"/robots/meshes/a.obj", box(1, 1, 1)}, {"/ros/tool/A.OBJ", box(2, 1, 1)}, {"/robots/package.xml", "<package/>"}};
   const std::vector<fs::path> packages{"/ros"};
   for (const char* named : {"../meshes/a.obj", "file:///robots/meshes/a.obj", "/robots/meshes/a.obj",
                             "package://renamed/meshes/a.obj", "package://tool/A.OBJ", "model://tool/A.OBJ"}) {
@@ -75,15 +74,15 @@ TEST(TakenMeshes, AreFoundHoweverTheyAreNamed) {
 
 TEST(TakenMeshes, OfOneNameAreKeptApartAndHaveNamesThatNobodyMinds) {
   const Disk disk{{"/r/x/a.obj", box(1, 1, 1)}, {"/r/y/A.obj", box(2, 1, 1)}, {"/r/\xC3\xA4 &.obj", box(3, 1, 1)}};
-  const auto taken = take_meshes(
-      "/r/r.urdf",
-      "\xEF\xBB\xBF<robot n='\xC3\xA4'>" + link("x/a.obj") + link("y/A.obj", "\xC3\xA4\xC3\xB6") +
-          link("\xC3\xA4 &amp;.obj") + "</robot>",
-      on(disk));
+  const auto taken = take_meshes("/r/r.urdf",
+                                 "\xEF\xBB\xBF<robot n='\xC3\xA4'>" + link("x/a.obj") +
+                                     link("y/A.obj", "\xC3\xA4\xC3\xB6") + link("\xC3\xA4 &amp;.obj") + "</robot>",
+                                 on(disk));
   EXPECT_THAT(taken.files, ElementsAre(std::pair{std::string{"meshes/a.obj"}, box(1, 1, 1)},
                                        std::pair{std::string{"meshes/A_2.obj"}, box(2, 1, 1)},
                                        std::pair{std::string{"meshes/____.obj"}, box(3, 1, 1)}));
-  EXPECT_THAT(taken.urdf, HasSubstr("<collision><geometry><mesh filename=\"meshes/____.obj\"/></geometry></collision>"));
+  EXPECT_THAT(taken.urdf,
+              HasSubstr("<collision><geometry><mesh filename=\"meshes/____.obj\"/></geometry></collision>"));
   EXPECT_THAT(taken.urdf, HasSubstr("<visual><geometry><mesh filename=\"\xC3\xA4 &amp;.obj\"/></geometry></visual>"));
 }
 
@@ -129,7 +128,8 @@ TEST(TakenMeshes, AreBoundedInAll) {
   EXPECT_EQ(taken.files.size(), most_taken_meshes);
   ASSERT_EQ(taken.warnings.size(), 1u);
   EXPECT_EQ(taken.warnings.front().code, "U0707");
-  EXPECT_THAT(taken.urdf, HasSubstr(fmt::format("<mesh filename=\"{}.obj\"/></geometry></collision>", most_taken_meshes)));
+  EXPECT_THAT(taken.urdf,
+              HasSubstr(fmt::format("<mesh filename=\"{}.obj\"/></geometry></collision>", most_taken_meshes)));
 }
 
 /// Three links of 1 m in a row along x that turn about y; a post beside the base is in the last one's way: only its mesh says so.

@@ -18,8 +18,8 @@ namespace {
   const auto goes_on = [&] {
     return octet < text.size() && (static_cast<unsigned char>(text[octet]) & 0xC0U) == 0x80U;
   };
-  for (int column = 1; column < at.column && octet < text.size(); ++column)
-    do ++octet;
+  for (int column = 1; column < at.column && octet < text.size(); ++column) do
+      ++octet;
     while (goes_on());
   return octet;
 }
@@ -27,7 +27,8 @@ namespace {
 }  // namespace
 
 std::string with_values(std::string_view text, const std::vector<OtherValue>& values) {
-  std::map<std::size_t, std::pair<std::size_t, std::string_view>> in_order;  // by octets: where it ends, what it is then
+  std::map<std::size_t, std::pair<std::size_t, std::string_view>>
+      in_order;  // by octets: where it ends, what it is then
   for (const OtherValue& each : values) {
     const std::size_t at = octet_of(text, each.value_at);
     // As long as the quote before it does not come again.

@@ -88,15 +88,20 @@ class Taking {
   /// Its name in the new folder; empty: it stays where it is, which was told.
   [[nodiscard]] std::string take_one(const xml::Attribute& named, const std::string& link) {
     const auto stays = [&](const char* code, const std::string& why, std::string hint) {
-      taken_.warnings.push_back({file_, {named.value_at.line, named.value_at.column}, code,
-                                 fmt::format("mesh '{}' of link '{}' {}: this shape is not seen", named.value, link, why),
-                                 std::move(hint), std::max<std::size_t>(1, named.value.size()),
-                                 descriptor::Grade::Warning});
+      taken_.warnings.push_back(
+          {file_,
+           {named.value_at.line, named.value_at.column},
+           code,
+           fmt::format("mesh '{}' of link '{}' {}: this shape is not seen", named.value, link, why),
+           std::move(hint),
+           std::max<std::size_t>(1, named.value.size()),
+           descriptor::Grade::Warning});
       return std::string{};
     };
     const auto kind = robotics::mesh_kind(named.value);
     if (!kind)
-      return stays("U0702", "cannot be read: " + kind.error(), "convert it to STL, or give the link boxes and cylinders");
+      return stays("U0702", "cannot be read: " + kind.error(),
+                   "convert it to STL, or give the link boxes and cylinders");
     const auto places = places_of(named.value);
     if (places.empty())
       return stays("U0706", "is named in a way that nobody follows",
