@@ -24,7 +24,7 @@ using ::testing::IsEmpty;
       "link='{0}'/><axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='99'/>{3}</joint>\n",
       name, type, parent, more);
 }
-/// A torso with two arms; the left one has a hand of two fingers, the second of which follows the first.
+/// A torso with two arms; the left one has a hand whose finger follows its thumb.
 [[nodiscard]] std::string two_arms(int joints_of_right = 1) {
   std::string text = "<robot name='two'>\n<link name='base'/>" + joint("torso", "base") + joint("left", "torso") +
                      joint("hand", "left") + joint("thumb", "hand", "", "prismatic") +
@@ -76,12 +76,12 @@ TEST(Chain, IsAnArmOfARobotWithMoreJointsThanAnArmMayHave) {
   ASSERT_FALSE(refused.robot);
   EXPECT_EQ(refused.problems.front().code, "U0309");
   EXPECT_THAT(refused.problems.front().hint, HasSubstr("--tip LINK --chain: right_14 (15 joints), thumb (4 joints)"));
-  const auto arm = judged_chain(text, "hand");
-  ASSERT_TRUE(arm.robot) << arm.problems.front().message;
-  EXPECT_EQ(arm.robot->model.joint_count(), 3);
-  EXPECT_THAT(arm.robot->world_joints, ElementsAre("j_torso", "j_left", "j_hand"));
-  const auto said = std::ranges::find(arm.warnings, std::string{"U0609"}, &descriptor::Diagnostic::code);
-  ASSERT_NE(said, arm.warnings.end());
+  const auto left = judged_chain(text, "hand");
+  ASSERT_TRUE(left.robot) << left.problems.front().message;
+  EXPECT_EQ(left.robot->model.joint_count(), 3);
+  EXPECT_THAT(left.robot->world_joints, ElementsAre("j_torso", "j_left", "j_hand"));
+  const auto said = std::ranges::find(left.warnings, std::string{"U0609"}, &descriptor::Diagnostic::code);
+  ASSERT_NE(said, left.warnings.end());
   EXPECT_THAT(said->message, HasSubstr("16 joints stand at 0"));
   const auto hand = judged_chain(text, "", "j_thumb");
   ASSERT_TRUE(hand.robot) << hand.problems.front().message;
