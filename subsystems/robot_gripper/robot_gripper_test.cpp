@@ -200,14 +200,14 @@ TEST_F(RobotGripperTest, WhoIsAheadOfItsPathIsNotObstructed) {
   ASSERT_EQ(done("MOVE_TO", {0.02, 0.1}), "1 3 5:0001 7");
   const auto open = rig.call("OPEN", {0.02});
   cycle(300);
-  plant.pulled_open_n = 11.5;  // more than moves it, and so it goes ahead
-  double width_m = 0;
-  for (int i = 0; i < 1500; ++i) {
+  // By somebody who pulls harder than it holds, three times as fast as it goes.
+  for (int i = 0; i < 4500; ++i) {
+    plant.pulled_open_n = plant.closing_m_s() < -0.06 ? 8 : 12;
     cycle();
-    if (i == 700) width_m = plant.width_m();
+    if (i == 600) {
+      EXPECT_GT(plant.width_m(), 0.055) << "its path is at 0.036 then";
+    }
   }
-  EXPECT_GT(width_m, 0.05) << "its path is at 0.03 then";
-  plant.pulled_open_n = 0;
   finish(open);
   EXPECT_EQ(rig.outcome(open), "1 3 5:0001 7");
 }
