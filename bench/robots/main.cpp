@@ -45,13 +45,28 @@ int fly(const std::string& mission, const std::vector<int>& only, std::uint64_t 
   return all ? tools::exit_ok : tools::exit_finding;
 }
 
+/// One line, for whoever tries many.
+int fly_first(const std::string& mission, std::uint64_t seed) {
+  const auto task = bench::first_task(mission);
+  if (!task) {
+    fmt::print(stderr, "hirosco-robot-cases: {}: {}\n", mission, task.error());
+    return tools::exit_finding;
+  }
+  const auto found = bench::fly_case(mission, *task, bench::robot_cases(task->weakest).front(), seed);
+  fmt::print("{} of {} goals, {:.3f} mrad or mm off{}{}\n", found.goals, task->goals.size(), 1e3 * found.joint_rad,
+             found.problems.empty() ? "" : ": ", fmt::join(found.problems, "; "));
+  return found.reaches_goals() ? tools::exit_ok : tools::exit_finding;
+}
+
 int read_and_fly(int argc, char** argv) {
   CLI::App app{"Flies the arm of a mission on virtual time, in a world that differs from its URDF file",
                "hirosco-robot-cases"};
   std::string mission, seed = "1";
   std::vector<int> only;
+  bool first = false;
   app.add_option("mission", mission, "mission.xml of a folder that `hirosco new robot` made")->required();
   app.add_option("--only", only, "Only these cases, from 1 (1,6)")->delimiter(',')->check(CLI::Range(1, 6));
+  app.add_flag("--first", first, "Only to the goal of its README and back: any robot, in one line");
   app.add_option("--seed", seed, "Seed of everything random")->capture_default_str();
   std::uint64_t number = 1;
   try {
@@ -60,7 +75,7 @@ int read_and_fly(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? tools::exit_ok : tools::exit_usage;
   }
-  return fly(mission, only, number);
+  return first ? fly_first(mission, number) : fly(mission, only, number);
 }
 
 }  // namespace

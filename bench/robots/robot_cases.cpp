@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <random>
+#include <span>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@
 #include "robotics/motion/inverse_kinematics.hpp"
 #include "robotics/urdf/named_robot.hpp"
 #include "simulation/scenarios/flight.hpp"
+#include "tools/new_folder/postures.hpp"
 #include "tools/new_folder/robot.hpp"
 
 namespace hirosco::bench {
@@ -60,8 +62,12 @@ constexpr auto goal_limit = 90s, line_limit = 30s;
 /// What the robot can do by its file, with 2 kg at its tool.
 class Planner {
  public:
-  Planner(const robotics::Model& model, robotics::FrameId tip)
-      : model_{model}, tip_{tip}, dynamics_{model, robotics::Base::Fixed}, inverse_{model, tip, {}} {
+  Planner(const robotics::Model& model, robotics::FrameId tip, std::span<const robotics::LinkHull> hulls)
+      : model_{model},
+        tip_{tip},
+        dynamics_{model, robotics::Base::Fixed},
+        inverse_{model, tip, {}},
+        itself_{model, hulls} {
     dynamics_.set_gravity({0, 0, -gravity_m_s2});
     state_.qd = JointVector::Zero(model.joint_count());
   }
@@ -98,7 +104,7 @@ class Planner {
       const JointVector between = from + (to - from) * (static_cast<double>(i) / looks);
       if (!within(between) || !holds(between)) return false;
     }
-    return true;
+    return itself_.is_clear(from, to);
   }
   /// Whether the tool goes straight so far from there, with half of each joint's velocity.
   [[nodiscard]] bool goes_straight(const JointVector& from, const Vector3& way) {
@@ -109,7 +115,8 @@ class Planner {
       const JointVector before = posture;
       robotics::Pose wanted = begin;
       wanted.position += way * (static_cast<double>(i) / steps);
-      if (!inverse_.solve(wanted, before, posture) || !within(posture) || !holds(posture)) return false;
+      if (!inverse_.solve(wanted, before, posture) || !within(posture) || !holds(posture) || !itself_.is_clear(posture))
+        return false;
       for (int joint = 0; joint < model_.joint_count(); ++joint) {
         const double rate = std::abs(posture[joint] - before[joint]) / (way.norm() / steps) * line_m_s;
         if (rate > 0.5 * *model_.joints()[static_cast<std::size_t>(joint)].limits.velocity) return false;
@@ -132,7 +139,8 @@ class Planner {
             limits.lower && limits.upper ? std::min(farthest, 0.3 * (*limits.upper - *limits.lower)) : farthest;
         to[joint] += far * (2 * static_cast<double>(random_()) / static_cast<double>(random_.max()) - 1);
       }
-      if ((loaded ? goes(from, to) : within(to) && holds(to)) && !lines(to).empty()) return numbers(to);
+      if ((loaded ? goes(from, to) : within(to) && holds(to) && itself_.is_clear(from, to)) && !lines(to).empty())
+        return numbers(to);
     }
     return {};
   }
@@ -154,6 +162,7 @@ class Planner {
   robotics::FrameId tip_;
   robotics::Dynamics dynamics_;
   robotics::InverseKinematics inverse_;
+  tools::SelfClearance itself_;
   robotics::State state_;
   std::minstd_rand random_{1};
 };
@@ -315,13 +324,24 @@ std::vector<RobotCase> robot_cases(double weakest) {
           {"2 kg at the tool, declared", {payload}, true, payload_kg}};
 }
 
+// Not of numbers that are none.
+bool CaseFound::reaches_goals() const noexcept {
+  return problems.empty() && goals > 0 && joint_rad <= most_joint_error_rad;
+}
 bool CaseFound::holds() const noexcept {
-  // Not of numbers that are none.
-  return problems.empty() && goals > 0 && lines > 0 && joint_rad <= most_joint_error_rad &&
-         tool_m <= most_tool_error_m && beside_m <= most_beside_line_m;
+  return reaches_goals() && lines > 0 && tool_m <= most_tool_error_m && beside_m <= most_beside_line_m;
 }
 
-std::expected<RobotTask, std::string> robot_task(const std::filesystem::path& file) {
+namespace {
+
+/// What is known of a mission's arm by its file, and where it goes first.
+struct Asked {
+  Known arm;
+  std::vector<double> posture;
+  RobotTask task;
+  std::vector<robotics::LinkHull> hulls;
+};
+[[nodiscard]] std::expected<Asked, std::string> asked(const std::filesystem::path& file) {
   const auto source = descriptor::file_system();
   const auto reading = descriptor::read_mission(file, source);
   if (!reading.value) return std::unexpected{fmt::format("{} cannot be read", file.string())};
@@ -332,26 +352,41 @@ std::expected<RobotTask, std::string> robot_task(const std::filesystem::path& fi
     return one.subsystem == member->subsystem.name && one.device == device_name;
   });
   if (device == devices.end()) return std::unexpected{std::string{"its arm has no simulated device"}};
-  const auto arm = known(member->subsystem);
+  auto arm = known(member->subsystem);
   if (!arm) return std::unexpected{arm.error()};
   // Where it begins and its README's goal: what was made of the same file.
-  const auto judged = tools::judge_robot(
-      "", [&](const std::filesystem::path&) -> Result<std::string> { return arm->robot.text; }, arm->tip_name,
-      arm->fixed);
-  if (!judged.robot) return std::unexpected{std::string{"hirosco new robot refuses its file"}};
-  RobotTask task;
+  const auto judged = tools::judge_robot(arm->robot.file, source, arm->tip_name, arm->fixed);
+  auto shapes = robotics::read_collision_shapes(arm->robot.file, arm->robot.text, source);
+  if (!judged.robot || !shapes.value) return std::unexpected{std::string{"hirosco new robot refuses its file"}};
+  Asked made{std::move(*arm), judged.robot->posture, {}, std::move(shapes.value->hulls)};
+  RobotTask& task = made.task;
   task.subsystem = member->subsystem.name;
   task.device = device->name;
-  task.tip = arm->tip_name;
+  task.tip = made.arm.tip_name;
   task.weakest = HUGE_VAL;
-  for (const auto& joint : arm->robot.model.joints()) {
+  for (const auto& joint : made.arm.robot.model.joints()) {
     task.joints.push_back(joint.name);
     task.weakest = std::min(task.weakest, *joint.limits.effort);
   }
-  Planner planner{arm->robot.model, arm->tip};
-  JointVector last = vector_of(judged.robot->posture);
-  for (const auto& goal : {judged.robot->goal, judged.robot->posture})
-    task.goals.push_back({goal, planner.goes(vector_of(goal), last)});
+  for (const auto& goal : {judged.robot->goal, judged.robot->posture}) task.goals.push_back({goal, false});
+  return made;
+}
+
+}  // namespace
+
+std::expected<RobotTask, std::string> first_task(const std::filesystem::path& file) {
+  auto made = asked(file);
+  if (!made) return std::unexpected{std::move(made.error())};
+  return std::move(made->task);
+}
+
+std::expected<RobotTask, std::string> robot_task(const std::filesystem::path& file) {
+  auto made = asked(file);
+  if (!made) return std::unexpected{std::move(made.error())};
+  RobotTask& task = made->task;
+  Planner planner{made->arm.robot.model, made->arm.tip, made->hulls};
+  JointVector last = vector_of(made->posture);
+  for (auto& goal : task.goals) goal.loaded = planner.goes(vector_of(goal.joints), last);
   for (std::size_t i = 0; i < most_goals; ++i)
     if (const auto next = planner.another(last, task.goals.back().loaded); !next.empty()) {
       task.goals.push_back({next, true});
@@ -364,7 +399,7 @@ std::expected<RobotTask, std::string> robot_task(const std::filesystem::path& fi
   for (const Vector3& way : planner.lines(last)) task.lines.push_back({way.x(), way.y(), way.z()});
   if (task.lines.empty() || !task.goals.back().loaded)
     return std::unexpected{std::string{"no posture was found from which its tool goes straight"}};
-  return task;
+  return std::move(made->task);
 }
 
 CaseFound fly_case(const std::filesystem::path& mission, const RobotTask& task, const RobotCase& wanted,

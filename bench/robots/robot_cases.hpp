@@ -39,7 +39,9 @@ struct RobotTask {
       goals;  ///< of MOVE_J, one after the other; the last one is where lines begin, and whoever carries something
   std::vector<std::vector<double>> lines;  ///< x y z, m: there and back; such as joints, velocities and drives permit
 };
-/// In words why there is none.
+/// Of any robot: to the goal of its README and back. In words why there is none.
+[[nodiscard]] std::expected<RobotTask, std::string> first_task(const std::filesystem::path& mission);
+/// Further goals, with a load, too, and lines. In words why there is none.
 [[nodiscard]] std::expected<RobotTask, std::string> robot_task(const std::filesystem::path& mission);
 
 struct CaseFound {
@@ -48,7 +50,8 @@ struct CaseFound {
   int goals{0}, lines{0};  ///< that were reached
   std::vector<std::string> problems;
 
-  [[nodiscard]] bool holds() const noexcept;
+  [[nodiscard]] bool reaches_goals() const noexcept;  ///< of first_task()
+  [[nodiscard]] bool holds() const noexcept;  ///< of robot_task()
 };
 [[nodiscard]] CaseFound fly_case(const std::filesystem::path& mission, const RobotTask& task, const RobotCase& wanted,
                                  std::uint64_t seed);

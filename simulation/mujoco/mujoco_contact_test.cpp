@@ -256,5 +256,27 @@ TEST(MujocoContact, MeshesThatCannotBeReadAreToldAndCostNothingElse) {
   }
 }
 
+TEST(MujocoContact, LinksThatAreMeshesMeetObstaclesAndNoLinks) {
+  const MeshSource meshes = [](const std::string&) -> std::expected<std::string, std::string> { return stl(1); };
+  for (const bool mesh : {false, true}) {
+    const std::string shape =
+        collision(mesh ? R"(<mesh filename="cube.stl" scale="0.1 0.1 0.1"/>)" : R"(<box size="0.2 0.2 0.2"/>)");
+    std::string text = R"(<robot name="train"><link name="base"/>)";
+    for (const char* name : {"one", "two", "three"}) text += link(name, shape);
+    text +=
+        slide("a", "base", "one", "1 0 0") + slide("b", "one", "two", "1 0 0") + slide("c", "two", "three", "1 0 0");
+    auto robot = MujocoRobot::make(text + "</robot>", meshes);
+    ASSERT_TRUE(robot) << robot.error();
+    ASSERT_EQ(robot->left_out().size(), 1U);
+    EXPECT_EQ(robot->left_out().front().starts_with("contact of links with each other where one is a mesh"), mesh)
+        << robot->left_out().front();
+    ASSERT_TRUE(robot->place(std::array{0.0, 0.3, 0.3}));
+    ASSERT_TRUE(
+        robot->put({.name = "wall", .shape = {.kind = ShapeKind::Box, .sizes = {0.1, 1, 1}, .place_m = {0.76, 0, 0}}}));
+    run(*robot, std::array{20.0, 20.0, 20.0}, 1000);  // of which the first two have nothing
+    EXPECT_GT(robot->touched().normal_n, 1) << (mesh ? "mesh" : "box");
+  }
+}
+
 }  // namespace
 }  // namespace hirosco::simulation

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -152,6 +153,25 @@ TEST(MujocoRobot, MovesWhatMimicsAJointWithIt) {
   ASSERT_TRUE(robot->place(std::array{1.0}));
   for (int i = 0; i < 100; ++i) robot->step(none, Brakes::Open, 1ms);
   EXPECT_NEAR(robot->position(0), 1, 1e-9);
+}
+
+TEST(MujocoRobot, EndsOfRangesHoldALightFingerThatIsDrivenAgainstThem) {
+  auto robot =
+      MujocoRobot::make(R"(<robot name="finger"><link name="palm"/><link name="tip"><inertial><mass value="0.1"/>
+    <inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/></inertial></link>
+    <joint name="slide" type="prismatic"><parent link="palm"/><child link="tip"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="0.04" velocity="1" effort="20"/></joint></robot>)")
+          .value();
+  ASSERT_TRUE(robot.place(std::array{0.03}));
+  double farthest_m = 0;
+  for (int i = 0; i < 500; ++i) {
+    robot.step(std::array{10.0}, Brakes::Open, 1ms);
+    farthest_m = std::max(farthest_m, robot.position(0));
+  }
+  // 100 m/s2 by (2 ms)^2 are 0.4 mm, and it comes with 1.4 m/s.
+  EXPECT_GT(robot.position(0), 0.0399);
+  EXPECT_LT(robot.position(0), 0.0405) << "20 ms would be centimetres";
+  EXPECT_LT(farthest_m, 0.043);
 }
 
 TEST(MujocoRobot, TakesTheOrderOfJointsFromTheFile) {

@@ -28,6 +28,9 @@ constexpr int no_slip_iterations = 10;
 constexpr double near_m = 0.01;
 /// Of link on link. What touches an obstacle has the obstacle's.
 constexpr double link_friction = 0.5;
+/// Bits of who meets whom. The hull of a link's mesh is larger than the link, centimetres between two that are bent around each other: it meets
+/// what is no link.
+constexpr int of_links = 1, of_meshes = 2, of_others = 4;
 constexpr const char* obstacle_mark = "obstacle ";
 constexpr const char* loose_mark = "loose ";
 
@@ -116,6 +119,12 @@ mjsGeom& add(const Shape& shape, double friction, int priority, mjsBody& body, c
   geom.friction[0] = friction;
   return geom;
 }
+mjsGeom& add_other(const Shape& shape, double friction, int priority, mjsBody& body, const std::string& name) {
+  mjsGeom& geom = add(shape, friction, priority, body, name);
+  geom.contype = of_links | of_others;
+  geom.conaffinity = of_links | of_meshes;
+  return geom;
+}
 
 /// Its friction goes before that of whatever it touches.
 void add(const LooseBody& loose, mjSpec& spec) {
@@ -126,7 +135,7 @@ void add(const LooseBody& loose, mjSpec& spec) {
   mjs_addFreeJoint(&body);
   Shape shape = standing.shape;
   shape.place_m = shape.turned_rad = {};
-  mjsGeom& geom = add(shape, standing.friction, 2, body, loose_mark + standing.name);
+  mjsGeom& geom = add_other(shape, standing.friction, 2, body, loose_mark + standing.name);
   geom.mass = loose.mass_kg;
 }
 
@@ -248,7 +257,10 @@ void MujocoSpec::add_shapes(const Element& robot, const MeshSource& meshes) {
       }
       shape.mesh = std::move(*name);
     }
-    add(shape, link_friction, 0, *body);
+    mjsGeom& geom = add(shape, link_friction, 0, *body);
+    if (shape.kind != ShapeKind::Mesh) continue;
+    geom.contype = of_meshes;
+    geom.conaffinity = of_others;
   }
 }
 
@@ -292,6 +304,11 @@ std::expected<void, std::string> MujocoSpec::leave_out_pairs() {
     for (int j = 1; j < model.nbody; ++j)
       if (model.body_weldid[j] == 0) pairs.insert(std::minmax({i, j}));
   }
+  const auto meet = [&](int one, int other) {
+    return (model.geom_contype[one] & model.geom_conaffinity[other]) != 0 ||
+           (model.geom_contype[other] & model.geom_conaffinity[one]) != 0;
+  };
+  bool hulls = false;
   for (int i = 0; i < model.ngeom; ++i)
     for (int j = i + 1; j < model.ngeom; ++j) {
       const std::pair pair{model.geom_bodyid[i], model.geom_bodyid[j]};
@@ -300,12 +317,18 @@ std::expected<void, std::string> MujocoSpec::leave_out_pairs() {
         return model.body_weldid[model.body_parentid[carried]] == carrier;
       };
       if (one == other || carries(one, other) || carries(other, one)) continue;
+      if (!meet(i, j)) {
+        hulls = true;
+        continue;
+      }
       if (pairs.contains(pair) || mj_geomDistance(&model, data.get(), i, j, 2 * near_m, nullptr) > near_m) continue;
       pairs.insert(pair);
       left_out_.push_back(
           fmt::format("contact of links '{}' and '{}', which are at each other where all joints are at 0",
                       name_of(model, pair.first), name_of(model, pair.second)));
     }
+  if (hulls)
+    left_out_.emplace_back("contact of links with each other where one is a mesh: hulls are larger than links");
   for (const auto& [one, other] : pairs) {
     if (model.body_geomnum[one] == 0 || model.body_geomnum[other] == 0) continue;
     mjsExclude& exclude = *mjs_addExclude(spec_.get());
@@ -322,8 +345,8 @@ std::expected<MujocoModel, std::string> MujocoSpec::compile(std::span<const Obst
   if (spec == nullptr) return std::unexpected{"MuJoCo does not copy the robot"};
   // Each is a body of its own: the base is no neighbour of what stands around it.
   for (const Obstacle& obstacle : obstacles)
-    add(obstacle.shape, obstacle.friction, 1, *mjs_addBody(mjs_findBody(spec.get(), "world"), nullptr),
-        obstacle_mark + obstacle.name);
+    add_other(obstacle.shape, obstacle.friction, 1, *mjs_addBody(mjs_findBody(spec.get(), "world"), nullptr),
+              obstacle_mark + obstacle.name);
   for (const LooseBody& body : bodies) add(body, *spec);
   if (!bodies.empty()) spec->option.noslip_iterations = no_slip_iterations;
   MujocoModel model{mj_compile(spec.get(), Files{meshes_}.get())};

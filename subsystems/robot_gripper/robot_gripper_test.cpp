@@ -195,6 +195,23 @@ TEST_F(RobotGripperTest, GivesUpWhereSomethingIsInTheWay) {
   EXPECT_EQ(rig.inhibited(), 0u);
 }
 
+TEST_F(RobotGripperTest, WhoIsAheadOfItsPathIsNotObstructed) {
+  operate();
+  ASSERT_EQ(done("MOVE_TO", {0.02, 0.1}), "1 3 5:0001 7");
+  const auto open = rig.call("OPEN", {0.02});
+  cycle(300);
+  // By somebody who pulls harder than it holds, three times as fast as it goes.
+  for (int i = 0; i < 4500; ++i) {
+    plant.pulled_open_n = plant.closing_m_s() < -0.06 ? 8 : 12;
+    cycle();
+    if (i == 600) {
+      EXPECT_GT(plant.width_m(), 0.055) << "its path is at 0.036 then";
+    }
+  }
+  finish(open);
+  EXPECT_EQ(rig.outcome(open), "1 3 5:0001 7");
+}
+
 TEST_F(RobotGripperTest, DoesOneThingAtATimeUntilItIsToldToHold) {
   operate();
   const auto grip = rig.call("GRIP", {10, 0.1});

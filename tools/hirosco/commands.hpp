@@ -195,6 +195,9 @@ struct NewOptions {
   std::string urdf;  ///< of a robot: its file; empty = the one that comes with the template
   std::string tip;  ///< of a robot: link; empty = the only end that moves
   std::string gripper;  ///< of a robot: joints that are a subsystem of their own; empty = none
+  bool chain{false};  ///< of a robot: what does not move tip or gripper stands still
+  std::vector<std::string>
+      packages;  ///< of a robot: folders in which those of its meshes lie, package://A/B is A/B there
 };
 /// A folder of one's own to begin with (adr 0109).
 int make_new(const NewOptions& options);

@@ -114,6 +114,10 @@ int read_and_do(int argc, char** argv) {
                           "Of a robot: the link that is its tool; by default the only end that moves");
   new_command->add_option("--gripper", new_options.gripper,
                           "Of a robot: joints that drive fingers (NAME,NAME): a subsystem of their own");
+  new_command->add_flag("--chain", new_options.chain,
+                        "Of a robot: only the joints that move tip and gripper are flown, all others stand at 0");
+  new_command->add_option("--packages", new_options.packages,
+                          "Of a robot: a folder in which its meshes' packages lie, where they are not above its file");
 
   SimulateOptions simulate_options;
   std::string simulate_for = "10s";

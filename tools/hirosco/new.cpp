@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <sstream>
 
 #include "hirosco/utilities/os/installation.hpp"
 #include "tools/hirosco/commands.hpp"
@@ -38,12 +39,24 @@ void say_what_is_next(const NewKind& kind, const std::string& folder, const std:
 
 constexpr const char* world_program = "hirosco-sim-mujoco";
 
+/// Where packages are whose meshes a file names: those that were said, then those of ROS, where there is any.
+[[nodiscard]] std::vector<fs::path> package_folders(const NewOptions& options) {
+  std::vector<fs::path> folders{options.packages.begin(), options.packages.end()};
+  for (const auto& [variable, below] : {std::pair{"ROS_PACKAGE_PATH", ""}, {"AMENT_PREFIX_PATH", "share"}}) {
+    const char* value = std::getenv(variable);
+    std::istringstream listed{value != nullptr ? value : ""};
+    for (std::string folder; std::getline(listed, folder, ':');)
+      if (!folder.empty()) folders.push_back(fs::path{folder} / below);
+  }
+  return folders;
+}
+
 /// Of a file of one's own, or of the one that comes with the template. Nothing: told why.
 [[nodiscard]] std::optional<NewParts> parts_of_robot(const NewOptions& options, const NewName& name,
                                                      const fs::path& from) {
   const auto source = descriptor::file_system();
   const fs::path file = options.urdf.empty() ? referred(from, "page/newpart.urdf") : fs::path{options.urdf};
-  JudgedRobot judged = judge_robot(file, source, options.tip, options.gripper);
+  JudgedRobot judged = judge_robot(file, source, options.tip, options.gripper, package_folders(options), options.chain);
   const bool colour = ::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   for (const auto* list : {&judged.problems, &judged.warnings})
     for (const auto& problem : *list) fmt::print(stderr, "{}", descriptor::render(problem, source, colour));
@@ -75,9 +88,16 @@ int make_new(const NewOptions& options) {
     fmt::print(stderr, "hirosco new: '{}' is no name for it: {}\n", options.name, name.error());
     return exit_usage;
   }
-  if (!kind->of_urdf && !(options.urdf.empty() && options.tip.empty() && options.gripper.empty())) {
-    fmt::print(stderr, "hirosco new: --urdf, --tip and --gripper are of a robot: hirosco new robot {} --urdf FILE\n",
+  if (!kind->of_urdf && !(options.urdf.empty() && options.tip.empty() && options.gripper.empty() &&
+                          options.packages.empty() && !options.chain)) {
+    fmt::print(stderr,
+               "hirosco new: --urdf, --tip, --gripper, --chain and --packages are of a robot: hirosco new robot {} "
+               "--urdf FILE\n",
                options.name);
+    return exit_usage;
+  }
+  if (options.chain && options.tip.empty() && options.gripper.empty()) {
+    fmt::print(stderr, "hirosco new: --chain is of a tool: --tip LINK --chain\n");
     return exit_usage;
   }
   const fs::path from = find_shipped("templates") / kind->name;

@@ -5,14 +5,15 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
-#include <random>
+#include <iterator>
+#include <span>
 #include <utility>
 
 #include "hirosco/xml/reader.hpp"
-#include "robotics/dynamics/dynamics.hpp"
-#include "robotics/motion/inverse_kinematics.hpp"
 #include "robotics/urdf/named_robot.hpp"
+#include "tools/new_folder/chain.hpp"
+#include "tools/new_folder/meshes.hpp"
+#include "tools/new_folder/postures.hpp"
 #include "tools/new_folder/robot.hpp"
 
 namespace hirosco::tools {
@@ -22,118 +23,43 @@ namespace {
 using descriptor::Diagnostic;
 using robotics::JointVector;
 
-constexpr double gravity_m_s2 = 9.81;
-/// Of a joint's effort at rest: the arm's own limit is 0.8.
-constexpr double light_enough = 0.5, most_load = 0.7;
-/// What motions may take besides, and the most that they need.
-constexpr double share_for_motion = 0.75, most_acceleration = 4, least_acceleration = 0.1;
-constexpr int postures_looked_at = 400;
-/// From the ends of a range, so that measured is within it.
-constexpr double inset_share = 0.05;
-constexpr double goal_share = 0.2, goal_farthest = 0.3;
-/// How far a goal may be on the way to another posture.
-constexpr double bent_share = 0.6;
-/// Where a joint turns on and on, and where postures and pages end.
-constexpr double turn_rad = 3.14;
 /// Of moments: the world takes what is on the border, and nothing beyond.
 constexpr double rounding = 1e-12;
 /// kg, kg m2: what is less is nothing to the world, which takes a link without any moment, but none with two of them.
 constexpr double least_mass = 1e-15, least_moment = 1e-14;
-
-struct Range {
-  double lower, upper;
-};
-[[nodiscard]] Range range_of(const robotics::Model::Joint& joint) {
-  return {joint.limits.lower.value_or(-turn_rad), joint.limits.upper.value_or(turn_rad)};
-}
-
-/// What gravity and dry friction take of drives at rest.
-class Statics {
- public:
-  struct Load {
-    double share{0};
-    std::size_t joint{0};
-    double needed{0};
-  };
-
-  Statics(const robotics::Model& model, robotics::FrameId tip)
-      : model_{model}, tip_{tip}, dynamics_{model, robotics::Base::Fixed} {
-    dynamics_.set_gravity({0, 0, -gravity_m_s2});
-    state_.qd = JointVector::Zero(model.joint_count());
-  }
-
-  /// Of the joint that has the least left.
-  [[nodiscard]] Load load(const JointVector& posture) {
-    state_.q = posture;
-    dynamics_.update(state_);
-    dynamics_.bias(held_);
-    Load most;
-    for (std::size_t i = 0; i < model_.joints().size(); ++i) {
-      const auto& joint = model_.joints()[i];
-      const double needed = std::abs(held_[static_cast<Eigen::Index>(i)]) + joint.friction;
-      const double share = needed / *joint.limits.effort;
-      if (share >= most.share) most = {share, i, needed};
-    }
-    return most;
-  }
-  /// Of all joints at once, in the posture of the last load(): whichever way each goes.
-  [[nodiscard]] double acceleration() {
-    dynamics_.mass_matrix(matrix_);
-    double least = most_acceleration;
-    for (std::size_t i = 0; i < model_.joints().size(); ++i) {
-      const auto& joint = model_.joints()[i];
-      const auto row = static_cast<Eigen::Index>(i);
-      const double left = share_for_motion * *joint.limits.effort - std::abs(held_[row]) - joint.friction;
-      least = std::min(least, left / matrix_.row(row).cwiseAbs().sum());
-    }
-    return least;
-  }
-  [[nodiscard]] robotics::Vector3 tip() const { return dynamics_.frame_pose(tip_).position; }
-
- private:
-  const robotics::Model& model_;
-  robotics::FrameId tip_;
-  robotics::Dynamics dynamics_;
-  robotics::State state_;
-  robotics::Coordinates held_;
-  robotics::MassMatrix matrix_;
-};
-
-/// Whether the tool goes straight from there, along each axis to both sides, without haste of any joint: README and page try that next.
-/// Of arms that cannot keep their tool's orientation nobody asks it.
-[[nodiscard]] bool goes_straight(const robotics::Model& model, robotics::FrameId tip, const JointVector& from) {
-  constexpr double way_m = 0.03, speed_m_s = 0.1, share_of_speed = 0.5;
-  constexpr double from_ends = 0.03;  // of ranges, rad or m
-  constexpr int joints_of_a_pose = 6;
-  if (model.joint_count() < joints_of_a_pose) return true;
-  robotics::InverseKinematics inverse{model, tip, {.tolerance = 1e-6, .most_iterations = 20}};
-  robotics::Dynamics dynamics{model, robotics::Base::Fixed};
-  robotics::State state;
-  state.q = from;
-  state.qd = JointVector::Zero(model.joint_count());
-  dynamics.update(state);
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {way_m, -way_m}) {
-      robotics::Pose wanted = dynamics.frame_pose(tip);
-      wanted.position[axis] += side;
-      JointVector there = from;
-      if (!inverse.solve(wanted, from, there)) return false;
-      for (int i = 0; i < model.joint_count(); ++i) {
-        const auto& joint = model.joints()[static_cast<std::size_t>(i)];
-        const auto [lower, upper] = range_of(joint);
-        const double most = share_of_speed * *joint.limits.velocity * way_m / speed_m_s;
-        if (std::abs(there[i] - from[i]) > most || there[i] < lower + from_ends || there[i] > upper - from_ends)
-          return false;
-      }
-    }
-  return true;
-}
 
 class Judge {
  public:
   Judge(std::filesystem::path file, robotics::urdf::Robot robot, std::string text, JudgedRobot& judged)
       : file_{std::move(file)}, robot_{std::move(robot)}, text_{std::move(text)}, judged_{judged} {
     if (auto tree = xml::read_tree(text_)) root_ = std::move(*tree);
+  }
+
+  void say_who_stands(const std::vector<std::string>& joints) {
+    constexpr std::size_t most_named = 8;
+    const std::span named{joints.data(), std::min(joints.size(), most_named)};
+    warning(place(root_), "U0609",
+            fmt::format("{} joints stand at 0, fixed in the file that is written: {}{}", joints.size(),
+                        fmt::join(named, ", "), joints.size() > most_named ? ", ..." : ""),
+            "what they move is part of what carries it; the tool of --tip is moved by the others alone");
+  }
+
+  void take(TakenMeshes meshes) {
+    std::ranges::move(meshes.warnings, std::back_inserter(judged_.warnings));
+    meshes.warnings.clear();
+    taken_ = std::move(meshes);
+    // What comes along is where the file will name it; what stays where it is was told.
+    const auto beside = [&](const std::filesystem::path& wanted) -> Result<std::string> {
+      const auto found = std::ranges::find_if(
+          taken_.files, [&](const auto& mesh) { return file_.parent_path() / mesh.first == wanted; });
+      if (found == taken_.files.end()) return fail(ErrorCode::NotFound, "does not exist");
+      return found->second;
+    };
+    auto reading = robotics::read_collision_shapes(file_, taken_.urdf, beside);
+    std::ranges::move(reading.problems, std::back_inserter(judged_.problems));
+    for (Diagnostic& warning : reading.warnings)
+      if (warning.code == "U0703") judged_.warnings.push_back(std::move(warning));
+    if (reading.value) hulls_ = std::move(reading.value->hulls);
   }
 
   void judge(std::string wanted_tip, const std::vector<std::string>& fingers) {
@@ -162,7 +88,8 @@ class Judge {
     const auto frame = model->find_frame(tip);
     if (!frame) return;
     NewRobot made{.name = robot_.name,
-                  .urdf = text_,
+                  .urdf = std::move(taken_.urdf),
+                  .meshes = std::move(taken_.files),
                   .model = *model,
                   .hand = std::move(gripper),
                   .world_joints = std::move(world_joints),
@@ -283,87 +210,29 @@ class Judge {
     }
   }
 
-  [[nodiscard]] JointVector random_posture(const robotics::Model& model) {
-    JointVector posture;
-    posture.resize(model.joint_count());
-    for (int i = 0; i < model.joint_count(); ++i) {
-      const auto [lower, upper] = inset(model.joints()[static_cast<std::size_t>(i)]);
-      const double part =
-          static_cast<double>(random_() - random_.min()) / static_cast<double>(random_.max() - random_.min());
-      posture[i] = lower + part * (upper - lower);
-    }
-    return posture;
-  }
-  [[nodiscard]] static Range inset(const robotics::Model::Joint& joint) {
-    const auto [lower, upper] = range_of(joint);
-    const double in = inset_share * (upper - lower);
-    return {lower + in, upper - in};
-  }
-  /// All joints at 0, or as near as their ranges let them.
-  [[nodiscard]] static JointVector near_zero(const robotics::Model& model) {
-    JointVector posture;
-    posture.resize(model.joint_count());
-    for (int i = 0; i < model.joint_count(); ++i) {
-      const auto [lower, upper] = inset(model.joints()[static_cast<std::size_t>(i)]);
-      posture[i] = std::clamp(0.0, lower, upper);
-    }
-    return posture;
-  }
-  [[nodiscard]] static JointVector middle(const robotics::Model& model) {
-    JointVector posture;
-    posture.resize(model.joint_count());
-    for (int i = 0; i < model.joint_count(); ++i) {
-      const auto [lower, upper] = range_of(model.joints()[static_cast<std::size_t>(i)]);
-      posture[i] = (lower + upper) / 2;
-    }
-    return posture;
-  }
-  [[nodiscard]] static std::vector<double> numbers(const JointVector& posture) {
-    std::vector<double> rounded;
-    for (const double value : posture) rounded.push_back(std::round(value * 1e4) / 1e4);
-    return rounded;
-  }
-
   /// Where it begins and goes, how fast it may speed up. False: it holds itself nowhere.
   [[nodiscard]] bool find_postures(NewRobot& made, robotics::FrameId tip) {
     const robotics::Model& model = made.model;
-    Statics statics{model, tip};
-    JointVector best = near_zero(model);
-    Statics::Load least = statics.load(best);
-    const auto consider = [&](const JointVector& posture) {
-      const auto load = statics.load(posture);
-      if (least.share > light_enough && load.share < least.share) best = posture, least = load;
-      return load;
-    };
-    static_cast<void>(consider(middle(model)));
-    double acceleration = most_acceleration;
-    std::vector<int> too_heavy(model.joints().size(), 0);
-    for (int i = 0; i < postures_looked_at; ++i) {
-      const auto load = consider(random_posture(model));
-      made.reach_m = std::max(made.reach_m, statics.tip().norm());
-      if (load.share > most_load) ++too_heavy[load.joint];
-      else acceleration = std::min(acceleration, statics.acceleration());
-    }
-    const auto& weakest = model.joints()[least.joint];
-    if (least.share > most_load) {
+    const FoundPostures found = tools::find_postures(model, tip, hulls_);
+    const auto& weakest = model.joints()[found.least_loaded.joint];
+    if (found.least_loaded.share > most_load) {
       problem(place_of("joint", weakest.name, "limit"), "U0605",
               fmt::format(
                   "the robot holds itself nowhere: of {} postures the lightest takes {:.3g} of the effort {:.3g} of "
                   "joint '{}'",
-                  postures_looked_at + 2, least.needed, *weakest.limits.effort, weakest.name),
+                  postures_looked_at + 2, found.least_loaded.needed, *weakest.limits.effort, weakest.name),
               fmt::format(
                   "at most {} of it may be needed at rest: check the effort, <dynamics friction>, and the masses of "
                   "what it carries",
                   most_load));
       return false;
     }
-    warn_of_weight(model, too_heavy);
-    made.posture = numbers(best);
-    made.acceleration = std::max(least_acceleration, std::floor(acceleration * 10) / 10);
-    made.goal = numbers(find_goal(model, statics, tip, best));
-    static_cast<void>(statics.load(best));
-    made.tip_z_m = statics.tip().z();
-    made.reach_m = std::max(made.reach_m, statics.tip().norm());
+    warn_of_weight(model, found.too_heavy);
+    made.posture = found.posture;
+    made.goal = found.goal;
+    made.acceleration = found.acceleration;
+    made.reach_m = found.reach_m;
+    made.tip_z_m = found.tip_z_m;
     return true;
   }
 
@@ -378,51 +247,49 @@ class Judge {
     }
   }
 
-  /// Towards the middles of the ranges, less far where it would be heavy; elsewhere near by where the tool could not go straight from there.
-  [[nodiscard]] JointVector find_goal(const robotics::Model& model, Statics& statics, robotics::FrameId tip,
-                                      const JointVector& from) {
-    const JointVector towards = middle(model);
-    std::optional<JointVector> light;
-    for (double share = 1; share > 0.1; share /= 2) {
-      JointVector goal = from;
-      for (int i = 0; i < model.joint_count(); ++i) {
-        const auto [lower, upper] = range_of(model.joints()[static_cast<std::size_t>(i)]);
-        const double step = share * std::min(goal_share * (upper - lower), goal_farthest);
-        goal[i] += towards[i] >= from[i] ? step : -step;
-      }
-      if (statics.load(goal).share > most_load) continue;
-      if (goes_straight(model, tip, goal)) return goal;
-      if (!light) light = goal;
-    }
-    for (int looked = 0; looked < postures_looked_at; ++looked) {
-      // Farther and farther off.
-      const double part = bent_share * (looked + 1) / postures_looked_at;
-      const JointVector goal = from + part * (random_posture(model) - from);
-      if (statics.load(goal).share <= most_load && goes_straight(model, tip, goal)) return goal;
-    }
-    if (light) return *light;
-    JointVector goal = from;
-    goal[0] += towards[0] >= from[0] ? 0.01 : -0.01;
-    return goal;
-  }
-
   std::filesystem::path file_;
   robotics::urdf::Robot robot_;
   std::string text_;
   JudgedRobot& judged_;
+  TakenMeshes taken_;
+  std::vector<robotics::LinkHull> hulls_;
   xml::Element root_;
-  std::minstd_rand random_{1};
 };
+
+/// Of a robot that has more joints than an arm: which arms there are.
+void say_which_chains(std::string_view text, Diagnostic& problem) {
+  constexpr std::size_t most_named = 6;
+  std::vector<std::string> named;
+  for (const ChainEnd& end : chain_ends(text)) {
+    if (named.size() == most_named) break;
+    if (end.joints <= robotics::max_joints) named.push_back(fmt::format("{} ({} joints)", end.link, end.joints));
+  }
+  if (!named.empty())
+    problem.hint += fmt::format("; or fly one arm of it while the others stand still, by --tip LINK --chain: {}",
+                                fmt::join(named, ", "));
+}
 
 }  // namespace
 
 JudgedRobot judge_robot(const std::filesystem::path& file, const descriptor::FileSource& source, const std::string& tip,
-                        const std::string& gripper) {
-  const auto text = source(file);
+                        const std::string& gripper, std::span<const std::filesystem::path> packages, bool chain) {
+  auto text = source(file);
+  const auto fingers = robotics::urdf::listed_names(gripper);
+  std::vector<std::string> standing;
+  if (chain && text && (tip.empty() || has_link(*text, tip))) {
+    auto kept = keep_chain(*text, tip, fingers);
+    text = std::move(kept.urdf);
+    standing = std::move(kept.standing);
+  }
   auto reading = text ? robotics::urdf::read(file, *text) : robotics::urdf::read(file, source);
   JudgedRobot judged{.robot = {}, .problems = std::move(reading.problems), .warnings = std::move(reading.warnings)};
+  for (Diagnostic& problem : judged.problems)
+    if (problem.code == "U0309" && text) say_which_chains(*text, problem);
   if (!reading.value) return judged;
-  Judge{file, *reading.value, *text, judged}.judge(tip, robotics::urdf::listed_names(gripper));
+  Judge judge{file, *reading.value, *text, judged};
+  if (!standing.empty()) judge.say_who_stands(standing);
+  judge.take(take_meshes(file, *text, source, packages));
+  judge.judge(tip, fingers);
   // Said more gravely by U0604.
   if (std::ranges::find(judged.problems, std::string_view{"U0604"}, &Diagnostic::code) != judged.problems.end())
     std::erase_if(judged.warnings, [](const Diagnostic& one) { return one.code == "U0504" || one.code == "U0508"; });

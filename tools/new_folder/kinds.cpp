@@ -63,8 +63,8 @@ void replace_all(std::string& text, std::string_view word, const std::string& by
 [[nodiscard]] std::string make_files(const fs::path& from, const fs::path& target, const NewName& name,
                                      const NewParts& parts, std::vector<fs::path>& made) {
   std::error_code failed;
-  const auto make = [&](const std::string& as_in_template, const std::string& text) {
-    const fs::path file = target / named_text(as_in_template, name);
+  const auto make = [&](const std::string& named, const std::string& text) {
+    const fs::path file = target / named;
     fs::create_directories(file.parent_path(), failed);
     std::ofstream written{file, std::ios::binary};
     written << text;
@@ -75,11 +75,13 @@ void replace_all(std::string& text, std::string_view word, const std::string& by
     if (!entry.is_regular_file(failed) || entry.path().extension() == reference_ending) continue;
     const std::string as_in_template = fs::relative(entry.path(), from, failed).string();
     if (std::ranges::find(parts.without_files, as_in_template) != parts.without_files.end()) continue;
-    if (!make(as_in_template, named_text(read(entry.path()), name, parts)))
+    if (!make(named_text(as_in_template, name), named_text(read(entry.path()), name, parts)))
       return fmt::format("{} cannot be written", made.back().string());
   }
   for (const auto& [as_in_template, text] : parts.files)
-    if (!make(as_in_template, text)) return fmt::format("{} cannot be written", made.back().string());
+    if (!make(named_text(as_in_template, name), text)) return fmt::format("{} cannot be written", made.back().string());
+  for (const auto& [named, text] : parts.files_as_named)
+    if (!make(named, text)) return fmt::format("{} cannot be written", made.back().string());
   if (failed) return fmt::format("{}: {}", from.string(), failed.message());
   if (made.empty()) return fmt::format("there is nothing in {}", from.string());
   std::ranges::sort(made);

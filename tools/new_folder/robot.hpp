@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hirosco/descriptor/read/read.hpp"
@@ -30,13 +32,14 @@ struct NewGripper {
 /// A robot that can be flown.
 struct NewRobot {
   std::string name;  ///< as its file says
-  std::string urdf;  ///< the file, as it is
+  std::string urdf;  ///< the file, as it is but for where its meshes are, and for what stands
+  std::vector<std::pair<std::string, std::string>> meshes;  ///< beside it: names and octets
   robotics::Model model;  ///< of the arm: without what is the gripper's
   std::optional<NewGripper> hand;
   std::vector<std::string> world_joints;  ///< of both, in the order of the file
   std::string tip;  ///< link
-  std::vector<double> posture;  ///< to begin with: within all ranges, held by the drives
-  std::vector<double> goal;  ///< not far from it, likewise
+  std::vector<double> posture;  ///< to begin with: within all ranges, held by the drives, clear of itself
+  std::vector<double> goal;  ///< not far from it, likewise, as all between them
   double acceleration{0};  ///< of every joint at once, wherever the robot can hold itself; rad/s2 or m/s2
   double reach_m{0};  ///< of the tip, from the origin of the base
   double tip_z_m{0};  ///< in the posture to begin with
@@ -56,9 +59,11 @@ struct JudgedRobot {
 
 /// Reads the file strictly and judges what its reader leaves open: tip, drives, ranges, what MuJoCo refuses, whether it can hold itself.
 /// `tip`: a link, or empty where only one end moves. `gripper`: joints (NAME,NAME) that are a subsystem of their own, at whose link the tool is
-/// then where none is named; or empty. Every posture that is looked at is the same at each call.
+/// then where none is named; or empty. `packages`: folders in which those of its meshes lie. `chain`: only what moves tool and gripper is the robot's,
+/// all other joints are fixed. Every posture that is looked at is the same at each call.
 [[nodiscard]] JudgedRobot judge_robot(const std::filesystem::path& file, const descriptor::FileSource& source,
-                                      const std::string& tip, const std::string& gripper = {});
+                                      const std::string& tip, const std::string& gripper = {},
+                                      std::span<const std::filesystem::path> packages = {}, bool chain = false);
 
 /// What of it stands in the templates, and the files that are its own: URDF and scene of the page.
 [[nodiscard]] NewParts parts_of(const NewRobot& robot, const NewName& name);

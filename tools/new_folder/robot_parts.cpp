@@ -277,6 +277,10 @@ NewParts parts_of(const NewRobot& robot, const NewName& name) {
                            {"@stiffness_unit@", unit(model, "N m/rad", "N/m")},
                            {"@inertia_unit@", unit(model, "kg m2", "kg")}},
                  .files = {{"page/newpart.urdf", robot.urdf}, {"page/scene.json", scene_of(robot, name)}}};
+  for (const auto& [mesh, octets] : robot.meshes) parts.files_as_named.emplace_back("page/" + mesh, octets);
+  parts.words["@meshes@"] = "";
+  parts.words["@mesh_count@"] = std::to_string(robot.meshes.size());
+  if (robot.meshes.empty()) parts.without_lines.emplace_back("@meshes@");
   if (robot.hand) {
     add_hand(*robot.hand, parts.words);
   } else {

@@ -205,6 +205,14 @@ Clearance::Nearest Clearance::nearer(const JointVector& now, const JointVector& 
   return found;
 }
 
+bool Clearance::keeps_limits(const JointVector& position) noexcept {
+  place(position);
+  return std::ranges::none_of(pairs_, [&](LookedAt& pair) {
+    const double limit_m = pair.named.limit_m;
+    return limit_m > 0 && apart_m(pair, limit_m) < limit_m;
+  });
+}
+
 void Clearance::distances(const JointVector& position, std::span<double> of_pairs) noexcept {
   place(position);
   for (std::size_t i = 0; i < std::min(of_pairs.size(), pairs_.size()); ++i) of_pairs[i] = apart_m(pairs_[i], HUGE_VAL);

@@ -44,6 +44,9 @@ class Clearance {
   /// nobody else from being seen. None: infinitely far.  Realtime: wait-free.
   [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& then) noexcept;
 
+  /// Whether no two are nearer than they may be.  Realtime: wait-free.
+  [[nodiscard]] bool keeps_limits(const JointVector& position) noexcept;
+
   /// Two links, and how near each other they are built.
   struct Pair {
     std::string names;

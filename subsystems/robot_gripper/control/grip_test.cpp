@@ -114,6 +114,28 @@ TEST_P(Gripped, GoesOnPressingAtOnceWhereItWasInterrupted) {
   EXPECT_GT(least_n, 17);
 }
 
+TEST_P(Gripped, LetsGoBitByBitOfWhatItPressesOn) {
+  std::array<double, 2> fastest{};
+  for (const bool at_once : {true, false}) {
+    plant.open(1);
+    plant.object_m = 0.06;
+    grip.keep();
+    grip.grip(20, 0.05);
+    run(2);
+    ASSERT_NEAR(plant.pressed_n, 20, 1);
+    opening.rest(plant.width_m());
+    if (at_once) grip.keep();
+    else grip.let_go();
+    fastest_m_s = 0;
+    run(0.05);
+    fastest[at_once ? 0 : 1] = fastest_m_s;
+    if (!at_once) {
+      EXPECT_GT(plant.pressed_n, 5) << "after half of the time in which it lets go";
+    }
+  }
+  EXPECT_LT(fastest[1], 0.5 * fastest[0]) << "a spring that is let go at once throws it open";
+}
+
 TEST(Held, IsLostWhenItClosesOrOpensFurtherForTwoOfThreeSamples) {
   using Change = Held::Change;
   Held held;
