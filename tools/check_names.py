@@ -21,8 +21,6 @@ OUTSIDE = {"node_modules", "__pycache__", "build", "dist"}
 ALLOWED = {
     ("simulation/spacecraft/simulated_ground.hpp", "communication"): "the other end of the ground link (adr 0050)",
     ("tools/hirosco/run.cpp", "communication"): "the variables that tell the ground link its addresses (adr 0054)",
-    ("tools/new_folder/postures.hpp", "robot_arm"): "who makes an arm judges where it is clear of itself as the arm does (adr 0131)",
-    ("tools/CMakeLists.txt", "robot_arm"): "the same",
     ("tools/threads/main.cpp", "communication"): "the ground link is no module, so this program brings it along (adr 0097)",
 }
 # This tool has to name whom it allows.

@@ -311,7 +311,7 @@ Outcome RobotArm::set_torque_limit(double share) noexcept {
 
 Outcome RobotArm::keep_out(const robot_arm::KeepOut& numbers) noexcept {
   if (!clearance_) return refused(pus::FailureCode::NotPermittedNow);
-  std::array<robot_arm::Capsule, robot_arm::Clearance::most_volumes> volumes;
+  std::array<robotics::Capsule, robotics::Clearance::most_volumes> volumes;
   for (std::size_t i = 0; i < volumes.size(); ++i) {
     const double* its = numbers.data() + i * robot_arm::volume_numbers;
     volumes[i] = {{its[0], its[1], its[2]}, {its[3], its[4], its[5]}, its[6]};

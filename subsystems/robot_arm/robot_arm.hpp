@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "robotics/dynamics/dynamics.hpp"
+#include "robotics/shapes/clearance.hpp"
 #include "robotics/subsystem/moving_subsystem.hpp"
 #include "robotics/urdf/named_robot.hpp"
-#include "subsystems/robot_arm/control/clearance.hpp"
 #include "subsystems/robot_arm/control/laws.hpp"
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
@@ -137,7 +137,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   std::optional<robot_arm::Laws> laws_;
   std::optional<robot_arm::MomentumObserver> observer_;
   std::optional<robot_arm::Setpoints> setpoints_;
-  std::optional<robot_arm::Clearance> clearance_;
+  std::optional<robotics::Clearance> clearance_;
   robot_arm::Watch watch_;
   robotics::State model_state_;
   robot_arm::Measured measured_;

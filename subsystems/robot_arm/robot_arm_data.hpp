@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "subsystems/robot_arm/control/clearance.hpp"
+#include "robotics/shapes/clearance.hpp"
 #include "subsystems/robot_arm/control/joints.hpp"
 
 /// Structures of an arm's descriptor: same members, same order; lengths are the descriptor's.
@@ -43,7 +43,7 @@ struct LawValues {
 };
 /// Of each volume that is kept out of: two points and a radius.
 inline constexpr std::size_t volume_numbers = 7;
-using KeepOut = std::array<double, Clearance::most_volumes * volume_numbers>;
+using KeepOut = std::array<double, robotics::Clearance::most_volumes * volume_numbers>;
 
 struct ArmInput {
   Joints position;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
 #include <utility>
 
 #include "hirosco/data_transfer/device/enable_frame.hpp"
@@ -73,9 +74,13 @@ void InhibitBridge::begin_at(TimePoint now) {
 
 void InhibitBridge::open(TimePoint now) {
   if (!until_) until_ = now + supervisor_silence_limit;
-  for (Line& line : lines_)
-    if (line.flow == nullptr)
-      if (auto flow = flows_.open(line.address, FlowSide::Subsystem)) line.flow = std::move(*flow);
+  try {
+    for (Line& line : lines_)
+      if (line.flow == nullptr)
+        if (auto flow = flows_.open(line.address, FlowSide::Subsystem)) line.flow = std::move(*flow);
+  } catch (const std::bad_alloc&) {
+    // What kept the supervisor from going on may keep this from it, too: that device stops, and the keeper lives.
+  }
 }
 
 bool InhibitBridge::has_all() const noexcept {

@@ -57,7 +57,7 @@ void say(const JointVector& position) {
 }
 
 /// Of both looks that a cycle takes, on the way and some hundredths ahead: in the middle, the 99th and the last of a hundred.
-[[nodiscard]] std::array<double, 3> microseconds(Clearance& clearance, const JointVector& from,
+[[nodiscard]] std::array<double, 3> microseconds(robotics::Clearance& clearance, const JointVector& from,
                                                  const JointVector& goal) {
   constexpr int looks = 1000;
   std::vector<double> taken;
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
     for (const auto& problem : shapes.problems) fmt::print(stderr, "{}: {}\n", problem.code, problem.message);
     return 1;
   }
-  Clearance clearance{model, shapes.value->hulls};
+  robotics::Clearance clearance{model, shapes.value->hulls};
   for (const auto& joint : model.joints())
     fmt::print("joint {} {} {}\n", joint.name, joint.limits.lower.value_or(-4), joint.limits.upper.value_or(4));
   for (std::size_t i = 0; i < clearance.pairs(); ++i)

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "robotics/dynamics/model.hpp"
+#include "robotics/shapes/clearance.hpp"
 #include "robotics/shapes/collision.hpp"
-#include "subsystems/robot_arm/control/clearance.hpp"
 
 /// `hirosco new robot`: where an arm begins and where it goes first.
 namespace hirosco::tools {
@@ -22,7 +22,7 @@ class SelfClearance {
   [[nodiscard]] bool is_clear(const robotics::JointVector& from, const robotics::JointVector& to);
 
  private:
-  robot_arm::Clearance clearance_;
+  robotics::Clearance clearance_;
 };
 
 struct JointRange {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "subsystems/robot_arm/control/clearance.hpp"
+#include "robotics/shapes/clearance.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,16 +17,16 @@ using ::testing::HasSubstr;
   for (const auto& problem : reading.problems) ADD_FAILURE() << problem.message;
   return reading.value.value_or(robotics::CollisionShapes{});
 }
-[[nodiscard]] Clearance clearance_of(const robotics::Model& model, const std::filesystem::path& file,
-                                     std::string_view text) {
-  Clearance made{model, shapes_of(file, text).hulls};
+[[nodiscard]] robotics::Clearance clearance_of(const robotics::Model& model, const std::filesystem::path& file,
+                                               std::string_view text) {
+  robotics::Clearance made{model, shapes_of(file, text).hulls};
   made.set_limit(0.02);
   return made;
 }
 
 struct ClearanceTest : ::testing::Test {
   robotics::Model model = testing::model_of(testing::six_joints);
-  Clearance clearance =
+  robotics::Clearance clearance =
       clearance_of(model, testing::six_joints, descriptor::file_system()(testing::six_joints).value());
   JointVector clear = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
   /// Folded back onto the upper arm, the wrist meets it.
@@ -50,7 +50,7 @@ TEST_F(ClearanceTest, RefusesWhoComesNearerAndLetsGoWhoIsTooNear) {
 
 TEST_F(ClearanceTest, NamesTheLinkThatComesNearAVolumeToKeepOutOf) {
   const JointVector upright = JointVector::Zero(6), inside = vector_of(std::array{0.0, 0.8, 0.3, 0.0, 0.0, 0.0});
-  const std::array volumes{Capsule{{0.5, -1, 0.7}, {0.5, 1, 0.7}, 0.2}};
+  const std::array volumes{robotics::Capsule{{0.5, -1, 0.7}, {0.5, 1, 0.7}, 0.2}};
   clearance.keep_out(volumes);
   EXPECT_GT(clearance.nearest(upright).distance_m, 0.05);
   EXPECT_LT(clearance.nearest(inside).distance_m, 0);
@@ -78,7 +78,7 @@ TEST_F(ClearanceTest, NamesTheLinkThatComesNearAVolumeToKeepOutOf) {
   return "<robot name='row'>" + link("a", "0") + link("b", "5") + link("c", std::to_string(gap - 0.2)) +
          joint("j", "0.1", "a", "b") + joint("k", "0.3", "b", "c") + "</robot>";
 }
-[[nodiscard]] Clearance clearance_of_row(double gap, const char* range) {
+[[nodiscard]] robotics::Clearance clearance_of_row(double gap, const char* range) {
   const std::string text = row(gap, range);
   const auto reading = robotics::urdf::read("row.urdf", text);
   return clearance_of(robotics::Model::make(robotics::urdf::describe(reading.value.value())).value(), "row.urdf", text);

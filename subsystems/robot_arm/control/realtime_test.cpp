@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/utilities/allocation_guard.hpp"
-#include "subsystems/robot_arm/control/clearance.hpp"
+#include "robotics/shapes/clearance.hpp"
 #include "subsystems/robot_arm/control/laws.hpp"
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
@@ -27,7 +27,7 @@ TEST(Control, UsesNoHeapInACycle) {
   MomentumObserver observer{6, period_s, 50};
   Setpoints setpoints{model, tip, bounds, period_s};
   const auto text = descriptor::file_system()(testing::six_joints).value();
-  Clearance clearance{
+  robotics::Clearance clearance{
       model, robotics::read_collision_shapes(testing::six_joints, text, descriptor::file_system()).value.value().hulls};
   clearance.set_limit(0.02);
   Watch watch;

@@ -1,15 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "subsystems/robot_arm/control/clearance.hpp"
+#include "robotics/shapes/clearance.hpp"
 
 #include <algorithm>
 #include <numbers>
 
-namespace hirosco::robot_arm {
+namespace hirosco::robotics {
 namespace {
-
-using robotics::Ball;
-using robotics::RoundedHull;
 
 /// Postures that are looked at for what is near by construction.
 constexpr std::size_t postures = 200;
@@ -23,12 +20,9 @@ constexpr double nothing_between_m = 1e-3;
   return number;
 }
 
-[[nodiscard]] Ball ball_of(std::span<const RoundedHull> hulls) noexcept { return robotics::ball_around(hulls); }
-
 }  // namespace
 
-Clearance::Clearance(const robotics::Model& model, std::span<const robotics::LinkHull> hulls)
-    : dynamics_{model, robotics::Base::Fixed} {
+Clearance::Clearance(const Model& model, std::span<const LinkHull> hulls) : dynamics_{model, Base::Fixed} {
   state_.qd = JointVector::Zero(model.joint_count());
   add_links(model, hulls);
   const auto joined = [&](std::size_t one, std::size_t other) {
@@ -47,8 +41,8 @@ Clearance::Clearance(const robotics::Model& model, std::span<const robotics::Lin
   keep_out({});
 }
 
-void Clearance::add_links(const robotics::Model& model, std::span<const robotics::LinkHull> hulls) {
-  for (const robotics::LinkHull& each : hulls) {
+void Clearance::add_links(const Model& model, std::span<const LinkHull> hulls) {
+  for (const LinkHull& each : hulls) {
     const auto frame = model.find_frame(each.link);
     if (!frame || each.hull.corners() == 0) continue;
     auto found = std::ranges::find(bodies_, frame->index, [](const Body& body) { return body.frame.index; });
@@ -57,12 +51,12 @@ void Clearance::add_links(const robotics::Model& model, std::span<const robotics
       found->frame = *frame;
       found->body = model.frame(*frame).body;
     }
-    found->solids.push_back({each.hull, ball_of({&each.hull, 1})});
+    found->solids.push_back({each.hull, ball_around({&each.hull, 1})});
   }
   for (Body& body : bodies_) {
     std::vector<RoundedHull> all;
     for (const Solid& solid : body.solids) all.push_back(solid.hull);
-    body.ball = ball_of(all);
+    body.ball = ball_around(all);
   }
   links_ = bodies_.size();
   bodies_.resize(links_ + most_volumes);
@@ -79,7 +73,7 @@ void Clearance::add_pair(std::size_t one, std::size_t other, std::string names) 
 }
 
 /// Are all joints between two bodies such that they can be at 0?
-bool Clearance::may_be_zero(const robotics::Model& model, std::size_t one, std::size_t other) {
+bool Clearance::may_be_zero(const Model& model, std::size_t one, std::size_t other) {
   const auto bodies = model.bodies();
   while (one != other) {
     // What carries stands before what is carried.
@@ -91,14 +85,14 @@ bool Clearance::may_be_zero(const robotics::Model& model, std::size_t one, std::
   return true;
 }
 
-void Clearance::learn_construction(const robotics::Model& model) {
+void Clearance::learn_construction(const Model& model) {
   std::vector<double> apart(pairs_.size());
   JointVector position = JointVector::Zero(model.joint_count());
   for (LookedAt& pair : pairs_) pair.named.built_m = 0;
   for (std::size_t i = 1; i <= postures; ++i) {
     constexpr std::array<std::size_t, max_joints> bases{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53};
     for (std::size_t joint = 0; joint < model.joints().size(); ++joint) {
-      const robotics::JointLimits& limits = model.joints()[joint].limits;
+      const JointLimits& limits = model.joints()[joint].limits;
       const double lower = limits.lower.value_or(-std::numbers::pi), upper = limits.upper.value_or(std::numbers::pi);
       position[static_cast<Eigen::Index>(joint)] = lower + (upper - lower) * spread(i, bases[joint]);
     }
@@ -130,7 +124,7 @@ void Clearance::keep_out(std::span<const Capsule> volumes) noexcept {
     kept_out_[i] = capsule;
     Body& body = bodies_[links_ + i];
     body.solids[0].hull = RoundedHull{std::array{capsule.from, capsule.to}, capsule.radius_m};
-    body.ball = body.solids[0].ball = ball_of({&body.solids[0].hull, 1});
+    body.ball = body.solids[0].ball = ball_around({&body.solids[0].hull, 1});
     body.centre = body.solids[0].centre = body.ball.centre;
   }
   for (LookedAt& pair : std::span{pairs_}.subspan(link_pairs_))
@@ -160,7 +154,7 @@ double Clearance::apart_m(LookedAt& pair, double enough_m) noexcept {
       Vector3& axis = pair.axes[search++];
       const double enough = std::min(enough_m, least);
       double far = between(its.centre, its.ball, others.centre, others.ball);
-      if (far < enough) far = robotics::distance_m({its.hull, one.pose}, {others.hull, other.pose}, enough, axis);
+      if (far < enough) far = distance_m({its.hull, one.pose}, {others.hull, other.pose}, enough, axis);
       least = std::min(least, far);
     }
   return least;
@@ -218,4 +212,4 @@ void Clearance::distances(const JointVector& position, std::span<double> of_pair
   for (std::size_t i = 0; i < std::min(of_pairs.size(), pairs_.size()); ++i) of_pairs[i] = apart_m(pairs_[i], HUGE_VAL);
 }
 
-}  // namespace hirosco::robot_arm
+}  // namespace hirosco::robotics

@@ -3,14 +3,15 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "robotics/dynamics/dynamics.hpp"
 #include "robotics/shapes/collision.hpp"
-#include "subsystems/robot_arm/control/joints.hpp"
 
-namespace hirosco::robot_arm {
+namespace hirosco::robotics {
 
 /// All points that are no farther than `radius_m` from a line from `from` to `to`.
 struct Capsule {
@@ -25,7 +26,7 @@ struct Capsule {
 class Clearance {
  public:
   /// Realtime: allocates; some hundred postures are looked at.
-  Clearance(const robotics::Model& model, std::span<const robotics::LinkHull> hulls);
+  Clearance(const Model& model, std::span<const LinkHull> hulls);
 
   /// How near any two may come.  Realtime: wait-free.
   void set_limit(double limit_m) noexcept;
@@ -61,18 +62,18 @@ class Clearance {
 
  private:
   struct Solid {
-    robotics::RoundedHull hull;
-    robotics::Ball ball;  ///< in the link's frame
+    RoundedHull hull;
+    Ball ball;  ///< in the link's frame
     Vector3 centre{Vector3::Zero()};  ///< of the ball, in the base's
   };
   /// A link, or a volume, which stands.
   struct Body {
-    robotics::FrameId frame;
+    FrameId frame;
     std::size_t body{0};
     std::vector<Solid> solids;
-    robotics::Ball ball;
+    Ball ball;
     Vector3 centre{Vector3::Zero()};
-    robotics::Pose pose;
+    Pose pose;
   };
   struct LookedAt {
     Pair named;
@@ -81,15 +82,15 @@ class Clearance {
     std::vector<Vector3> axes;  ///< of each two solids, from the last search
     double then_m{0};
   };
-  void add_links(const robotics::Model& model, std::span<const robotics::LinkHull> hulls);
+  void add_links(const Model& model, std::span<const LinkHull> hulls);
   void add_pair(std::size_t one, std::size_t other, std::string names);
-  void learn_construction(const robotics::Model& model);
-  [[nodiscard]] static bool may_be_zero(const robotics::Model& model, std::size_t one, std::size_t other);
+  void learn_construction(const Model& model);
+  [[nodiscard]] static bool may_be_zero(const Model& model, std::size_t one, std::size_t other);
   void place(const JointVector& position) noexcept;
   [[nodiscard]] double apart_m(LookedAt& pair, double enough_m) noexcept;
 
-  robotics::Dynamics dynamics_;
-  robotics::State state_;
+  Dynamics dynamics_;
+  State state_;
   std::vector<Body> bodies_;  ///< links, then volumes
   std::vector<LookedAt> pairs_;  ///< of links, then of links and volumes
   std::size_t links_{0};
@@ -99,4 +100,4 @@ class Clearance {
   std::size_t nearest_{0};  ///< of the last search: the next begins there
 };
 
-}  // namespace hirosco::robot_arm
+}  // namespace hirosco::robotics
