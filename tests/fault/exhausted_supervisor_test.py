@@ -38,12 +38,7 @@ class Exhausted(supervisor_kills.Accounts):
     def starve(self, craft, what):
         """From now on it gets nothing more; returns its pid."""
         pid = craft.pid_of("hirosco-supervisor")
-        # The least of several looks: what it has for a moment only would be room for more afterwards.
-        looks = [held(pid)]
-        while len(looks) < 10:
-            time.sleep(0.02)
-            looks.append(held(pid))
-        octets, descriptors = map(min, zip(*looks))
+        octets, descriptors = held(pid)
         limits = {"memory": (resource.RLIMIT_AS, octets), "descriptors": (resource.RLIMIT_NOFILE, descriptors)}
         which, limit = limits[what]
         # The soft limit bites; the hard one stays, or nobody could take it back.
