@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/communication/told_ends.hpp"
 
-#include <algorithm>
-
 #include "hirosco/pus/packet/packet.hpp"
 
 namespace hirosco::communication {
@@ -16,9 +14,16 @@ namespace {
 
 }  // namespace
 
+/// By the sequence count, so that those of one addressee follow each other; addressees, whose counts are often alike, lie far apart.
+ToldEnds::End& ToldEnds::place_of(std::uint32_t request) noexcept {
+  constexpr std::uint32_t apart = 0x35B;
+  return ends_[(request ^ (request >> 16U) * apart) % kept];
+}
+
 void ToldEnds::went_up(Octets telecommand) noexcept {
-  const auto read = pus::TelecommandView::parse(telecommand);
-  if (read) std::ranges::replace(ends_, End{read->request_id(), read->source()}, End{});
+  const auto read = pus::read_primary_header(telecommand);
+  if (!read) return;
+  if (End& before = place_of(read->request_id); before.request == read->request_id) before = {};
 }
 
 bool ToldEnds::goes_down(Octets report) noexcept {
@@ -28,8 +33,9 @@ bool ToldEnds::goes_down(Octets report) noexcept {
   const End end{reader.get<std::uint32_t>(), read->destination()};
   const auto code = static_cast<pus::FailureCode>(read->subtype() == 8 ? reader.get<std::uint16_t>() : 0);
   if (!reader.good()) return true;
-  if (code == pus::FailureCode::OutcomeUnknown && std::ranges::find(ends_, end) != ends_.end()) return false;
-  ends_[next_++ % most] = end;
+  End& before = place_of(end.request);
+  if (code == pus::FailureCode::OutcomeUnknown && before == end) return false;
+  before = end;
   return true;
 }
 

@@ -12,10 +12,10 @@ namespace hirosco::communication {
 
 /// The ends of telecommands that went down to ground. A supervisor that goes on for one that died cannot know whether the last ends
 /// which that one handed over here went down, and tells them as unknown (docs/adr/0134): where the true end did, ground needs no second.
-/// It holds the newest ends; one that is older than these stands against nothing.  Thread: the ground link's service loop. Realtime: bounded.
+/// After `kept` more to its addressee one is forgotten, sooner where another addressee's has its place, and stands against nothing.  Thread: the ground link's service loop. Realtime: bounded.
 class ToldEnds {
  public:
-  static constexpr std::size_t most = 1024;
+  static constexpr std::size_t kept = 4096;
   /// A telecommand goes up: what went down before with its request id, which comes again after 16,384, was of another one.
   void went_up(Octets telecommand) noexcept;
   /// A report is to go down, and is remembered if it tells an end (TM[1,2], [1,4], [1,7], [1,8], [1,10]).
@@ -29,8 +29,8 @@ class ToldEnds {
     std::uint16_t source{0};
     bool operator==(const End&) const = default;
   };
-  std::array<End, most> ends_{};
-  std::size_t next_{0};
+  [[nodiscard]] End& place_of(std::uint32_t request) noexcept;
+  std::array<End, kept> ends_{};
 };
 
 }  // namespace hirosco::communication

@@ -14,24 +14,24 @@ namespace {
 
 constexpr std::uint16_t joystick = 11, ground = 0;
 
-std::vector<std::byte> ping(std::uint16_t count, std::uint16_t source = ground) {
+std::vector<std::byte> ping(std::uint16_t count, std::uint16_t source = ground, std::uint16_t to = joystick) {
   std::vector<std::byte> buffer(pus::max_telecommand_octets);
   const auto packet = pus::write_telecommand(
-      buffer,
-      {.apid = joystick, .sequence_count = count, .ack = pus::ack_all, .service = 17, .subtype = 1, .source = source},
+      buffer, {.apid = to, .sequence_count = count, .ack = pus::ack_all, .service = 17, .subtype = 1, .source = source},
       {});
   buffer.resize(packet.value().size());
   return buffer;
 }
 
 std::vector<std::byte> report(std::uint16_t on, std::uint8_t subtype, pus::FailureCode code = {},
-                              std::uint16_t destination = ground) {
+                              std::uint16_t destination = ground, std::uint16_t by = joystick) {
   std::array<std::byte, 6> data{};
   OctetWriter writer{data};
-  writer.put(pus::TelecommandView::parse(ping(on, destination))->request_id()).put(static_cast<std::uint16_t>(code));
+  writer.put(pus::TelecommandView::parse(ping(on, destination, by))->request_id())
+      .put(static_cast<std::uint16_t>(code));
   std::vector<std::byte> buffer(pus::max_telemetry_octets);
   const auto packet =
-      pus::write_telemetry(buffer, {.apid = joystick, .service = 1, .subtype = subtype, .destination = destination},
+      pus::write_telemetry(buffer, {.apid = by, .service = 1, .subtype = subtype, .destination = destination},
                            Octets{data}.first(subtype % 2 == 0 ? 6 : 4));
   buffer.resize(packet.value().size());
   return buffer;
@@ -79,10 +79,21 @@ TEST_F(Ends, EveryOtherReportGoesDownAsOftenAsItComes) {
   EXPECT_TRUE(told.goes_down(damaged)) << "not ours to judge";
 }
 
-TEST_F(Ends, TheOldestAreForgotten) {
-  for (std::uint16_t count = 0; count <= ToldEnds::most; ++count) ASSERT_TRUE(told.goes_down(report(count, 7)));
+TEST_F(Ends, TheOldestAreForgottenAndNoneThatIsYounger) {
+  for (std::uint16_t count = 0; count <= ToldEnds::kept; ++count) ASSERT_TRUE(told.goes_down(report(count, 7)));
+  for (std::uint16_t count = 1; count <= ToldEnds::kept; ++count) ASSERT_FALSE(told.goes_down(unknown(count))) << count;
   EXPECT_TRUE(told.goes_down(unknown(0)));
-  EXPECT_FALSE(told.goes_down(unknown(2)));
+}
+
+TEST_F(Ends, AddresseesWhoseCountsAreAlikeAreRememberedSideBySide) {
+  constexpr std::uint16_t manipulator = 10;
+  for (std::uint16_t count = 0; count < 500; ++count)
+    for (const std::uint16_t to : {joystick, manipulator})
+      ASSERT_TRUE(told.goes_down(report(count, 7, {}, ground, to)));
+  for (std::uint16_t count = 0; count < 500; ++count)
+    for (const std::uint16_t to : {joystick, manipulator})
+      ASSERT_FALSE(told.goes_down(report(count, 8, pus::FailureCode::OutcomeUnknown, ground, to)))
+          << to << ' ' << count;
 }
 
 }  // namespace
