@@ -11,6 +11,7 @@
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"
 #include "supervisor/supervision/data_handling/reception.hpp"
 #include "supervisor/supervision/data_handling/replies.hpp"
+#include "supervisor/supervision/data_handling/retrieval.hpp"
 #include "supervisor/supervision/data_handling/subscriptions.hpp"
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/data_handling/telemetry.hpp"
@@ -46,6 +47,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
         stored{craft, own, own_telecommands, outside.values},
         log_watch{craft, own, telecommands, outside.open_database},
         own_telecommands{craft, telecommands, outside.first_sequence_count},
+        retrieval{{craft, own, telemetry, outside.log_readings}},
         descriptors{{craft, own, own_telecommands, under_way, stored, outside.readings}},
         memory{
             outside.journal,
@@ -62,6 +64,8 @@ struct SupervisorParts final : OwnSubsystem::Author {
                          [this](const pus::Request& asked, Octets data) { subscriptions.begin(asked, data); });
     telecommands.answers(pus::st129::unsubscribe,
                          [this](const pus::Request& asked, Octets data) { subscriptions.end(asked, data); });
+    telecommands.answers(pus::st129::retrieve,
+                         [this](const pus::Request& asked, Octets data) { retrieval.begin(asked, data); });
     telecommands.starts_with([this](std::uint16_t apid) { return processes.start(apid); });
   }
 
@@ -99,6 +103,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
       traffic,
       ground_route,
       {&traffic, &commanded, &stored, &replies, &subscriptions, &reception, &power, &own_telecommands, &links}};
+  Retrieval retrieval;
   Reception reception{{craft, own, telecommands, telemetry, reactions, unanswered, traffic, subscriptions, adoption}};
   // real-time links, resource management
   LinkCommands links{craft, own, own_telecommands, graph};
@@ -127,10 +132,10 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Adoption adoption{{craft, own, processes, own_telecommands, telecommands, links, modes, commissioning, reactions,
                      safe_all, shutdown, memory}};
   Memory memory;
-  std::array<Watch*, 18> watches{&adoption,    &stored,        &processes,    &replacement,      &descriptors,
+  std::array<Watch*, 19> watches{&adoption,    &stored,        &processes,    &replacement,      &descriptors,
                                  &ground_link, &restoration,   &losses,       &housekeeping,     &power,
                                  &links,       &log_watch,     &telecommands, &own_telecommands, &replies,
-                                 &resources,   &subscriptions, &waiting};
+                                 &resources,   &subscriptions, &waiting,      &retrieval};
 };
 
 }  // namespace hirosco::supervisor

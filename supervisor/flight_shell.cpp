@@ -291,6 +291,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   ThreadedValueStore values{clock, std::make_unique<SystemValueDisk>(),
                             std::filesystem::path{log_path}.replace_extension(".values")};
   ThreadedReadings readings;
+  ThreadedLogReadings log_readings{reader_of(log_path, mission.database.server)};
   // The threads of log, console and values exist already: they stay ordinary.
   if (realtime) keep_code_in_memory();
   static_cast<void>(realtime ? set_fifo_priority(supervisor_priority) : ask_for_short_slices());
@@ -323,6 +324,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
        .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384),
        .journal = keeper.journal(),
        .values = &values,
+       .log_readings = &log_readings,
        .readings = &readings}};
   if (!keeper.note(supervisor.mission().texts))
     console.told(clock.onboard(),

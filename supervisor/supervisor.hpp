@@ -12,6 +12,7 @@
 #include "supervisor/guard/guard.hpp"
 #include "supervisor/platform/launch/descriptor_readings.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
+#include "supervisor/platform/storage/log_readings.hpp"
 #include "supervisor/platform/storage/packet_log.hpp"
 #include "supervisor/platform/storage/value_store.hpp"
 #include "supervisor/supervision/journal.hpp"
@@ -38,6 +39,7 @@ class Supervisor final {
     std::uint16_t first_sequence_count{0};  ///< of its own telecommands (decision 27)
     Journal* journal{nullptr};  ///< what it knows, for one that goes on for it; null: nobody does
     ValueStore* values{nullptr};  ///< of persistent parameters; null: they do not outlive the flight
+    LogReadings* log_readings{nullptr};  ///< for what ground missed; null: nothing comes down again
     DescriptorReadings* readings{nullptr};  ///< of what is read again; null: descriptors stay what they were
   };
   explicit Supervisor(const Parts& parts);

@@ -39,6 +39,17 @@ Session::Session(Parts parts)
                  .tell = [this](const StoredCommand& command) { tell_command(command); },
                  .source = parts_.source,
                  .first_count = parts_.first_count}},
+      catch_up_{{.catalogue = parts_.catalogue,
+                 .archive = parts_.archive,
+                 .clock = parts_.clock,
+                 .source = parts_.source,
+                 .ask = [this](const pus::st129::Retrieve& wanted) {
+                   return commands_.ask(pus::st129::retrieve, pus::st129::write_retrieve(wanted));
+                 },
+                 .heard = [this](const Heard& heard, OnboardTime t) { take_past(heard, t); },
+                 .filled = [this](OnboardTime from, OnboardTime to) {
+                   broadcast({{"type", "filled"}, {"from", json_time(from)}, {"to", json_time(to)}});
+                 }}},
       flights_{parts_.catalogue, parts_.archive},
       alarms_{parts_.archive, flights_.began()},
       stacks_{parts_.archive},
@@ -57,11 +68,14 @@ OnboardTime Session::now() const {
 
 void Session::link_up() {
   connected_ = true;
+  stream_begins_ = true;
+  catch_up_.link_up();
   downlink_.begin(model_.newest() != OnboardTime{} ? std::optional{model_.newest()} : archived_until_);
 }
 
 void Session::link_down() {
   connected_ = false;
+  catch_up_.link_down();
   parts_.archive.commit();
 }
 
@@ -73,6 +87,10 @@ bool Session::receive(Octets octets) {
 }
 
 void Session::take(const pus::TelemetryView& packet, Octets octets) {
+  if (catch_up_.hear(packet)) return;
+  // Nothing was ever heard of this craft: what it said before is wanted, since whenever it flies.
+  if (std::exchange(stream_begins_, false) && model_.newest() == OnboardTime{} && !archived_until_)
+    catch_up_.missing({}, packet.time());
   const Heard heard = model_.take(packet);
   newest_received_ = parts_.clock.now();
   StoredPacket stored{.t = packet.time(), .apid = packet.apid(), .octets = {}};
@@ -83,13 +101,22 @@ void Session::take(const pus::TelemetryView& packet, Octets octets) {
   for (const StoredChange& change : heard.changes) parts_.archive.add(change);
   if (heard.event) {
     parts_.archive.add(*heard.event);
-    json message = event_json(*heard.event);
-    message["type"] = "event";
-    broadcast(message);
-    if (auto alarm = alarms_.hear(*heard.event)) tell_alarm(std::move(*alarm));
+    tell_event(*heard.event);
   }
   if (flights_.hear(model_)) begin_flight();
   commands_.hear(heard, packet.time());
+}
+
+void Session::tell_event(const StoredEvent& event) {
+  json message = event_json(event);
+  message["type"] = "event";
+  broadcast(message);
+  if (auto alarm = alarms_.hear(event)) tell_alarm(std::move(*alarm));
+}
+
+void Session::take_past(const Heard& heard, OnboardTime t) {
+  if (heard.event && heard.event->t >= flights_.began()) tell_event(*heard.event);
+  commands_.hear(heard, t);
 }
 
 void Session::begin_flight() {
@@ -117,6 +144,7 @@ void Session::tell_alarm(json alarm) {
 
 void Session::add_gap(OnboardTime from, OnboardTime to) {
   parts_.archive.add(StoredGap{from, to});
+  catch_up_.missing(from, to);
   broadcast({{"type", "gap"}, {"from", json_time(from)}, {"to", json_time(to)}});
 }
 
@@ -129,6 +157,7 @@ void Session::tell_command(const StoredCommand& command) {
 void Session::tick() {
   const TimePoint now = parts_.clock.now();
   commands_.expire(now);
+  catch_up_.tick();
   for (const auto& client : clients_) client->tick(now);
   if (now >= next_injections_) {
     take_injections();

@@ -15,6 +15,7 @@
 #include "ground/api/application.hpp"
 #include "ground/archive/archive.hpp"
 #include "ground/commands/commands.hpp"
+#include "ground/link/catch_up.hpp"
 #include "ground/link/downlink.hpp"
 #include "ground/model/catalogue.hpp"
 #include "ground/model/model.hpp"
@@ -105,6 +106,9 @@ class Session {
 
  private:
   void take(const pus::TelemetryView& packet, Octets octets);
+  /// What was missed and is known now.
+  void take_past(const Heard& heard, OnboardTime t);
+  void tell_event(const StoredEvent& event);
   void add_gap(OnboardTime from, OnboardTime to);
   void tell_command(const StoredCommand& command);
   void tell_alarm(nlohmann::json alarm);
@@ -121,11 +125,13 @@ class Session {
   Model model_;
   Downlink downlink_;
   Commands commands_;
+  CatchUp catch_up_;
   Flights flights_;
   Alarms alarms_;
   Stacks stacks_;
   Authority authority_;
   bool connected_{false};
+  bool stream_begins_{false};  ///< no packet of this link has come yet
   TimePoint newest_received_{};
   std::optional<OnboardTime> archived_until_;  ///< by those before this process
   std::vector<std::unique_ptr<Client>> clients_;

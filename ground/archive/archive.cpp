@@ -168,6 +168,10 @@ void Archive::add(const StoredChange& change) {
 
 void Archive::add(const StoredGap& gap) { store("INSERT INTO gaps(t, until) VALUES(?,?)", gap.from, gap.to); }
 
+void Archive::close_gaps(const Span& span) {
+  store("DELETE FROM gaps WHERE t >= ? AND until <= ?", span.from, span.to);
+}
+
 void Archive::add(const StoredFault& fault) {
   store("INSERT INTO faults(t, device, line, answer) VALUES(?,?,?,?)", fault.t, fault.device, fault.line, fault.answer);
 }

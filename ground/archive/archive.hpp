@@ -50,6 +50,8 @@ class Archive {
   void add(std::int64_t command, const StoredReport& report);
   void add(const StoredChange& change);
   void add(const StoredGap& gap);
+  /// No gap within the span is one any more.
+  void close_gaps(const Span& span);
   void add(const StoredFault& fault);
   /// Its number; 0 when the disk refused it.
   std::int64_t add(const StoredMark& mark);

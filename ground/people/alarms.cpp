@@ -65,8 +65,9 @@ void Alarms::note(const StoredEvent& event) {
   const Key key{event.apid, event.id};
   if (!alarms_.contains(key) && alarms_.size() >= most_alarms) return;
   Alarm& alarm = alarms_[key];
-  if (alarm.count == 0) alarm.first = event.t;
-  alarm.newest = event;
+  // What was missed is heard late.
+  if (alarm.count == 0 || event.t < alarm.first) alarm.first = event.t;
+  if (alarm.count == 0 || event.t >= alarm.newest.t) alarm.newest = event;
   ++alarm.count;
   ++alarm.fresh;
 }

@@ -153,6 +153,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   supervisor::MemoryValueDisk forgotten_;
   supervisor::DirectValueStore own_values_{forgotten_, "values"};
   supervisor::DirectReadings readings_{parts_.files};
+  std::optional<supervisor::DirectLogReadings> log_readings_;  ///< none: its log is not read
   // What the keeper holds.
   std::unique_ptr<supervisor::KeeperPage> kept_{std::make_unique<supervisor::KeeperPage>()};
   std::vector<std::byte> journal_memory_;

@@ -227,6 +227,9 @@ function take(list) {
       reports = with_report(reports, message);
     } else if (message.type === 'gap') {
       gaps.value = [...gaps.value.slice(1 - most_gaps), {from: message.from, to: message.to}];
+    } else if (message.type === 'filled') {
+      gaps.value = gaps.value.filter((gap) => gap.from < message.from || gap.to > message.to);
+      fetch_present();
     } else if (message.type === 'fault') {
       injections.value = [message, ...injections.value].slice(0, 50);
     } else if (message.type === 'replay' && message.state !== 'live') {

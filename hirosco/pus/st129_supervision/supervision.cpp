@@ -6,6 +6,8 @@
 #include <span>
 #include <string_view>
 
+#include "hirosco/pus/packet/cuc.hpp"
+
 namespace hirosco::pus::st129 {
 namespace kind {
 
@@ -38,16 +40,26 @@ constexpr std::string_view what_may_be_heard[]{"", "structure", "event"};
 constexpr Part subscribed[]{number("SUBSYSTEM", Type::Uint16),
                             {.name = "WHAT", .type = Type::Uint8, .names = what_may_be_heard},
                             number("ID", Type::Uint16)};
+constexpr std::string_view yes_or_no[]{"no", "yes"};
+constexpr Part times[]{{.name = "FROM", .form = Form::Time},
+                       {.name = "TO", .form = Form::Time},
+                       {.name = "HOUSEKEEPING", .type = Type::Uint8, .names = yes_or_no}};
+constexpr Part retrieved_report[]{number("NUMBER", Type::Uint64), {.name = "REPORT", .form = Form::Rest}};
+constexpr Part counts[]{number("REPORTS", Type::Uint32), number("LEFT_OUT", Type::Uint32), number("MISSING", Type::Uint32),
+                        number("DAMAGED", Type::Uint32), word("WHY")};
 constexpr RequestKind requests[]{{permission_question, "IS_IT_PERMITTED", packet},
                                  {mode_question, "PREVIEW_MODE", mode},
                                  {plan_question, "PREVIEW_PLAN", event},
                                  {subscribe, "SUBSCRIBE", subscribed},
-                                 {unsubscribe, "UNSUBSCRIBE", subscribed}};
+                                 {unsubscribe, "UNSUBSCRIBE", subscribed},
+                                 {retrieve, "RETRIEVE", times}};
 constexpr ReportKind reports[]{{permission_answer, "PERMISSION", answer},
                                {telecommand_copy, "COPY", packet},
                                {mode_preview, "MODE_PREVIEW", preview},
                                {plan_preview, "PLAN_PREVIEW", plan},
-                               {descriptor_problem, "DESCRIPTOR_PROBLEM", problem}};
+                               {descriptor_problem, "DESCRIPTOR_PROBLEM", problem},
+                               {retrieved, "RETRIEVED", retrieved_report},
+                               {retrieval_end, "RETRIEVAL_END", counts}};
 
 }  // namespace kind
 
@@ -171,6 +183,57 @@ std::optional<Subscribed> read_subscribed(Octets data) noexcept {
   subscribed.id = reader.get<std::uint16_t>();
   const bool known = what == 1 || what == 2;
   return known && reader.exhausted() ? std::optional{subscribed} : std::nullopt;
+}
+
+std::array<std::byte, retrieve_octets> write_retrieve(const Retrieve& wanted) noexcept {
+  std::array<std::byte, retrieve_octets> data{};
+  OctetWriter{data}.put(to_cuc(wanted.from)).put(to_cuc(wanted.to)).put(static_cast<std::uint8_t>(wanted.housekeeping));
+  return data;
+}
+
+std::optional<Retrieve> read_retrieve(Octets data) noexcept {
+  OctetReader reader{data};
+  const Octets from = reader.get(cuc_octets), to = reader.get(cuc_octets);
+  const auto housekeeping = reader.get<std::uint8_t>();
+  if (!reader.exhausted() || housekeeping > 1) return std::nullopt;
+  return Retrieve{from_cuc(from), from_cuc(to), housekeeping == 1};
+}
+
+Octets write_retrieved(MutableOctets buffer, const Retrieved& report) noexcept {
+  if (report.packet.size() > max_retrieved_octets) return {};
+  OctetWriter writer{buffer};
+  writer.put(report.number).put(report.packet);
+  return writer.good() ? Octets{buffer}.first(writer.size()) : Octets{};
+}
+
+std::optional<Retrieved> read_retrieved(Octets data) noexcept {
+  OctetReader reader{data};
+  const auto number = reader.get<std::uint64_t>();
+  if (!reader.good()) return std::nullopt;
+  return Retrieved{number, reader.rest()};
+}
+
+bool is_retrieved(const TelemetryView& report) noexcept {
+  return report.apid() == supervisor_apid && report.service() == service_type && report.subtype() == retrieved;
+}
+
+std::vector<std::byte> write_retrieval_end(const RetrievalEnd& end) {
+  constexpr std::size_t numbers = 16;
+  std::vector<std::byte> data(numbers + 1 + most);
+  OctetWriter writer{data};
+  writer.put(end.reports).put(end.left_out).put(end.missing).put(end.damaged);
+  put_words(writer, end.why);
+  data.resize(writer.size());
+  return data;
+}
+
+std::optional<RetrievalEnd> read_retrieval_end(Octets data) {
+  OctetReader reader{data};
+  RetrievalEnd end;
+  for (std::uint32_t* const count : {&end.reports, &end.left_out, &end.missing, &end.damaged})
+    *count = reader.get<std::uint32_t>();
+  end.why = get_words(reader);
+  return reader.exhausted() ? std::optional{std::move(end)} : std::nullopt;
 }
 
 const ServiceKind service_kind{.type = service_type,

@@ -32,6 +32,11 @@
 ///   TM[129,10] beside a REREAD that is refused (docs/adr/0095), one for each problem: whose descriptor, APID u16; how many there are
 ///              u16; file, as words; line u32, column u32 (0: the file as a whole); its number in docs/descriptor-errors.md, what is
 ///              wrong and what to do about it, as words
+///   TC[129,11] send down what the log of this flight has (docs/adr/0140): the reports that were stored from one time to another, 7 octets
+///              each, and whether housekeeping is among them, 1 or 0 u8. Of a ground only; completed as soon as it is begun
+///   TM[129,12] one report of these: its number in the log u64; the whole packet as it was sent. It is not logged again
+///   TM[129,13] and the end of it: how many reports came u32; how many were left out, as they find no room in a report u32; how many numbers of
+///              the log are missing there u32, how many of its records are damaged u32; why it ended early, as words (none: it did not)
 namespace hirosco::pus::st129 {
 
 inline constexpr std::uint8_t service_type = 129;
@@ -46,7 +51,10 @@ enum Subtype : std::uint8_t {
   plan_preview = 7,
   subscribe = 8,
   unsubscribe = 9,
-  descriptor_problem = 10
+  descriptor_problem = 10,
+  retrieve = 11,
+  retrieved = 12,
+  retrieval_end = 13
 };
 
 /// What TC[129,8] and [129,9] name.
@@ -94,6 +102,39 @@ struct PlanPreview {
   std::vector<std::string> against;
   std::vector<ModePreview::Step> steps;
 };
+
+/// What TC[129,11] asks for. Times are cut to what 7 octets can say.
+struct Retrieve {
+  OnboardTime from{}, to{};  ///< both included
+  bool housekeeping{true};
+  friend bool operator==(const Retrieve&, const Retrieve&) = default;
+};
+inline constexpr std::size_t retrieve_octets = 15;
+[[nodiscard]] std::array<std::byte, retrieve_octets> write_retrieve(const Retrieve& wanted) noexcept;
+/// Empty: it is not of this form.
+[[nodiscard]] std::optional<Retrieve> read_retrieve(Octets data) noexcept;
+
+/// A report that was sent before. `packet` views what it was read from.
+struct Retrieved {
+  std::uint64_t number{};  ///< in the log
+  Octets packet{};
+};
+inline constexpr std::size_t max_retrieved_octets = max_telemetry_octets - telemetry_overhead_octets - sizeof(std::uint64_t);
+/// Into `buffer`; empty: the packet has more than max_retrieved_octets.
+[[nodiscard]] Octets write_retrieved(MutableOctets buffer, const Retrieved& report) noexcept;
+[[nodiscard]] std::optional<Retrieved> read_retrieved(Octets data) noexcept;
+/// Whether it says again what was said before.
+[[nodiscard]] bool is_retrieved(const TelemetryView& report) noexcept;
+
+struct RetrievalEnd {
+  std::uint32_t reports{}, left_out{}, missing{}, damaged{};
+  std::string why{};  ///< it ended early; empty: it did not
+  [[nodiscard]] bool whole() const noexcept { return why.empty() && left_out == 0 && missing == 0 && damaged == 0; }
+  friend bool operator==(const RetrievalEnd&, const RetrievalEnd&) = default;
+};
+/// Words are cut at 255 octets.
+[[nodiscard]] std::vector<std::byte> write_retrieval_end(const RetrievalEnd& end);
+[[nodiscard]] std::optional<RetrievalEnd> read_retrieval_end(Octets data);
 
 inline constexpr std::size_t max_preview_octets = max_telemetry_octets - telemetry_overhead_octets;
 /// Into `buffer`, of max_preview_octets. Steps and reasons beyond 255 of each, and steps that find no room, are left out; words

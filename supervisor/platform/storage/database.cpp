@@ -101,6 +101,7 @@ std::string describe(const LogRecord& record) {
 bool matches(const LogRecord& record, const LogQuery& query) {
   if (record.number < query.since) return false;
   if (query.run && record.run != *query.run) return false;
+  if (record.stored < query.stored_from || record.stored > query.stored_to) return false;
   const PacketLabel label = label_of(record.packet);
   if (query.apid && record.source != *query.apid && record.peer != *query.apid &&
       (record.packet.empty() || label.apid != *query.apid))

@@ -94,6 +94,7 @@ struct LogQuery {
   std::function<std::string(const LogRecord&)> words{};  ///< of a record; empty = `describe`
   std::uint64_t since{0};  ///< numbers from here on
   std::optional<OnboardTime> run{};  ///< one run only
+  OnboardTime stored_from{OnboardTime::min()}, stored_to{OnboardTime::max()};  ///< both included
   std::size_t last{1000};
   LogEnd end{LogEnd::Newest};
 };

@@ -102,10 +102,12 @@ Result<LogPage> read_log(const fs::path& log, const LogQuery& query, std::span<D
     else refused = page.error();
   };
   for (Database* const database : beside) take(database->read(query));
-  // The newest piece first: the others only have what is older, and a flight may rotate them away meanwhile.
-  const auto pieces = pieces_of(log);
-  for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece) {
-    auto database = open_database(piece->strategy, piece->path, DatabaseAccess::Read);
+  // The piece at the asked end first: the others only have what is farther from it, and a flight may rotate them away meanwhile.
+  const bool oldest = query.end == LogEnd::Oldest;
+  auto pieces = pieces_of(log);
+  if (!oldest) std::ranges::reverse(pieces);
+  for (const LogPiece& piece : pieces) {
+    auto database = open_database(piece.strategy, piece.path, DatabaseAccess::Read);
     if (!database && database.error().code == ErrorCode::NotFound) continue;
     take(database ? (*database)->read(query) : fail(database.error()));
     // Not after each of hundreds of pieces: putting all in order costs more than reading one.
@@ -117,8 +119,11 @@ Result<LogPage> read_log(const fs::path& log, const LogQuery& query, std::span<D
   // What cannot be read is why there is a next piece; alone it is all that is asked for.
   if (sources == 1 && refused) return fail(*refused);
   put_in_order(all.records);
-  if (all.records.size() > query.last)
-    all.records.erase(all.records.begin(), all.records.end() - static_cast<std::ptrdiff_t>(query.last));
+  if (all.records.size() > query.last) {
+    const auto last = static_cast<std::ptrdiff_t>(query.last);
+    if (oldest) all.records.erase(all.records.begin() + last, all.records.end());
+    else all.records.erase(all.records.begin(), all.records.end() - last);
+  }
   return all;
 }
 

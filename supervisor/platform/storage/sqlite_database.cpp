@@ -171,6 +171,15 @@ Result<> SqliteDatabase::check_same(const LogRecord& record) {
   return ok();
 }
 
+namespace {
+/// Of one run there is an index by number.
+const char* order_of(const LogQuery& query) {
+  const bool oldest = query.end == LogEnd::Oldest;
+  if (query.run) return oldest ? " ORDER BY number" : " ORDER BY number DESC";
+  return oldest ? " ORDER BY position" : " ORDER BY position DESC";
+}
+}  // namespace
+
 Result<LogPage> SqliteDatabase::do_read(const LogQuery& query) {
   if (empty_) {
     try {
@@ -186,12 +195,15 @@ Result<LogPage> SqliteDatabase::do_read(const LogQuery& query) {
   if (query.run) sql += " AND run = ?2";
   if (query.apid) sql += " AND (source = ?3 OR peer = ?3 OR apid = ?3)";
   if (query.service) sql += " AND service = ?4";
+  sql += " AND stored BETWEEN ?5 AND ?6";
   try {
-    SQLite::Statement row{connection_, sql + (oldest ? " ORDER BY position" : " ORDER BY position DESC")};
+    SQLite::Statement row{connection_, sql + order_of(query)};
     row.bind(1, static_cast<std::int64_t>(std::min<std::uint64_t>(query.since, INT64_MAX)));
     if (query.run) row.bind(2, nanoseconds(*query.run));
     if (query.apid) row.bind(3, *query.apid);
     if (query.service) row.bind(4, *query.service);
+    row.bind(5, nanoseconds(query.stored_from));
+    row.bind(6, nanoseconds(query.stored_to));
 
     LogPage page;
     while (page.records.size() < query.last && row.executeStep()) {

@@ -219,8 +219,15 @@ using Notice = std::optional<FailureNotice>;
   });
 }
 
+[[nodiscard]] bool is_about_the_log(const Asked& asked) {
+  return asked.to_supervisor() && asked.telecommand.service() == pus::st129::service_type &&
+         asked.telecommand.subtype() == pus::st129::retrieve;
+}
+
 /// May this sender ask for it?
 [[nodiscard]] Notice is_the_senders(const Asked& asked) {
+  // What was said before goes to ground: the downlink is no subsystem's to fill.
+  if (is_about_the_log(asked) && !asked.origin.is_ground()) return FailureNotice{FailureCode::NotDeclared};
   if (is_about_subscriptions(asked))
     return may_hear(asked) ? std::nullopt : Notice{FailureNotice{FailureCode::NotDeclared}};
   if (asked.origin.is_supervisor()) return std::nullopt;

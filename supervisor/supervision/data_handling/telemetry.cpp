@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/data_handling/telemetry.hpp"
 
+#include "hirosco/pus/st129_supervision/supervision.hpp"
+
 namespace hirosco::supervisor {
 
 namespace {
@@ -17,6 +19,11 @@ bool Telemetry::take(std::uint16_t from, Octets packet) {
   const auto report = pus::TelemetryView::parse(packet);
   if (!report || report->apid() != from) return false;
   ++traffic_.counts.telemetry;
+  if (pus::st129::is_retrieved(*report)) {
+    // It stands in the log, and whoever is on board has heard it.
+    if (Channel* link = to_ground()) ground_.send(*link, packet, GroundRoute::Kind::Report, craft_.now);
+    return true;
+  }
   const bool event = report->service() == 5 && report->subtype() <= 4;
   static_cast<void>(craft_.log.append({.kind = event ? LogKind::Event : LogKind::Telemetry,
                                        .source = from,

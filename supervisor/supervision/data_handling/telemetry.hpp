@@ -13,7 +13,8 @@
 
 namespace hirosco::supervisor {
 
-/// Logs every telemetry packet and routes it: to the ground, then to all parts that hear (paper 4.3).
+/// Logs every telemetry packet and routes it: to the ground, then to all parts that hear (paper 4.3). What the log sends down again (TM[129,12])
+/// is routed to the ground only.
 /// Thread: the supervisor's.
 class Telemetry {
  public:

@@ -59,6 +59,12 @@ inline descriptor::Mission parts_mission() {
   return made;
 }
 
+inline std::unique_ptr<Database> kept_in(Database*& store) {
+  auto made = std::make_unique<MemoryDatabase>();
+  store = made.get();
+  return made;
+}
+
 struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
   explicit PartsTest(descriptor::Mission flown = parts_mission()) : mission{std::move(flown)} {}
 
@@ -67,7 +73,9 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
   LocalFlows flows;
   descriptor::Mission mission;
   Guard guard{{.clock = clock, .flows = flows, .first_epoch = 1000, .on_finding = {}}};
-  DirectPacketLog log{clock, open_database(DatabaseStrategy::Memory, {}).value()};
+  Database* store{nullptr};  ///< of the log, which owns it
+  DirectPacketLog log{clock, kept_in(store)};
+  DirectLogReadings log_readings{[this](const LogQuery& query) { return store->read(query); }};
   MemoryValueDisk value_disk;
   DirectValueStore values{value_disk, "values"};
   std::map<std::uint16_t, PlayedMember> played;
@@ -84,7 +92,8 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
                          .log = log,
                          .open_database = [this](DatabaseStrategy) { return std::move(next_database); },
                          .observer = *this,
-                         .values = &values}};
+                         .values = &values,
+                         .log_readings = &log_readings}};
   Craft& craft = parts.craft;
 
   /// What steps act with, and a desk that the test plays.

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/data_handling/retrieval.hpp"
+
+#include <array>
+#include <utility>
+
+namespace hirosco::supervisor {
+
+namespace st129 = pus::st129;
+
+namespace {
+/// 7 octets say 2^-24 s.
+constexpr Duration cut_off = 60ns;
+}  // namespace
+
+void Retrieval::begin(const pus::Request& asked, Octets data) {
+  pus::Verification& verification = parts_.own.verification();
+  const auto wanted = st129::read_retrieve(data);
+  if (!wanted || wanted->to < wanted->from)
+    return verification.rejected(asked, pus::FailureNotice{pus::FailureCode::IllegalField});
+  verification.accepted(asked);
+  if (parts_.readings == nullptr) {
+    pus::FailureNotice none{pus::FailureCode::NotPermittedNow};
+    return verification.start_failed(
+        asked, none.because({ErrorCode::Unavailable, 0, "this deployment reads no log"}));
+  }
+  if (running_ && running_->destination != asked.source)
+    return verification.start_failed(asked, pus::FailureNotice{pus::FailureCode::Busy});
+  if (running_) finish("asked anew");
+  verification.started(asked);
+  running_ = Running{.wanted = *wanted, .destination = asked.source, .begun = parts_.craft.now};
+  // Its own number is where it ends: what follows is said now, to whoever listens.
+  running_->through = parts_.craft.log.append(
+      {.kind = LogKind::Action, .source = supervisor_apid, .note = "what was said before is sent down again"});
+  verification.completed(asked);
+}
+
+void Retrieval::watch(TimePoint now) {
+  if (!running_ && !abandoned_) return;
+  if (auto page = parts_.readings->outcome()) {
+    const bool wanted = !std::exchange(abandoned_, false) && running_;
+    if (wanted) running_->reads = false;
+    if (wanted && !*page) return finish("the log cannot be read: " + std::string{page->error().text});
+    if (wanted) {
+      running_->read_all = (*page)->records.size() < page_records;
+      running_->end.damaged += static_cast<std::uint32_t>((*page)->damaged);
+      for (LogRecord& record : (*page)->records) running_->page.push_back(std::move(record));
+      if (!running_->page.empty()) running_->next = running_->page.back().number + 1;
+    }
+  }
+  if (!running_) return;
+  send(*running_);
+  if (!running_->page.empty()) return;
+  if (running_->read_all || running_->next > running_->through) return finish({});
+  read_on(*running_, now);
+}
+
+void Retrieval::read_on(Running& running, TimePoint now) {
+  if (running.reads || abandoned_) return;
+  PacketLog& log = parts_.craft.log;
+  if (log.durable() < running.through && now - running.begun < disk_patience) return;
+  const auto begun = parts_.readings->begin({.housekeeping = running.wanted.housekeeping,
+                                             .since = running.next,
+                                             .run = log.run(),
+                                             .stored_from = running.wanted.from,
+                                             .stored_to = running.wanted.to + cut_off,
+                                             .last = page_records,
+                                             .end = LogEnd::Oldest});
+  if (begun) running.reads = true;
+  else finish(begun.error().text);
+}
+
+void Retrieval::send(Running& running) {
+  std::array<std::byte, st129::max_retrieved_octets + sizeof(std::uint64_t)> buffer;
+  for (std::size_t sent = 0; sent < most_at_once && !running.page.empty();) {
+    // What is said now goes first, and a link that takes nothing is not filled.
+    if (parts_.telemetry.ground().waiting()) return;
+    const LogRecord record = std::move(running.page.front());
+    running.page.pop_front();
+    if (record.number > running.through) continue;
+    if (record.kind == LogKind::Gap) running.end.missing += record.lost;
+    if (record.kind != LogKind::Telemetry && record.kind != LogKind::Event) continue;
+    const Octets data = st129::write_retrieved(buffer, {record.number, record.packet});
+    if (data.empty()) {
+      ++running.end.left_out;
+      continue;
+    }
+    parts_.own.telemetry().report(st129::service_type, st129::retrieved, running.destination, data);
+    ++running.end.reports;
+    ++sent;
+  }
+}
+
+void Retrieval::finish(std::string why) {
+  running_->end.why = std::move(why);
+  parts_.own.telemetry().report(st129::service_type, st129::retrieval_end, running_->destination,
+                                st129::write_retrieval_end(running_->end));
+  abandoned_ = running_->reads;
+  running_.reset();
+}
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "supervisor/platform/storage/log_readings.hpp"
+#include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/data_handling/telemetry.hpp"
+#include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/watch_and_hear.hpp"
+
+namespace hirosco::supervisor {
+
+/// TC[129,11]: what ground missed comes down from the log of this flight (docs/adr/0140): what was said before there was a link, or while there
+/// was none. Behind all that is said now, so many in each watch period; one range at a time, read by somebody who may wait for the disk.
+/// Thread: the supervisor's.
+class Retrieval final : public Watch {
+ public:
+  struct Parts {
+    Craft& craft;
+    OwnSubsystem& own;
+    const Telemetry& telemetry;
+    LogReadings* readings{nullptr};  ///< null: this deployment reads no log
+  };
+  /// Records read at once, and reports sent in one watch period.
+  static constexpr std::size_t page_records = 400, most_at_once = 8;
+  /// What was said just before is waited for so long to be on the disk.
+  static constexpr Duration disk_patience{3s};
+
+  explicit Retrieval(const Parts& parts) : parts_{parts} {}
+
+  /// A ground asks; the same one asks anew.
+  void begin(const pus::Request& asked, Octets data);
+  void watch(TimePoint now) override;
+
+ private:
+  struct Running {
+    pus::st129::Retrieve wanted;
+    std::uint16_t destination{};
+    std::uint64_t next{1};     ///< number of the record to go on with
+    std::uint64_t through{0};  ///< and of the last one
+    TimePoint begun{};
+    bool reads{false};      ///< a page is under way
+    bool read_all{false};   ///< no page follows
+    std::deque<LogRecord> page{};
+    pus::st129::RetrievalEnd end{};
+  };
+  void read_on(Running& running, TimePoint now);
+  void send(Running& running);
+  void finish(std::string why);
+
+  Parts parts_;
+  std::optional<Running> running_;
+  bool abandoned_{false};  ///< a page is under way that nobody wants any more
+};
+
+}  // namespace hirosco::supervisor

@@ -1,0 +1,311 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/data_handling/retrieval.hpp"
+
+#include <fmt/format.h>
+
+#include "supervisor/supervision/testing/parts_rig.hpp"
+
+/// CAMERA is the ground link; its ground asks under 7, another one under 8.
+namespace hirosco::supervisor {
+namespace {
+
+using namespace testing;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using enum descriptor::State;
+namespace st129 = pus::st129;
+
+constexpr std::uint16_t ground = 7, other_ground = 8;
+constexpr OnboardTime never_before{}, always_after{std::chrono::hours{24 * 365 * 100}};
+
+struct RetrievalTest : PartsTest {
+  struct Down {
+    std::vector<std::uint64_t> numbers;
+    std::vector<std::vector<std::byte>> packets;
+    std::vector<st129::RetrievalEnd> ends;
+    std::vector<std::string> verdicts;  ///< "1.7 of 3", its code behind it where there is one
+    std::size_t most_at_once{0};  ///< in one watch period
+  };
+  std::uint16_t count{0};
+
+  void SetUp() override {
+    PartsTest::SetUp();
+    start_all(Operational);
+    parts.own.start(craft.mode_epoch);
+    own_step();
+    static_cast<void>(listen());
+  }
+  /// Said while nobody listens, as the log has it.
+  void say_unheard(int times, std::uint8_t service = 17, std::uint8_t subtype = 2) {
+    set(camera, Offline);
+    for (int i = 0; i < times; ++i) {
+      wait(1ms);
+      report(arm, service, subtype, std::array{std::byte{0x12}, static_cast<std::byte>(i)});
+    }
+    parts.telemetry.serve_ground();  // nobody is there
+    set(camera, Operational);
+  }
+  void ask(const st129::Retrieve& wanted, std::uint16_t who = ground) { ask_with(st129::write_retrieve(wanted), who); }
+  void ask_with(Octets data, std::uint16_t who = ground, MessageKind kind = MessageKind::GroundTelecommand,
+                std::uint16_t by = camera) {
+    std::array<std::byte, pus::max_telecommand_octets> buffer;
+    const auto packet = pus::write_telecommand(buffer,
+                                               {.apid = supervisor_apid,
+                                                .sequence_count = count++,
+                                                .ack = pus::ack_completion,
+                                                .service = st129::service_type,
+                                                .subtype = st129::retrieve,
+                                                .source = who},
+                                               data);
+    EXPECT_TRUE(played[by].channel.subsystem_end().send({.kind = kind, .link = 5, .packet = *packet}));
+    parts.reception.read(*craft.member(by));
+    own_step();
+  }
+  /// What the ground link was given since it was asked last.
+  Down listen() {
+    Down down;
+    parts.telemetry.serve_ground();
+    MessageBuffer buffer;
+    for (;;) {
+      const auto next = played[camera].channel.subsystem_end().receive(buffer);
+      if (!next || next->flow == Flow::None) return down;
+      const auto heard = pus::TelemetryView::parse(next->message.packet);
+      if (!heard || heard->apid() != supervisor_apid) continue;
+      const Octets data = heard->source_data();
+      if (heard->service() == 1) {
+        OctetReader reader{data};
+        std::string text =
+            fmt::format("1.{} of {}", heard->subtype(), reader.get<std::uint32_t>() % pus::sequence_counts);
+        if (heard->subtype() % 2 == 0) text += fmt::format(" {}", reader.get<std::uint16_t>());
+        down.verdicts.push_back(text);
+      }
+      if (heard->service() != st129::service_type) continue;
+      if (const auto end = st129::read_retrieval_end(data); end && heard->subtype() == st129::retrieval_end)
+        down.ends.push_back(*end);
+      if (!st129::is_retrieved(*heard)) continue;
+      const auto again = st129::read_retrieved(data);
+      down.numbers.push_back(again->number);
+      down.packets.emplace_back(again->packet.begin(), again->packet.end());
+    }
+  }
+  /// So many watch periods.
+  Down go_on(int periods = 100) {
+    Down all;
+    for (int i = 0; i < periods; ++i) {
+      wait(10ms);
+      parts.retrieval.watch(clock.now());
+      own_step();
+      Down now = listen();
+      all.most_at_once = std::max(all.most_at_once, now.numbers.size());
+      std::ranges::copy(now.numbers, std::back_inserter(all.numbers));
+      std::ranges::move(now.packets, std::back_inserter(all.packets));
+      std::ranges::move(now.ends, std::back_inserter(all.ends));
+      std::ranges::move(now.verdicts, std::back_inserter(all.verdicts));
+    }
+    return all;
+  }
+  std::vector<LogRecord> logged() { return store->read({.last = 100'000, .end = LogEnd::Oldest})->records; }
+};
+
+TEST_F(RetrievalTest, WhatNobodyHeardComesDownAsItWasSentInOrderAndUnderItsNumbers) {
+  say_unheard(30);
+  ask({never_before, always_after, true});
+  EXPECT_THAT(listen().verdicts, ElementsAre("1.7 of 0")) << "it is begun";
+  std::vector<std::vector<std::byte>> sent;
+  std::vector<std::uint64_t> numbers;
+  for (const LogRecord& record : logged())
+    if (record.kind == LogKind::Telemetry && record.source == arm) {
+      sent.push_back(record.packet);
+      numbers.push_back(record.number);
+    }
+  ASSERT_THAT(sent, SizeIs(30));
+  const Down down = go_on();
+  std::vector<std::vector<std::byte>> of_arm;
+  std::vector<std::uint64_t> their_numbers;
+  for (std::size_t i = 0; i < down.packets.size(); ++i) {
+    if (pus::TelemetryView::parse(down.packets[i])->apid() != arm) continue;
+    of_arm.push_back(down.packets[i]);
+    their_numbers.push_back(down.numbers[i]);
+  }
+  EXPECT_EQ(of_arm, sent);
+  EXPECT_EQ(their_numbers, numbers);
+  ASSERT_THAT(down.ends, SizeIs(1));
+  EXPECT_TRUE(down.ends[0].whole()) << down.ends[0].why;
+  EXPECT_EQ(down.ends[0].reports, down.packets.size());
+}
+
+TEST_F(RetrievalTest, WhatComesDownAgainIsNotLoggedAgainAndNobodyOnBoardHearsIt) {
+  say_unheard(5);
+  routed_services.clear();
+  ask({never_before, always_after, true});
+  EXPECT_GE(go_on().packets.size(), 5U);
+  for (const LogRecord& record : logged()) {
+    const auto label = label_of(record.packet);
+    EXPECT_FALSE(!label.telecommand && label.service == 129 && label.subtype == st129::retrieved);
+  }
+  EXPECT_EQ(std::ranges::count(routed_services, 129), 1) << "its end";
+}
+
+TEST_F(RetrievalTest, OnlyWhatWasStoredInTheTimesAskedForComes) {
+  say_unheard(3);
+  const OnboardTime from = clock.onboard() + 1ms;
+  wait(5ms);
+  say_unheard(4);
+  const OnboardTime to = clock.onboard();
+  wait(5ms);
+  say_unheard(2);
+  ask({from, to, true});
+  const Down down = go_on();
+  EXPECT_THAT(down.packets, SizeIs(4));
+  EXPECT_EQ(down.ends.at(0).reports, 4U);
+}
+
+TEST_F(RetrievalTest, HousekeepingComesIfItIsAskedFor) {
+  const OnboardTime from = clock.onboard() + 500us;
+  say_unheard(3, 3, 25);
+  say_unheard(2);
+  const OnboardTime to = clock.onboard();
+  wait(1ms);
+  ask({from, to, false});
+  EXPECT_THAT(go_on().packets, SizeIs(2));
+  ask({from, to, true});
+  EXPECT_THAT(go_on().packets, SizeIs(5));
+}
+
+TEST_F(RetrievalTest, MoreThanAPageComesInPiecesAndNotMoreThanEightAtOnce) {
+  constexpr int many = 3 * static_cast<int>(Retrieval::page_records);
+  const OnboardTime from = clock.onboard();
+  say_unheard(many);
+  ask({from, clock.onboard(), true});
+  const Down down = go_on(many);
+  EXPECT_EQ(down.packets.size(), static_cast<std::size_t>(many));
+  EXPECT_TRUE(std::ranges::is_sorted(down.numbers));
+  EXPECT_EQ(std::ranges::adjacent_find(down.numbers), down.numbers.end()) << "each once";
+  EXPECT_EQ(down.most_at_once, Retrieval::most_at_once);
+  EXPECT_THAT(down.ends, SizeIs(1));
+}
+
+TEST_F(RetrievalTest, WhatIsSaidNowGoesFirst) {
+  say_unheard(20);
+  ask({never_before, always_after, true});
+  static_cast<void>(listen());
+  parts.retrieval.watch(clock.now());  // a page is read
+  report(arm, 17, 2, {});  // and this waits for the ground link
+  ASSERT_TRUE(parts.telemetry.ground().waiting());
+  parts.retrieval.watch(clock.now());
+  own_step();
+  EXPECT_THAT(listen().packets, IsEmpty());
+  EXPECT_GE(go_on().packets.size(), 20U);
+}
+
+TEST_F(RetrievalTest, AnotherGroundWaitsAndTheSameOneAsksAnew) {
+  say_unheard(100);
+  ask({never_before, always_after, true}, ground);
+  static_cast<void>(go_on(3));
+  ask({never_before, always_after, true}, other_ground);
+  const auto busy = std::to_string(static_cast<int>(pus::FailureCode::Busy));
+  EXPECT_THAT(listen().verdicts, ElementsAre("1.4 of 1 " + busy));
+  ask({never_before, always_after, true}, ground);
+  const Down down = go_on();
+  ASSERT_THAT(down.ends, SizeIs(2));
+  EXPECT_EQ(down.ends[0].why, "asked anew");
+  EXPECT_TRUE(down.ends[1].whole());
+  ask({never_before, always_after, true}, other_ground);
+  EXPECT_THAT(go_on().ends, SizeIs(1));
+}
+
+TEST_F(RetrievalTest, WhatFindsNoRoomInAReportIsLeftOutAndCounted) {
+  const OnboardTime from = clock.onboard();
+  set(camera, Offline);
+  report(arm, 17, 2, std::vector<std::byte>(st129::max_retrieved_octets - pus::telemetry_overhead_octets));
+  report(arm, 17, 2, std::vector<std::byte>(st129::max_retrieved_octets - pus::telemetry_overhead_octets + 1));
+  set(camera, Operational);
+  ask({from, clock.onboard(), true});
+  const Down down = go_on();
+  EXPECT_THAT(down.packets, ElementsAre(SizeIs(st129::max_retrieved_octets)));
+  EXPECT_EQ(down.ends.at(0), (st129::RetrievalEnd{.reports = 1, .left_out = 1}));
+}
+
+TEST_F(RetrievalTest, WhatIsNoRangeOfTimesIsRefused) {
+  const auto field = std::to_string(static_cast<int>(pus::FailureCode::IllegalField));
+  ask({clock.onboard(), clock.onboard() - 1s, true});
+  ask_with({});
+  EXPECT_THAT(listen().verdicts, ElementsAre("1.2 of 0 " + field, "1.2 of 1 " + field));
+}
+
+TEST_F(RetrievalTest, NoSubsystemFillsTheDownlink) {
+  ask_with(st129::write_retrieve({never_before, always_after, true}), hand, MessageKind::Packet, hand);
+  const auto refused = std::to_string(static_cast<int>(pus::FailureCode::NotDeclared));
+  EXPECT_THAT(listen().verdicts, ElementsAre("1.2 of 0 " + refused));
+  EXPECT_THAT(go_on().ends, IsEmpty());
+}
+
+/// A disk that does what the test says.
+struct PlayedLog final : LogReadings {
+  Result<> begin(const LogQuery&) override {
+    ++begun;
+    return ok();
+  }
+  std::optional<Result<LogPage>> outcome() override { return std::exchange(next, std::nullopt); }
+  int begun{0};
+  std::optional<Result<LogPage>> next;
+};
+
+struct SlowRetrievalTest : RetrievalTest {
+  PlayedLog disk;
+  Retrieval retrieval{{craft, parts.own, parts.telemetry, &disk}};
+  void begin() { retrieval.begin({.id = 1, .source = ground, .ack = 0}, st129::write_retrieve({never_before, always_after, true})); }
+  Down step() {
+    wait(10ms);
+    retrieval.watch(clock.now());
+    own_step();
+    return listen();
+  }
+};
+
+TEST_F(SlowRetrievalTest, AskedAnewWhileADiskStandsStillItReadsNothingBesideAndDropsWhatComesLate) {
+  begin();
+  static_cast<void>(step());
+  ASSERT_EQ(disk.begun, 1);
+  begin();
+  static_cast<void>(step());
+  EXPECT_EQ(disk.begun, 1) << "one page at a time";
+  LogPage late;
+  late.records = {{.run = log.run(), .number = 1, .kind = LogKind::Telemetry, .packet = {std::byte{1}}}};
+  disk.next = late;
+  EXPECT_THAT(step().packets, IsEmpty()) << "nobody wants it any more";
+  static_cast<void>(step());
+  EXPECT_EQ(disk.begun, 2);
+  disk.next = late;
+  EXPECT_THAT(step().packets, SizeIs(1));
+}
+
+TEST_F(SlowRetrievalTest, WhatTheLogLacksAndWhatIsDamagedIsCounted) {
+  begin();
+  static_cast<void>(step());
+  LogPage page;
+  page.records = {{.run = log.run(), .number = 1, .kind = LogKind::Gap, .lost = 12}};
+  page.damaged = 3;
+  disk.next = page;
+  const Down down = step();
+  EXPECT_THAT(down.ends, ElementsAre(st129::RetrievalEnd{.missing = 12, .damaged = 3}));
+  EXPECT_FALSE(down.ends.at(0).whole());
+}
+
+TEST_F(SlowRetrievalTest, ALogThatCannotBeReadEndsItInWords) {
+  begin();
+  static_cast<void>(step());
+  disk.next = fail(ErrorCode::SystemFailure, "no such disk");
+  const Down down = step();
+  ASSERT_THAT(down.ends, SizeIs(1));
+  EXPECT_EQ(down.ends[0].why, "the log cannot be read: no such disk");
+  begin();
+  static_cast<void>(step());
+  EXPECT_EQ(disk.begun, 2) << "and the next one is tried";
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor
