@@ -87,8 +87,7 @@ bool CatchUp::is_known(const pus::TelemetryView& packet, Octets octets) const {
 
 void CatchUp::take(Octets octets) {
   const auto packet = pus::TelemetryView::parse(octets);
-  const Wanted& wanted = wanted_.front();
-  if (!packet || packet->time() < wanted.from || packet->time() > wanted.to) return;
+  if (!packet) return;
   if (!first_) first_ = packet->time();
   if (is_known(*packet, octets)) return;
   Heard heard = past_->take(*packet);

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ground/model/json.hpp"
+
 namespace hirosco::ground {
 namespace {
 
@@ -62,6 +64,17 @@ TEST_F(AnOperator, AcknowledgesWithNameAndNoteAndIsCalledAgainWhenItHappensAgain
   EXPECT_EQ(first_of(alarms)["fresh"], 1);
   EXPECT_EQ(first_of(alarms)["count"], 3);
   EXPECT_EQ(first_of(alarms)["calls"], true);
+}
+
+TEST_F(AnOperator, IsCalledByWhatIsHeardLateAndSeesTheNewestStill) {
+  happens(event(noon + 10s));
+  ASSERT_TRUE(alarms.act(request("acknowledge"), "anna", noon + 11s));
+  happens(event(noon + 1s));  // while there was no link
+  const json alarm = first_of(alarms);
+  EXPECT_EQ(alarm["calls"], true);
+  EXPECT_EQ(alarm["count"], 2);
+  EXPECT_EQ(alarm["first"], json_time(noon + 1s));
+  EXPECT_EQ(alarm["t"], json_time(noon + 10s));
 }
 
 TEST_F(AnOperator, IsNotCalledByWhatIsShelvedUntilItsTimeIsOver) {
@@ -149,7 +162,7 @@ TEST_F(AnOperator, SeesWhatCallsFirstAndAFloodOfKindsHasAnEnd) {
     alarms.hear(one);
   }
   EXPECT_EQ(alarms.list()["alarms"].size(), Alarms::most_alarms);
-  alarms.hear(event(noon, 4, 9));
+  alarms.hear(event(noon + 1s, 4, 9));
   EXPECT_EQ(first_of(alarms)["severity"], "high");
 }
 

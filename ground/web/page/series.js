@@ -6,7 +6,7 @@
 import {get} from './api.js';
 import {is_reckoned, of_flight, reckoned} from './parts/curves.js';
 import {reckon} from './parts/expression.js';
-import {columns, flight, flights, freshness, gateway, newest_s, now_s, on_values, replay, values} from './store.js';
+import {columns, filled, flight, flights, freshness, gateway, newest_s, now_s, on_values, replay, values} from './store.js';
 
 const most_samples = 40000;
 const longest_window_s = 3600;
@@ -173,18 +173,24 @@ on_values((set) => {
   }
 });
 
+/// The archive knows more than the page.
+function fetch_all_again() {
+  for (const series of known.values()) {
+    const from = series.from;
+    series.forget();
+    if (Number.isFinite(from)) series.fetch(from);
+  }
+}
+
 /// What the archive got while the page had no gateway comes from there: a line over the time between would be a lie.
 let was_connected = true;
 gateway.subscribe(({connected}) => {
-  if (connected && !was_connected) {
-    for (const series of known.values()) {
-      const from = series.from;
-      series.forget();
-      if (Number.isFinite(from)) series.fetch(from);
-    }
-  }
+  if (connected && !was_connected) fetch_all_again();
   was_connected = connected;
 });
+
+/// What the station had missed, and has fetched.
+filled.subscribe((times) => { if (times > 0) fetch_all_again(); });
 
 // An address may name a flight before the page knows which there are.
 flights.subscribe(() => { for (const series of known.values()) if (series instanceof PastSeries) series.fetch(); });

@@ -16,6 +16,8 @@ export const status = signal(null);
 export const events = signal([]);
 export const commands = signal([]);
 export const gaps = signal([]);
+/// How often something that was missed has come from the log on board.
+export const filled = signal(0);
 export const replay = signal(null);
 export const gateway = signal({connected: false, since_ms: performance.now(), refused: false});
 export const problem = signal('');
@@ -229,6 +231,7 @@ function take(list) {
       gaps.value = [...gaps.value.slice(1 - most_gaps), {from: message.from, to: message.to}];
     } else if (message.type === 'filled') {
       gaps.value = gaps.value.filter((gap) => gap.from < message.from || gap.to > message.to);
+      ++filled.value;
       fetch_present();
     } else if (message.type === 'fault') {
       injections.value = [message, ...injections.value].slice(0, 50);
