@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 
+#include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/subsystem/author/custom_service.hpp"
 #include "subsystems/imager/image_store.hpp"
 #include "subsystems/imager/readout.hpp"
@@ -150,6 +151,8 @@ class Imager final : public Subsystem {
   Outcome acquire(float exposure_ms, std::uint32_t images, std::uint32_t period_ms, const Call& call) {
     if (series_) return refused(Trouble::acquiring, "images of the last request are still to come", status_.load().left);
     if (!command_.alive() || !packets_.alive()) return refused(Trouble::no_camera, "the camera says nothing");
+    if ((command_.flags() & device_flag::watchdog_tripped) != 0)
+      return refused(Trouble::no_camera, "its watchdog has let go: SafeOperational, then Operational again");
     const Size sensor = sensor_.load();
     if (const char* why = window_.load().problem(sensor.width, sensor.height)) return refused(Trouble::bad_window, why);
     series_ = Series{call, exposure_ms, images, images == 0, std::chrono::milliseconds{period_ms}, TimePoint{}};

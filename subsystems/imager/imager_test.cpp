@@ -40,6 +40,7 @@ struct ImagerTest : ::testing::Test {
   std::uint32_t answers{0};
   bool silent{false}, refuses{false}, opens{true}, garbles{false};
   float temperature_c{20};
+  std::uint16_t flags{0};
   TimePoint next_loop{};
 
   ImagerTest() {
@@ -57,7 +58,8 @@ struct ImagerTest : ::testing::Test {
   }
   void say(const char* way, const DeviceCommand& to, Octets payload) {
     std::array<std::byte, max_device_frame_octets> frame{};
-    static_cast<void>(ways[way]->send(write_status(frame, {.epoch = 1, .sequence = to.sequence, .payload = payload}).value()));
+    const DeviceStatus status{.epoch = 1, .sequence = to.sequence, .flags = flags, .payload = payload};
+    static_cast<void>(ways[way]->send(write_status(frame, status).value()));
   }
   void exchange() {
     std::array<std::byte, 1002> data{};
@@ -327,6 +329,16 @@ TEST_F(ImagerTest, ACameraThatIsGoneEndsTheSeriesAndTakesNoOrder) {
   silent = true;
   EXPECT_TRUE(finish(request).starts_with("1 3 8"));
   EXPECT_TRUE(acquire().starts_with("1 4:8002"));
+}
+
+TEST_F(ImagerTest, ACameraWhoseWatchdogHasLetGoTakesNoOrder) {
+  bring_to(State::Operational);
+  flags = device_flag::watchdog_tripped;
+  cycle(2);
+  EXPECT_TRUE(acquire().starts_with("1 4:8002"));
+  flags = 0;
+  cycle(2);
+  EXPECT_EQ(acquire(), "1 3 7");
 }
 
 TEST_F(ImagerTest, NumbersGoOnBehindThoseThatTheCameraHasHad) {
