@@ -74,6 +74,7 @@ class ImageStore {
       for (std::size_t i = 0; i < places; ++i)
         if (!tried[i] && (oldest == places || places_[i].number.load() < places_[oldest].number.load())) oldest = i;
       tried[oldest] = true;
+      if (places_[oldest].readers.load() != 0) continue;
       // First it is no image any more, then it is seen who has it: hold() does it the other way round.
       const std::uint32_t number = places_[oldest].number.exchange(0);
       if (places_[oldest].readers.load() == 0) {

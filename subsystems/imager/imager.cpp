@@ -149,7 +149,8 @@ class Imager final : public Subsystem {
   }
 
   Outcome acquire(float exposure_ms, std::uint32_t images, std::uint32_t period_ms, const Call& call) {
-    if (series_) return refused(Trouble::acquiring, "images of the last request are still to come", status_.load().left);
+    if (series_)
+      return refused(Trouble::acquiring, "images of the last request are still to come", status_.load().left);
     if (!command_.alive() || !packets_.alive()) return refused(Trouble::no_camera, "the camera says nothing");
     if ((command_.flags() & device_flag::watchdog_tripped) != 0)
       return refused(Trouble::no_camera, "its watchdog has let go: SafeOperational, then Operational again");
@@ -181,8 +182,8 @@ class Imager final : public Subsystem {
     // A camera that has gone on without us has numbers of before: none is given twice.
     number_ = std::max(number_, command_.input().image) + 1;
     const Window window = window_.load();
-    command_.output() = {number_,      series_->exposure_ms, window.x,           window.y, window.width,
-                         window.height, window.binning,       threshold_.load()};
+    command_.output() = {number_,      series_->exposure_ms, window.x,       window.y,
+                         window.width, window.height,        window.binning, threshold_.load()};
     readout_.begin(number_, window.pixels());
     coming_ = {.number = number_, .exposed = cycle.planned, .window = window, .exposure_ms = series_->exposure_ms};
     const auto exposure = std::chrono::microseconds{static_cast<std::int64_t>(1000 * series_->exposure_ms)};
@@ -208,7 +209,9 @@ class Imager final : public Subsystem {
     const Readout::Heard heard = readout_.look(head);
     if (heard == Readout::Heard::Nothing) return;
     const auto coded = std::span{packet.coded}.first(heard == Readout::Heard::Wanted ? head.octets : 0U);
-    const auto unpacked_into = [&](MutableOctets pixels) { return imager::unpack(coded, pixels.subspan(head.start, head.pixels)); };
+    const auto unpacked_into = [&](MutableOctets pixels) {
+      return imager::unpack(coded, pixels.subspan(head.start, head.pixels));
+    };
     if (heard == Readout::Heard::Wrong || !unpacked_into(place_)) {
       ++wrong_;
       return;

@@ -20,7 +20,8 @@ namespace hirosco {
 namespace {
 
 constexpr std::uint8_t images_service = 210, image_report = 2, part_report = 4;
-constexpr std::uint16_t image_taken = 2501, series_done = 2502, image_lost = 2503, shutter_stuck = 2504, sensor_hot = 2505;
+constexpr std::uint16_t image_taken = 2501, series_done = 2502, image_lost = 2503, shutter_stuck = 2504,
+                        sensor_hot = 2505;
 
 /// A pixel of image `number`: no two images, and no two parts of one, are alike.
 std::uint8_t pixel_of(std::uint32_t number, std::uint32_t at) {
@@ -72,7 +73,8 @@ struct ImagerTest : ::testing::Test {
         taken = number;
         exposing = 2;
         static_cast<void>(order.get(8));
-        const std::uint32_t width = order.get<std::uint16_t>(), height = order.get<std::uint16_t>(), binning = order.get<std::uint8_t>();
+        const std::uint32_t width = order.get<std::uint16_t>(), height = order.get<std::uint16_t>(),
+                            binning = order.get<std::uint8_t>();
         pixels = width / binning * (height / binning);
       }
       writer.put(taken).put(static_cast<std::uint8_t>(refuses ? 1 : 0));
@@ -155,7 +157,8 @@ struct ImagerTest : ::testing::Test {
   /// Numbers of the parts that came, and their pixels side by side.
   std::vector<std::uint16_t> parts() {
     std::vector<std::uint16_t> numbers;
-    for (const auto& part : told(part_report)) numbers.push_back(OctetReader{Octets{part}.subspan(4)}.get<std::uint16_t>());
+    for (const auto& part : told(part_report))
+      numbers.push_back(OctetReader{Octets{part}.subspan(4)}.get<std::uint16_t>());
     return numbers;
   }
   std::vector<std::byte> put_together() {

@@ -15,10 +15,10 @@ void Sender::serve(CustomService& service, const Parameter<std::uint32_t>& rate,
   rate_ = &rate;
   shown_ = &shown;
   service.on_request("LIST_IMAGES", [this](const Call& call) -> Outcome { return list(call); });
-  service.on_request("SEND_IMAGE",
-                     [this](std::uint32_t image, std::uint16_t first, std::uint16_t count, const Call& call) -> Outcome {
-                       return take({call, image, first, count});
-                     });
+  service.on_request(
+      "SEND_IMAGE", [this](std::uint32_t image, std::uint16_t first, std::uint16_t count, const Call& call) -> Outcome {
+        return take({call, image, first, count});
+      });
   service.on_request("STOP_SENDING", [this]() -> Result<> { return stop(); });
   service.on_step([this](TimePoint now) { step(now); });
 }
@@ -28,14 +28,14 @@ Outcome Sender::list(const Call& call) {
     if (number == 0) break;
     // One that the cycle has taken away since is not there any more.
     const auto held = store_.hold(number);
-    if (held && !describe(*held, call)) return Result<>{fail(ErrorCode::ResourceExhausted, "too much is on its way: ask again")};
+    if (held && !describe(*held, call))
+      return Result<>{fail(ErrorCode::ResourceExhausted, "too much is on its way: ask again")};
   }
   return ok();
 }
 
 Outcome Sender::take(const Wanted& wanted) {
-  if (waiting_.size() == most_waiting)
-    return refused(Trouble::too_many_requests, "so many wait already", most_waiting);
+  if (waiting_.size() == most_waiting) return refused(Trouble::too_many_requests, "so many wait already", most_waiting);
   const auto held = store_.hold(wanted.image);
   if (!held) return refused(Trouble::image_gone, "no such image is there", wanted.image);
   const std::uint16_t parts = parts_of(held->taken().octets());

@@ -107,7 +107,8 @@ TEST_F(Observing, InEclipseItObservesByItsBatteryUntilThatIsLowAndThenGivesItsOu
   EXPECT_TRUE(flight.story().has("POWER medium BUS_LOW"));
   EXPECT_TRUE(ask("SEND_IMAGE", {1, 0, 1}).completed) << "what is on board can be sent";
   flight.craft().run(2s);
-  EXPECT_EQ(flight.set_state("IMAGER", State::Operational).failure, pus::FailureCode::PowerShort) << flight.story().text();
+  EXPECT_EQ(flight.set_state("IMAGER", State::Operational).failure, pus::FailureCode::PowerShort)
+      << flight.story().text();
   fault("power", "charge 0.19");
   ASSERT_TRUE(flight.run_until_state("IMAGER", State::Offline, 5s)) << flight.story().text();
   ASSERT_TRUE(flight.craft().run_until(
@@ -157,8 +158,7 @@ TEST(Watching, ImagesReachWhoIsOnBoardThirtyTimesASecondAsTheCameraMadeThem) {
     flight.craft().run(1s);
     const auto pixels = camera.image();
     ++compared;
-    wrong += number != camera.shot().number ||
-                     light != std::accumulate(pixels.begin(), pixels.end(), std::uint64_t{0})
+    wrong += number != camera.shot().number || light != std::accumulate(pixels.begin(), pixels.end(), std::uint64_t{0})
                  ? 1
                  : 0;
   }

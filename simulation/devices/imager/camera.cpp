@@ -144,7 +144,8 @@ Result<> Camera::do_fault(const Words& words) {
 std::string Camera::do_truth() const {
   const SensorWindow& window = shot_.window;
   return fmt::format(
-      "image={} sky={} u={} v={} exposure_us={} dark={} shutter={} hot={} noise={} threshold={} x={} y={} width={} height={} "
+      "image={} sky={} u={} v={} exposure_us={} dark={} shutter={} hot={} noise={} threshold={} x={} y={} width={} "
+      "height={} "
       "binning={} packets={} crc32={} temperature={:.1f}",
       image_.empty() ? 0 : shot_.number, shot_.sky, shot_.u, shot_.v, shot_.exposure_us, shot_.dark_counts,
       shot_.shutter ? 1 : 0, shot_.hot, shot_.noise, shot_.threshold, window.x, window.y, window.width, window.height,

@@ -65,12 +65,11 @@ TEST(Pack, IsWhatItsAuthorsSay) {
 struct CameraTest : ::testing::Test {
   LocalFlows flows;
   FlowAddress command_address{Transfer::SharedMemory, "command"};
-  SimulatedDevice::Settings settings{
-      .cycle = std::chrono::milliseconds{5},
-      .watchdog = std::chrono::milliseconds{500},
-      .endnode = "COMMAND",
-      .further = {{.name = "STATUS", .addresses = {{Transfer::SharedMemory, "status"}}},
-                  {.name = "IMAGE", .addresses = {{Transfer::SharedMemory, "image"}}}}};
+  SimulatedDevice::Settings settings{.cycle = std::chrono::milliseconds{5},
+                                     .watchdog = std::chrono::milliseconds{500},
+                                     .endnode = "COMMAND",
+                                     .further = {{.name = "STATUS", .addresses = {{Transfer::SharedMemory, "status"}}},
+                                                 {.name = "IMAGE", .addresses = {{Transfer::SharedMemory, "image"}}}}};
   Camera camera{flows, command_address, settings};
   std::map<std::string, std::unique_ptr<DataFlow>> ways;
   TimePoint now{};
@@ -146,7 +145,8 @@ struct CameraTest : ::testing::Test {
         const auto head = std::to_integer<int>(found.coded[at++]);
         const int count = head < 128 ? head + 1 : 257 - head;
         for (int i = 0; i < count; ++i)
-          pixels.push_back(std::to_integer<std::uint8_t>(found.coded[at + static_cast<std::size_t>(head < 128 ? i : 0)]));
+          pixels.push_back(
+              std::to_integer<std::uint8_t>(found.coded[at + static_cast<std::size_t>(head < 128 ? i : 0)]));
         at += static_cast<std::size_t>(head < 128 ? count : 1);
       }
     }
@@ -215,7 +215,8 @@ TEST_F(CameraTest, AWarmSensorSeesLightWhereThereIsNone) {
 }
 
 TEST_F(CameraTest, RefusesWhatItsSensorDoesNotHave) {
-  for (const SensorWindow& window : {SensorWindow{1000, 0, 25, 1, 1}, {0, 0, 10, 10, 3}, {0, 0, 0, 1, 1}, {0, 0, 4, 4, 0}}) {
+  for (const SensorWindow& window :
+       {SensorWindow{1000, 0, 25, 1, 1}, {0, 0, 10, 10, 3}, {0, 0, 0, 1, 1}, {0, 0, 4, 4, 0}}) {
     const Answer answer = order(static_cast<std::uint32_t>(sequence + 1), 1, window);
     EXPECT_EQ(answer.refused, 1) << window.x;
   }
@@ -225,7 +226,8 @@ TEST_F(CameraTest, RefusesWhatItsSensorDoesNotHave) {
 
 TEST_F(CameraTest, UnderstandsEachOfItsFaultLinesAndRefusesOthers) {
   for (const FaultLine& each : Camera::fault_lines) EXPECT_TRUE(camera.fault(each.line)) << each.line;
-  for (const char* line : {"point 1", "drift a b", "temperature", "shutter", "shutter open", "hot -1", "noise 256", "moon 1"})
+  for (const char* line :
+       {"point 1", "drift a b", "temperature", "shutter", "shutter open", "hot -1", "noise 256", "moon 1"})
     EXPECT_FALSE(camera.fault(line)) << line;
 }
 

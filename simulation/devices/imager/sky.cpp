@@ -36,7 +36,8 @@ void Sky::add(std::int64_t x, std::int64_t y, std::uint32_t counts) noexcept {
 }
 
 void Sky::add_stars(const Shot& shot) noexcept {
-  const std::int64_t last_u = square_of(shot.u + sensor_pixels + reach), last_v = square_of(shot.v + sensor_pixels + reach);
+  const std::int64_t last_u = square_of(shot.u + sensor_pixels + reach),
+                     last_v = square_of(shot.v + sensor_pixels + reach);
   for (std::int64_t j = square_of(shot.v - reach); j <= last_v; ++j)
     for (std::int64_t i = square_of(shot.u - reach); i <= last_u; ++i) {
       const auto low = static_cast<std::uint32_t>(j);
@@ -62,7 +63,8 @@ std::span<const std::uint8_t> Sky::expose(const Shot& shot) noexcept {
   if (shot.noise != 0)
     for (std::size_t at = 0; at < sensor_.size(); ++at) {
       const std::uint64_t here = mixed(static_cast<std::uint64_t>(shot.number) << 32 | at);
-      sensor_[at] = static_cast<std::uint8_t>(std::min<std::uint64_t>(sensor_[at] + here % (shot.noise + 1), brightest));
+      sensor_[at] =
+          static_cast<std::uint8_t>(std::min<std::uint64_t>(sensor_[at] + here % (shot.noise + 1), brightest));
     }
   for (std::uint32_t i = 0; i < shot.hot; ++i) {
     const std::uint64_t where = mixed(shot.sky + 0x484F'5400 + i);
