@@ -16,8 +16,10 @@ import time
 import zlib
 
 PART_OCTETS = 2048
-# Parts that are asked for in one request: as many as may be lost at once, and how long a gap goes unseen.
-PARTS_A_REQUEST = 128
+# A request asks for what comes in this time: what a link that is cut leaves on board to be sent in vain is no more.
+REQUEST_S = 2.0
+# Without a part for so long, other requests on board before ours included, it is asked for again.
+SILENCE_S = 30.0
 
 
 class NotWhole(Exception):
@@ -29,17 +31,18 @@ def fetch(craft, imager, number=0, rounds=20, seconds=300.0, told=lambda have, o
     in a row that brought nothing, or so many seconds. The client's CommandFailed: it is not on board any more; ArgumentError."""
     from_flight = sys.modules[type(craft).__module__]      # the exported package: hirosco_MISSION
     end = time.monotonic() + seconds
+    most = max(1, int(imager.get_send_rate() * REQUEST_S / PART_OCTETS))
     about, parts, idle = None, {}, 0
     while about is None or len(parts) < about["PARTS"]:
         if idle >= rounds or time.monotonic() > end:
             raise NotWhole(f"image {number}: {len(parts)} of {about['PARTS'] if about else '?'} parts came")
-        first, count = gap(about, parts)
+        first, count = gap(about, parts, most)
         before = len(parts)
         request = None
         try:
             craft.wait_until(lambda: craft.connected, timeout=10.0, what="no ground link")
             request = imager.send_image(number=number, first=first, count=count, wait=None)
-            request.result(30.0)
+            wait_for(request, from_flight.NoAnswer)
         except (from_flight.LinkLost, from_flight.NoAnswer):
             time.sleep(0.2)        # what had come by then counts; the rest is asked for again
         for report in request.reports if request else ():
@@ -57,13 +60,26 @@ def fetch(craft, imager, number=0, rounds=20, seconds=300.0, told=lambda have, o
     return about, pixels
 
 
-def gap(about, parts):
-    """The first part that is missing, and how many in a row are, at most PARTS_A_REQUEST; of an image that nothing is known of its first part."""
+def wait_for(request, no_answer):
+    """Until it has ended, or nothing comes any more."""
+    heard, since = 0, time.monotonic()
+    while True:
+        try:
+            return request.result(1.0)
+        except no_answer:
+            if len(request.reports) > heard:
+                heard, since = len(request.reports), time.monotonic()
+            elif time.monotonic() - since > SILENCE_S:
+                raise
+
+
+def gap(about, parts, most):
+    """The first part that is missing, and how many in a row are, at most so many; of an image that nothing is known of its first part."""
     if about is None:
         return 0, 1
     first = next(part for part in range(about["PARTS"]) if part not in parts)
     last = first
-    while last + 1 < about["PARTS"] and last + 1 not in parts and last + 1 - first < PARTS_A_REQUEST:
+    while last + 1 < about["PARTS"] and last + 1 not in parts and last + 1 - first < most:
         last += 1
     return first, last + 1 - first
 
