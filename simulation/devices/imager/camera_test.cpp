@@ -46,6 +46,7 @@ TEST(CameraSky, BinsToSumsAndReadsWhatIsDarkAsNothing) {
   EXPECT_EQ(binned[0], 80);
   EXPECT_EQ(sky.expose({.dark_counts = 20, .shutter = false, .window = {4, 8, 8, 4, 4}})[0], 255) << "320, cut";
   EXPECT_EQ(sky.expose({.dark_counts = 20, .shutter = false, .threshold = 21, .window = {4, 8, 8, 4, 1}})[0], 0);
+  EXPECT_EQ(sky.expose({.dark_counts = 20, .shutter = false, .threshold = 20, .window = {4, 8, 8, 4, 1}})[0], 20);
   EXPECT_FALSE((SensorWindow{1020, 0, 8, 8, 1}.possible()));
   EXPECT_FALSE((SensorWindow{0, 0, 9, 8, 2}.possible()));
 }
