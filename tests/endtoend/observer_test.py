@@ -214,7 +214,7 @@ class Observer(unittest.TestCase):
                     self.assertEqual(craft.truth("imager")["powered"], 1.0)
                 self.do(craft, "imager", "SET_STATE", OFFLINE)
                 self.assertEqual(craft.truth("imager")["powered"], 0.0)
-                holding = Holding(craft.pid_of("hirosco-imager"))
+                holding = Holding(craft.pid_of("hirosco-pointing-imager"))
                 self.assertEqual(holding.devices(), [])
                 rests = rests or holding
                 self.assertEqual(holding, rests)

@@ -52,7 +52,7 @@ class Imager(unittest.TestCase):
             imager.wait_told("commissioned: mode operation", 20.0)
             imager.tc("IMAGER", "POINT", 1)
             self.wait_truth(imager, lambda truth: truth["moves"] == 1.0, 5.0)
-            imager.kill("hirosco-imager")
+            imager.kill("hirosco-pointing-imager")
             killed = time.monotonic()
             self.wait_truth(imager, lambda truth: truth["moves"] == 0.0, 2.0)
             self.wait_truth(imager, lambda truth: truth["powered"] == 0.0, 5.0)

@@ -5,19 +5,15 @@
 reaction of the spacecraft is provoked by that."""
 import contextlib
 import os
-import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import flight
+from ordinary_user import ordinary_user
 
 SECONDS = 8.0
-NOBODY = 65534
-AS_NOBODY = ("setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups", "--no-new-privs",
-             "--inh-caps=-all", "--bounding-set=-all")
 
 
 @contextlib.contextmanager
@@ -27,28 +23,6 @@ def busy_processors():
         stack.callback(load.wait)
         stack.callback(load.terminate)
         yield
-
-
-@contextlib.contextmanager
-def ordinary_user():
-    """Arguments of a Flight that an ordinary user starts. For root: as nobody, who may not even read the repository."""
-    if os.geteuid() != 0:
-        yield {"prefix": ("setpriv", "--no-new-privs")}
-        return
-    with tempfile.TemporaryDirectory(prefix="hirosco-nobody-") as folder:
-        home = pathlib.Path(folder)
-        home.chmod(0o755)
-        for name in ("supervisor", "subsystems", "missions"):
-            for descriptor in (flight.REPOSITORY / name).rglob("*.xml"):
-                to = home / descriptor.relative_to(flight.REPOSITORY)
-                to.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(descriptor, to)
-        (home / "bin").mkdir()
-        for program in flight.BINARIES.glob("hirosco*"):
-            shutil.copy(program, home / "bin" / program.name)
-        (home / "flight").mkdir()
-        yield {"mission": home / "missions/rokviss/mission.xml", "binaries": home / "bin", "prefix": AS_NOBODY,
-               "folder": home / "flight", "owner": NOBODY}
 
 
 class WithoutRights(unittest.TestCase):

@@ -393,7 +393,7 @@ TEST(SubsystemDescriptor, ManyProblemsEndTheReading) {
 
 TEST(SubsystemReader, ADeviceMayHaveSeveralEndnodesWithFallBacksAndAPowerSwitch) {
   const auto reading = read_text(R"(<Subsystem name="S" id="10">
-    <Device name="IMAGER">
+    <Device name="CAMERA">
       <Endnode name="DRIVE" actuator="yes" stop="hold"><Output><Field name="ANGLE" type="DOUBLE" safe="0"/></Output>
         <Enable transfer="unix" address="enable"/></Endnode>
       <Endnode name="IMAGE"><Input><Field name="PIXELS" type="UINT8" count="8"/></Input></Endnode>
@@ -401,7 +401,7 @@ TEST(SubsystemReader, ADeviceMayHaveSeveralEndnodesWithFallBacksAndAPowerSwitch)
     </Device>
     <Device name="LAMP"><Output><Field name="ON" type="UINT8"/></Output><Power transfer="unix" address="lamp_power"/></Device>
     <Configuration name="C" id="1" sampling_us="1000">
-      <Device name="IMAGER" silence="5" silence_reduced="30" watchdog_ms="20">
+      <Device name="CAMERA" silence="5" silence_reduced="30" watchdog_ms="20">
         <Endnode name="IMAGE" transfer="udp" address="127.0.0.1:5001" byte_order="big" every="10" silence="40" silence_reduced="90">
           <FallBack transfer="unix" address="image2"/>
           <FallBack transfer="shared_memory" address="image3"/>
@@ -414,14 +414,14 @@ TEST(SubsystemReader, ADeviceMayHaveSeveralEndnodesWithFallBacksAndAPowerSwitch)
   ASSERT_TRUE(reading.value);
   const Subsystem& read = *reading.value;
   ASSERT_EQ(read.devices.size(), 3U);
-  EXPECT_EQ(read.devices[0].name, "IMAGER.DRIVE");
-  EXPECT_EQ(read.devices[0].part_of, "IMAGER");
+  EXPECT_EQ(read.devices[0].name, "CAMERA.DRIVE");
+  EXPECT_EQ(read.devices[0].part_of, "CAMERA");
   EXPECT_TRUE(read.devices[0].actuator);
   EXPECT_EQ(read.devices[0].enable->address, "enable");
-  EXPECT_EQ(read.devices[1].name, "IMAGER.IMAGE");
+  EXPECT_EQ(read.devices[1].name, "CAMERA.IMAGE");
   EXPECT_EQ(read.devices[2].part_of, "") << "one endnode is the simple case";
   ASSERT_EQ(read.power_switches.size(), 2U);
-  EXPECT_EQ(read.power_switches[0].device, "IMAGER");
+  EXPECT_EQ(read.power_switches[0].device, "CAMERA");
   EXPECT_EQ(read.power_switches[0].endnode.address, "power");
   EXPECT_EQ(read.power_switches[1].device, "LAMP");
   const auto& uses = read.configurations.at(0).devices;
@@ -441,10 +441,10 @@ TEST(SubsystemReader, ADeviceMayHaveSeveralEndnodesWithFallBacksAndAPowerSwitch)
   const auto has = [&](std::uint16_t id, std::string_view name) {
     return std::ranges::any_of(read.events, [&](const Event& event) { return event.id == id && event.name == name; });
   };
-  EXPECT_TRUE(has(0xF100, "IMAGER_DRIVE_LOST"));
-  EXPECT_TRUE(has(0xF301, "IMAGER_IMAGE_FALL_BACK"));
+  EXPECT_TRUE(has(0xF100, "CAMERA_DRIVE_LOST"));
+  EXPECT_TRUE(has(0xF301, "CAMERA_IMAGE_FALL_BACK"));
   EXPECT_TRUE(has(0xF302, "LAMP_FALL_BACK"));
-  EXPECT_EQ(read.find_event("IMAGER_DRIVE_FALL_BACK"), nullptr) << "it has none";
+  EXPECT_EQ(read.find_event("CAMERA_DRIVE_FALL_BACK"), nullptr) << "it has none";
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ constexpr auto joint_descriptor = R"(<Subsystem name="JOINT" id="20">
     <Provides name="JOINT_STATE" methods="udp shared_memory"><ParamRef name="ANGLE"/></Provides>
   </RealTimeLinkService></Configuration></Subsystem>)";
 
-constexpr auto observer_descriptor = R"(<Subsystem name="OBSERVER" id="21">
+constexpr auto observer_descriptor = R"(<Subsystem name="WATCHER" id="21">
   <Configuration name="C" id="1" sampling_us="1000"><RealTimeLinkService>
     <Requires name="JOINT_STATE" age="5" methods="shared_memory udp"><Field name="ANGLE" type="DOUBLE"/></Requires>
   </RealTimeLinkService></Configuration></Subsystem>)";
