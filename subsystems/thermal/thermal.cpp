@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "subsystems/thermal/control/cut_out.hpp"
 #include "subsystems/thermal/control/heat_law.hpp"
@@ -139,13 +140,19 @@ class Thermal final : public Subsystem {
   /// All that is per zone is of as many zones, or something else would be heated than is measured.
   Result<Step> lengths_agree() {
     count_ = t_c_.load().size();
-    const auto& zones = zone_values_.load();
-    const auto& heaters = heaters_.load();
-    for (const std::size_t length :
-         {heaters.share.size(), heaters.on.size(), heaters.line.size(), set_points_c_.load().size(),
-          sensors_.load().size(), zones.heater_w.size(), zones.survival_c.size(), zones.hottest_c.size(),
-          zones.safe_share.size(), zones.rank.size(), unit_.input().t_c.size(), unit_.output().on.size(),
-          unit_.output().line.size()})
+    const auto zones = zone_values_.load();
+    const auto heaters = heaters_.load();
+    std::vector<std::size_t> lengths{heaters.share.size(),      heaters.on.size(),       heaters.line.size(),
+                                     set_points_c_.load().size(), sensors_.load().size(),  zones.heater_w.size(),
+                                     zones.survival_c.size(),   zones.hottest_c.size(),  zones.safe_share.size(),
+                                     zones.rank.size()};
+    // What is exchanged with the unit has its lengths from its configuration only.
+    for (const descriptor::Device& device : own_descriptor().devices) {
+      lengths.push_back(device.input.front().count);
+      for (const auto& output : device.output)
+        if (output.field.name != "OWN") lengths.push_back(output.field.count);
+    }
+    for (const std::size_t length : lengths)
       if (length != count_)
         return fail(ErrorCode::InvalidArgument, "T and all that is for each zone have as many elements",
                     static_cast<std::int64_t>(length));

@@ -100,31 +100,31 @@ TEST_F(ThermalTest, TheUnitKeepsItsZonesUntilSafeOperational) {
 }
 
 TEST_F(ThermalTest, SafeOperationalKeepsWhatSurvivesAndOperationalItsSetPoints) {
-  t_c.fill(15);
+  t_c.fill(17.5);
   operate(by_set_points, State::SafeOperational);
   forget();
   cycle(100);
   EXPECT_EQ(own, 0);
-  EXPECT_EQ(std::reduce(on_cycles.begin(), on_cycles.end()), 0) << "15 degC is no danger";
+  EXPECT_EQ(std::reduce(on_cycles.begin(), on_cycles.end()), 0) << "that is no danger";
   const auto request = rig.set_state(State::Operational);
   cycle(3);
   EXPECT_EQ(rig.outcome(request), "1 3 7");
   forget();
   cycle(100);
-  EXPECT_NEAR(on_cycles[0], 50, 3) << "5 K lack, a tenth for each, and 10 s of the integral";
+  EXPECT_NEAR(on_cycles[0], 50, 3) << "2.5 K lack, a fifth for each";
   EXPECT_LE(most_drawn_w, 60);
 }
 
 TEST_F(ThermalTest, SurvivalHeatsWhoIsTooColdAloneAndOnHalfOfThePower) {
-  operate(survival);
   t_c.fill(-12);
+  operate(survival);
   forget();
   cycle(100);
   EXPECT_LE(most_drawn_w, 30);
   EXPECT_EQ(on_cycles[0], 100);
   EXPECT_EQ(on_cycles[2], 100) << "the first three in rank";
   EXPECT_EQ(on_cycles[3], 0);
-  EXPECT_EQ(rig.heard(temperature_out), 0) << "2 K below is not out yet, and it jumped for the sensors";
+  EXPECT_EQ(rig.heard(temperature_out), 0) << "2 K below is not out yet";
 }
 
 TEST_F(ThermalTest, TellsWhoHadLessThanItsShareForAMinute) {
@@ -151,10 +151,8 @@ TEST_F(ThermalTest, WhoIsColderThanItSurvivesComesFirst) {
 TEST_F(ThermalTest, RefusesASetPointThatIsTooHotOrTooColdAndSaysWhatWouldDo) {
   operate(by_set_points);
   EXPECT_EQ(call("SET_POINT", {3, 30}), "1 3 7");
-  EXPECT_EQ(call("SET_POINT", {3, 36}).substr(0, 8), "1 3 8:80");
-  EXPECT_TRUE(call("SET_POINT", {3, 36}).starts_with("1 3 8:8001") || call("SET_POINT", {3, 36}).starts_with("1 4:8001"));
-  EXPECT_NE(call("SET_POINT", {3, -11}).find(":8002"), std::string::npos);
-  EXPECT_NE(call("SET_POINT", {12, 20}).find("2:"), std::string::npos);
+  EXPECT_TRUE(call("SET_POINT", {3, 36}).starts_with("1 4:8001"));
+  EXPECT_TRUE(call("SET_POINT", {3, -11}).starts_with("1 4:8002"));
   forget();
   t_c.fill(20);
   cycle(20);
@@ -173,7 +171,7 @@ TEST_F(ThermalTest, TellsOnceThatASetPointIsReached) {
 }
 
 TEST_F(ThermalTest, ASensorThatSaysNothingSensibleCostsItsZoneTheLawAndNothingElse) {
-  t_c.fill(18);
+  t_c.fill(19);
   operate(by_set_points);
   t_c[2] = -273.15F;
   cycle(5);
@@ -183,12 +181,12 @@ TEST_F(ThermalTest, ASensorThatSaysNothingSensibleCostsItsZoneTheLawAndNothingEl
   EXPECT_NEAR(on_cycles[2], 30, 2) << "its safe share";
   EXPECT_EQ(rig.heard(sensor_doubted), 0);
   EXPECT_NE(call("TRUST_SENSOR", {2}).find(":8004"), std::string::npos);
-  t_c[2] = 19;
+  t_c[2] = 25;
   cycle(3);
   EXPECT_EQ(call("TRUST_SENSOR", {2}), "1 3 7");
   forget();
   cycle(100);
-  EXPECT_LT(on_cycles[2], 28) << "the law again";
+  EXPECT_EQ(on_cycles[2], 0) << "the law again";
 }
 
 TEST_F(ThermalTest, ASensorThatSaysTheSameForAMinuteIsStuck) {

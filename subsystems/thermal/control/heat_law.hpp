@@ -12,8 +12,8 @@ namespace hirosco::thermal {
 enum class LawKind : std::uint8_t { Thermostat = 0, Proportional = 1 };
 
 struct LawValues {
-  float gain_per_k{0.1F};  ///< share for each K that is lacking
-  float reset_s{600};  ///< in which the integral adds what the gain does at once
+  float gain_per_k{0.2F};  ///< share for each K that is lacking
+  float reset_s{3000};  ///< in which the integral adds what the gain does at once
   float hysteresis_k{2};  ///< of the thermostat: on below the middle less half of it, off above the middle and half of it
 };
 
