@@ -142,10 +142,10 @@ class Thermal final : public Subsystem {
     count_ = t_c_.load().size();
     const auto zones = zone_values_.load();
     const auto heaters = heaters_.load();
-    std::vector<std::size_t> lengths{heaters.share.size(),      heaters.on.size(),       heaters.line.size(),
-                                     set_points_c_.load().size(), sensors_.load().size(),  zones.heater_w.size(),
-                                     zones.survival_c.size(),   zones.hottest_c.size(),  zones.safe_share.size(),
-                                     zones.rank.size()};
+    std::vector<std::size_t> lengths{
+        heaters.share.size(),    heaters.on.size(),     heaters.line.size(),     set_points_c_.load().size(),
+        sensors_.load().size(),  zones.heater_w.size(), zones.survival_c.size(), zones.hottest_c.size(),
+        zones.safe_share.size(), zones.rank.size()};
     // What is exchanged with the unit has its lengths from its configuration only.
     for (const descriptor::Device& device : own_descriptor().devices) {
       lengths.push_back(device.input.front().count);
@@ -163,8 +163,7 @@ class Thermal final : public Subsystem {
   Outcome set_point(std::uint8_t zone, float t_c) noexcept {
     if (zone >= count_) return refused(Trouble::no_such_zone, "zones there are", static_cast<std::int64_t>(count_));
     const float most_c = hottest_c(zone) - below_cut_out_k;
-    if (t_c > most_c)
-      return refused(Trouble::too_hot, "degC at most, 10 K below the cut-out", std::llround(most_c));
+    if (t_c > most_c) return refused(Trouble::too_hot, "degC at most, 10 K below the cut-out", std::llround(most_c));
     const float least_c = zone_values_.load().survival_c[zone];
     if (t_c < least_c) return refused(Trouble::too_cold, "degC at least, to survive", std::llround(least_c));
     Floats all = set_points_c_.load();
@@ -226,8 +225,7 @@ class Thermal final : public Subsystem {
     const float t_c = zone.sensor.temperature_c();
     const float coldest_c = zone_values_.load().survival_c[number] - law_.load().hysteresis_k / 2;
     const float back_k = zone.out_told ? beyond_survival_k : 0;
-    const bool out = t_c < coldest_c - beyond_survival_k + back_k ||
-                     t_c > hottest_c(number) - near_hottest_k - back_k;
+    const bool out = t_c < coldest_c - beyond_survival_k + back_k || t_c > hottest_c(number) - near_hottest_k - back_k;
     if (out && !zone.out_told) raise(temperature_out_, number, t_c);
     zone.out_told = out;
   }
@@ -275,8 +273,8 @@ class Thermal final : public Subsystem {
 
   void tell_if_reached(Zone& zone, std::uint8_t number, LawKind kind) noexcept {
     const float t_c = zone.sensor.temperature_c();
-    const bool near = kind == LawKind::Proportional && zone.sensor.good() &&
-                      std::abs(t_c - set_points_c_.load()[number]) < reached_k;
+    const bool near =
+        kind == LawKind::Proportional && zone.sensor.good() && std::abs(t_c - set_points_c_.load()[number]) < reached_k;
     zone.near_s = near ? zone.near_s + dt_s_ : 0;
     if (zone.near_s < reached_for_s || zone.reached_told) return;
     zone.reached_told = true;
@@ -312,7 +310,8 @@ class Thermal final : public Subsystem {
   Parameter<ZoneValues> zone_values_;
   Parameter<Law> law_;
   Parameter<thermal::SensorLimits> limits_;
-  Event<std::uint8_t, float> temperature_out_{"TEMPERATURE_OUT"}, over_temperature_{"OVER_TEMPERATURE"};  ///< zone, degC
+  Event<std::uint8_t, float> temperature_out_{"TEMPERATURE_OUT"},
+      over_temperature_{"OVER_TEMPERATURE"};  ///< zone, degC
   Event<std::uint8_t, Doubt, float> sensor_doubted_{"SENSOR_DOUBTED"};
   Event<std::uint8_t, float> power_short_{"POWER_SHORT"};  ///< zone, W
   Event<float, float> heaters_differ_{"HEATERS_DIFFER"};  ///< W, W

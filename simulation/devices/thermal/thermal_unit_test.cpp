@@ -17,7 +17,8 @@ constexpr std::size_t zones = 3;
 struct ThermalUnitTest : ::testing::Test {
   LocalFlows flows;
   FlowAddress address{Transfer::SharedMemory, "thermal"};
-  SimulatedDevice::Settings settings{.cycle = std::chrono::milliseconds{100}, .watchdog = std::chrono::milliseconds{500}};
+  SimulatedDevice::Settings settings{.cycle = std::chrono::milliseconds{100},
+                                     .watchdog = std::chrono::milliseconds{500}};
   ThermalUnit unit{flows, address, settings};
   std::unique_ptr<DataFlow> flow;
   TimePoint now{};
@@ -146,9 +147,9 @@ TEST_F(ThermalUnitTest, UnderstandsEachOfItsFaultLinesAndRefusesOthers) {
     EXPECT_TRUE(unit.fault(each.line)) << each.line;
   }
   for (const char* line :
-       {"sensor 12 dead", "sensor 1.5 dead", "sensor 1 odd", "heater 1", "heater 1 odd", "eclipse maybe", "zones 0", "zones 13", "noise -1",
-        "heaters_w 1,2", "heaters_w 1,x", "heaters_w ,", "capacities_j_k 0", "keeps -8 -12", "faster 2000", "moon 1",
-        "heaters_w 1,1,1,1,1,1,1,1,1,1,1,1,1"})
+       {"sensor 12 dead", "sensor 1.5 dead", "sensor 1 odd", "heater 1", "heater 1 odd", "eclipse maybe", "zones 0",
+        "zones 13", "noise -1", "heaters_w 1,2", "heaters_w 1,x", "heaters_w ,", "capacities_j_k 0", "keeps -8 -12",
+        "faster 2000", "moon 1", "heaters_w 1,1,1,1,1,1,1,1,1,1,1,1,1"})
     EXPECT_FALSE(unit.fault(line)) << line;
 }
 

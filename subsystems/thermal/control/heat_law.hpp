@@ -14,7 +14,8 @@ enum class LawKind : std::uint8_t { Thermostat = 0, Proportional = 1 };
 struct LawValues {
   float gain_per_k{0.2F};  ///< share for each K that is lacking
   float reset_s{3000};  ///< in which the integral adds what the gain does at once
-  float hysteresis_k{2};  ///< of the thermostat: on below the middle less half of it, off above the middle and half of it
+  float hysteresis_k{
+      2};  ///< of the thermostat: on below the middle less half of it, off above the middle and half of it
 };
 
 /// Of one zone. What it remembers is a share from 0 to 1 in either kind, so each begins where the other ended.
