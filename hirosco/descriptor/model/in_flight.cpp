@@ -285,7 +285,8 @@ class Comparison {
   void subsystem(const Subsystem& flown, const Subsystem& fresh) {
     [[maybe_unused]] const auto& [name, id, description, file, text, enumerations, parameters_, events, functions_,
                                   services, failures, commands, subscribes, housekeeping, devices, power_switches,
-                                  configurations, hang, resources, service_loops, service_uses, bumpless] = fresh;
+                                  configurations, hang, resources, service_loops, service_uses, bumpless, scripts] =
+        fresh;
     unless(flown.name == name && flown.id == id, {}, "its name or id", code_why);
     lists(flown.enumerations, enumerations, "enumeration ", its_name, no_place, meaning_why,
           [&](const Enumeration& a, const Enumeration& b) {
@@ -321,6 +322,10 @@ class Comparison {
           [&](const ServiceLoop& a, const ServiceLoop& b) {
             unless(a.period == b.period && a.priority == b.priority && a.budget == b.budget && a.queue == b.queue, b.at,
                    "loop of services " + b.name, timing_why);
+          });
+    lists(flown.scripts, scripts, "script ", its_name, its_place, code_why,
+          [&](const ScriptFile& a, const ScriptFile& b) {
+            unless(a.file == b.file, b.at, "script " + b.name + ": its file", code_why);
           });
     unless(std::ranges::equal(flown.service_uses, service_uses, same_use_of_service), {}, "which services it has",
            code_why);
