@@ -99,22 +99,38 @@ TEST(Script, ComparesAsItIsWritten) {
 
 /// A player whose <Commands> and <Subscribes> a mission has resolved.
 struct ScriptOfAPlayer : ::testing::Test {
+  using Thing = descriptor::Thing;
   descriptor::Subsystem player;
+
+  [[nodiscard]] static descriptor::Field field(const char* name, Type type) {
+    descriptor::Field made;
+    made.name = name;
+    made.type = type;
+    made.minimum = Number{0};
+    made.maximum = Number{1};
+    return made;
+  }
   ScriptOfAPlayer() {
     player.name = "PLAYER";
-    descriptor::Commands lamp{.subsystem = "LAMP", .functions = {"FADE"}};
-    lamp.apid = 8;
-    descriptor::Function fade{.name = "FADE"};
-    fade.arguments.push_back(
-        {.field = {.name = "GOAL", .type = Type::Double, .minimum = 0.0, .maximum = 1.0}, .of = {}, .fallback = {}});
+    descriptor::Function fade;
+    fade.name = "FADE";
+    fade.arguments.push_back({.field = field("GOAL", Type::Double), .of = {}, .fallback = {}});
+    descriptor::Field colour = field("COLOUR", Type::Float);
+    colour.count = 3;
+    descriptor::Commands lamp;
+    lamp.subsystem = "LAMP";
+    lamp.functions = {"FADE"};
     lamp.requests = {fade};
-    using Thing = descriptor::Thing;
-    lamp.things = {
-        Thing{Thing::Kind::Read, "BRIGHTNESS", 5, {{.name = "BRIGHTNESS", .type = Type::Float}}},
-        Thing{Thing::Kind::Read, "COLOUR", 6, {{.name = "COLOUR", .type = Type::Float, .count = 3}}},
-        Thing{Thing::Kind::Set, "GAIN", 7, {{.name = "GAIN", .type = Type::Double, .minimum = 0.0, .maximum = 9.0}}}};
+    lamp.apid = 8;
+    lamp.things = {Thing{Thing::Kind::Read, "BRIGHTNESS", 5, {field("BRIGHTNESS", Type::Float)}},
+                   Thing{Thing::Kind::Read, "COLOUR", 6, {colour}},
+                   Thing{Thing::Kind::Set, "GAIN", 7, {field("GAIN", Type::Double)}}};
     player.commands = {lamp};
-    player.subscribes = {{.subsystem = "LAMP", .things = {Thing{Thing::Kind::Event, "BURNT_OUT", 1, {}}}, .apid = 8}};
+    descriptor::Subscribes heard;
+    heard.subsystem = "LAMP";
+    heard.things = {Thing{Thing::Kind::Event, "BURNT_OUT", 1, {}}};
+    heard.apid = 8;
+    player.subscribes = {heard};
   }
   std::string wrong(std::string_view text) {
     const auto reading = read_script("S", text);
@@ -126,7 +142,7 @@ struct ScriptOfAPlayer : ::testing::Test {
 
 TEST_F(ScriptOfAPlayer, MayAskWhatItsDescriptorSaysAndInTheFormOfWhomItAsks) {
   EXPECT_EQ(
-      wrong("lamp fade 0.5\nLAMP SET:GAIN 3\nuntil LAMP BRIGHTNESS >= 0.5 within 3\nevent LAMP BURNT_OUT within 3"),
+      wrong("lamp fade 0.5\nLAMP SET:GAIN 0.3\nuntil LAMP BRIGHTNESS >= 0.5 within 3\nevent LAMP BURNT_OUT within 3"),
       "");
   EXPECT_EQ(wrong("LAMB FADE 0.5"), "1:1 'PLAYER' commands no subsystem 'LAMB' | did you mean 'LAMP'?");
   EXPECT_EQ(wrong("LAMP FAD 0.5"), "1:6 'PLAYER' may not ask LAMP for 'FAD' | did you mean 'FADE'?");

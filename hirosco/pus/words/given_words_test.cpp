@@ -9,7 +9,8 @@ namespace {
 
 [[nodiscard]] std::vector<std::string> texts(std::string_view line) {
   std::vector<std::string> all;
-  for (const LineWord& word : words_of_line(line).value()) all.push_back(word.text + "@" + std::to_string(word.at));
+  const auto words = words_of_line(line);
+  for (const LineWord& word : words.value()) all.push_back(word.text + "@" + std::to_string(word.at));
   return all;
 }
 using Texts = std::vector<std::string>;
@@ -17,7 +18,7 @@ using Texts = std::vector<std::string>;
 TEST(LineWords, AreThoseOfAShellThatExpandsNothing) {
   EXPECT_EQ(texts("ARM  MOVE_J 0,1"), (Texts{"ARM@0", "MOVE_J@5", "0,1@12"}));
   EXPECT_EQ(texts(R"(LAMP NAME 'good night' "a \"b\" $c" d\ e)"),
-            (Texts{"LAMP@0", "NAME@5", "good night@10", "a \"b\" $c@23", "d e@37"}));
+            (Texts{"LAMP@0", "NAME@5", "good night@10", "a \"b\" $c@23", "d e@36"}));
   EXPECT_EQ(texts("ARM HOLD # and rest"), (Texts{"ARM@0", "HOLD@4"}));
   EXPECT_EQ(texts("a#b $x *"), (Texts{"a#b@0", "$x@4", "*@7"}));
   EXPECT_EQ(texts("  \t"), Texts{});
@@ -26,10 +27,14 @@ TEST(LineWords, AreThoseOfAShellThatExpandsNothing) {
 }
 
 struct GivenWords : ::testing::Test {
-  descriptor::Function move{.name = "MOVE"};
+  descriptor::Function move;
   GivenWords() {
-    descriptor::Field goal{.name = "GOAL", .type = Type::Double, .count = 2};
-    descriptor::Field fast{.name = "FAST", .type = Type::Uint8};
+    move.name = "MOVE";
+    descriptor::Field goal, fast;
+    goal.name = "GOAL";
+    goal.count = 2;
+    fast.name = "FAST";
+    fast.type = Type::Uint8;
     move.arguments.push_back({.field = goal, .of = {}, .fallback = {}});
     move.arguments.push_back({.field = fast, .of = {}, .fallback = Value{Number{0}}});
   }
