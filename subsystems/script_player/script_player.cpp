@@ -11,6 +11,7 @@
 
 #include "hirosco/descriptor/model/setting_files.hpp"
 #include "hirosco/descriptor/read/read.hpp"
+#include "hirosco/pus/requests.hpp"
 #include "hirosco/pus/script/script.hpp"
 #include "hirosco/subsystem/author/custom_service.hpp"
 #include "hirosco/utilities/lower_case.hpp"
@@ -82,8 +83,8 @@ class ScriptPlayer final : public Subsystem, private script_player::Stage {
     parts_.clear();
     run_ = {};
     shown_ = {};
-    shown_name_ = {};
-    shown_why_ = {};
+    shown_name_ = std::string_view{};
+    shown_why_ = std::string_view{};
     for (const descriptor::ScriptFile& file : own_descriptor().scripts) {
       HIROSCO_TRY(take(file));
     }

@@ -87,7 +87,7 @@ void ScriptRun::begin_line(TimePoint now, Stage& stage) {
   if (line.kind != Kind::Telecommand) {
     next_look_ = now;
     seen_.reset();
-    return;
+    return go_on(now, stage);  // it may be there already
   }
   if (first) stage.forget_events();
   const auto asked = stage.ask(next_);
