@@ -25,14 +25,14 @@ void add(std::vector<descriptor::Diagnostic>& found, const std::filesystem::path
 
 }  // namespace
 
-std::vector<descriptor::Diagnostic> script_problems(const descriptor::Subsystem& player,
+std::vector<descriptor::Diagnostic> script_problems(const descriptor::Subsystem& owner,
                                                     const descriptor::FileSource& source) {
   std::vector<descriptor::Diagnostic> found;
-  for (const descriptor::ScriptFile& script : player.scripts) {
-    const std::filesystem::path file = descriptor::file_of(player, script.file);
+  for (const descriptor::ScriptFile& script : owner.scripts) {
+    const std::filesystem::path file = descriptor::file_of(owner, script.file);
     const auto text = source(file);
     if (!text) {
-      found.push_back({.file = player.file,
+      found.push_back({.file = owner.file,
                        .at = script.at,
                        .code = "E0422",
                        .message = fmt::format("script '{}': {}: {}", script.name, file.string(), text.error().text),
@@ -41,7 +41,7 @@ std::vector<descriptor::Diagnostic> script_problems(const descriptor::Subsystem&
     }
     const pus::ScriptReading reading = pus::read_script(script.name, *text);
     add(found, file, "E0420", reading.problems);
-    if (reading.problems.empty()) add(found, file, "E0421", pus::check_script(reading.script, player));
+    if (reading.problems.empty()) add(found, file, "E0421", pus::check_script(reading.script, owner));
   }
   return found;
 }

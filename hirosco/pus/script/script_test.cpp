@@ -100,7 +100,7 @@ TEST(Script, ComparesAsItIsWritten) {
 /// A player whose <Commands> and <Subscribes> a mission has resolved.
 struct ScriptOfAPlayer : ::testing::Test {
   using Thing = descriptor::Thing;
-  descriptor::Subsystem player;
+  descriptor::Subsystem asker;
 
   [[nodiscard]] static descriptor::Field field(const char* name, Type type) {
     descriptor::Field made;
@@ -111,7 +111,7 @@ struct ScriptOfAPlayer : ::testing::Test {
     return made;
   }
   ScriptOfAPlayer() {
-    player.name = "PLAYER";
+    asker.name = "PLAYER";
     descriptor::Function fade;
     fade.name = "FADE";
     fade.arguments.push_back({.field = field("GOAL", Type::Double), .of = {}, .fallback = {}});
@@ -125,17 +125,17 @@ struct ScriptOfAPlayer : ::testing::Test {
     lamp.things = {Thing{Thing::Kind::Read, "BRIGHTNESS", 5, {field("BRIGHTNESS", Type::Float)}},
                    Thing{Thing::Kind::Read, "COLOUR", 6, {colour}},
                    Thing{Thing::Kind::Set, "GAIN", 7, {field("GAIN", Type::Double)}}};
-    player.commands = {lamp};
+    asker.commands = {lamp};
     descriptor::Subscribes heard;
     heard.subsystem = "LAMP";
     heard.things = {Thing{Thing::Kind::Event, "BURNT_OUT", 1, {}}};
     heard.apid = 8;
-    player.subscribes = {heard};
+    asker.subscribes = {heard};
   }
   std::string wrong(std::string_view text) {
     const auto reading = read_script("S", text);
     EXPECT_TRUE(reading.problems.empty());
-    const auto problems = check_script(reading.script, player);
+    const auto problems = check_script(reading.script, asker);
     return problems.empty() ? "" : told(problems.front()) + " | " + problems.front().hint;
   }
 };
@@ -165,14 +165,14 @@ TEST_F(ScriptOfAPlayer, MayAskWhatItsDescriptorSaysAndInTheFormOfWhomItAsks) {
 }
 
 TEST_F(ScriptOfAPlayer, IsCheckedByNamesAloneWhereNoMissionSaysWhoThatIs) {
-  player.commands.front().apid = 0;
-  player.commands.front().requests.clear();
+  asker.commands.front().apid = 0;
+  asker.commands.front().requests.clear();
   EXPECT_EQ(wrong("LAMP FADE bright"), "");
   EXPECT_NE(wrong("LAMP FAD bright"), "");
 }
 
 TEST_F(ScriptOfAPlayer, TakesTheNumberOfAParameterFromTheWire) {
-  const auto& brightness = player.commands.front().things[0];
+  const auto& brightness = asker.commands.front().things[0];
   const std::array quarter{std::byte{0x3e}, std::byte{0x80}, std::byte{0}, std::byte{0}};
   EXPECT_EQ(number_of(brightness, quarter), 0.25);
   EXPECT_FALSE(number_of(brightness, Octets{quarter}.first(3)));
