@@ -291,8 +291,7 @@ class Comparison {
   void subsystem(const Subsystem& flown, const Subsystem& fresh) {
     [[maybe_unused]] const auto& [name, id, description, file, text, enumerations, parameters_, events, functions_,
                                   services, failures, commands, subscribes, housekeeping, devices, power_switches,
-                                  configurations, hang, resources, service_loops, service_uses, bumpless, scripts] =
-        fresh;
+                                  configurations, hang, resources, loops, uses, bumpless, scripts] = fresh;
     unless(flown.name == name && flown.id == id, {}, "its name or id", code_why);
     lists(flown.enumerations, enumerations, "enumeration ", its_name, no_place, meaning_why,
           [&](const Enumeration& a, const Enumeration& b) {
