@@ -55,6 +55,8 @@ Session::Session(Parts parts)
       stacks_{parts_.archive},
       authority_{[this](const StoredMark& mark) { keep(mark); }} {
   if (const auto extent = parts_.archive.extent()) archived_until_ = extent->to;
+  // What the station before this one had not fetched yet.
+  for (const StoredGap& gap : parts_.archive.gaps({.from = flights_.began()})) catch_up_.missing(gap.from, gap.to);
 }
 
 Session::~Session() { parts_.archive.commit(); }
@@ -68,7 +70,6 @@ OnboardTime Session::now() const {
 
 void Session::link_up() {
   connected_ = true;
-  stream_begins_ = true;
   catch_up_.link_up();
   downlink_.begin(model_.newest() != OnboardTime{} ? std::optional{model_.newest()} : archived_until_);
 }
@@ -88,9 +89,7 @@ bool Session::receive(Octets octets) {
 
 void Session::take(const pus::TelemetryView& packet, Octets octets) {
   if (catch_up_.hear(packet)) return;
-  // Nothing was ever heard of this craft: what it said before is wanted, since whenever it flies.
-  if (std::exchange(stream_begins_, false) && model_.newest() == OnboardTime{} && !archived_until_)
-    catch_up_.missing({}, packet.time());
+  if (model_.newest() == OnboardTime{} && !archived_until_) first_heard_ = packet.time();
   const Heard heard = model_.take(packet);
   newest_received_ = parts_.clock.now();
   StoredPacket stored{.t = packet.time(), .apid = packet.apid(), .octets = {}};
@@ -121,6 +120,8 @@ void Session::take_past(const Heard& heard, OnboardTime t) {
 
 void Session::begin_flight() {
   alarms_.begin(flights_.began());
+  if (const auto first = std::exchange(first_heard_, std::nullopt))
+    add_gap(flights_.began(), *first, CatchUp::After::TheBegin);
   json message = flights_.present();
   message["type"] = "flight";
   broadcast(message);
@@ -142,9 +143,10 @@ void Session::tell_alarm(json alarm) {
   broadcast(alarm);
 }
 
-void Session::add_gap(OnboardTime from, OnboardTime to) {
+void Session::add_gap(OnboardTime from, OnboardTime to, CatchUp::After after) {
+  if (to <= from) return;
   parts_.archive.add(StoredGap{from, to});
-  catch_up_.missing(from, to);
+  catch_up_.missing(from, to, after);
   broadcast({{"type", "gap"}, {"from", json_time(from)}, {"to", json_time(to)}});
 }
 

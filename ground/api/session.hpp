@@ -109,7 +109,7 @@ class Session {
   /// What was missed and is known now.
   void take_past(const Heard& heard, OnboardTime t);
   void tell_event(const StoredEvent& event);
-  void add_gap(OnboardTime from, OnboardTime to);
+  void add_gap(OnboardTime from, OnboardTime to, CatchUp::After after = CatchUp::After::APacket);
   void tell_command(const StoredCommand& command);
   void tell_alarm(nlohmann::json alarm);
   void begin_flight();
@@ -131,7 +131,7 @@ class Session {
   Stacks stacks_;
   Authority authority_;
   bool connected_{false};
-  bool stream_begins_{false};  ///< no packet of this link has come yet
+  std::optional<OnboardTime> first_heard_;  ///< of a craft of which nothing was known, until it is known since when it flies
   TimePoint newest_received_{};
   std::optional<OnboardTime> archived_until_;  ///< by those before this process
   std::vector<std::unique_ptr<Client>> clients_;

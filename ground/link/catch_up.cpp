@@ -16,19 +16,20 @@ constexpr Duration quiet = std::chrono::seconds{2};
 
 }  // namespace
 
-void CatchUp::missing(OnboardTime from, OnboardTime to) {
+void CatchUp::missing(OnboardTime from, OnboardTime to, After after) {
   if (to <= from) return;
-  if (to - from <= whole_span) return add({.from = from, .to = to});
+  if (to - from <= whole_span) return add({.from = from, .to = to, .after = after});
   // First the latest: it is what somebody looks at.
   add({.from = to - whole_span, .to = to, .closes_gap = false});
-  add({.from = from, .to = to, .housekeeping = false});
+  add({.from = from, .to = to, .housekeeping = false, .after = after});
 }
 
 void CatchUp::add(const Wanted& wanted) {
   // Packets that come one by one over a bad link leave many small gaps: near ones are fetched together.
   if (const std::size_t open = past_ ? 1 : 0; wanted_.size() > open) {
     Wanted& last = wanted_.back();
-    const bool near = wanted.from - last.to < margin && last.closes_gap && wanted.closes_gap;
+    const bool near = wanted.from - last.to < margin && last.closes_gap && wanted.closes_gap &&
+                      wanted.from >= last.from && wanted.after == After::APacket;
     if (near && last.housekeeping == wanted.housekeeping && std::max(last.to, wanted.to) - last.from <= whole_span) {
       last.from = std::min(last.from, wanted.from);
       last.to = std::max(last.to, wanted.to);
@@ -111,11 +112,11 @@ void CatchUp::finish(const st129::RetrievalEnd& end) {
   // Asked anew by this station itself: that goes on.
   if (!end.whole() && !end.why.empty() && wanted.tries < most_tries) return;
   wanted_.pop_front();
-  if (end.whole() && wanted.closes_gap) {
-    // Before the first report there was no flight, or it is in the log of another one.
-    const bool to_its_begin = wanted.from == OnboardTime{} || (first && *first - wanted.from < quiet);
+  // Where nothing came at all, the log is that of another flight.
+  if (end.whole() && wanted.closes_gap && first) {
     parts_.archive.close_gaps({wanted.from, wanted.to});
-    if (!to_its_begin && first) parts_.archive.add(StoredGap{wanted.from, *first});
+    const bool all = wanted.after == After::TheBegin || *first - wanted.from < quiet;
+    if (!all) parts_.archive.add(StoredGap{wanted.from, *first});
   }
   parts_.filled(wanted.from, wanted.to);
 }

@@ -40,8 +40,9 @@ class CatchUp {
 
   explicit CatchUp(Parts parts) : parts_{std::move(parts)} {}
 
-  /// From after one time to before another; from {}: since nobody knows when. Before link_up() there was no link at all.
-  void missing(OnboardTime from, OnboardTime to);
+  /// What stands before what is missing: a packet that was heard, or nothing, as the flight began.
+  enum class After { APacket, TheBegin };
+  void missing(OnboardTime from, OnboardTime to, After after = After::APacket);
   void link_up();
   void link_down();
   /// True: it was about what was missed, and is nobody else's.
@@ -55,6 +56,7 @@ class CatchUp {
     bool housekeeping{true};
     int tries{0};
     bool closes_gap{true};  ///< it is all that is missing there
+    After after{After::APacket};
   };
   void add(const Wanted& wanted);
   void take(Octets octets);
@@ -64,7 +66,7 @@ class CatchUp {
   Parts parts_;
   std::deque<Wanted> wanted_;  ///< the first is being fetched where `past_` is there
   std::optional<Model> past_;
-  std::optional<OnboardTime> first_;  ///< packet of the span that came
+  std::optional<OnboardTime> first_;  ///< packet that came, known or not
   TimePoint heard_at_{};
   bool connected_{false};
 };

@@ -141,14 +141,33 @@ TEST_F(AStationThatMissedSomething, WhatItHasAlreadyIsNotKeptTwice) {
 
 TEST_F(AStationThatMissedSomething, OfALongTimeComesTheEndFirstAndOfAllOfItNoHousekeeping) {
   catch_up.link_up();
-  catch_up.missing({}, midday);
+  catch_up.missing(midday - 1h, midday);
   pass(50ms);
   EXPECT_TRUE(ends());
   pass(50ms);
   EXPECT_TRUE(ends());
   ASSERT_THAT(asked, SizeIs(2));
   EXPECT_EQ(asked[0], (st129::Retrieve{midday - CatchUp::whole_span - 2s, midday + 2s, true}));
-  EXPECT_EQ(asked[1], (st129::Retrieve{OnboardTime{}, midday + 2s, false}));
+  EXPECT_EQ(asked[1], (st129::Retrieve{midday - 1h - 2s, midday + 2s, false}));
+}
+
+TEST_F(AStationThatMissedSomething, OfABeginAllIsThereWhenItCameHoweverLateItsFirstReport) {
+  catch_up.link_up();
+  archive->add(StoredGap{midday, midday + 60s});
+  catch_up.missing(midday, midday + 60s, CatchUp::After::TheBegin);
+  pass(50ms);
+  EXPECT_TRUE(comes_down(state_changed(descriptor::State::Operational, midday + 20s)));
+  EXPECT_TRUE(ends({.reports = 1}));
+  EXPECT_THAT(archive->gaps({}), IsEmpty());
+}
+
+TEST_F(AStationThatMissedSomething, WhereTheLogHasNothingOfItItStaysMissing) {
+  catch_up.link_up();
+  archive->add(StoredGap{midday, midday + 60s});
+  catch_up.missing(midday, midday + 60s);
+  pass(50ms);
+  EXPECT_TRUE(ends());
+  EXPECT_THAT(archive->gaps({}), SizeIs(1)) << "another flight's";
 }
 
 TEST_F(AStationThatMissedSomething, AGapThatWasNotFilledWholeStaysOne) {

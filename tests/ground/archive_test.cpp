@@ -63,5 +63,22 @@ TEST_F(GroundArchive, ARestartedGatewayStillKnowsAndFetchesWhatWasSaidInItsAbsen
   EXPECT_LT(longest, 0.6) << "as often as ever";
 }
 
+TEST_F(GroundArchive, AGatewayThatEndsWhileItFetchesIsFollowedByOneThatFetchesTheRest) {
+  Flight flight{rokviss()};
+  ASSERT_TRUE(flight.craft().run_until([&] { return flight.craft().supervisor().commissioned(); }, 60s));
+  flight.craft().run(2s);
+  const auto gaps = [](Station& station) { return station.get("/api/timeline?from=0&to=4000000000")["gaps"].size(); };
+  {
+    Station station{flight, file};
+    Page page;
+    station.session().opened(page, true);
+    ASSERT_TRUE(station.run_until([&] { return !page.of_type("gap").empty(); }));
+    EXPECT_GE(gaps(station), 1U) << "it has not asked yet";
+    station.session().closed(page);
+  }
+  Station station{flight, file};
+  EXPECT_TRUE(station.run_until([&] { return gaps(station) == 0; }));
+}
+
 }  // namespace
 }  // namespace hirosco::testing

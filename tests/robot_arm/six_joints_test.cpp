@@ -301,6 +301,23 @@ TEST(SixJointsWorld, ThatCannotBeMadeIsToldWithItsReason) {
   EXPECT_FALSE(flight.commission());
 }
 
+/// reach_and_back.script of the mission, played on board.
+TEST_F(SixJoints, PlaysAScriptThereAndBack) {
+  ASSERT_NO_FATAL_FAILURE(fly());
+  const Joints there{-0.4, 0.2, 0.9, 0.1, 0.2, 0.5};
+  double nearest = 10;
+  flown->story().on_telemetry = [&](const pus::TelemetryView&) { nearest = std::min(nearest, off(there)); };
+  const auto outcome = flown->craft().command("PLAYER", "PLAY", {std::string{"REACH_AND_BACK"}}, 30s);
+  flown->story().on_telemetry = {};
+  EXPECT_TRUE(outcome.completed) << flown->story().text();
+  EXPECT_LT(nearest, 2e-3);
+  EXPECT_LT(off(start), 2e-3);
+  // A hold of the ground ends the motion under way, and with it the script.
+  static_cast<void>(flown->craft().command("PLAYER", "PLAY", {std::string{"REACH_AND_BACK"}}, 300ms));
+  EXPECT_TRUE(flown->craft().command("ARM", "HOLD", {}, 5s).completed) << flown->story().text();
+  EXPECT_TRUE(flown->story().has("PLAYER low SCRIPT_STOPPED LINE=7")) << flown->story().text();
+}
+
 TEST_F(SixJoints, GivesTheSameOctetsTwice) {
   std::array<std::vector<supervisor::LogRecord>, 2> records;
   for (auto& each : records) {

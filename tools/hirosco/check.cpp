@@ -15,6 +15,7 @@
 #include "supervisor/supervision/event_handling/planned_reactions.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/readiness.hpp"
+#include "tools/hirosco/scripts.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -173,6 +174,7 @@ void check_file(const std::filesystem::path& file, const CheckOptions& options, 
   if (!text || !is_mission(*text)) {
     auto reading = descriptor::read_subsystem(file, source);
     if (options.show && reading.value) show_subsystem(*reading.value);
+    if (reading.value) findings.add(script_problems(*reading.value, source));
     findings.add(std::move(reading.problems));
     return findings.add(std::move(reading.warnings));
   }
@@ -182,6 +184,7 @@ void check_file(const std::filesystem::path& file, const CheckOptions& options, 
   findings.add(std::move(reading.problems));
   findings.add(std::move(reading.warnings));
   if (!reading.value) return;
+  for (const auto& member : reading.value->subsystems) findings.add(script_problems(member.subsystem, source));
   auto missing = unready(*reading.value, FlownAs::Processes);
   for (auto& problem : missing)
     if ((problem.code == "E0401" || problem.code == "E0364" || problem.code == "E0365") && !options.fly)

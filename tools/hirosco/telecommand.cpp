@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <iterator>
 
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/requests.hpp"
 #include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/pus/words/describe.hpp"
+#include "hirosco/pus/words/given_words.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 #include "supervisor/platform/storage/database.hpp"
 #include "tools/hirosco/commands.hpp"
@@ -23,7 +23,7 @@
 namespace hirosco::tools {
 namespace {
 
-/// What the mission knows by name: a state, mode or configuration; on and off.
+/// What the mission knows by name: a state, mode or configuration.
 [[nodiscard]] std::optional<Number> number_named(const std::string& text, const std::string& function,
                                                  const descriptor::Mission& mission,
                                                  const descriptor::Subsystem& subsystem) {
@@ -40,30 +40,7 @@ namespace {
   if (function == "SET_DATABASE")
     for (const int number : {0, 1, 2})
       if (to_text(static_cast<supervisor::DatabaseStrategy>(number)) == wanted) return Number{number};
-  if (wanted == "on") return 1;
-  if (wanted == "off") return 0;
   return std::nullopt;
-}
-
-/// The values of one argument; those of an array with commas between them. Empty: they do not fit.
-[[nodiscard]] std::vector<std::optional<Value>> values_of(const std::string& word, const descriptor::Function& function,
-                                                          const pus::Argument& argument,
-                                                          const descriptor::Mission& mission,
-                                                          const descriptor::Subsystem& subsystem) {
-  std::vector<std::optional<Value>> values;
-  const bool list = pus::value_count(argument) != 1;
-  for (std::size_t begin = 0; begin <= word.size();) {
-    const std::size_t end = list ? std::min(word.find(',', begin), word.size()) : word.size();
-    const std::string text = word.substr(begin, end - begin);
-    auto value = pus::parse_value(argument, text);
-    if (!value)
-      if (const auto number = number_named(text, function.name, mission, subsystem)) value = *number;
-    if (!value) return {};
-    values.push_back(std::move(value));
-    begin = end + 1;
-  }
-  if (values.size() != pus::value_count(argument)) values.clear();
-  return values;
 }
 
 [[nodiscard]] const descriptor::Subsystem* find_subsystem(const descriptor::Mission& mission, const std::string& name) {
@@ -79,12 +56,7 @@ namespace {
   return nullptr;
 }
 
-void print_usage(const descriptor::Function& function) {
-  fmt::print(stderr, "  {}", function.name);
-  for (const auto& argument : function.arguments)
-    fmt::print(stderr, " {}[{}]", argument.field.name, pus::range_text(argument));
-  fmt::print(stderr, "\n");
-}
+void print_usage(const descriptor::Function& function) { fmt::print(stderr, "  {}\n", pus::usage_text(function)); }
 
 struct Encoded {
   descriptor::Function request;
@@ -106,28 +78,15 @@ struct Encoded {
     for (const auto& known : functions) print_usage(known);
     return std::nullopt;
   }
-  std::vector<std::vector<std::optional<Value>>> given;
-  for (const auto& argument : function->arguments) given.emplace_back(pus::value_count(argument), std::nullopt);
-  std::size_t next = 0;
-  for (const std::string& word : options.arguments) {
-    const auto named = std::ranges::find_if(function->arguments, [&](const auto& argument) {
-      return lower_case(argument.field.name) == lower_case(word.substr(0, word.find('=')));
-    });
-    const bool by_name = word.find('=') != std::string::npos && named != function->arguments.end();
-    const std::size_t index = by_name ? static_cast<std::size_t>(named - function->arguments.begin()) : next++;
-    auto values = index < given.size() ? values_of(by_name ? word.substr(word.find('=') + 1) : word, *function,
-                                                   function->arguments[index], mission, subsystem)
-                                       : std::vector<std::optional<Value>>{};
-    if (values.empty()) {
-      fmt::print(stderr, "hirosco tc: argument '{}' does not fit; usage:\n", word);
-      print_usage(*function);
-      return std::nullopt;
-    }
-    given[index] = std::move(values);
+  const auto values = pus::values_given(*function, options.arguments, [&](const std::string& word) {
+    return number_named(word, function->name, mission, subsystem);
+  });
+  if (!values) {
+    fmt::print(stderr, "hirosco tc: argument '{}' does not fit; usage:\n", options.arguments[values.error()]);
+    print_usage(*function);
+    return std::nullopt;
   }
-  std::vector<std::optional<Value>> values;
-  for (auto& of_argument : given) std::ranges::move(of_argument, std::back_inserter(values));
-  auto data = pus::encode_request(*function, values);
+  auto data = pus::encode_request(*function, *values);
   if (data) return Encoded{*function, std::move(*data)};
   fmt::print(stderr, "hirosco tc: {}; usage:\n", data.error().text);
   print_usage(*function);

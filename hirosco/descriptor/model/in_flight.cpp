@@ -68,6 +68,12 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
            return x.device == y.device && x.output == y.output && x.most == y.most;
          });
 }
+[[nodiscard]] bool same_loop(const ServiceLoop& a, const ServiceLoop& b) {
+  return a.period == b.period && a.priority == b.priority && a.budget == b.budget && a.queue == b.queue;
+}
+[[nodiscard]] bool same_script(const ScriptFile& a, const ScriptFile& b) {
+  return a.name == b.name && a.file == b.file;
+}
 [[nodiscard]] bool same_things(const std::vector<Thing>& a, const std::vector<Thing>& b) {
   return std::ranges::equal(a, b, [](const Thing& x, const Thing& y) { return x.kind == y.kind && x.name == y.name; });
 }
@@ -285,7 +291,7 @@ class Comparison {
   void subsystem(const Subsystem& flown, const Subsystem& fresh) {
     [[maybe_unused]] const auto& [name, id, description, file, text, enumerations, parameters_, events, functions_,
                                   services, failures, commands, subscribes, housekeeping, devices, power_switches,
-                                  configurations, hang, resources, service_loops, service_uses, bumpless] = fresh;
+                                  configurations, hang, resources, loops, uses, bumpless, scripts] = fresh;
     unless(flown.name == name && flown.id == id, {}, "its name or id", code_why);
     lists(flown.enumerations, enumerations, "enumeration ", its_name, no_place, meaning_why,
           [&](const Enumeration& a, const Enumeration& b) {
@@ -317,13 +323,12 @@ class Comparison {
         [&](const Subscribes& a, const Subscribes& b) {
           unless(same_things(a.things, b.things), b.at, "what it hears of " + b.subsystem, code_why);
         });
-    lists(flown.service_loops, service_loops, "loop of services ", its_name, its_place, timing_why,
+    lists(flown.service_loops, loops, "loop of services ", its_name, its_place, timing_why,
           [&](const ServiceLoop& a, const ServiceLoop& b) {
-            unless(a.period == b.period && a.priority == b.priority && a.budget == b.budget && a.queue == b.queue, b.at,
-                   "loop of services " + b.name, timing_why);
+            unless(same_loop(a, b), b.at, "loop of services " + b.name, timing_why);
           });
-    unless(std::ranges::equal(flown.service_uses, service_uses, same_use_of_service), {}, "which services it has",
-           code_why);
+    unless(std::ranges::equal(flown.scripts, scripts, same_script), {}, "which scripts it has", code_why);
+    unless(std::ranges::equal(flown.service_uses, uses, same_use_of_service), {}, "which services it has", code_why);
     unless(std::ranges::equal(flown.bumpless, bumpless, same_bumpless), {},
            "which configurations follow each other without a break", safety_why);
     lists(

@@ -305,6 +305,13 @@ struct Subscribes {
   std::filesystem::path file{};  ///< its descriptor
 };
 
+/// A file of telecommands beside the descriptor, which the subsystem may read (docs/adr/0138); file_of() says where it is.
+struct ScriptFile {
+  std::string name;
+  std::string file;
+  Location at;
+};
+
 struct Subsystem {
   std::string name;
   std::uint16_t id{};  ///< APID
@@ -328,6 +335,7 @@ struct Subsystem {
   std::vector<ServiceLoop> service_loops;
   std::vector<ServiceUse> service_uses;  ///< of services that are not offered, or run in a loop of their own
   std::vector<Bumpless> bumpless;
+  std::vector<ScriptFile> scripts;
 
   [[nodiscard]] const Parameter* find_parameter(std::string_view parameter) const noexcept;
   [[nodiscard]] const Event* find_event(std::string_view event) const noexcept;

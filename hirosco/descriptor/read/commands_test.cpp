@@ -180,5 +180,20 @@ TEST(Commands, WordsOfAnotherFormForAProcessAreRefused) {
     EXPECT_EQ(apply_commands(porter, text, source).error().code, ErrorCode::NotFound) << text;
 }
 
+TEST(Scripts, AreNamedByADescriptorEachOnceWithTheirFiles) {
+  const auto reading = read_text(commanding(R"(<Script name="OUT" file="out.script"/><Script name="BACK" file="b"/>)"));
+  ASSERT_TRUE(reading.value);
+  ASSERT_EQ(reading.value->scripts.size(), 2U);
+  EXPECT_EQ(reading.value->scripts[0].name, "OUT");
+  EXPECT_EQ(reading.value->scripts[0].file, "out.script");
+  const auto code_of = [](const char* script) {
+    const auto wrong = read_text(commanding(script));
+    return wrong.problems.empty() ? std::string{} : wrong.problems.front().code;
+  };
+  EXPECT_EQ(code_of(R"(<Script name="OUT" file="a"/><Script name="OUT" file="b"/>)"), "E0201");
+  EXPECT_EQ(code_of(R"(<Script name="OUT" file=""/>)"), "E0109");
+  EXPECT_EQ(code_of(R"(<Script name="OUT"/>)"), "E0105");
+}
+
 }  // namespace
 }  // namespace hirosco::descriptor

@@ -17,6 +17,7 @@ constexpr std::size_t max_description = 4096;
 constexpr std::size_t max_configurations = 64;
 constexpr std::size_t max_name_octets = 64;
 constexpr std::size_t max_custom_services = 64;
+constexpr std::size_t max_scripts = 64;
 
 }  // namespace
 
@@ -45,6 +46,7 @@ Subsystem SubsystemReader::read(const xml::Element& root) {
       {"Hang", [this](const auto& element) { read_hang(element); }, 1},
       {"Commands", [this](const auto& element) { read_commands(element); }, 255},
       {"Subscribes", [this](const auto& element) { read_subscribes(element); }, 255},
+      {"Script", [this](const auto& element) { read_script(element); }, max_scripts},
       {"Failure", [this](const auto& element) { read_failure(element); }, 1024},
       {"CustomService", later(custom_services), max_custom_services},
       {"ServiceLoop", [this](const auto& element) { read_service_loop(element); }, max_service_loops},
@@ -102,6 +104,21 @@ void SubsystemReader::read_failure(const xml::Element& element) {
   failure.code = static_cast<std::uint16_t>(number);
   failure_codes_.add(std::to_string(number), place(code->value_at), problems_, code->value.size());
   subsystem_.failures.push_back(std::move(failure));
+}
+
+/// What stands in it is looked at by who plays it, and by `hirosco check`.
+void SubsystemReader::read_script(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  ScriptFile script;
+  script.name = attributes.name();
+  script.at = place(element.at);
+  if (!script.name.empty()) script_names_.add(script.name, script.at, problems_, element.name.size() + 1);
+  const auto* file = attributes.required("file");
+  if (file == nullptr) return;
+  script.file = file->value;
+  if (script.file.empty()) problems_.add(*file, "E0109", "attribute 'file' is empty");
+  subsystem_.scripts.push_back(std::move(script));
 }
 
 void SubsystemReader::read_hang(const xml::Element& element) {

@@ -7,7 +7,9 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "hirosco/parameter/layout.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
@@ -42,6 +44,14 @@ struct RequestReport {
 };
 using RequestHandler = std::function<void(const RequestReport&)>;
 
+namespace detail {
+/// Of a port that is named in flight: before the port, which looks at them.
+struct OwnNames {
+  OwnNames(std::string whose, std::string what) : owner{std::move(whose)}, named{std::move(what)} {}
+  std::string owner, named;
+};
+}  // namespace detail
+
 /// What is asked for: a function or a request of an own service, or what a service of the framework does with something that the
 /// other has (adr 0098).
 enum class Ask : std::uint8_t {
@@ -63,10 +73,12 @@ class RequestPort {
   [[nodiscard]] std::string_view subsystem() const noexcept { return subsystem_; }
   [[nodiscard]] std::string_view function() const noexcept { return function_; }
   [[nodiscard]] Ask what() const noexcept { return what_; }
-  [[nodiscard]] std::span<const NativeField> arguments() const noexcept { return arguments_; }
+  /// Empty: those that the other's descriptor declares, whatever they are.
+  [[nodiscard]] const std::optional<std::span<const NativeField>>& arguments() const noexcept { return arguments_; }
 
  protected:
-  RequestPort(const char* subsystem, Ask what, const char* function, std::span<const NativeField> arguments) noexcept
+  RequestPort(std::string_view subsystem, Ask what, std::string_view function,
+              std::optional<std::span<const NativeField>> arguments) noexcept
       : subsystem_{subsystem}, function_{function}, what_{what}, arguments_{arguments} {}
   RequestPort(const RequestPort&) = delete;
   RequestPort& operator=(const RequestPort&) = delete;
@@ -76,7 +88,7 @@ class RequestPort {
   std::string_view subsystem_;
   std::string_view function_;
   Ask what_;
-  std::span<const NativeField> arguments_;
+  std::optional<std::span<const NativeField>> arguments_;
 };
 
 /// `Request<double> dim_{"LAMP", "DIM"};` with one type for each <Argument> of the function, in their order: a number, an
@@ -96,6 +108,14 @@ class Request final : public RequestPort {
 
  private:
   static constexpr std::array<NativeField, sizeof...(Arguments)> fields{detail::native_argument<Arguments>()...};
+};
+
+/// One whose name and form are not known before the flight: of who passes on what others have written. Its values come as they are
+/// (pus::GivenValues), in the order of the other's descriptor, and are judged by that.
+class OpenRequest final : private detail::OwnNames, public RequestPort {
+ public:
+  OpenRequest(std::string subsystem, Ask what, std::string thing)
+      : OwnNames{std::move(subsystem), std::move(thing)}, RequestPort{owner, what, named, std::nullopt} {}
 };
 
 /// What Ask::ReadValue was answered with. T: the type of the parameter, or an aggregate of its members. Empty: it is not that.

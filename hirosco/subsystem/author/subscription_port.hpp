@@ -5,13 +5,16 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
 #include "hirosco/parameter/layout.hpp"
 #include "hirosco/subsystem/author/native_values.hpp"
+#include "hirosco/subsystem/author/request_port.hpp"
 #include "hirosco/utilities/octets.hpp"
 
 /// What a subsystem hears of another one (adr 0098): its housekeeping and its events, passed on by the supervisor.
@@ -26,7 +29,8 @@ class SubscriptionPort {
   /// Of a structure its id.
   [[nodiscard]] std::string_view name() const noexcept { return name_; }
   [[nodiscard]] What what() const noexcept { return what_; }
-  [[nodiscard]] std::span<const NativeField> fields() const noexcept { return fields_; }
+  /// Empty: those that the other's descriptor declares, whatever they are.
+  [[nodiscard]] const std::optional<std::span<const NativeField>>& fields() const noexcept { return fields_; }
   /// The supervisor passes it on.
   [[nodiscard]] bool active() const noexcept { return active_; }
   /// Reports that came since Software-Init, and those among them that were of another form than declared: the ground may add
@@ -35,7 +39,8 @@ class SubscriptionPort {
   [[nodiscard]] std::uint64_t unreadable() const noexcept { return unreadable_; }
 
  protected:
-  SubscriptionPort(const char* subsystem, const char* name, What what, std::span<const NativeField> fields) noexcept
+  SubscriptionPort(std::string_view subsystem, std::string_view name, What what,
+                   std::optional<std::span<const NativeField>> fields) noexcept
       : subsystem_{subsystem}, name_{name}, what_{what}, fields_{fields} {}
   SubscriptionPort(const SubscriptionPort&) = delete;
   SubscriptionPort& operator=(const SubscriptionPort&) = delete;
@@ -48,7 +53,7 @@ class SubscriptionPort {
   std::string_view subsystem_;
   std::string_view name_;
   What what_;
-  std::span<const NativeField> fields_;
+  std::optional<std::span<const NativeField>> fields_;
   bool active_{false};
   std::uint64_t received_{0};
   std::uint64_t unreadable_{0};
@@ -116,6 +121,22 @@ class EventSubscription final : public SubscriptionPort {
     } else {
       return static_cast<T>(reader.get<typename layout_detail::NumberOf<T>::type>());
     }
+  }
+  Handler handler_;
+};
+
+/// An event, or a structure by its id, whose name is not known before the flight. Its handler has the octets of the values.
+class OpenSubscription final : private detail::OwnNames, public SubscriptionPort {
+ public:
+  using Handler = std::function<void(Octets)>;
+  OpenSubscription(std::string subsystem, What what, std::string name)
+      : OwnNames{std::move(subsystem), std::move(name)}, SubscriptionPort{owner, named, what, std::nullopt} {}
+  void handle(Handler handler) { handler_ = std::move(handler); }
+
+ private:
+  bool take(Octets values) override {
+    if (handler_) handler_(values);
+    return true;
   }
   Handler handler_;
 };

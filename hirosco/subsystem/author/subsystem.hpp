@@ -175,6 +175,10 @@ class Subsystem {
                                 const std::type_identity_t<Arguments>&... arguments) {
     return send_request(asked, detail::values_of<Arguments...>(arguments...));
   }
+  /// The same of one whose form is the other's descriptor's alone.
+  Result<std::uint32_t> request(const OpenRequest& asked, pus::GivenValues values) {
+    return send_request(asked, values);
+  }
   /// What was named by use_subscription() is heard, or not, from now on. NotPermitted: it was not named.
   Result<> subscribe(SubscriptionPort& heard) { return set_subscription(heard, true); }
   Result<> unsubscribe(SubscriptionPort& heard) { return set_subscription(heard, false); }

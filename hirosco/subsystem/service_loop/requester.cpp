@@ -95,8 +95,8 @@ std::string Requester::use(const RequestPort& port, RequestHandler handler, Dura
   const std::string problem =
       port.what() == Ask::Function ? bind_function(port, *commands, made) : bind_thing(port, *commands, made);
   if (!problem.empty()) return who + problem;
-  if (!same_types(port.arguments(), made.function.arguments))
-    return who + "its arguments are (" + types_text(port.arguments()) + "), the descriptor of " +
+  if (port.arguments() && !same_types(*port.arguments(), made.function.arguments))
+    return who + "its arguments are (" + types_text(*port.arguments()) + "), the descriptor of " +
            std::string{port.subsystem()} + " declares (" + types_text(pus::ArgumentList{made.function.arguments}) + ")";
   const auto before = std::ranges::find(bound_, &port, &Bound::port);
   Bound& bound = before != bound_.end() ? *before : bound_.emplace_back();

@@ -216,6 +216,34 @@ TEST_F(Requesting, EndsWhenWhoAskedIsTakenDownAndWorksAgainAfterIt) {
   EXPECT_TRUE(porter.request(porter.ring, 1, 0.5));
 }
 
+/// Of who passes on what others have written: named in flight, judged by the other's descriptor.
+struct Forwarder final : Subsystem {
+  std::unique_ptr<OpenRequest> ring;
+  Result<Step> software_init() override {
+    ring = std::make_unique<OpenRequest>(std::string{"BELL"}, Ask::Function, std::string{named});
+    use_request(*ring, {});
+    return done;
+  }
+  using Subsystem::request;
+  std::string named{"RING"};
+};
+
+TEST(OpenRequests, TakeWhateverTheOthersDescriptorDeclaresAndNothingElse) {
+  Forwarder forwarder;
+  Rig rig{forwarder, read_descriptor(porter_descriptor, {bell_descriptor})};
+  rig.bring_to(State::PreOperational);
+  const std::array<std::optional<Value>, 2> values{Value{Number{3}}, Value{Number{0.5}}};
+  ASSERT_TRUE(forwarder.request(*forwarder.ring, values));
+  rig.service();
+  EXPECT_EQ(hex(rig.asked.back().data), "52494e47000000000000000000000000020103023fe0000000000000");
+  const std::array<std::optional<Value>, 2> too_many_times{Value{Number{6}}, Value{Number{0.5}}};
+  EXPECT_EQ(forwarder.request(*forwarder.ring, too_many_times).error().code, ErrorCode::OutOfRange);
+  Forwarder undeclared;
+  undeclared.named = "MELT";
+  Rig other{undeclared, read_descriptor(porter_descriptor, {bell_descriptor})};
+  EXPECT_NE(other.set_state_now(State::PreOperational), "1 3 7") << "<Commands> does not name it";
+}
+
 TEST(Requests, OfAnotherLifeAreNumberedElsewhere) {
   const auto first_number = [](Duration born) {
     ChannelPair channel;

@@ -43,11 +43,12 @@ std::string Subscriber::use(SubscriptionPort& port) {
       subscribes->things, [&](const descriptor::Thing& each) { return each.kind == kind && each.name == port.name(); });
   if (thing == subscribes->things.end()) return who + "<Subscribes> does not name it";
   if (subscribes->apid == 0) return who + "no mission says who that is";
-  const bool same = std::ranges::equal(port.fields(), thing->fields, [](const NativeField& n, const auto& declared) {
-    return n.type == declared.type && n.count == declared.elements();
-  });
+  const bool same = !port.fields() ||
+                    std::ranges::equal(*port.fields(), thing->fields, [](const NativeField& n, const auto& declared) {
+                      return n.type == declared.type && n.count == declared.elements();
+                    });
   if (!same)
-    return who + "its values are (" + list(port.fields()) + "), the descriptor of " + std::string{port.subsystem()} +
+    return who + "its values are (" + list(*port.fields()) + "), the descriptor of " + std::string{port.subsystem()} +
            " declares (" + list(thing->fields) + ")";
   if (std::ranges::find(bound_, &port, &Bound::port) != bound_.end()) return who + "named twice";
   port.active_ = false;

@@ -206,6 +206,30 @@ TEST_F(Hearing, EndsInSoftwareDeinitAndBeginsAnewWithTheNextInit) {
   EXPECT_EQ(asked().size(), 2U);
 }
 
+struct OpenEar final : Subsystem {
+  OpenSubscription cracked{std::string{"BELL"}, SubscriptionPort::What::Event, std::string{"CRACKED"}};
+  std::vector<std::string> heard;
+  Result<Step> software_init() override {
+    use_subscription(cracked, [this](Octets values) { heard.push_back(hex(values)); });
+    return done;
+  }
+};
+
+TEST(OpenSubscriptions, HaveTheOctetsOfWhateverIsDeclared) {
+  OpenEar ear;
+  Rig rig{ear, read_descriptor(hearing_porter_descriptor, {heard_bell_descriptor})};
+  rig.bring_to(State::PreOperational);
+  ASSERT_EQ(rig.asked.size(), 1U);
+  rig.verify(rig.asked[0], 7);
+  rig.settle();
+  EXPECT_TRUE(ear.cracked.active());
+  std::array<std::byte, 2 + 8 + 2> event{};
+  OctetWriter{event}.put(std::uint16_t{4901}).put(0.5).put(std::uint8_t{1}).put(std::uint8_t{2});
+  rig.answer(11, 5, 3, event, std::uint16_t{10});
+  rig.service();
+  EXPECT_THAT(ear.heard, ElementsAre("3fe00000000000000102"));
+}
+
 TEST(HearingWrongly, IsToldWithAllOtherMistakes) {
   struct Wrong : Subsystem {
     Subscription<std::array<float, 1>> swing{"BELL", "4900"};

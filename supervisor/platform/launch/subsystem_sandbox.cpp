@@ -75,6 +75,8 @@ Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::fil
     if (!commanded.file.empty()) sandbox.readable.push_back(place_of(commanded.file).string());
   for (const auto& heard : subsystem.subsystem.subscribes)
     if (!heard.file.empty()) sandbox.readable.push_back(place_of(heard.file).string());
+  for (const auto& script : subsystem.subsystem.scripts)
+    add_file(descriptor::file_of(subsystem.subsystem, script.file), sandbox);
   sandbox.writable.emplace_back("/dev/null");
   for (const auto& configuration : subsystem.subsystem.configurations)
     for (const auto& use : configuration.devices) {

@@ -53,6 +53,7 @@ class SubsystemReader {
   void read_head(const xml::Element& root);
   void read_hang(const xml::Element& element);
   void read_failure(const xml::Element& element);
+  void read_script(const xml::Element& element);
   void read_device(const xml::Element& element);
   void read_frames(Attributes& attributes, Device device);
   void read_power(const xml::Element& element, const std::string& device);
@@ -200,6 +201,7 @@ class SubsystemReader {
   Unique event_ids_{"event id", "E0202"};
   Unique failure_names_{"name of a failure", "E0201"};
   Unique failure_codes_{"failure code", "E0202"};
+  Unique script_names_{"script", "E0201"};
   Unique commanded_{"commanded subsystem", "E0201"};
   Unique heard_{"subsystem that is heard", "E0201"};
   Unique function_names_{"function name", "E0201"};

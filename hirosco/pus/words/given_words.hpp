@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <expected>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hirosco/descriptor/model/subsystem.hpp"
+#include "hirosco/utilities/result.hpp"
+
+/// A telecommand as people write it, "ARM MOVE_J 0,0.5,1 SPEED=0.4": on a terminal, in a stack, in a script.
+namespace hirosco::pus {
+
+/// A word of a line, and where it begins (from 0).
+struct LineWord {
+  std::string text;
+  std::size_t at{0};
+};
+/// As a shell has them where nothing is expanded: blanks between them, quotes around them, what follows a '#' is nobody's. Empty: a quote
+/// is not closed.
+[[nodiscard]] std::optional<std::vector<LineWord>> words_of_line(std::string_view line);
+
+/// What a word that is neither a number nor a value of the argument stands for; the word in lower case.
+using NamedNumber = std::function<std::optional<Number>(const std::string& word)>;
+/// Values for the arguments of a request, of words in their order or as NAME=VALUE: numbers, names of values, on and off, those of an array
+/// with commas between them. Nothing for an argument that no word gives. The place of the word that does not fit, from 0.
+[[nodiscard]] std::expected<std::vector<std::optional<Value>>, std::size_t> values_given(
+    const descriptor::Function& request, std::span<const std::string> words, const NamedNumber& named = {});
+
+/// "MOVE_J GOAL[DOUBLE, -3 to 3] SPEED[DOUBLE, 0 to 1]": what a request takes.
+[[nodiscard]] std::string usage_text(const descriptor::Function& request);
+
+}  // namespace hirosco::pus

@@ -1,0 +1,6 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/author/module.hpp"
+#include "subsystems/script_player/script_player.hpp"
+
+const hirosco::Module* hirosco_module() noexcept { return &hirosco::subsystem_module<hirosco::make_script_player>; }

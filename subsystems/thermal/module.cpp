@@ -1,0 +1,6 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/author/module.hpp"
+#include "subsystems/thermal/thermal.hpp"
+
+const hirosco::Module* hirosco_module() noexcept { return &hirosco::subsystem_module<hirosco::make_thermal>; }
