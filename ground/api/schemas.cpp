@@ -168,16 +168,18 @@ void add_status(const Basic& is, json& into) {
                                     {"inhibited", is.texts},
                                     {"waits_for", is.text},
                                     {"age_s", nullable(is.real)}});
-  into["LinkStatus"] = object({{"id", is.whole},
-                               {"up", nullable(is.yes_or_no)},
-                               {"age_cycles", nullable(is.real)},
-                               {"rate_hz", nullable(is.real)},
-                               {"samples", count},
-                               {"lost", count},
-                               {"latency_mean_ns", nullable(is.real)},
-                               {"latency_max_ns", nullable(is.real)},
-                               {"jitter_ns", nullable(is.real)},
-                               {"age_at_use_us", nullable(is.real)}});
+  into["LinkStatus"] =
+      object({{"id", is.whole},
+              {"up", nullable(is.yes_or_no)},
+              {"age_cycles", nullable(is.real)},
+              {"rate_hz", nullable(is.real)},
+              {"samples", count},
+              {"lost", count},
+              {"latency_mean_ns", nullable(is.real)},
+              {"latency_max_ns", nullable(is.real)},
+              {"jitter_ns", nullable(is.real)},
+              {"age_at_use_us", nullable(is.real)},
+              {"latencies", nullable(object({{"period_ns", is.real}, {"counts", list_of(is.whole)}}))}});
   into["GroundLinkStatus"] = object({{"connected", is.yes_or_no},
                                      {"age_s", nullable(is.real)},
                                      {"rx", is.whole},

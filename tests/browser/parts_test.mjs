@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, expressions
-// of parameters, stacks of telecommands as text, triangles, when the next picture is drawn; how large it is.
+// of parameters, latencies of links, stacks of telecommands as text, triangles, when the next picture is drawn; how large it is.
 import assert from 'node:assert/strict';
 import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
@@ -17,10 +17,47 @@ const {beyond_rad, reach} = await of_page('scene/reach.js');
 const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numbers.js');
 const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
 const {ticks_text} = await of_page('format.js');
+const {height_of, late_count, place_of, quantile_ns} = await of_page('parts/latency.js');
 const {parse, reckon} = await of_page('parts/expression.js');
 const {most_rows, read_stack, stack_text, words_of} = await of_page('parts/stack_text.js');
 
 const near = (one, other, what = '') => assert.ok(Math.hypot(...one.map((value, i) => value - other[i])) < 1e-4, `${what} ${one} instead of ${other}`);
+
+describe('latencies of a link, counted in nine bins', () => {
+  const period_ns = 500000, of = (...counts) => ({counts, period_ns});
+
+  it('say within what a part of the samples came, by the bound of a bin, and never more than the longest', () => {
+    const told = of(0, 0, 0, 0, 10, 80, 9, 1, 0);
+    assert.equal(quantile_ns(told, 0.5), 250000);
+    assert.equal(quantile_ns(told, 0.99), 500000);
+    assert.equal(quantile_ns(told, 0.991), 1000000);
+    assert.equal(quantile_ns(told, 0.991, 620000), 620000);
+    assert.equal(quantile_ns(told, 0.5, 240000), 240000);
+    assert.equal(quantile_ns(of(0, 0, 0, 0, 0, 0, 0, 0, 5), 0.5, 7000000), 7000000, 'nothing but the longest bounds the last bin');
+    assert.ok(Number.isNaN(quantile_ns(of(0, 0, 0, 0, 0, 0, 0, 0, 0), 0.5)), 'no sample has no median');
+  });
+
+  it('are late from the bin on that begins with the budget', () => {
+    const told = of(1, 1, 1, 1, 1, 1, 10, 100, 1000);
+    assert.equal(late_count(told, period_ns), 1100);
+    assert.equal(late_count(told, 2 * period_ns), 1000);
+    assert.equal(late_count(told, 1.5 * period_ns), 1000, 'what the budget cuts is not called late');
+    assert.equal(late_count(told, 4 * period_ns), 0);
+  });
+
+  it('stand where their bin does', () => {
+    assert.equal(place_of(period_ns, period_ns), 7);
+    assert.equal(place_of(period_ns / 64, period_ns), 1);
+    assert.equal(place_of(1, period_ns), 0);
+    assert.equal(place_of(1e12, period_ns), 9);
+  });
+
+  it('show one of a million, and none as none', () => {
+    assert.equal(height_of(0, 1e6), 0);
+    assert.ok(height_of(1, 1e6) > 0.1);
+    assert.ok(Math.abs(height_of(1e6, 1e6) - 1) < 1e-9);
+  });
+});
 
 describe('a goal that is dragged', () => {
   /// Two links in a plane, as rokviss has them.
