@@ -42,3 +42,74 @@ describe('links', () => {
     await page.close();
   });
 });
+
+describe('two pages at one station', () => {
+  let anna, ben;
+  before(async () => {
+    anna = await open_page(browser.context, at_view(served.url, 'timeline'), small);
+    ben = await open_page(browser.context, at_view(served.url, 'commands/MANIPULATOR/HOLD'), small);
+    await ben.page.waitForSelector('[data-test=send]');
+  });
+  after(async () => {
+    await anna.page.close();
+    await ben.page.close();
+  });
+
+  it('know of each other, by name once that is typed, and who commands', async () => {
+    await holds(anna.page, () => document.querySelector('[data-test=others-count]')?.textContent === '+1');
+    await anna.page.click('[data-test=commander]');
+    await holds(anna.page, () => document.querySelector('[data-test=others]')?.textContent.includes('without a name'));
+    await ben.page.click('[data-test=commander]');
+    await ben.page.fill('[data-test=commander-menu] input', '<b>ben</b>');
+    await holds(anna.page, () => document.querySelector('[data-test=others] li b')?.textContent === '<b>ben</b>');
+    assert.doesNotMatch(await anna.page.textContent('[data-test=others]'), /may command.*commands|looks at the past/s);
+    await ben.page.click('[data-test=command-take]');
+    await holds(anna.page, () => /^<b>ben<\/b>\s*commands$/.test(document.querySelector('[data-test=others] li')?.textContent.trim()));
+    const third = await open_page(browser.context, at_view(served.url, 'help'), small);
+    await holds(anna.page, () => document.querySelector('[data-test=others-count]')?.textContent === '+2');
+    await third.page.close();
+    await holds(anna.page, () => document.querySelector('[data-test=others-count]')?.textContent === '+1');
+    await anna.page.keyboard.press('Escape');
+  });
+
+  it('share the notes of a flight: as text, the newest in the list, earlier ones by a click, after a reload, too', async () => {
+    await anna.page.waitForSelector('[data-test=notes-1]');
+    assert.match(await anna.page.textContent('[data-test=notes-1]'), /anna.*The rail was touched/s);
+    await go(ben.page, 'timeline');
+    for (const text of ['<img src=x onerror=alert(1)>', 'second', 'third']) {
+      await anna.page.click('[data-test=note-flight-2]');
+      assert.ok(await anna.page.locator('form:has([data-test=flight-note]) button').isDisabled(), 'an empty note is none');
+      await anna.page.fill('[data-test=flight-note]', text);
+      await anna.page.keyboard.press('Enter');
+      await anna.page.waitForSelector('[data-test=flight-note]', {state: 'detached'});
+    }
+    const texts = (page) => page.locator('[data-test=notes-2] li').evaluateAll((all) => all.map((one) => one.textContent.trim()));
+    await holds(ben.page, () => document.querySelector('[data-test=notes-2]')?.textContent.includes('third'));
+    const [more, second, third] = await texts(ben.page);
+    assert.equal(more, '1 earlier');
+    assert.match(second, /second$/);
+    assert.match(third, /third$/);
+    await ben.page.click('[data-test=notes-2] .link');
+    assert.match((await texts(ben.page))[1], /<img src=x onerror=alert\(1\)>$/);
+    assert.equal(await ben.page.locator('[data-test=notes-2] img').count(), 0);
+    await ben.page.reload();
+    await holds(ben.page, () => document.querySelector('[data-test=notes-2]')?.textContent.includes('third'));
+  });
+
+  it('have the stacks of each other at once', async () => {
+    await go(anna.page, 'commands/MANIPULATOR/HOLD');
+    await go(ben.page, 'commands/JOYSTICK/PASSIVITY');
+    await anna.page.click('[data-test=to-stack]');
+    await anna.page.fill('[data-test=stack-name]', 'calm down');
+    assert.equal(await ben.page.locator('[data-test=stack-open]').count(), 0);
+    await anna.page.click('[data-test=stack-keep]');
+    await ben.page.waitForSelector('[data-test=stack-open]');
+    await ben.page.selectOption('[data-test=stack-open]', 'calm down');
+    await holds(ben.page, () => document.querySelectorAll('[data-test=stack-row]').length === 1);
+    assert.match(await ben.page.textContent('[data-test=stack-row]'), /MANIPULATOR HOLD/);
+    await ben.page.click('[data-test=stack-forget]');
+    await anna.page.waitForSelector('[data-test=stack-open]', {state: 'detached'});
+  });
+
+  it('complain of nothing', () => assert.deepEqual([...anna.faults, ...ben.faults], []));
+});

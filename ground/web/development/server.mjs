@@ -76,6 +76,20 @@ function act_on_authority({action, seat, sender = 'operator'}) {
   return authority;
 }
 
+const notes = {1: [{t: earlier_t + 40, who: 'anna', text: 'The rail was touched for the first time.'}], 2: []};
+function tell_of_flight({flight: id, name, note, sender = 'operator'}) {
+  if (!note) return {flight: id, name};
+  notes[id].push({t: now, who: sender, text: note});
+  tell({type: 'notes', flight: id, notes: notes[id]});
+  return {flight: id, notes: notes[id]};
+}
+
+/// Who has a page open, as the gateway tells it.
+function present() {
+  const pages = [...sockets.clients].map((one) => ({client: one.id, seat: one.seat, name: one.name ?? '', operator: state !== 'observer', replay: Boolean(one.replay)}));
+  return state === 'observer' ? {pages, operators: 0, observers: pages.length} : {pages, operators: pages.length, observers: 0};
+}
+
 function take(message) {
   archive.push(message);
   if (message.type === 'values') for (const [name, [v, t]] of Object.entries(message.set)) latest.set(name, {v, t});
@@ -211,10 +225,12 @@ const server = createServer(async (request, response) => {
     '/api/marks': () => ({marks}),
     '/api/stacks': () => {
       if (request.method === 'POST') stacks = [...(body.text ? [{name: body.name, text: body.text, t: now, who: body.sender ?? 'operator'}] : []), ...stacks.filter((one) => one.name !== body.name)];
+      if (request.method === 'POST') tell({type: 'stacks', stacks});
       return {stacks};
     },
-    '/api/flights': () => request.method === 'POST' ? {flight: body.flight, name: body.name} : {flights: state === 'fresh' ? [] : [{id: 2, from: first_t, to: now, name: '', named_by: '', high: 0, medium: 0, commands: commands.length},
-      {id: 1, from: earlier_t, to: first_t - 600, name: 'first light', named_by: 'anna', high: 2, medium: 1, commands: 14}]},
+    '/api/present': () => present(),
+    '/api/flights': () => request.method === 'POST' ? tell_of_flight(body) : {flights: state === 'fresh' ? [] : [{id: 2, from: first_t, to: now, name: '', named_by: '', notes: notes[2], high: 0, medium: 0, commands: commands.length},
+      {id: 1, from: earlier_t, to: first_t - 600, name: 'first light', named_by: 'anna', notes: notes[1], high: 2, medium: 1, commands: 14}]},
     '/api/log': () => {
       const lines = archive.filter((one) => one.type === 'event').reverse().map((one, i) => ({number: archive.length - i, t: one.t, apid: one.apid,
         subsystem: one.subsystem, service: 5, subtype: 1, text: `TM[5,1] ${one.subsystem} ${one.name} ${one.text}`}));
@@ -236,12 +252,22 @@ const server = createServer(async (request, response) => {
 });
 
 const sockets = new WebSocketServer({server, path: '/ws', verifyClient: ({req}) => new URL(req.url, 'http://x').searchParams.get('token') === token});
-sockets.on('connection', (socket) => {
-  socket.send(JSON.stringify({type: 'hello', t: now, version: 'development', client: 'c1', operator: state !== 'observer', archive_from: first_t, authority, flight: flight_of_now}));
+let clients = 0;
+sockets.on('connection', (socket, request) => {
+  socket.id = `c${++clients}`;
+  socket.seat = new URL(request.url, 'http://x').searchParams.get('seat') ?? '';
+  socket.send(JSON.stringify({type: 'hello', t: now, version: 'development', client: socket.id, operator: state !== 'observer', archive_from: first_t, authority, flight: flight_of_now}));
+  tell({type: 'present', ...present()});
+  socket.on('close', () => tell({type: 'present', ...present()}));
   socket.on('message', (data) => {
     const message = JSON.parse(data);
+    if (message.type === 'name') {
+      socket.name = message.name;
+      return tell({type: 'present', ...present()});
+    }
     socket.replay = message.type === 'replay' ? {at: message.at, speed: message.speed, next: archive.findIndex((one) => one.t >= message.at)} : null;
     socket.send(JSON.stringify({type: 'replay', at: message.at, speed: message.speed, state: message.type === 'live' ? 'live' : message.speed ? 'playing' : 'paused'}));
+    tell({type: 'present', ...present()});
     if (socket.replay) socket.send(JSON.stringify({type: 'status', ...status(message.at), replay: true}));
   });
 });
