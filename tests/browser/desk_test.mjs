@@ -4,6 +4,7 @@
 // HIROSCO_PAGE_SERVER=… HIROSCO_PAGE=… node --test desk_test.mjs: what somebody at a desk with this page looks up, writes down and shares, against a made-up flight.
 import assert from 'node:assert/strict';
 import {spawn} from 'node:child_process';
+import {readFileSync} from 'node:fs';
 import {after, before, describe, it} from 'node:test';
 import {at_view, go, holds, open_browser, open_page, small} from './browser.mjs';
 
@@ -112,4 +113,79 @@ describe('two pages at one station', () => {
   });
 
   it('complain of nothing', () => assert.deepEqual([...anna.faults, ...ben.faults], []));
+});
+
+describe('the robot in 3D', () => {
+  let page, faults;
+  before(async () => {
+    ({page, faults} = await open_page(browser.context, at_view(served.url, 'overview'), small));
+    await page.waitForSelector('[data-test=robot][data-loaded]');
+    await holds(page, () => Number(document.querySelector('[data-test=robot]').dataset.frames) > 5);
+  });
+  after(() => page.close());
+
+  /// Places in the window where the arm is drawn, far apart, from what the picture shows.
+  const places_on_arm = () => page.evaluate(() => {
+    const canvas = [...document.querySelectorAll('[data-test=robot] canvas.live')].at(-1), box = canvas.getBoundingClientRect(), {data, width, height} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    const found = [];
+    for (let y = 10; y < height - 10; y += 12) for (let x = 10; x < width - 10; x += 12) {
+      const bright = (i) => data[4 * i + 3] === 255 && data[4 * i] > 60 && Math.abs(data[4 * i] - data[4 * i + 2]) < 40;
+      const at = y * width + x;
+      if ([at, at - 3, at + 3, at - 3 * width, at + 3 * width].every(bright)) found.push([box.left + x, box.top + y]);
+    }
+    return found.filter(([x, y]) => document.elementFromPoint(x, y)?.closest('[data-test=robot]'));
+  });
+
+  it('shows the plots of the joint that moves a part by one click on it, and turns by a drag', async () => {
+    const [x, y] = [620, 110];  // the sky
+    await page.mouse.click(x, y);
+    assert.match(await page.evaluate(() => location.hash), /#\/overview/);
+    const shown = new Set();
+    for (const part of [0.1, 0.3, 0.5, 0.7, 0.9]) {
+      await page.waitForSelector('[data-test=robot][data-loaded]');
+      const places = await places_on_arm();
+      assert.ok(places.length > 5, `the arm is seen at ${places.length} places`);
+      const place = places[Math.floor(part * places.length)];
+      await page.mouse.click(...place);
+      const hash = decodeURIComponent(await page.evaluate(() => location.hash));
+      if (!hash.startsWith('#/plots')) continue;
+      const joint = hash.match(/CUR_VALUES\.POSITION\[(\d)\]/)?.[1];
+      assert.equal(hash, `#/plots?p=MANIPULATOR.CUR_VALUES.POSITION[${joint}]+MANIPULATOR.DES_POSITION[${joint}]|MANIPULATOR.CUR_VALUES.TORQUE[${joint}]`);
+      await holds(page, () => document.querySelectorAll('main.plots [data-test=plot]').length === 2);
+      shown.add(joint);
+      await page.goBack();
+      await holds(page, () => location.hash.startsWith('#/overview'));
+      await holds(page, (frames) => Number(document.querySelector('main [data-test=robot]')?.dataset.frames) > frames, await page.evaluate(() => Number(document.querySelector('[data-test=robot]').dataset.frames)));
+    }
+    assert.ok(shown.size > 0, 'no click on the arm showed a plot');
+    const [from] = await places_on_arm();
+    await page.mouse.move(...from);
+    await page.mouse.down();
+    await page.mouse.move(from[0] + 40, from[1], {steps: 4});
+    await page.mouse.up();
+    assert.match(await page.evaluate(() => location.hash), /#\/overview/, 'a drag is no click');
+  });
+
+  it('is saved alone as a picture, with what it is of', async () => {
+    await holds(page, () => document.querySelector('[data-test=robot]')?.dataset.still === 'whole');
+    const [file] = await Promise.all([page.waitForEvent('download'), page.click('[data-test=scene-picture]')]);
+    assert.match(file.suggestedFilename(), /^rokviss-2026-01-01T.*\.png$/i);
+    const octets = readFileSync(await file.path());
+    assert.equal(octets.toString('latin1', 1, 4), 'PNG');
+    const [width, height] = await page.locator('[data-test=robot]').evaluate((node) => [node.clientWidth, node.clientHeight]);
+    assert.deepEqual([octets.readUInt32BE(16), octets.readUInt32BE(20)], [width, height + 22]);
+    const {lower, words} = await page.evaluate(async (base64) => {
+      const image = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (one) => one.charCodeAt(0))], {type: 'image/png'}));
+      const canvas = document.createElement('canvas');
+      [canvas.width, canvas.height] = [image.width, image.height];
+      const context = canvas.getContext('2d');
+      context.drawImage(image, 0, 0);
+      const share = (y, tall, least) => context.getImageData(0, y, image.width, tall).data.filter((value, i) => i % 4 === 0 && value > least).length / (image.width * tall);
+      return {lower: share(image.height >> 1, image.height / 3 | 0, 40), words: share(image.height - 22, 22, 100)};
+    }, octets.toString('base64'));
+    assert.ok(lower > 0.3, `${lower} of its lower half is bright`);
+    assert.ok(words > 0.005 && words < 0.3, `words below it: ${words}`);
+  });
+
+  it('complains of nothing', () => assert.deepEqual(faults, []));
 });

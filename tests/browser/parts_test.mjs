@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, expressions
-// of parameters, latencies of links, stacks of telecommands as text, triangles, when the next picture is drawn; how large it is.
+// of parameters, plots of a part, latencies of links, stacks of telecommands as text, triangles, when the next picture is drawn; how large it is.
 import assert from 'node:assert/strict';
 import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
@@ -17,11 +17,34 @@ const {beyond_rad, reach} = await of_page('scene/reach.js');
 const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numbers.js');
 const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
 const {ticks_text} = await of_page('format.js');
+const {joint_above, plots_of_angle, plots_of_link} = await of_page('parts/joint_plots.js');
 const {height_of, late_count, place_of, quantile_ns} = await of_page('parts/latency.js');
 const {parse, reckon} = await of_page('parts/expression.js');
 const {most_rows, read_stack, stack_text, words_of} = await of_page('parts/stack_text.js');
 
 const near = (one, other, what = '') => assert.ok(Math.hypot(...one.map((value, i) => value - other[i])) < 1e-4, `${what} ${one} instead of ${other}`);
+
+describe('a part of the robot that is clicked', () => {
+  const columns = new Map([['ARM.CUR.POSITION', 'rad', 2], ['ARM.CUR.VELOCITY', 'rad/s', 2], ['ARM.CUR.TORQUE', 'N m', 2], ['ARM.DES_POSITION', 'rad', 2], ['ARM.KEPT_OUT', 'rad', 3], ['ARM.TIP_FORCE', 'N', 2],
+    ['OTHER.POSITION', 'rad', 2], ['OTHER.TORQUE', 'N m', 2]].flatMap(([base, unit, count]) => Array.from({length: count}, (_, i) => ({name: `${base}[${i}]`, unit, subsystem: base.split('.')[0]}))).map((one) => [one.name, one]));
+  const about = {joints: {shoulder: 'ARM.CUR.POSITION[0]', elbow: 'ARM.CUR.POSITION[1]'}, tip: 'finger', force: ['ARM.TIP_FORCE[0]', 'ARM.TIP_FORCE[1]', 'ARM.UNKNOWN']};
+  const link = (name, parent) => ({isURDFLink: true, name, parent}), joint = (name, parent) => ({isURDFJoint: true, name, parent});
+  const base = link('base', null), upper = link('upper', joint('shoulder', base)), lower = link('lower', joint('elbow', upper)), hand = link('hand', joint('screwed on', lower)), finger = link('finger', joint('screwed on, too', hand));
+  const links = {base, upper, lower, hand, finger};
+
+  it('shows the angle of the joint that moves it with its set point, and the torque', () => {
+    assert.deepEqual(plots_of_link(upper, {about, links}, columns), [['ARM.CUR.POSITION[0]', 'ARM.DES_POSITION[0]'], ['ARM.CUR.TORQUE[0]']]);
+    assert.deepEqual(plots_of_link(hand, {about, links}, columns), [['ARM.CUR.POSITION[1]', 'ARM.DES_POSITION[1]'], ['ARM.CUR.TORQUE[1]']], 'what is fixed to a link goes with it');
+    assert.equal(joint_above(hand, Object.keys(about.joints)), 'elbow');
+  });
+
+  it('shows the forces of a tip, all joints of a handle, and nothing of what stands still', () => {
+    assert.deepEqual(plots_of_link(finger, {about, links}, columns), [['ARM.TIP_FORCE[0]', 'ARM.TIP_FORCE[1]']]);
+    assert.deepEqual(plots_of_link(lower, {about: {joints: about.joints, handle: 'lower'}, links}, columns), [['ARM.CUR.POSITION[0]', 'ARM.CUR.POSITION[1]'], ['ARM.CUR.TORQUE[0]', 'ARM.CUR.TORQUE[1]']]);
+    assert.deepEqual(plots_of_link(base, {about, links}, columns), []);
+    assert.deepEqual(plots_of_angle('ARM.NOTHING[0]', columns), []);
+  });
+});
 
 describe('latencies of a link, counted in nine bins', () => {
   const period_ns = 500000, of = (...counts) => ({counts, period_ns});

@@ -8,6 +8,7 @@ import {html} from '../html.js';
 import {column_of, curve_words, flight_title, in_flight, is_reckoned, of_flight, parameters_of, program_of} from '../parts/curves.js';
 import {longest_text} from '../parts/expression.js';
 import {Panel} from '../parts/panel.js';
+import {save} from '../parts/save.js';
 import {Cursors, curve_colour, Legend, TimePlot, XyPlot} from '../parts/plot.js';
 import {is_named} from '../parts/state_lanes.js';
 import {aligned} from '../series.js';
@@ -27,14 +28,6 @@ export function parsed(query) {
 function address({groups, window_s, xy}) {
   const p = groups.map((group) => group.map(encodeURIComponent).join('+')).join('|');
   return `#/plots?p=${p}&w=${window_s}${xy.size ? `&xy=${[...xy].join(',')}` : ''}`;
-}
-
-function save(name, blob) {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
 /// The picture with what it is of: mission, day, the names of the curves in their colours.
