@@ -189,3 +189,59 @@ describe('the robot in 3D', () => {
 
   it('complains of nothing', () => assert.deepEqual(faults, []));
 });
+
+describe('borders between panels', () => {
+  let page, faults;
+  before(async () => {
+    ({page, faults} = await open_page(browser.context, at_view(served.url, 'events'), small));
+    await page.waitForSelector('[data-test=split-columns-0]');
+  });
+  after(() => page.close());
+
+  const left = () => page.locator('main > .panel').first().evaluate((node) => Math.round(node.getBoundingClientRect().width));
+  const drag = async (border, by_x, by_y) => {
+    const box = await page.locator(`[data-test=${border}]`).boundingBox(), at = [box.x + box.width / 2, box.y + box.height / 2];
+    await page.mouse.move(...at);
+    await page.mouse.down();
+    await page.mouse.move(at[0] + by_x, at[1] + by_y, {steps: 4});
+    await page.mouse.up();
+  };
+
+  it('are dragged, remembered by the browser, moved by keys, and back at first by a double click', async () => {
+    const at_first = await left();
+    await drag('split-columns-0', -150, 0);
+    assert.ok(Math.abs(await left() - (at_first - 150)) <= 2, `${await left()} after ${at_first}`);
+    await page.reload();
+    await page.waitForSelector('[data-test=split-columns-0]');
+    assert.ok(Math.abs(await left() - (at_first - 150)) <= 2, 'after a reload');
+    await page.focus('[data-test=split-columns-0]');
+    await page.keyboard.press('ArrowRight');
+    assert.ok(Math.abs(await left() - (at_first - 134)) <= 2, 'by a key');
+    await drag('split-columns-0', -2000, 0);
+    assert.ok(await left() >= 199, 'as small as it may be');
+    await page.dblclick('[data-test=split-columns-0]');
+    assert.equal(await left(), at_first);
+    await page.reload();
+    await page.waitForSelector('[data-test=split-columns-0]');
+    assert.equal(await left(), at_first, 'nothing is remembered');
+  });
+
+  it('are of one view, keep their shares in another window, and are none in a narrow one', async () => {
+    const width = () => page.locator('main > .panel[aria-label=Subsystems]').evaluate((node) => node.getBoundingClientRect().width);
+    await go(page, 'overview');
+    await page.waitForSelector('[data-test=split-columns-1]');
+    await drag('split-columns-0', 100, 0);
+    await drag('split-rows-0', 0, -60);
+    const wide = await width();
+    await page.setViewportSize({width: 1440, height: 900});
+    await holds(page, (before) => Math.abs(document.querySelector('main > .panel[aria-label=Subsystems]').getBoundingClientRect().width / before - (1440 - 68 - 32) / (1280 - 68 - 32)) < 0.03, wide);
+    assert.ok(await page.locator('[data-test=send]').isVisible(), 'Send stays in sight');
+    await page.setViewportSize({width: 720, height: 1000});
+    await page.waitForSelector('.split', {state: 'detached'});
+    await page.setViewportSize(small);
+    await page.waitForSelector('[data-test=split-rows-0]');
+    await page.dblclick('[data-test=split-columns-0]');
+    await page.dblclick('[data-test=split-rows-0]');
+    assert.deepEqual(faults, []);
+  });
+});

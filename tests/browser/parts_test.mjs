@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, expressions
-// of parameters, plots of a part, latencies of links, stacks of telecommands as text, triangles, when the next picture is drawn; how large it is.
+// of parameters, plots of a part, borders between panels, latencies of links, stacks of telecommands as text, triangles, when the next picture is drawn; how large it is.
 import assert from 'node:assert/strict';
 import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
@@ -18,6 +18,7 @@ const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numb
 const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
 const {ticks_text} = await of_page('format.js');
 const {joint_above, plots_of_angle, plots_of_link} = await of_page('parts/joint_plots.js');
+const {extent_of, moved, remembered, template_of} = await of_page('parts/splits_reckoned.js');
 const {height_of, late_count, place_of, quantile_ns} = await of_page('parts/latency.js');
 const {parse, reckon} = await of_page('parts/expression.js');
 const {most_rows, read_stack, stack_text, words_of} = await of_page('parts/stack_text.js');
@@ -43,6 +44,32 @@ describe('a part of the robot that is clicked', () => {
     assert.deepEqual(plots_of_link(lower, {about: {joints: about.joints, handle: 'lower'}, links}, columns), [['ARM.CUR.POSITION[0]', 'ARM.CUR.POSITION[1]'], ['ARM.CUR.TORQUE[0]', 'ARM.CUR.TORQUE[1]']]);
     assert.deepEqual(plots_of_link(base, {about, links}, columns), []);
     assert.deepEqual(plots_of_angle('ARM.NOTHING[0]', columns), []);
+  });
+});
+
+describe('a border between panels', () => {
+  it('gives one what it takes from the next, and leaves the others alone', () => {
+    assert.deepEqual(moved([300, 500, 280], 0, 60, 200), [360, 440, 280]);
+    assert.deepEqual(moved([300, 500, 280], 1, -60, 200), [300, 440, 340]);
+  });
+
+  it('makes none smaller than it may be, nor grows one that is smaller', () => {
+    assert.deepEqual(moved([300, 500, 280], 0, 900, 200), [600, 200, 280]);
+    assert.deepEqual(moved([300, 500, 280], 0, -900, 200), [200, 600, 280]);
+    assert.deepEqual(moved([150, 500], 0, -10, 200), [150, 500]);
+    assert.deepEqual(moved([150, 500], 0, 10, 200), [160, 490]);
+  });
+
+  it('is remembered for as many panels as there are, and nothing else is', () => {
+    assert.deepEqual(remembered('[300,500]', 2), [300, 500]);
+    for (const text of ['[300,500]', null, 'nonsense', '[300,"x",5]', '[300,0,5]', '{}']) assert.equal(remembered(text, 3), null, text);
+    assert.equal(template_of([300, 120], 200), 'minmax(min(200px, 300px), 300.0fr) minmax(min(200px, 120px), 120.0fr)');
+  });
+
+  it('is where panels end at it, and not across one that spans it', () => {
+    const boxes = [{end: 200, from: 8, to: 300}, {end: 202, from: 308, to: 400}, {end: 900, from: 408, to: 700}];
+    assert.deepEqual(extent_of(boxes, 201, 4), [8, 400]);
+    assert.equal(extent_of(boxes, 500, 4), null);
   });
 });
 

@@ -10,6 +10,7 @@ import {longest_text} from '../parts/expression.js';
 import {Panel} from '../parts/panel.js';
 import {save} from '../parts/save.js';
 import {Cursors, curve_colour, Legend, TimePlot, XyPlot} from '../parts/plot.js';
+import {Splits} from '../parts/splits.js';
 import {is_named} from '../parts/state_lanes.js';
 import {aligned} from '../series.js';
 import {columns, flight, flights, mission, now_s, replay} from '../store.js';
@@ -173,7 +174,7 @@ export function Plots({query, paused, set_paused}) {
     const own = group.filter((name) => is_reckoned(name) || of_flight(name)[1] === null);
     return id ? [...own, ...own.map((name) => in_flight(name, id)).filter(Boolean)] : own;
   })});
-  return html`<main class="plots">
+  return html`<main class="plots"><${Splits} name="plots" rows=${false} />
     <${Picker} on_pick=${pick} />
     <div class="column">
       <div class="toolbar">
