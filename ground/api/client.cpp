@@ -88,7 +88,12 @@ void Client::received(const std::string& text) {
     send({{"type", "replay"}, {"at", json_time(session_.now())}, {"speed", 1}, {"state", "live"}});
     return tick(session_.clock().now());
   }
-  send({{"type", "error"}, {"error", "understood are {type:\"replay\", at, speed} and {type:\"live\"}"}});
+  if (type == "name") {
+    who_.name = text_of(message, "name").substr(0, Authority::longest_name);
+    return;
+  }
+  send({{"type", "error"},
+        {"error", "understood are {type:\"replay\", at, speed}, {type:\"live\"} and {type:\"name\", name}"}});
 }
 
 void Client::begin_replay(double at, double speed) {

@@ -25,11 +25,15 @@ class Client {
     std::string id;  ///< of this connection
     std::string seat;  ///< as in Authority, "" = none
     bool is_operator{false};
+    std::string name{};
   };
   Client(Session& session, Peer& peer, Who who);
   [[nodiscard]] const Peer& peer() const noexcept { return peer_; }
   [[nodiscard]] const std::string& id() const noexcept { return who_.id; }
   [[nodiscard]] const std::string& seat() const noexcept { return who_.seat; }
+  [[nodiscard]] bool is_operator() const noexcept { return who_.is_operator; }
+  /// As its page says, for others.
+  [[nodiscard]] const std::string& name() const noexcept { return who_.name; }
   [[nodiscard]] bool in_replay() const noexcept { return replay_.has_value(); }
   void received(const std::string& text);
   /// A message of the live view that must not be lost.

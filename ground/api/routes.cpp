@@ -123,10 +123,12 @@ void post_authority(const Question& asked, const Respond& respond) {
   respond(outcome(asked.session.authority(asked.body)));
 }
 
+void get_present(const Question& asked, const Respond& respond) { respond(answer(asked.session.present())); }
+
 void get_flights(const Question& asked, const Respond& respond) { respond(answer(asked.session.flights().list())); }
 
 void post_flight(const Question& asked, const Respond& respond) {
-  respond(outcome(asked.session.name_flight(asked.body)));
+  respond(outcome(asked.session.tell_of_flight(asked.body)));
 }
 
 void get_stacks(const Question& asked, const Respond& respond) { respond(answer(asked.session.stacks().list())); }
@@ -241,10 +243,11 @@ constexpr std::array table{
           "Authority",
           not_this_one,
           post_authority},
+    Route{"/api/present", get, "Who has a page open at this station", {}, "", 200, "Present", {}, get_present},
     Route{"/api/flights", get, "The flights of the archive, newest first", {}, "", 200, "Flights", {}, get_flights},
     Route{"/api/flights",
           post,
-          "Give a flight a name",
+          "Give a flight a name, or one more note",
           {},
           "FlightRequest",
           200,

@@ -168,16 +168,18 @@ void add_status(const Basic& is, json& into) {
                                     {"inhibited", is.texts},
                                     {"waits_for", is.text},
                                     {"age_s", nullable(is.real)}});
-  into["LinkStatus"] = object({{"id", is.whole},
-                               {"up", nullable(is.yes_or_no)},
-                               {"age_cycles", nullable(is.real)},
-                               {"rate_hz", nullable(is.real)},
-                               {"samples", count},
-                               {"lost", count},
-                               {"latency_mean_ns", nullable(is.real)},
-                               {"latency_max_ns", nullable(is.real)},
-                               {"jitter_ns", nullable(is.real)},
-                               {"age_at_use_us", nullable(is.real)}});
+  into["LinkStatus"] =
+      object({{"id", is.whole},
+              {"up", nullable(is.yes_or_no)},
+              {"age_cycles", nullable(is.real)},
+              {"rate_hz", nullable(is.real)},
+              {"samples", count},
+              {"lost", count},
+              {"latency_mean_ns", nullable(is.real)},
+              {"latency_max_ns", nullable(is.real)},
+              {"jitter_ns", nullable(is.real)},
+              {"age_at_use_us", nullable(is.real)},
+              {"latencies", nullable(object({{"period_ns", is.real}, {"counts", list_of(is.whole)}}))}});
   into["GroundLinkStatus"] = object({{"connected", is.yes_or_no},
                                      {"age_s", nullable(is.real)},
                                      {"rx", is.whole},
@@ -285,18 +287,30 @@ void add_people(const Basic& is, json& into) {
   into["AuthorityRequest"] = object({{"action", one_of({"take", "keep", "hand_over"})},
                                      {"seat", described(is.text, "1 to 64 characters that nobody else has")},
                                      {"sender", is.text, May::BeAbsent}});
+  const json notes = list_of(object({{"t", is.time}, {"who", is.text}, {"text", is.text}}));
+  into["Present"] =
+      object({{"pages", list_of(object({{"client", is.text},
+                                        {"seat", is.text},
+                                        {"name", described(is.text, "as the page says; \"\": it says none")},
+                                        {"operator", is.yes_or_no},
+                                        {"replay", described(is.yes_or_no, "it looks at the past")}}))},
+              {"operators", described(is.whole, "pages that may command, of all")},
+              {"observers", is.whole}});
   into["Flights"] = object({{"flights", list_of(object({{"id", is.whole},
                                                         {"from", is.time},
                                                         {"to", is.time},
                                                         {"name", is.text},
                                                         {"named_by", is.text},
+                                                        {"notes", notes},
                                                         {"high", described(is.whole, "events of this severity")},
                                                         {"medium", is.whole},
                                                         {"commands", is.whole}}))}});
   into["FlightRequest"] = object({{"flight", described(is.whole, "its id")},
-                                  {"name", described(is.text, "at most 80 characters")},
+                                  {"name", described(is.text, "at most 80 characters; without a note"), May::BeAbsent},
+                                  {"note", described(is.text, "1 to 1,000 octets: one more"), May::BeAbsent},
                                   {"sender", is.text, May::BeAbsent}});
-  into["FlightName"] = object({{"flight", is.whole}, {"name", is.text}});
+  into["FlightName"] =
+      object({{"flight", is.whole}, {"name", is.text, May::BeAbsent}, {"notes", notes, May::BeAbsent}});
   into["Stacks"] = object({{"stacks", list_of(object({{"name", is.text},
                                                       {"text", described(is.text, "lines of hirosco tc")},
                                                       {"t", described(is.time, "when it was kept")},

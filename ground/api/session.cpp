@@ -165,6 +165,7 @@ void Session::tick() {
     take_injections();
     next_injections_ = now + injections_period;
   }
+  if (others_changed_) tell_who_is_here();
   parts_.archive.commit();
   if (now >= next_housekeeping_) {
     parts_.archive.keep_within_limit();
@@ -185,16 +186,44 @@ std::string Session::opened(Peer& peer, bool is_operator, const std::string& sea
       *this, peer,
       Client::Who{
           .id = id, .seat = is_operator ? seat.substr(0, Authority::longest_seat) : "", .is_operator = is_operator}));
+  others_changed_ = true;
   return id;
 }
 
 void Session::received(const Peer& peer, const std::string& text) {
   for (const auto& client : clients_)
-    if (&client->peer() == &peer) return client->received(text);
+    if (&client->peer() == &peer) {
+      client->received(text);
+      others_changed_ = true;
+      return;
+    }
 }
 
 void Session::closed(const Peer& peer) {
   std::erase_if(clients_, [&](const auto& client) { return &client->peer() == &peer; });
+  others_changed_ = true;
+}
+
+json Session::present() const {
+  json pages = json::array();
+  std::size_t operators = 0;
+  for (const auto& client : clients_) {
+    operators += client->is_operator() ? 1 : 0;
+    if (pages.size() == most_present) continue;
+    pages.push_back({{"client", client->id()},
+                     {"seat", client->seat()},
+                     {"name", client->name()},
+                     {"operator", client->is_operator()},
+                     {"replay", client->in_replay()}});
+  }
+  return {{"pages", std::move(pages)}, {"operators", operators}, {"observers", clients_.size() - operators}};
+}
+
+void Session::tell_who_is_here() {
+  others_changed_ = false;
+  json message = present();
+  message["type"] = "present";
+  broadcast(message);
 }
 
 bool Session::in_replay(const std::string& client) const {
@@ -252,7 +281,16 @@ Answered<json> Session::keep_stack(const json& body) {
   return done;
 }
 
-Answered<json> Session::name_flight(const json& body) { return flights_.name(body, seat_of(body).name, now()); }
+Answered<json> Session::tell_of_flight(const json& body) {
+  const std::string who = seat_of(body).name;
+  if (!body.contains("note")) return flights_.name(body, who, now());
+  auto done = flights_.note(body, who, now());
+  if (!done) return done;
+  json message = *done;
+  message["type"] = "notes";
+  broadcast(message);
+  return done;
+}
 
 void Session::mode_preview(const json& body, std::function<void(Answered<json>)> done) {
   commands_.mode_preview(body, std::move(done));

@@ -78,12 +78,17 @@ class Session {
   // --- requests (bodies as in ground/api/README.md) -----------------------------------------------------------------
   /// Of who commands, unless it is essential; what the descriptor marks only when it is confirmed.
   [[nodiscard]] Answered<nlohmann::json> command(const nlohmann::json& body);
+  /// {pages: [{client, seat, name, operator, replay}], operators, observers}: who has a page open here; of more than
+  /// most_present the first, the counts are of all.
+  [[nodiscard]] nlohmann::json present() const;
+  static constexpr std::size_t most_present = 32;
   /// Who commands, and who asks for it.
   [[nodiscard]] nlohmann::json authority() const;
   [[nodiscard]] Answered<nlohmann::json> authority(const nlohmann::json& body);
   [[nodiscard]] Answered<nlohmann::json> alarm(const nlohmann::json& body);
   [[nodiscard]] Answered<nlohmann::json> keep_stack(const nlohmann::json& body);
-  [[nodiscard]] Answered<nlohmann::json> name_flight(const nlohmann::json& body);
+  /// A name, or one more note.
+  [[nodiscard]] Answered<nlohmann::json> tell_of_flight(const nlohmann::json& body);
   /// Answers through `done`, at the latest after 2 s.
   void preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
   void mode_preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
@@ -113,6 +118,7 @@ class Session {
   void tell_command(const StoredCommand& command);
   void tell_alarm(nlohmann::json alarm);
   void begin_flight();
+  void tell_who_is_here();
   void keep(const StoredMark& mark);
   [[nodiscard]] Authority::Now both_times() const;
   void broadcast(const nlohmann::json& message);
@@ -136,6 +142,7 @@ class Session {
   std::optional<OnboardTime> archived_until_;  ///< by those before this process
   std::vector<std::unique_ptr<Client>> clients_;
   std::uint64_t next_client_{1};
+  bool others_changed_{false};  ///< who has a page open, since it was told
   TimePoint next_housekeeping_{};
   TimePoint next_injections_{};
   std::deque<std::pair<std::string, std::string>> own_faults_;  ///< device and line, until that tells of it, too

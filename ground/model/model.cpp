@@ -16,6 +16,11 @@ namespace {
 
 /// Of a link, when its consumer cannot tell (supervisor.xml).
 constexpr double not_told = std::numeric_limits<std::uint32_t>::max();
+/// The columns of LINK_LATENCY, by bins.
+constexpr std::array<const char*, LatencyHistogram::bins> latency_columns{
+    "LINK_LATENCY.IN_1_64", "LINK_LATENCY.IN_1_32", "LINK_LATENCY.IN_1_16",
+    "LINK_LATENCY.IN_1_8",  "LINK_LATENCY.IN_1_4",  "LINK_LATENCY.IN_1_2",
+    "LINK_LATENCY.IN_1",    "LINK_LATENCY.IN_2",    "LINK_LATENCY.BEYOND"};
 constexpr std::size_t longest_text = 2000;
 /// Packets of one flight come nearly in order of time. Further back, the on-board clock has been set or began again.
 constexpr Duration latest_packet = 5s;
@@ -78,6 +83,10 @@ Model::Model(const Catalogue& catalogue)
   overview_.link_latency_max = column("LINK_STATUS.LATENCY_MAX");
   overview_.jitter = column("LINK_QUALITY.JITTER");
   overview_.age_at_use = column("LINK_QUALITY.AGE_AT_USE");
+  latency_rows_ = catalogue_.supervisor_rows("LINK_LATENCY.LINK");
+  overview_.latency_link = column("LINK_LATENCY.LINK");
+  overview_.latency_period = column("LINK_LATENCY.PERIOD");
+  std::ranges::transform(latency_columns, overview_.latency_bins.begin(), column);
 }
 
 Heard Model::take(const pus::TelemetryView& packet) {
@@ -154,6 +163,15 @@ double Model::told(const std::optional<std::size_t>& column, std::size_t i) cons
   return column ? values_[*column + i].number : 0.0;
 }
 
+std::optional<LatencyHistogram> Model::latencies_of(std::uint8_t link, std::size_t row) const {
+  if (row >= latency_rows_ || told(overview_.latency_link, row) != link) return std::nullopt;
+  LatencyHistogram found{.period_ns = told(overview_.latency_period, row)};
+  if (found.period_ns == 0.0) return std::nullopt;
+  for (std::size_t bin = 0; bin < found.counts.size(); ++bin)
+    found.counts[bin] = told(overview_.latency_bins[bin], row);
+  return found;
+}
+
 void Model::take_overview(OnboardTime t, Heard& heard) {
   for (std::size_t i = 0; i < subsystem_rows_; ++i) {
     const auto apid = static_cast<std::uint16_t>(told(overview_.apid, i));
@@ -214,6 +232,7 @@ void Model::take_links(OnboardTime t, Duration since, Heard& heard) {
     view.latency_max_ns = by_consumer(overview_.link_latency_max);
     view.jitter_ns = by_consumer(overview_.jitter);
     view.age_at_use_us = by_consumer(overview_.age_at_use);
+    view.latencies = latencies_of(id, i);
     view.known = true;
     view.up = up;
     view.samples = samples;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -37,6 +38,14 @@ struct SubsystemView {
   std::uint32_t memory_kb{0};        ///< 0 = not told
 };
 
+/// How many samples of a link took how long until they were used, since it was made: at most 1/64, 1/32, 1/16, 1/8, 1/4, 1/2, 1 and 2
+/// periods of its producer, and longer.
+struct LatencyHistogram {
+  static constexpr std::size_t bins = 9;
+  double period_ns{};
+  std::array<double, bins> counts{};
+};
+
 /// All that is told of one link: a row of the supervisor's LINK_STATUS.
 struct LinkView {
   bool known{false};
@@ -45,20 +54,21 @@ struct LinkView {
   std::optional<double> age_cycles;  ///< in cycles of the consumer
   std::optional<std::uint32_t> samples;  ///< none: they pass nobody who could tell
   // As the consumer tells while the link is up; empty = it cannot.
-  std::optional<double> lost;        ///< samples that it never saw
+  std::optional<double> lost;  ///< samples that it never saw
   std::optional<double> latency_mean_ns, latency_max_ns;  ///< from the instant of a sample to its first use
   std::optional<double> jitter_ns;  ///< mean distance of two latencies in a row
   std::optional<double> age_at_use_us;  ///< of the newest sample, in the consumer's newest cycle
+  std::optional<LatencyHistogram> latencies;
 };
 
 /// A report of ST[01] in words.
 struct Verdict {
   std::uint16_t destination{};
   std::uint32_t request_id{};
-  std::string stage;                 ///< as StoredReport::stage; "failed" for every failure but that of one step
+  std::string stage;  ///< as StoredReport::stage; "failed" for every failure but that of one step
   std::optional<int> code;
   std::string reason;
-  bool last{false};                  ///< no further report of the request follows
+  bool last{false};  ///< no further report of the request follows
 };
 
 /// The answer to "would it be permitted?".
@@ -115,6 +125,7 @@ class Model {
   void take_links(OnboardTime t, Duration since, Heard& heard);
   void take_event(const pus::TelemetryView& packet, Heard& heard);
   void take_state(std::size_t subsystem, std::optional<descriptor::State> state, OnboardTime t, Heard& heard);
+  [[nodiscard]] std::optional<LatencyHistogram> latencies_of(std::uint8_t link, std::size_t row) const;
   [[nodiscard]] double told(const std::optional<std::size_t>& column, std::size_t i) const;
 
   const Catalogue& catalogue_;
@@ -131,9 +142,11 @@ class Model {
     std::optional<std::size_t> mode, apid, state, configuration, inhibited, cycles, overruns, missed, latency,
         execution, memory;
     std::optional<std::size_t> link, up, samples, age, lost, link_latency_mean, link_latency_max, jitter, age_at_use;
+    std::optional<std::size_t> latency_link, latency_period;
+    std::array<std::optional<std::size_t>, LatencyHistogram::bins> latency_bins;
   };
   OverviewColumns overview_;
-  std::size_t subsystem_rows_{0}, link_rows_{0};
+  std::size_t subsystem_rows_{0}, link_rows_{0}, latency_rows_{0};
 };
 
 }  // namespace hirosco::ground

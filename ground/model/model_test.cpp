@@ -95,6 +95,10 @@ TEST(AModel, KnowsEachOfMoreThanSixteenSubsystemsAndLinks) {
     told["LINK_STATUS.LOST" + index] = row;
     told["LINK_QUALITY.JITTER" + index] = 70 + row;
     told["LINK_QUALITY.AGE_AT_USE" + index] = 90 + row;
+    told["LINK_LATENCY.LINK" + index] = row + 1;
+    told["LINK_LATENCY.PERIOD" + index] = row == 4 ? 0 : 500'000;
+    told["LINK_LATENCY.IN_1_32" + index] = 100 + row;
+    told["LINK_LATENCY.BEYOND" + index] = row;
   }
   told["LINK_STATUS.LOST[18]"] = 0xFFFF'FFFF;  // its consumer has no room to tell
   told["LINK_STATUS.SAMPLES[3]"] = told["LINK_STATUS.AGE[3]"] = 0xFFFF'FFFF;  // they pass nobody else
@@ -109,6 +113,11 @@ TEST(AModel, KnowsEachOfMoreThanSixteenSubsystemsAndLinks) {
                                             report_with(catalogue, told, "LINK_QUALITY.LINK"));
   ASSERT_TRUE(quality);
   static_cast<void>(model.take(*pus::TelemetryView::parse(*quality)));
+  std::array<std::byte, pus::max_telemetry_octets> latency_buffer;
+  const auto latency = pus::write_telemetry(latency_buffer, {.apid = 1, .service = 3, .subtype = 25, .time = t},
+                                            report_with(catalogue, told, "LINK_LATENCY.LINK"));
+  ASSERT_TRUE(latency);
+  static_cast<void>(model.take(*pus::TelemetryView::parse(*latency)));
   static_cast<void>(model.take(*pus::TelemetryView::parse(*packet)));
 
   const json status = status_json(catalogue, model, t);
@@ -123,6 +132,10 @@ TEST(AModel, KnowsEachOfMoreThanSixteenSubsystemsAndLinks) {
     EXPECT_EQ(status["links"][row]["up"], true) << row;
     EXPECT_EQ(status["links"][row]["jitter_ns"], 70 + row);
     EXPECT_EQ(status["links"][row]["age_at_use_us"], 90 + row);
+    if (row == 4) EXPECT_TRUE(status["links"][row]["latencies"].is_null()) << "nothing is counted";
+    else
+      EXPECT_EQ(status["links"][row]["latencies"],
+                (json{{"period_ns", 500'000}, {"counts", {0, 100 + row, 0, 0, 0, 0, 0, 0, row}}}));
     if (row == 3) {
       EXPECT_TRUE(status["links"][row]["samples"].is_null());
       EXPECT_TRUE(status["links"][row]["age_cycles"].is_null());

@@ -81,6 +81,9 @@ json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now
     const auto& view = model.links()[i];
     const auto number = [](const std::optional<double>& value) { return value ? json_number(*value) : json(nullptr); };
     const auto while_up = [&](const std::optional<double>& value) { return view.up ? number(value) : json(nullptr); };
+    json latencies;
+    if (view.up && view.latencies)
+      latencies = {{"period_ns", view.latencies->period_ns}, {"counts", view.latencies->counts}};
     links.push_back({{"id", catalogue.mission().links[i].id},
                      {"up", view.known ? json(view.up) : json(nullptr)},
                      {"age_cycles", number(view.age_cycles)},
@@ -90,7 +93,8 @@ json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now
                      {"latency_mean_ns", while_up(view.latency_mean_ns)},
                      {"latency_max_ns", while_up(view.latency_max_ns)},
                      {"jitter_ns", while_up(view.jitter_ns)},
-                     {"age_at_use_us", while_up(view.age_at_use_us)}});
+                     {"age_at_use_us", while_up(view.age_at_use_us)},
+                     {"latencies", std::move(latencies)}});
   }
   return {{"t", json_time(now)},
           {"mode", model.mode().empty() ? json(nullptr) : json(model.mode())},

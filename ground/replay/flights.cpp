@@ -27,6 +27,10 @@ struct Named {
   std::string who;
 };
 
+[[nodiscard]] json note_json(const StoredMark& mark) {
+  return {{"t", json_time(mark.t)}, {"who", mark.who}, {"text", mark.note}};
+}
+
 }  // namespace
 
 Flights::Flights(const Catalogue& catalogue, Archive& archive) : catalogue_{catalogue}, archive_{archive} {
@@ -111,10 +115,12 @@ json Flights::present() const { return {{"id", number_}, {"from", json_time(bega
 json Flights::list() const {
   const auto marks = archive_.marks("flight", {});
   std::map<std::string, Named> names;
+  std::map<std::string, json> notes;
   std::vector<const StoredMark*> begun;
   for (const StoredMark& mark : marks) {
     if (mark.action == "began") begun.push_back(&mark);
     if (mark.action == "named") names[mark.name] = {mark.note, mark.who};
+    if (mark.action == "noted") notes[mark.name].push_back(note_json(mark));
   }
   json flights = json::array();
   OnboardTime next = archive_.extent().value_or(Span{}).to;
@@ -129,6 +135,7 @@ json Flights::list() const {
                        {"to", json_time(span.to)},
                        {"name", named.name},
                        {"named_by", named.who},
+                       {"notes", notes.contains(mark->name) ? notes[mark->name] : json::array()},
                        {"high", serious},
                        {"medium", archive_.count_events(span, medium) - serious},
                        {"commands", archive_.count_commands(span)}});
@@ -137,19 +144,41 @@ json Flights::list() const {
   return {{"flights", std::move(flights)}};
 }
 
-Answered<json> Flights::name(const json& body, const std::string& who, OnboardTime now) {
+Answered<std::string> Flights::number_of(const json& body, const std::vector<StoredMark>& marks) const {
   const auto given = body.find("flight");
   const std::string number =
       given != body.end() && given->is_number_integer() ? std::to_string(given->get<std::int64_t>()) : "";
-  const auto marks = archive_.marks("flight", {});
   const bool known =
       std::ranges::any_of(marks, [&](const StoredMark& mark) { return mark.action == "began" && mark.name == number; });
   if (!known) return refuse(404, "flight: there is none of this number");
+  return number;
+}
+
+Answered<json> Flights::name(const json& body, const std::string& who, OnboardTime now) {
+  const auto number = number_of(body, archive_.marks("flight", {}));
+  if (!number) return std::unexpected{number.error()};
   const std::string words = text_of(body, "name");
   if (words.size() > longest_name) return refuse(400, "name: at most 80 characters are wanted");
-  archive_.add(StoredMark{.t = now, .kind = "flight", .name = number, .action = "named", .who = who, .note = words});
+  archive_.add(StoredMark{.t = now, .kind = "flight", .name = *number, .action = "named", .who = who, .note = words});
   archive_.commit();
-  return json{{"flight", std::atoll(number.c_str())}, {"name", words}};
+  return json{{"flight", std::atoll(number->c_str())}, {"name", words}};
+}
+
+Answered<json> Flights::note(const json& body, const std::string& who, OnboardTime now) {
+  const auto marks = archive_.marks("flight", {});
+  const auto number = number_of(body, marks);
+  if (!number) return std::unexpected{number.error()};
+  const std::string words = text_of(body, "note");
+  if (words.empty() || words.size() > longest_note) return refuse(400, "note: 1 to 1,000 octets are wanted");
+  json notes = json::array();
+  for (const StoredMark& mark : marks)
+    if (mark.action == "noted" && mark.name == *number) notes.push_back(note_json(mark));
+  if (notes.size() >= most_notes) return refuse(409, "this flight has 100 notes: no more is taken");
+  const StoredMark mark{.t = now, .kind = "flight", .name = *number, .action = "noted", .who = who, .note = words};
+  archive_.add(mark);
+  archive_.commit();
+  notes.push_back(note_json(mark));
+  return json{{"flight", std::atoll(number->c_str())}, {"notes", std::move(notes)}};
 }
 
 }  // namespace hirosco::ground

@@ -18,6 +18,8 @@ namespace hirosco::ground {
 class Flights {
  public:
   static constexpr std::size_t longest_name = 80;
+  static constexpr std::size_t longest_note = 1000;  ///< octets
+  static constexpr std::size_t most_notes = 100;  ///< of one flight
 
   Flights(const Catalogue& catalogue, Archive& archive);
 
@@ -26,10 +28,12 @@ class Flights {
   [[nodiscard]] OnboardTime began() const noexcept { return began_; }
   /// {id, from}
   [[nodiscard]] nlohmann::json present() const;
-  /// {flights: [{id, from, to, name, named_by, high, medium, commands}]}, newest first.
+  /// {flights: [{id, from, to, name, named_by, notes: [{t, who, text}], high, medium, commands}]}, newest first; notes oldest first.
   [[nodiscard]] nlohmann::json list() const;
   /// {flight, name}
   [[nodiscard]] Answered<nlohmann::json> name(const nlohmann::json& body, const std::string& who, OnboardTime now);
+  /// {flight, note}: one more, which stays; {flight, notes}. 409: it has as many as it may.
+  [[nodiscard]] Answered<nlohmann::json> note(const nlohmann::json& body, const std::string& who, OnboardTime now);
 
  private:
   /// What a subsystem had counted at a time.
@@ -42,6 +46,8 @@ class Flights {
   [[nodiscard]] bool goes_on(const std::vector<Count>& now, const Model& model) const;
   [[nodiscard]] Duration period_of(std::size_t subsystem, const Model& model) const;
   void begin(OnboardTime t);
+  /// The number of the flight that is asked for, as marks have it.
+  [[nodiscard]] Answered<std::string> number_of(const nlohmann::json& body, const std::vector<StoredMark>& marks) const;
   /// The counts that the archive ends with.
   void read_counts();
 

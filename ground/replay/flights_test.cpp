@@ -170,5 +170,32 @@ TEST_F(AnArchiveOfFlights, NamesThemAndCountsWhatWasInEach) {
   EXPECT_EQ(list[0]["name"], "");
 }
 
+TEST_F(AnArchiveOfFlights, KeepsNotesOfEachWithWhoWroteThemAndTakesSoManyAndSoLongOnes) {
+  {
+    Listener station{*archive};
+    ASSERT_EQ(station.listen(take_off, 10, 500, 300), 1);
+    ASSERT_EQ(station.listen(take_off + 100s, 5, 200, 100), 1);
+    const auto note = [&](json body, const char* who) { return station.flights.note(body, who, take_off + 7s); };
+    EXPECT_EQ(note({{"flight", 1}, {"note", "tip <b>hot</b>"}}, "anna").value()["notes"].size(), 1U);
+    EXPECT_EQ(note({{"flight", 1}, {"note", "cooled"}}, "ben").value()["notes"][1]["who"], "ben");
+    EXPECT_EQ(note({{"flight", 3}, {"note", "x"}}, "anna").error().status, 404U);
+    EXPECT_EQ(note({{"flight", "1"}, {"note", "x"}}, "anna").error().status, 404U) << "a number is wanted";
+    EXPECT_EQ(note({{"flight", 1}}, "anna").error().status, 400U);
+    EXPECT_EQ(note({{"flight", 1}, {"note", ""}}, "anna").error().status, 400U);
+    EXPECT_EQ(note({{"flight", 1}, {"note", std::string(1001, 'x')}}, "anna").error().status, 400U);
+    EXPECT_TRUE(note({{"flight", 2}, {"note", std::string(1000, 'x')}}, "anna"));
+    for (int i = 0; i < 99; ++i) ASSERT_TRUE(note({{"flight", 2}, {"note", "again"}}, "anna")) << i;
+    EXPECT_EQ(note({{"flight", 2}, {"note", "one more"}}, "anna").error().status, 409U);
+  }
+  Listener later{*archive};  // another station of the same archive
+  const json list = later.flights.list()["flights"];
+  ASSERT_EQ(list.size(), 2U);
+  const json expected = json::array({{{"t", 2'145'916'907}, {"who", "anna"}, {"text", "tip <b>hot</b>"}},
+                                     {{"t", 2'145'916'907}, {"who", "ben"}, {"text", "cooled"}}});
+  EXPECT_EQ(list[1]["notes"], expected) << "oldest first, as they were written";
+  EXPECT_EQ(list[0]["notes"].size(), 100U);
+  EXPECT_EQ(list[1]["name"], "") << "a note is no name";
+}
+
 }  // namespace
 }  // namespace hirosco::ground

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, expressions
-// of parameters, stacks of telecommands as text, triangles, when the next picture is drawn; how large it is.
+// of parameters, plots of a part, borders between panels, latencies of links, stacks of telecommands as text, triangles, when the next picture is drawn; how large it is.
 import assert from 'node:assert/strict';
 import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
@@ -17,10 +17,97 @@ const {beyond_rad, reach} = await of_page('scene/reach.js');
 const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numbers.js');
 const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
 const {ticks_text} = await of_page('format.js');
+const {joint_above, plots_of_angle, plots_of_link} = await of_page('parts/joint_plots.js');
+const {extent_of, moved, remembered, template_of} = await of_page('parts/splits_reckoned.js');
+const {height_of, late_count, place_of, quantile_ns} = await of_page('parts/latency.js');
 const {parse, reckon} = await of_page('parts/expression.js');
 const {most_rows, read_stack, stack_text, words_of} = await of_page('parts/stack_text.js');
 
 const near = (one, other, what = '') => assert.ok(Math.hypot(...one.map((value, i) => value - other[i])) < 1e-4, `${what} ${one} instead of ${other}`);
+
+describe('a part of the robot that is clicked', () => {
+  const columns = new Map([['ARM.CUR.POSITION', 'rad', 2], ['ARM.CUR.VELOCITY', 'rad/s', 2], ['ARM.CUR.TORQUE', 'N m', 2], ['ARM.DES_POSITION', 'rad', 2], ['ARM.KEPT_OUT', 'rad', 3], ['ARM.TIP_FORCE', 'N', 2],
+    ['OTHER.POSITION', 'rad', 2], ['OTHER.TORQUE', 'N m', 2]].flatMap(([base, unit, count]) => Array.from({length: count}, (_, i) => ({name: `${base}[${i}]`, unit, subsystem: base.split('.')[0]}))).map((one) => [one.name, one]));
+  const about = {joints: {shoulder: 'ARM.CUR.POSITION[0]', elbow: 'ARM.CUR.POSITION[1]'}, tip: 'finger', force: ['ARM.TIP_FORCE[0]', 'ARM.TIP_FORCE[1]', 'ARM.UNKNOWN']};
+  const link = (name, parent) => ({isURDFLink: true, name, parent}), joint = (name, parent) => ({isURDFJoint: true, name, parent});
+  const base = link('base', null), upper = link('upper', joint('shoulder', base)), lower = link('lower', joint('elbow', upper)), hand = link('hand', joint('screwed on', lower)), finger = link('finger', joint('screwed on, too', hand));
+  const links = {base, upper, lower, hand, finger};
+
+  it('shows the angle of the joint that moves it with its set point, and the torque', () => {
+    assert.deepEqual(plots_of_link(upper, {about, links}, columns), [['ARM.CUR.POSITION[0]', 'ARM.DES_POSITION[0]'], ['ARM.CUR.TORQUE[0]']]);
+    assert.deepEqual(plots_of_link(hand, {about, links}, columns), [['ARM.CUR.POSITION[1]', 'ARM.DES_POSITION[1]'], ['ARM.CUR.TORQUE[1]']], 'what is fixed to a link goes with it');
+    assert.equal(joint_above(hand, Object.keys(about.joints)), 'elbow');
+  });
+
+  it('shows the forces of a tip, all joints of a handle, and nothing of what stands still', () => {
+    assert.deepEqual(plots_of_link(finger, {about, links}, columns), [['ARM.TIP_FORCE[0]', 'ARM.TIP_FORCE[1]']]);
+    assert.deepEqual(plots_of_link(lower, {about: {joints: about.joints, handle: 'lower'}, links}, columns), [['ARM.CUR.POSITION[0]', 'ARM.CUR.POSITION[1]'], ['ARM.CUR.TORQUE[0]', 'ARM.CUR.TORQUE[1]']]);
+    assert.deepEqual(plots_of_link(base, {about, links}, columns), []);
+    assert.deepEqual(plots_of_angle('ARM.NOTHING[0]', columns), []);
+  });
+});
+
+describe('a border between panels', () => {
+  it('gives one what it takes from the next, and leaves the others alone', () => {
+    assert.deepEqual(moved([300, 500, 280], 0, 60, 200), [360, 440, 280]);
+    assert.deepEqual(moved([300, 500, 280], 1, -60, 200), [300, 440, 340]);
+  });
+
+  it('makes none smaller than it may be, nor grows one that is smaller', () => {
+    assert.deepEqual(moved([300, 500, 280], 0, 900, 200), [600, 200, 280]);
+    assert.deepEqual(moved([300, 500, 280], 0, -900, 200), [200, 600, 280]);
+    assert.deepEqual(moved([150, 500], 0, -10, 200), [150, 500]);
+    assert.deepEqual(moved([150, 500], 0, 10, 200), [160, 490]);
+  });
+
+  it('is remembered for as many panels as there are, and nothing else is', () => {
+    assert.deepEqual(remembered('[300,500]', 2), [300, 500]);
+    for (const text of ['[300,500]', null, 'nonsense', '[300,"x",5]', '[300,0,5]', '{}']) assert.equal(remembered(text, 3), null, text);
+    assert.equal(template_of([300, 120], 200), 'minmax(min(200px, 300px), 300.0fr) minmax(min(200px, 120px), 120.0fr)');
+  });
+
+  it('is where panels end at it, and not across one that spans it', () => {
+    const boxes = [{end: 200, from: 8, to: 300}, {end: 202, from: 308, to: 400}, {end: 900, from: 408, to: 700}];
+    assert.deepEqual(extent_of(boxes, 201, 4), [8, 400]);
+    assert.equal(extent_of(boxes, 500, 4), null);
+  });
+});
+
+describe('latencies of a link, counted in nine bins', () => {
+  const period_ns = 500000, of = (...counts) => ({counts, period_ns});
+
+  it('say within what a part of the samples came, by the bound of a bin, and never more than the longest', () => {
+    const told = of(0, 0, 0, 0, 10, 80, 9, 1, 0);
+    assert.equal(quantile_ns(told, 0.5), 250000);
+    assert.equal(quantile_ns(told, 0.99), 500000);
+    assert.equal(quantile_ns(told, 0.991), 1000000);
+    assert.equal(quantile_ns(told, 0.991, 620000), 620000);
+    assert.equal(quantile_ns(told, 0.5, 240000), 240000);
+    assert.equal(quantile_ns(of(0, 0, 0, 0, 0, 0, 0, 0, 5), 0.5, 7000000), 7000000, 'nothing but the longest bounds the last bin');
+    assert.ok(Number.isNaN(quantile_ns(of(0, 0, 0, 0, 0, 0, 0, 0, 0), 0.5)), 'no sample has no median');
+  });
+
+  it('are late from the bin on that begins with the budget', () => {
+    const told = of(1, 1, 1, 1, 1, 1, 10, 100, 1000);
+    assert.equal(late_count(told, period_ns), 1100);
+    assert.equal(late_count(told, 2 * period_ns), 1000);
+    assert.equal(late_count(told, 1.5 * period_ns), 1000, 'what the budget cuts is not called late');
+    assert.equal(late_count(told, 4 * period_ns), 0);
+  });
+
+  it('stand where their bin does', () => {
+    assert.equal(place_of(period_ns, period_ns), 7);
+    assert.equal(place_of(period_ns / 64, period_ns), 1);
+    assert.equal(place_of(1, period_ns), 0);
+    assert.equal(place_of(1e12, period_ns), 9);
+  });
+
+  it('show one of a million, and none as none', () => {
+    assert.equal(height_of(0, 1e6), 0);
+    assert.ok(height_of(1, 1e6) > 0.1);
+    assert.ok(Math.abs(height_of(1e6, 1e6) - 1) < 1e-9);
+  });
+});
 
 describe('a goal that is dragged', () => {
   /// Two links in a plane, as rokviss has them.

@@ -440,11 +440,11 @@ int main(int argc, char** argv) {
   if (!descriptor || !channel || !vital || !permit)
     return fprintf(stderr, "lantern: the supervisor starts it: --descriptor FILE --channel FD --vital FD --permit FD\n"), 2;
   channel_ = atoi(channel);
-  vital_ = page(vital, 2160, 1), permit_ = page(permit, 56, 0);
+  vital_ = page(vital, 4720, 1), permit_ = page(permit, 56, 0);
   if (!vital_ || !permit_ || load32(vital_) != 0x48495243 || load32(permit_) != 0x48495243)
     return fprintf(stderr, "lantern: what should be the supervisor's pages are none\n"), 3;
-  if (load32(vital_ + 4) != 5 || load32(permit_ + 4) != 5)
-    return fprintf(stderr, "lantern: the supervisor's pages are of version %u, this program's of version 5\n", load32(permit_ + 4)), 3;
+  if (load32(vital_ + 4) != 6 || load32(permit_ + 4) != 6)
+    return fprintf(stderr, "lantern: the supervisor's pages are of version %u, this program's of version 6\n", load32(permit_ + 4)), 3;
   const char* instance = getenv("HIROSCO_INSTANCE");
   size_t named = strlen(address_);
   if (instance && *instance) snprintf(address_ + named, sizeof address_ - named, ".%s", instance);

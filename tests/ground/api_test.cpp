@@ -247,6 +247,53 @@ TEST_F(TwoPeople, OneCommandsAndTheOtherIsRefusedByTheStationUntilItIsHandedOver
   EXPECT_TRUE(station.get("/api/authority")["holder"].is_null()) << "nobody is there any more";
 }
 
+TEST_F(TwoPeople, EachPageIsToldWhoElseLooksByNameAndKindAndWhetherAtThePast) {
+  commission();
+  Page anna, ben, guest;
+  static_cast<void>(station.session().opened(anna, true, "seat-anna"));
+  static_cast<void>(station.session().opened(ben, true, "seat-ben"));
+  static_cast<void>(station.session().opened(guest, false, "seat-guest"));
+  station.session().received(anna, R"({"type":"name","name":"anna"})");
+  station.session().received(ben, R"({"type":"name","name":"ben, who has a name of more than thirty-two octets"})");
+  station.run(200ms);
+  const json told = anna.last("present");
+  EXPECT_EQ(told["operators"], 2);
+  EXPECT_EQ(told["observers"], 1);
+  ASSERT_EQ(told["pages"].size(), 3U);
+  EXPECT_EQ(told["pages"][0]["name"], "anna");
+  EXPECT_EQ(told["pages"][0]["seat"], "seat-anna");
+  EXPECT_EQ(told["pages"][1]["name"], "ben, who has a name of more than");
+  EXPECT_EQ(told["pages"][2]["name"], "");
+  EXPECT_EQ(told["pages"][2]["seat"], "") << "an observer cannot hold what it cannot take";
+  EXPECT_EQ(told["pages"][2]["operator"], false);
+  EXPECT_EQ(guest.last("present"), told) << "observers are told, too";
+  station.session().received(ben, R"({"type":"replay","at":0,"speed":0})");
+  station.run(200ms);
+  EXPECT_EQ(anna.last("present")["pages"][1]["replay"], true);
+  station.session().closed(ben);
+  station.run(200ms);
+  EXPECT_EQ(anna.last("present")["pages"].size(), 2U);
+  EXPECT_EQ(station.get("/api/present")["operators"], 1);
+  std::vector<Page> crowd(40);
+  for (Page& page : crowd) static_cast<void>(station.session().opened(page, false));
+  EXPECT_EQ(station.get("/api/present")["pages"].size(), 32U);
+  EXPECT_EQ(station.get("/api/present")["observers"], 41) << "counted are all";
+  for (Page& page : crowd) station.session().closed(page);
+}
+
+TEST_F(TwoPeople, ANoteOfAFlightIsToldToEveryPageAndStaysWithTheFlight) {
+  commission();
+  Page page;
+  static_cast<void>(station.session().opened(page, false));
+  const json note{{"flight", 1}, {"note", "the wall <i>gave way</i>"}, {"sender", "anna"}};
+  EXPECT_EQ(station.post("/api/flights", note)["notes"].size(), 1U);
+  EXPECT_EQ(page.last("notes")["notes"][0]["text"], "the wall <i>gave way</i>") << "as it was written: pages show text";
+  EXPECT_EQ(station.get("/api/flights")["flights"][0]["notes"][0]["who"], "anna");
+  EXPECT_EQ(station.ask("POST", "/api/flights", {{"flight", 9}, {"note", "x"}}).status, 404U);
+  EXPECT_EQ(station.ask("POST", "/api/flights", {{"flight", 1}, {"note", 5}}).status, 400U);
+  EXPECT_EQ(station.get("/api/marks")["marks"][0]["action"], "noted");
+}
+
 /// Of every function of every subsystem, so of those of a new one, too.
 TEST_F(TwoPeople, WhatIsEssentialIsRefusedToNobodyAndNeedsNoConfirmation) {
   commission();

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numeric>
+#include <vector>
+
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
@@ -43,6 +46,18 @@ TEST_F(GroundStation, TellsLossAndLatencyOfEachLinkThatIsUp) {
   EXPECT_EQ(links[0]["latency_max_ns"], links[0]["latency_mean_ns"]);
   EXPECT_EQ(links[0]["jitter_ns"], 0) << "all samples take the same time here";
   EXPECT_EQ(links[0]["age_at_use_us"].get<double>() * 1e3, links[0]["latency_mean_ns"].get<double>());
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto histogram = links[i]["latencies"];
+    EXPECT_EQ(histogram["period_ns"], 500'000);
+    const auto counts = histogram["counts"].get<std::vector<std::uint32_t>>();
+    ASSERT_EQ(counts.size(), 9U);
+    // In the simulation a sample takes nothing or exactly one period, which is still within it.
+    const std::size_t bin = links[i]["latency_mean_ns"] == 0 ? 0 : 6;
+    EXPECT_GT(counts[bin], 2000U);
+    EXPECT_EQ(std::reduce(counts.begin(), counts.end()), counts[bin]);
+    EXPECT_LE(counts[bin], links[i]["samples"].get<std::uint32_t>());
+  }
+  EXPECT_TRUE(links[2]["latencies"].is_null());
   EXPECT_TRUE(links[2]["lost"].is_null()) << "not up in this mode";
   EXPECT_TRUE(links[2]["latency_mean_ns"].is_null());
   EXPECT_TRUE(links[2]["jitter_ns"].is_null());

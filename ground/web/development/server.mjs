@@ -76,6 +76,20 @@ function act_on_authority({action, seat, sender = 'operator'}) {
   return authority;
 }
 
+const notes = {1: [{t: earlier_t + 40, who: 'anna', text: 'The rail was touched for the first time.'}], 2: []};
+function tell_of_flight({flight: id, name, note, sender = 'operator'}) {
+  if (!note) return {flight: id, name};
+  notes[id].push({t: now, who: sender, text: note});
+  tell({type: 'notes', flight: id, notes: notes[id]});
+  return {flight: id, notes: notes[id]};
+}
+
+/// Who has a page open, as the gateway tells it.
+function present() {
+  const pages = [...sockets.clients].map((one) => ({client: one.id, seat: one.seat, name: one.name ?? '', operator: state !== 'observer', replay: Boolean(one.replay)}));
+  return state === 'observer' ? {pages, operators: 0, observers: pages.length} : {pages, operators: pages.length, observers: 0};
+}
+
 function take(message) {
   archive.push(message);
   if (message.type === 'values') for (const [name, [v, t]] of Object.entries(message.set)) latest.set(name, {v, t});
@@ -107,6 +121,12 @@ function* until(t) {
   }
 }
 
+/// Most within half a period, one of a thousand later than a whole one.
+const latencies_of = (link, t) => {
+  const all = Math.max(1000, Math.round((t - first_t) * link.rate_hz));
+  return {period_ns: 1e9 / link.rate_hz, counts: [0, 0.001, 0.004, 0.02, 0.075, 0.62, 0.279, 0.001, 0].map((part) => Math.round(part * all))};
+};
+
 const state_of = (subsystem) => state === 'stopped' && flight.stop.stopped.includes(subsystem.name) ? 'Offline' : states.get(subsystem.name) ?? 'Offline';
 function status(t = now) {
   if (state === 'fresh') return {t, link: {connected: false, age_s: 1e9, rx: 0, tx: 0, lost: 0}, mode: null, commandable: false, subsystems: [], links: []};
@@ -116,7 +136,8 @@ function status(t = now) {
     subsystems: flight.mission.subsystems.map((one) => ({id: one.id, name: one.name, state: state_of(one),
       configuration: one.configurations[one.configurations.length - 1]?.name, cycles: Math.round((t - first_t) * 2000), overruns: 0, missed: 0,
       latency_max_ns: 61000, execution_mean_ns: 8400, inhibited: state_of(one) === 'ErrorOperational' ? ['failure'] : state === 'stopped' && flight.stop.stopped.includes(one.name) ? ['device'] : [], waits_for: '', age_s: 0.1})),
-    links: flight.mission.links.map((link) => ({id: link.id, up, age_cycles: up ? 0 : 400, rate_hz: up ? link.rate_hz : 0, lost: 0, latency_mean_ns: 310000, latency_max_ns: 620000, jitter_ns: 4100, age_at_use_us: 310}))};
+    links: flight.mission.links.map((link) => ({id: link.id, up, age_cycles: up ? 0 : 400, rate_hz: up ? link.rate_hz : 0, lost: 0, latency_mean_ns: 310000, latency_max_ns: 620000, jitter_ns: 4100, age_at_use_us: 310,
+      latencies: up ? latencies_of(link, t) : null}))};
 }
 
 if (state !== 'fresh') {
@@ -204,10 +225,12 @@ const server = createServer(async (request, response) => {
     '/api/marks': () => ({marks}),
     '/api/stacks': () => {
       if (request.method === 'POST') stacks = [...(body.text ? [{name: body.name, text: body.text, t: now, who: body.sender ?? 'operator'}] : []), ...stacks.filter((one) => one.name !== body.name)];
+      if (request.method === 'POST') tell({type: 'stacks', stacks});
       return {stacks};
     },
-    '/api/flights': () => request.method === 'POST' ? {flight: body.flight, name: body.name} : {flights: state === 'fresh' ? [] : [{id: 2, from: first_t, to: now, name: '', named_by: '', high: 0, medium: 0, commands: commands.length},
-      {id: 1, from: earlier_t, to: first_t - 600, name: 'first light', named_by: 'anna', high: 2, medium: 1, commands: 14}]},
+    '/api/present': () => present(),
+    '/api/flights': () => request.method === 'POST' ? tell_of_flight(body) : {flights: state === 'fresh' ? [] : [{id: 2, from: first_t, to: now, name: '', named_by: '', notes: notes[2], high: 0, medium: 0, commands: commands.length},
+      {id: 1, from: earlier_t, to: first_t - 600, name: 'first light', named_by: 'anna', notes: notes[1], high: 2, medium: 1, commands: 14}]},
     '/api/log': () => {
       const lines = archive.filter((one) => one.type === 'event').reverse().map((one, i) => ({number: archive.length - i, t: one.t, apid: one.apid,
         subsystem: one.subsystem, service: 5, subtype: 1, text: `TM[5,1] ${one.subsystem} ${one.name} ${one.text}`}));
@@ -229,12 +252,22 @@ const server = createServer(async (request, response) => {
 });
 
 const sockets = new WebSocketServer({server, path: '/ws', verifyClient: ({req}) => new URL(req.url, 'http://x').searchParams.get('token') === token});
-sockets.on('connection', (socket) => {
-  socket.send(JSON.stringify({type: 'hello', t: now, version: 'development', client: 'c1', operator: state !== 'observer', archive_from: first_t, authority, flight: flight_of_now}));
+let clients = 0;
+sockets.on('connection', (socket, request) => {
+  socket.id = `c${++clients}`;
+  socket.seat = new URL(request.url, 'http://x').searchParams.get('seat') ?? '';
+  socket.send(JSON.stringify({type: 'hello', t: now, version: 'development', client: socket.id, operator: state !== 'observer', archive_from: first_t, authority, flight: flight_of_now}));
+  tell({type: 'present', ...present()});
+  socket.on('close', () => tell({type: 'present', ...present()}));
   socket.on('message', (data) => {
     const message = JSON.parse(data);
+    if (message.type === 'name') {
+      socket.name = message.name;
+      return tell({type: 'present', ...present()});
+    }
     socket.replay = message.type === 'replay' ? {at: message.at, speed: message.speed, next: archive.findIndex((one) => one.t >= message.at)} : null;
     socket.send(JSON.stringify({type: 'replay', at: message.at, speed: message.speed, state: message.type === 'live' ? 'live' : message.speed ? 'playing' : 'paused'}));
+    tell({type: 'present', ...present()});
     if (socket.replay) socket.send(JSON.stringify({type: 'status', ...status(message.at), replay: true}));
   });
 });

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 //
-// What several people at one station share: who commands, alarms that somebody has seen, names of flights, stacks of telecommands. All of it is the station's, which
+// What several people at one station share: who commands, alarms that somebody has seen, names and notes of flights, stacks of telecommands; and who looks. All of it is the station's, which
 // keeps it and tells every page (docs/adr/0105).
-import {computed} from '@preact/signals';
+import {computed, effect} from '@preact/signals';
 import {post, seat} from './api.js';
-import {say, signed} from './commanding.js';
-import {authority, flights, kept_stacks, operator, replay} from './store.js';
+import {operator_name, say, signed} from './commanding.js';
+import {authority, flights, kept_stacks, operator, own_client, present, replay, send_to_gateway} from './store.js';
 
 /// Whether this page commands, another one does ('other'), or nobody ('free').
 export const command_is = computed(() => {
@@ -20,6 +20,24 @@ export const asked = computed(() => {
   return command_is.value === 'mine' && now.asking ? {...now.asking, at_ms: now.at_ms} : null;
 });
 export const i_ask = computed(() => authority.value?.asking?.seat === seat);
+
+/// Who else has a page open here: {pages: the other ones that may command, observers: how many of them, count}.
+export const others = computed(() => {
+  const pages = (present.value?.pages ?? []).filter((one) => one.client !== own_client.value);
+  const count = Math.max(0, (present.value?.operators ?? 0) + (present.value?.observers ?? 0) - 1);
+  const watching = Math.max(0, (present.value?.observers ?? 0) - (operator.value ? 0 : 1));
+  return {pages: pages.filter((one) => one.operator), observers: watching, count};
+});
+/// Others know this page by its name: said to each gateway anew, and when it has been typed.
+const typed_ms = 400;
+let name_timer = 0, named = false;
+effect(() => {
+  const name = operator_name.value;
+  if (!own_client.value || !(name || named)) return;
+  named = true;
+  clearTimeout(name_timer);
+  name_timer = setTimeout(() => send_to_gateway({type: 'name', name}), typed_ms);
+});
 
 async function act(path, body) {
   if (replay.value) return say('This is a replay: go back to live first.', 'bad');
@@ -43,6 +61,9 @@ export const unshelve = (alarm) => act('/api/alarms', {subsystem: alarm.subsyste
 export async function name_flight(flight, name) {
   if (await act('/api/flights', {flight, name})) flights.value = flights.value.map((one) => one.id === flight ? {...one, name} : one);
 }
+
+/// True: the station has it, and tells everybody.
+export const note_flight = async (flight, note) => Boolean(await act('/api/flights', {flight, note}));
 
 /// For everybody at this station; without a text it is forgotten.
 export async function keep_stack(name, text) {

@@ -32,6 +32,9 @@ export const authority = signal(null);
 /// {id, from} of the flight that is flown now, and all that the archive has.
 export const flight = signal(null);
 export const flights = signal([]);
+/// {pages, operators, observers}: who has a page open at the station; null while it has not said. And which of them is this one.
+export const present = signal(null);
+export const own_client = signal('');
 /// [{name, text, t, who}]: telecommands that somebody keeps at the station, as lines of `hirosco tc`.
 export const kept_stacks = signal([]);
 /// Counts batches of values; a view that draws at telemetry rate reads it.
@@ -206,6 +209,7 @@ function take(list) {
     if (message.type !== 'hello' && message.type !== 'replay' && Boolean(message.replay) !== (replay.value !== null)) continue;
     if (message.type === 'hello') {
       introduce(message.client);
+      own_client.value = String(message.client ?? '');
       operator.value = message.operator !== false;
       if (message.authority) take_authority(message.authority);
       if (message.flight) take_flight(message.flight);
@@ -214,6 +218,8 @@ function take(list) {
     if (message.type === 'alarm') alarms.value = [message, ...alarms.value.filter((one) => one.id !== message.id || one.apid !== message.apid)];
     if (message.type === 'alarms') take_alarms(message);
     if (message.type === 'stacks') kept_stacks.value = message.stacks;
+    if (message.type === 'present') present.value = message;
+    if (message.type === 'notes') flights.value = flights.value.map((one) => one.id === message.flight ? {...one, notes: message.notes} : one);
     if (message.type === 'flight' && take_flight(message)) begin_anew();
     if (message.type === 'values') {
       heard(message.t);

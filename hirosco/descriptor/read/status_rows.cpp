@@ -35,6 +35,8 @@ std::string give_everybody_a_row(Mission& mission) {
   if (auto wrong = lengthen(supervisor, subsystem_rows, mission.subsystems.size() + 1); !wrong.empty()) return wrong;
   if (auto wrong = lengthen(supervisor, link_rows, mission.links.size()); !wrong.empty()) return wrong;
   if (auto wrong = lengthen(supervisor, link_quality_rows, mission.links.size()); !wrong.empty()) return wrong;
+  const std::size_t latency_rows = std::min(mission.links.size(), most_latency_rows);
+  if (auto wrong = lengthen(supervisor, link_latency_rows, latency_rows); !wrong.empty()) return wrong;
   const auto too_long = [&](const HousekeepingStructure& structure) {
     std::size_t octets = octets_of(supervisor, structure.sampled_once);
     for (const auto& set : structure.sampled_repeatedly)

@@ -34,6 +34,7 @@ TEST(StatusRows, AreSixteenInSmallMissionsSoThatTheirReportsStayAsTheyAre) {
   EXPECT_EQ(lengths(mission, subsystem_rows), std::vector<std::size_t>(10, 16));
   EXPECT_EQ(lengths(mission, link_rows), std::vector<std::size_t>(7, 16));
   EXPECT_EQ(lengths(mission, link_quality_rows), std::vector<std::size_t>(6, 16));
+  EXPECT_EQ(lengths(mission, link_latency_rows), std::vector<std::size_t>(11, 16));
 }
 
 TEST(StatusRows, AreOneForEachOfMany) {
@@ -42,9 +43,17 @@ TEST(StatusRows, AreOneForEachOfMany) {
   EXPECT_EQ(lengths(mission, subsystem_rows), std::vector<std::size_t>(10, 17)) << "the supervisor has one, too";
   EXPECT_EQ(lengths(mission, link_rows), std::vector<std::size_t>(7, 17));
   EXPECT_EQ(lengths(mission, link_quality_rows), std::vector<std::size_t>(6, 17));
+  EXPECT_EQ(lengths(mission, link_latency_rows), std::vector<std::size_t>(11, 17));
   mission = crew_of(60, 90);
   EXPECT_EQ(give_everybody_a_row(mission), "");
   EXPECT_EQ(lengths(mission, subsystem_rows), std::vector<std::size_t>(10, 61));
+}
+
+TEST(StatusRows, OfLatenciesAreAsManyAsOnePacketTakes) {
+  Mission mission = crew_of(3, 120);  // 4 rows of 29 octets and 120 of 22 fit, 120 of 41 do not
+  EXPECT_EQ(give_everybody_a_row(mission), "");
+  EXPECT_EQ(lengths(mission, link_rows), std::vector<std::size_t>(7, 120));
+  EXPECT_EQ(lengths(mission, link_latency_rows), std::vector<std::size_t>(11, 99));
 }
 
 TEST(StatusRows, ThatFillMoreThanAPacketAreRefused) {

@@ -230,8 +230,11 @@ void CycleLoop::note_own_writes() noexcept {
 void CycleLoop::count_links() noexcept {
   LinkStatistics sum;
   for (std::size_t i = 0; i < plan_.inputs.size(); ++i) {
-    const LinkInputSlot& input = plan_.inputs[i];
-    if (i < parts_.vital.incoming.size()) input.tell(parts_.vital.incoming[i]);
+    LinkInputSlot& input = plan_.inputs[i];
+    if (i < parts_.vital.incoming.size()) {
+      input.tell(parts_.vital.incoming[i]);
+      input.tell(parts_.vital.latencies[i]);
+    }
     sum.received += static_cast<std::uint32_t>(input.port()->received());
     sum.lost += static_cast<std::uint32_t>(input.port()->lost());
   }

@@ -106,6 +106,30 @@ TEST_F(Links, TheVitalPageTellsLossAndLatencyOfEachLink) {
   EXPECT_EQ(told.link.load(), 0u);
 }
 
+TEST_F(Links, TheVitalPageCountsLatenciesInBinsOfTheProducersPeriodAndBeginsAnewWithEachLink) {
+  const LinkLatencies& told = rig.vital.latencies[0];
+  const auto counts = [&] { return std::vector<std::uint32_t>(told.counts.begin(), told.counts.end()); };
+  couple();
+  rig.cycle();
+  ASSERT_EQ(told.period_ns.load(), 1'000'000u);
+  EXPECT_THAT(counts(), ElementsAre(0, 0, 0, 0, 0, 0, 0, 0, 0));
+  for (const Duration latency :
+       std::initializer_list<Duration>{1ms, 1ms, 2ms, 2ms + 1ns, 9ms}) {  // a cycle of the rig is 1 ms
+    sample(0.5);
+    rig.advance(latency - 1ms);
+    rig.cycle();
+    rig.cycle();  // the same sample again is no news
+  }
+  EXPECT_THAT(counts(), ElementsAre(0, 0, 0, 0, 0, 0, 2, 1, 2));
+  rig.detach(1);
+  rig.service();
+  rig.cycle();
+  hand = rig.attach(2, Role::Consumer, "HAND", hand_fields);
+  rig.cycle();
+  EXPECT_EQ(told.period_ns.load(), 1'000'000u);
+  EXPECT_THAT(counts(), ElementsAre(0, 0, 0, 0, 0, 0, 0, 0, 0));
+}
+
 TEST_F(Links, FieldsAreMatchedByNameWhereverTheProducerPutsThem) {
   hand = rig.attach(1, Role::Consumer, "HAND",
                     {{"MORE", Type::Int32, 2}, {"ENABLE", Type::Uint8, 1}, {"ANGLE", Type::Double, 1}});

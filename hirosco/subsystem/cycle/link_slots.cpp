@@ -87,6 +87,12 @@ void LinkInputSlot::attach(AttachedLink* link) noexcept {
   latency_mean_ns_ = 0.0;
   latency_max_ns_ = 0;
   jitter_ns_ = 0.0;
+  forget_latencies();
+}
+
+void LinkInputSlot::forget_latencies() noexcept {
+  latencies_.fill(0);
+  untold_bins_ = all_bins;
 }
 
 bool LinkInputSlot::awaits_first(bool controlling, bool counts) noexcept {
@@ -176,6 +182,9 @@ void LinkInputSlot::take(const LinkSample& sample, MutableOctets into, TimePoint
     const auto apart = std::abs(static_cast<double>((*newest_latency_ - before).count()));
     jitter_ns_ += (apart - jitter_ns_) / 16;
   }
+  const std::size_t bin = latency_bin(*newest_latency_, link_->agreement.producer_period);
+  ++latencies_[bin];
+  untold_bins_ |= 1U << bin;
   const std::uint32_t latency_ns = clamped_ns(*newest_latency_);
   latency_max_ns_ = std::max(latency_max_ns_, latency_ns);
   // The first samples weigh as much as they are, so that the mean needs no time to arrive.
@@ -193,6 +202,17 @@ void LinkInputSlot::tell(IncomingLink& page) const noexcept {
   const auto age_us = (read_at_ - newest_at_) / std::chrono::microseconds{1};
   page.age_us.store(
       port_->count_ == 0 ? 0 : static_cast<std::uint32_t>(std::clamp<std::int64_t>(age_us, 0, 4'000'000'000)), relaxed);
+}
+
+void LinkInputSlot::tell(LinkLatencies& page) noexcept {
+  constexpr auto relaxed = std::memory_order_relaxed;
+  // First of all the period: with another one the counts mean something else.
+  if (untold_bins_ == all_bins)
+    page.period_ns.store(link_ != nullptr ? clamped_ns(link_->agreement.producer_period) : 0, relaxed);
+  for (; untold_bins_ != 0; untold_bins_ &= untold_bins_ - 1) {
+    const auto bin = static_cast<std::size_t>(std::countr_zero(untold_bins_));
+    page.counts[bin].store(latencies_[bin], relaxed);
+  }
 }
 
 LinkOutputSlot::LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms,

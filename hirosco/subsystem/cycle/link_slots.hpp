@@ -73,6 +73,8 @@ class LinkInputSlot {
   [[nodiscard]] std::optional<Duration> newest_latency() const noexcept { return newest_latency_; }
   /// Tells how the link does.
   void tell(IncomingLink& page) const noexcept;
+  /// Tells how long its samples took: stores the bins that have changed since it told last.
+  void tell(LinkLatencies& page) noexcept;
   /// Its producer says that what it sends is to be relied on.
   [[nodiscard]] bool reliable() const noexcept {
     return port_->status_ == LinkStatus::Valid || port_->status_ == LinkStatus::Degraded;
@@ -103,6 +105,10 @@ class LinkInputSlot {
   TimePoint read_at_{};
   double latency_mean_ns_{0.0};
   std::uint32_t latency_max_ns_{0};
+  void forget_latencies() noexcept;
+  std::array<std::uint32_t, latency_bins> latencies_{};
+  std::uint32_t untold_bins_{all_bins};  ///< a bit for each bin
+  static constexpr std::uint32_t all_bins = (1U << latency_bins) - 1;
 };
 
 /// A provided set of real-time data. A set may have any number of consumers, one link each: what they get is encoded once.

@@ -3,12 +3,15 @@
 // Safety module: fence (docs/safety/modules.csv).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstdint>
 #include <type_traits>
 
 #include "hirosco/pus/packet/packet_counters.hpp"
+#include "hirosco/utilities/time.hpp"
 
 /// The two pages of shared memory between a subsystem and the supervisor (decision 6). Both sides check magic and
 /// version before use; all fields are single words, so nothing can be torn. What decides over actuators survives damage: no
@@ -16,7 +19,7 @@
 namespace hirosco {
 
 inline constexpr std::uint32_t page_magic = 0x48495243;  // "HIRC"
-inline constexpr std::uint32_t page_version = 5;
+inline constexpr std::uint32_t page_version = 6;
 
 /// Why the framework inhibits the actuators of a subsystem; bits of VitalPage::inhibited.
 enum Inhibition : std::uint32_t {
@@ -44,6 +47,27 @@ struct IncomingLink {
 };
 /// As many as a configuration can require, by itself and from its subsystem together: of each link of a consumer is told.
 inline constexpr std::size_t told_incoming_links = 64;
+
+/// Into so many bins the latencies of a link are counted (docs/adr/0141). Their bounds double, and one of them is the period of the link:
+/// at most 1/64, 1/32, 1/16, 1/8, 1/4, 1/2, 1 and 2 periods, and all above.
+inline constexpr std::size_t latency_bins = 9;
+
+/// The bin of a latency, whatever a stamp from outside makes of it; what is not after its instant is in the first. A period of nothing
+/// counts as 1 ns.
+/// Realtime: wait-free.
+[[nodiscard]] constexpr std::size_t latency_bin(Duration latency, Duration period) noexcept {
+  constexpr std::uint64_t parts = 64;
+  constexpr std::int64_t longest = std::int64_t{1} << 56;
+  const auto before = static_cast<std::uint64_t>(std::clamp<std::int64_t>(latency.count(), 1, longest) - 1);
+  const std::uint64_t passed = before * parts / static_cast<std::uint64_t>(std::max<std::int64_t>(period.count(), 1));
+  return std::min(static_cast<std::size_t>(std::bit_width(passed)), latency_bins - 1);
+}
+
+/// How long the samples of an incoming link took, since the link was made.
+struct LinkLatencies {
+  std::atomic<std::uint32_t> period_ns{0};  ///< of the producer: what the bins are parts of; 0 = nothing is counted
+  std::array<std::atomic<std::uint32_t>, latency_bins> counts{};  ///< of samples in each bin
+};
 
 /// A number of 16 bits beside its complement: damage shows.  Realtime: wait-free.
 class CheckedWord {
@@ -94,6 +118,7 @@ struct VitalPage {
   pus::CounterBlock counters;  ///< outlive the process (decision 8b)
   std::atomic<std::uint32_t> life{
       0};  ///< marked by the system when the process ends (hirosco/utilities/os/life.hpp); 0: nobody holds it
+  std::array<LinkLatencies, told_incoming_links> latencies;  ///< of each of `incoming`
 };
 
 /// Values of PermitPage::powered.

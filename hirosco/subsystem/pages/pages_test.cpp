@@ -57,6 +57,29 @@ TEST(VitalPage, AsItIsMadeTellsOfNothing) {
     for (const auto* number :
          {&link.link, &link.lost, &link.latency_mean_ns, &link.latency_max_ns, &link.jitter_ns, &link.age_us})
       EXPECT_EQ(number->load(), 0u);
+  for (const LinkLatencies& link : page.latencies) {
+    EXPECT_EQ(link.period_ns.load(), 0u);
+    for (const auto& count : link.counts) EXPECT_EQ(count.load(), 0u);
+  }
+}
+
+TEST(LatencyBin, BoundsDoubleUpToTwoPeriodsAndBelongToTheBinBelow) {
+  constexpr Duration period = 640us;
+  std::size_t bin = 0;
+  for (const Duration bound : {10us, 20us, 40us, 80us, 160us, 320us, 640us, 1280us}) {
+    EXPECT_EQ(latency_bin(bound, period), bin) << bin;
+    EXPECT_EQ(latency_bin(bound + 1ns, period), ++bin);
+  }
+  EXPECT_EQ(bin + 1, latency_bins);
+  EXPECT_EQ(latency_bin(500us, 500us), latency_bin(640us, period)) << "a period is within itself, divisible or not";
+}
+
+TEST(LatencyBin, WhateverAStampSaysIsInOneOfThem) {
+  EXPECT_EQ(latency_bin(Duration::max(), 500us), latency_bins - 1);
+  EXPECT_EQ(latency_bin(Duration::max(), Duration{0}), latency_bins - 1);
+  EXPECT_EQ(latency_bin(Duration::min(), 500us), 0u);
+  EXPECT_EQ(latency_bin(Duration{0}, Duration{0}), 0u);
+  EXPECT_EQ(latency_bin(1us, Duration::max()), 0u);
 }
 
 TEST(VitalPage, HasABitOfItsOwnForEachReasonToInhibit) {
@@ -67,8 +90,8 @@ TEST(VitalPage, HasABitOfItsOwnForEachReasonToInhibit) {
 }
 
 TEST(VitalPage, IsOfTheVersionThatDecodersOfOthersKnow) {
-  EXPECT_EQ(VitalPage{}.version, 5u) << "tests/endtoend/pages.py";
-  EXPECT_EQ(PermitPage{}.version, 5u);
+  EXPECT_EQ(VitalPage{}.version, 6u) << "tests/endtoend/pages.py";
+  EXPECT_EQ(PermitPage{}.version, 6u);
 }
 
 /// The finisher of SplitMix64 (Steele, Lea, Flood 2014): its first numbers of the seeds 0 and 1, as others print them.

@@ -58,6 +58,17 @@ std::optional<MemberStatistics> MemberPort::statistics() const noexcept {
   return statistics_of(*page);
 }
 
+MemberLatencies MemberPort::latencies(std::size_t place) const noexcept {
+  MemberLatencies found;
+  const VitalPage* page = vital();
+  if (page == nullptr || place >= page->latencies.size()) return found;
+  const LinkLatencies& told = page->latencies[place];
+  found.period_ns = told.period_ns.load(std::memory_order_relaxed);
+  for (std::size_t bin = 0; bin < latency_bins; ++bin)
+    found.counts[bin] = told.counts[bin].load(std::memory_order_relaxed);
+  return found;
+}
+
 std::uint64_t MemberPort::stopped_at_cycle() const noexcept {
   return permit_ != nullptr ? permit_->stopped_at_cycle.load(std::memory_order_relaxed) : 0;
 }

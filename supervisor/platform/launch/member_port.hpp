@@ -38,6 +38,11 @@ struct MemberStatistics {
   std::uint64_t inhibited_at_cycle{0};
   std::array<Incoming, told_incoming_links> incoming;  ///< in the order of <Requires>
 };
+/// How long the samples of an incoming link took, of one look.
+struct MemberLatencies {
+  std::uint32_t period_ns{0};  ///< what the bins are parts of; 0 = nothing is counted
+  std::array<std::uint32_t, latency_bins> counts{};
+};
 /// Realtime: wait-free.
 [[nodiscard]] MemberStatistics statistics_of(const VitalPage& page) noexcept;
 
@@ -61,6 +66,8 @@ class MemberPort {
   [[nodiscard]] std::uint8_t configuration() const noexcept;
   /// Empty when what it says is damaged.
   [[nodiscard]] std::optional<MemberStatistics> statistics() const noexcept;
+  /// Of the link of MemberStatistics::incoming at this place, below told_incoming_links; nothing of what is damaged.
+  [[nodiscard]] MemberLatencies latencies(std::size_t place) const noexcept;
   /// VitalPage::cycles that was read when it was fenced last; for displays.
   [[nodiscard]] std::uint64_t stopped_at_cycle() const noexcept;
   /// Telecommands of another mode are refused by it from now on.

@@ -21,6 +21,7 @@ void Housekeeping::provide() {
   parts_.own.publish(descriptor::subsystem_rows, members_);
   parts_.own.publish(descriptor::link_rows, link_rows_);
   parts_.own.publish(descriptor::link_quality_rows, link_quality_);
+  parts_.own.publish(descriptor::link_latency_rows, link_latency_);
   parts_.own.publish("POWER", power_);
 }
 
@@ -93,6 +94,7 @@ void Housekeeping::add_consumer(const descriptor::MissionLink& link, LinkRow& st
       status.latency_max_ns = found->latency_max_ns;
       status.jitter_ns = found->jitter_ns;
       status.age_at_use_us = found->age_us;
+      status.latencies = member.latencies(static_cast<std::size_t>(found - incoming.begin()));
       return;
     }
     return;
@@ -118,13 +120,16 @@ void Housekeeping::show_links() noexcept {
   LinkRows rows;
   const std::size_t told = std::min(craft_.mission.links.size(), rows.link.size());
   LinkQualityRows quality;
+  LinkLatencyRows latency;
   for (std::size_t i = 0; i < told; ++i) {
     const LinkRow status = status_of(craft_.mission.links[i]);
     put(rows, i, status);
     put(quality, i, status);
+    put(latency, i, status);
   }
   link_rows_.store(rows);
   link_quality_.store(quality);
+  link_latency_.store(latency);
 }
 
 }  // namespace hirosco::supervisor

@@ -16,7 +16,7 @@
 
 namespace hirosco::supervisor {
 
-/// What the supervisor tells of itself and of all others in its housekeeping (structures 4701 and 4702 of supervisor.xml).
+/// What the supervisor tells of itself and of all others in its housekeeping (structures 4701 to 4704 of supervisor.xml).
 /// Thread: the supervisor's.
 class Housekeeping final : public Watch {
  public:
@@ -65,6 +65,7 @@ class Housekeeping final : public Watch {
   Parameter<MemberRows> members_;
   Parameter<LinkRows> link_rows_;
   Parameter<LinkQualityRows> link_quality_;
+  Parameter<LinkLatencyRows> link_latency_;
 };
 
 }  // namespace hirosco::supervisor

@@ -143,6 +143,29 @@ TEST_F(HousekeepingTest, HowWellEachLinkDoesStandsTogetherAndOfThoseThatNobodyEl
   EXPECT_EQ(columns[3][0], 0U);
 }
 
+TEST_F(HousekeepingTest, HowLongTheSamplesOfEachLinkTookStandsBinByBin) {
+  parts.graph.set_up(2, true);
+  IncomingLink& other = played[arm].vital->incoming[0];
+  other.link = 99;
+  played[arm].vital->latencies[0].period_ns = 3;
+  played[arm].vital->incoming[1].link = 2;
+  LinkLatencies& seen = played[arm].vital->latencies[1];
+  seen.period_ns = 500'000;
+  for (std::uint32_t bin = 0; bin < latency_bins; ++bin) seen.counts[bin] = 10 + bin;
+  const auto octets = value_of(Type::Struct, 9);
+  OctetReader reader{octets};
+  std::array<std::uint8_t, places> link{};
+  std::array<std::array<std::uint32_t, places>, 10> columns{};
+  read(reader, link);
+  for (auto& column : columns) read(reader, column);
+  ASSERT_TRUE(reader.good() && reader.remaining() == 0);
+  EXPECT_THAT(std::vector(link.begin(), link.begin() + 3), ElementsAre(1, 2, 0));
+  std::vector<std::uint32_t> told;
+  for (const auto& column : columns) told.push_back(column[1]);
+  EXPECT_THAT(told, ElementsAre(500'000, 10, 11, 12, 13, 14, 15, 16, 17, 18));
+  EXPECT_EQ(columns[0][0], 0U) << "link 1 has no consumer that tells";
+}
+
 TEST_F(HousekeepingTest, ModeAndRejectionsAreThose) {
   EXPECT_EQ(value_of(Type::Uint8, 0), std::vector{std::byte{1}});
   verify(arm, 1, 4, pus::FailureCode::WrongMode, 0);

@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 
 #include "hirosco/descriptor/model/status_rows.hpp"
 #include "hirosco/parameter/sized.hpp"
+#include "supervisor/platform/launch/member_port.hpp"
 
-/// What ground is told of each of us and of each link: one structure, one row (housekeeping 4702 and 4703).
+/// What ground is told of each of us and of each link: one structure, one row (housekeeping 4702, 4703 and 4704).
 namespace hirosco::supervisor {
 
 struct MemberRow {
@@ -37,6 +39,7 @@ struct LinkRow {
   std::uint32_t latency_max_ns{0};
   std::uint32_t jitter_ns{0};
   std::uint32_t age_at_use_us{0};
+  MemberLatencies latencies;
 };
 
 /// The rows as parameters have them, by columns. Published they are as long as the descriptor says.
@@ -78,6 +81,21 @@ struct LinkQualityRows {
   Column<std::uint32_t> age_at_use_us = empty_column<std::uint32_t>;
 };
 
+/// LINK_LATENCY; a column for each bin.
+struct LinkLatencyRows {
+  Column<std::uint8_t> link = empty_column<std::uint8_t>;
+  Column<std::uint32_t> period_ns = empty_column<std::uint32_t>;
+  Column<std::uint32_t> in_1_64 = empty_column<std::uint32_t>;
+  Column<std::uint32_t> in_1_32 = empty_column<std::uint32_t>;
+  Column<std::uint32_t> in_1_16 = empty_column<std::uint32_t>;
+  Column<std::uint32_t> in_1_8 = empty_column<std::uint32_t>;
+  Column<std::uint32_t> in_1_4 = empty_column<std::uint32_t>;
+  Column<std::uint32_t> in_1_2 = empty_column<std::uint32_t>;
+  Column<std::uint32_t> in_1 = empty_column<std::uint32_t>;
+  Column<std::uint32_t> in_2 = empty_column<std::uint32_t>;
+  Column<std::uint32_t> beyond = empty_column<std::uint32_t>;
+};
+
 /// Realtime: wait-free.
 inline void put(MemberRows& rows, std::size_t i, const MemberRow& status) noexcept {
   rows.apid[i] = status.apid;
@@ -111,6 +129,16 @@ inline void put(LinkQualityRows& rows, std::size_t i, const LinkRow& status) noe
   rows.latency_max_ns[i] = status.latency_max_ns;
   rows.jitter_ns[i] = status.jitter_ns;
   rows.age_at_use_us[i] = status.age_at_use_us;
+}
+
+/// Realtime: wait-free.
+inline void put(LinkLatencyRows& rows, std::size_t i, const LinkRow& status) noexcept {
+  rows.link[i] = status.link;
+  rows.period_ns[i] = status.latencies.period_ns;
+  std::array<Column<std::uint32_t>*, latency_bins> bins{&rows.in_1_64, &rows.in_1_32, &rows.in_1_16,
+                                                        &rows.in_1_8,  &rows.in_1_4,  &rows.in_1_2,
+                                                        &rows.in_1,    &rows.in_2,    &rows.beyond};
+  for (std::size_t bin = 0; bin < bins.size(); ++bin) (*bins[bin])[i] = status.latencies.counts[bin];
 }
 
 }  // namespace hirosco::supervisor

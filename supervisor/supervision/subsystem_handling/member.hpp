@@ -34,6 +34,10 @@ class Member {
   [[nodiscard]] std::uint8_t configuration() const noexcept { return alive() ? launched_.port->configuration() : 0; }
   /// Empty when it does not run or what it says is damaged.
   [[nodiscard]] std::optional<MemberStatistics> statistics() const noexcept;
+  /// How long the samples of an incoming link took, by its place in MemberStatistics::incoming; nothing when it does not run.
+  [[nodiscard]] MemberLatencies latencies(std::size_t place) const noexcept {
+    return alive() ? launched_.port->latencies(place) : MemberLatencies{};
+  }
   [[nodiscard]] std::uint64_t stopped_at_cycle() const noexcept;
   void enter_mode(std::uint32_t epoch) noexcept;
   /// Once in each step of the supervisor.

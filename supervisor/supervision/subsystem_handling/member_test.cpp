@@ -126,6 +126,19 @@ TEST_F(MemberTest, ItsStatisticsAreEachWordOfItsVitalPage) {
   EXPECT_EQ(seen.incoming[1].age_us, 14u);
 }
 
+TEST_F(MemberTest, TheLatenciesOfALinkAreThoseOfItsPlaceAndOfDamageNothing) {
+  start();
+  vital->latencies[1].period_ns = 7;
+  for (std::uint32_t bin = 0; bin < latency_bins; ++bin) vital->latencies[1].counts[bin] = 20 + bin;
+  const MemberLatencies seen = member.latencies(1);
+  EXPECT_EQ(seen.period_ns, 7u);
+  for (std::uint32_t bin = 0; bin < latency_bins; ++bin) EXPECT_EQ(seen.counts[bin], 20 + bin);
+  EXPECT_EQ(member.latencies(0).period_ns, 0u);
+  EXPECT_EQ(member.latencies(told_incoming_links).period_ns, 0u);
+  vital->magic ^= 1;
+  EXPECT_EQ(member.latencies(1).period_ns, 0u);
+}
+
 TEST_F(MemberTest, ADeadOneIsGoneWithItsPages) {
   start();
   member.recovery.plan_begins(descriptor::Severity::High);

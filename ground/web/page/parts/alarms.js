@@ -34,7 +34,7 @@ function Alarm({alarm, note, done, for_s}) {
 const did = {
   acknowledge: 'acknowledged', shelve: 'shelved', unshelve: 'took off the shelf', 'shelf over': 'no longer shelves', took: 'took the command', asked: 'asked for the command of',
   kept: 'kept the command from', 'was handed': 'was handed the command by', 'was left': 'got the command of', 'laid down': 'laid the command down', 'was idle': 'had the command, idle for 15 min',
-  'was away': 'had the command, and was away', 'no longer asks': 'asked, and was away', began: 'began', named: 'named',
+  'was away': 'had the command, and was away', 'no longer asks': 'asked, and was away', began: 'began', named: 'named', noted: 'noted of',
 };
 function subject({kind, name}) {
   if (kind === 'flight') return `flight ${name}`;

@@ -165,6 +165,7 @@ export function Robot() {
       <button class="chip" title="as at first" onClick=${() => view.current?.view_from(from.from_m)}>Scene</button>
       <button class="chip" title="from above" onClick=${() => view.current?.view_from(from.above_m)}>Top</button>
       ${from?.tip_from_m ? html`<button class="chip" title="the tip from near" onClick=${() => view.current?.view_tip()}>Tip</button>` : null}
+      <button class="chip" title="the scene alone, as a PNG file" data-test="scene-picture" disabled=${!loaded} onClick=${() => view.current?.save_picture()}>PNG</button>
     </div>` : null}
     ${problem ? html`<p class="empty">${problem}</p>` : null}
     ${description?.inset ? html`<${Hand} description=${description} window_ref=${window_ref} />` : null}

@@ -7,8 +7,9 @@
 // the views that show it. Realtime: none.
 import {Color, PerspectiveCamera, Scene, Vector2, Vector3} from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import {clock_text, iso_text} from '../format.js';
 import {mission_code, mission_text} from '../mission_files.js';
-import {commands, replay, values, with_picture} from '../store.js';
+import {columns, commands, mission, now_s, replay, values, with_picture} from '../store.js';
 import {surroundings_in_steps} from '../scene/around.js';
 import {Contact} from '../scene/contact.js';
 import {Goal, goal_of} from '../scene/goal.js';
@@ -17,12 +18,16 @@ import {Arrow, colours} from '../scene/instruments.js';
 import {Kit, merged} from '../scene/kit.js';
 import {LivePicture} from '../scene/live.js';
 import {Pace} from '../scene/pace.js';
+import {Picker} from '../scene/pick.js';
 import {Readout} from '../scene/readout.js';
 import {RobotModel} from '../scene/robot_model.js';
 import {cast_on_plane} from '../scene/skins.js';
+import {snapshot_of} from '../scene/snapshot.js';
 import {lights, sun_from} from '../scene/space.js';
 import {StillPicture} from '../scene/still.js';
 import {surface_x_m} from './hand.js';
+import {plots_address, plots_of_link} from './joint_plots.js';
+import {save} from './save.js';
 import {typed} from './typed.js';
 
 const still_after_ms = 250, resized_after_ms = 200;
@@ -81,6 +86,10 @@ export class RobotView {
     this.controls.addEventListener('change', () => this.camera_moved());
     this.controls.update();
     this.grips = new Grips(this);
+    this.picker = new Picker(this, (robot, link) => {
+      const groups = plots_of_link(link, {about: robot.about, links: robot.body.links}, columns.value);
+      if (groups.length) location.hash = plots_address(groups);
+    });
     this.observer = new ResizeObserver(() => this.resize());
     this.observer.observe(nodes.stage);
     this.values = values;
@@ -313,6 +322,12 @@ export class RobotView {
   forget() {
     this.contact.forget();
     for (const robot of this.robots) robot.motion.forget();
+  }
+
+  /// The scene alone, as a file.
+  save_picture() {
+    const t = now_s(), when = iso_text(t) || clock_text(t, 3), {name} = mission.value;
+    snapshot_of(this, `${name}, ${when}`).toBlob((blob) => save(`${name}-${when}.png`.replaceAll(/[^\w.-]/g, '-'), blob));
   }
 
   /// From above, x to the right; or from where the mission looks.

@@ -35,6 +35,7 @@ export class LivePicture {
   #whole = new Matrix4();
   #eye = new Vector3();
   #textures = new WeakMap();
+  #place = null;
 
   constructor(canvas) {
     this.#canvas = canvas;
@@ -64,9 +65,15 @@ export class LivePicture {
     this.#show(x, y);
   }
 
+  /// What it shows, where that is, into a picture of what the canvas stands in.
+  copy_to(context) {
+    if (this.#place) context.drawImage(this.#canvas, ...this.#place);
+  }
+
   #show(x, y) {
     const box = this.#raster.drawn(), canvas = this.#canvas, hidden = box ? '' : 'hidden';
     if (canvas.style.visibility !== hidden) canvas.style.visibility = hidden;
+    this.#place = null;
     if (!box) return;
     // Of a few sizes only: another one is new memory.
     const wide = Math.ceil(box.width / step_px) * step_px, tall = Math.ceil(box.height / step_px) * step_px;
@@ -78,6 +85,7 @@ export class LivePicture {
     const left = Math.max(0, Math.min(box.left, this.#raster.width - canvas.width)), top = Math.max(0, Math.min(box.top, this.#raster.height - canvas.height));
     // All of it, with what is empty: so nothing of the picture before stays.
     this.context.putImageData(this.#raster.image, -left, -top, left, top, canvas.width, canvas.height);
+    this.#place = [x + left, y + top];
     canvas.style.transform = `translate(${x + left}px, ${y + top}px)`;
   }
 

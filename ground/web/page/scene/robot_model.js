@@ -72,6 +72,7 @@ export function dress(body, parts, environment, software) {
       for (const visual of visuals_of(link)) visual.traverse((part) => { if (part.isMesh) part.material = plain_skin(part.material.color); });
       if (bare || visuals_of(link).some(is_mesh)) {
         const group = bones(link, bone_share * length_of(body), bone_skin ??= plain_skin(new Color(0xd3d7dd)));
+        group.userData.bones = true;
         count += group.children.length;
         link.add(group);
       }

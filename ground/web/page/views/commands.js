@@ -8,6 +8,7 @@ import {arguments_text} from '../parts/arguments.js';
 import {again, CommandForm, edit, VerdictChain} from '../parts/command_form.js';
 import {favourite_text, favourites, toggle_favourite} from '../parts/favourites.js';
 import {Panel} from '../parts/panel.js';
+import {Splits} from '../parts/splits.js';
 import {StackPanel} from '../parts/stack_panel.js';
 import {fill_form} from '../parts/typed.js';
 import {commands, mission, mode_of, operator, outcome_of, replay} from '../store.js';
@@ -33,7 +34,7 @@ export function Commands({rest}) {
   const chosen = found.find(({subsystem, action}) => subsystem.name === rest[0] && action.name === rest[1]) ??
     list.flatMap((subsystem) => (subsystem.functions ?? []).map((action) => ({subsystem, action})))
         .find(({subsystem, action}) => subsystem.name === rest[0] && action.name === rest[1]) ?? (words ? found[0] : harmless(found));
-  return html`<main class="commands">
+  return html`<main class="commands"><${Splits} name="commands" rows=${false} />
     <${Panel} title="Telecommands">
       <input class="search" type="search" placeholder="search  /" aria-label="search telecommands" value=${search} data-search
         onInput=${(event) => set_search(event.currentTarget.value)}

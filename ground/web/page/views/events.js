@@ -9,6 +9,7 @@ import {EventTable, event_text} from '../parts/event_list.js';
 import {Severity} from '../parts/icons.js';
 import {LogSearch} from '../parts/log_search.js';
 import {Panel} from '../parts/panel.js';
+import {Splits} from '../parts/splits.js';
 import {Chain} from '../parts/stop_banner.js';
 import {story} from '../stop_story.js';
 import {counts, events, mission, replay} from '../store.js';
@@ -39,7 +40,7 @@ export function Events({query}) {
     const found = await get('/api/events', {text, limit: 2000, to: replay.value ? replay.value.at : undefined}).catch(() => ({events: []}));
     set_archive((found.events ?? found).map((event, i) => ({...event, key: i})));
   };
-  return html`<main class="event_view">
+  return html`<main class="event_view"><${Splits} name="events" />
     <${Alarms} />
     <${Panel} title="Events" area="events" hint=${archive ? `archive, ${list.length} found` : `${list.length} of ${events.value.length}`}>
       <div class="toolbar">

@@ -3,8 +3,10 @@
 import {send_and_say} from '../commanding.js';
 import {duration_text, number_text, rate_text} from '../format.js';
 import {html} from '../html.js';
+import {LatencyBars} from '../parts/latency_bars.js';
 import {LinkGraph, is_wanted, live_link, network_of} from '../parts/link_graph.js';
 import {Panel} from '../parts/panel.js';
+import {Splits} from '../parts/splits.js';
 import {is_known} from '../parts/subsystem_card.js';
 import {mission, operator, replay, slow, subsystem_of} from '../store.js';
 import {listed} from './commands.js';
@@ -18,8 +20,9 @@ function may_now(name) {
 export function Links() {
   slow.value;
   const locked = Boolean(replay.value) || !operator.value;
-  return html`<main class="link_view">
+  return html`<main class="link_view"><${Splits} name="links" />
     <${Panel} title="Real-time links" hint="point at a subsystem to see what falls with it"><${LinkGraph} width=${860} height=${380} all /></${Panel}>
+    <${Panel} title="How long samples take" hint="until they are used"><${LatencyBars} /></${Panel}>
     <${Panel} title="Now"><table class="values"><thead><tr><th>link</th><th>from</th><th>to</th><th>state</th><th>rate</th><th>age</th><th>limit</th><th title="from the instant of a sample to the start of the cycle that uses it first: mean, largest">latency</th><th title="mean distance of two latencies in a row">jitter</th><th>lost</th><th>network</th><th /></tr></thead>
       <tbody>${(mission.value?.links ?? []).map((link) => {
         const now = live_link(link.id);

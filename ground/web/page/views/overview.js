@@ -11,6 +11,7 @@ import {Panel} from '../parts/panel.js';
 import {Legend, TimePlot} from '../parts/plot.js';
 import {Robot} from '../parts/robot.js';
 import {plot_names, scene_of_mission} from '../parts/scene_file.js';
+import {Splits} from '../parts/splits.js';
 import {SubsystemCard} from '../parts/subsystem_card.js';
 import {html} from '../html.js';
 import {stop} from '../stop_story.js';
@@ -106,7 +107,7 @@ export function Overview() {
   const none = scene_of_mission.value === undefined ? '' : 'No housekeeping to plot.';
   const subsystems = mission.value?.subsystems ?? [];
   const wanted = plots.length ? plots : [{title: 'Plot', names: [], about: {}}];
-  return html`<main class="overview">
+  return html`<main class="overview"><${Splits} name="overview" />
     <${Panel} title="Subsystems" hint=${`${operational()} / ${subsystems.length} Operational`} area="subsystems" href="#/subsystems">
       ${subsystems.map((one) => html`<${SubsystemCard} key=${one.name} name=${one.name} />`)}</${Panel}>
     <${Panel} title="3D" area="robot" bare titleless><${Robot} /></${Panel}>

@@ -8,7 +8,9 @@ import {html} from '../html.js';
 import {column_of, curve_words, flight_title, in_flight, is_reckoned, of_flight, parameters_of, program_of} from '../parts/curves.js';
 import {longest_text} from '../parts/expression.js';
 import {Panel} from '../parts/panel.js';
+import {save} from '../parts/save.js';
 import {Cursors, curve_colour, Legend, TimePlot, XyPlot} from '../parts/plot.js';
+import {Splits} from '../parts/splits.js';
 import {is_named} from '../parts/state_lanes.js';
 import {aligned} from '../series.js';
 import {columns, flight, flights, mission, now_s, replay} from '../store.js';
@@ -27,14 +29,6 @@ export function parsed(query) {
 function address({groups, window_s, xy}) {
   const p = groups.map((group) => group.map(encodeURIComponent).join('+')).join('|');
   return `#/plots?p=${p}&w=${window_s}${xy.size ? `&xy=${[...xy].join(',')}` : ''}`;
-}
-
-function save(name, blob) {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
 /// The picture with what it is of: mission, day, the names of the curves in their colours.
@@ -180,7 +174,7 @@ export function Plots({query, paused, set_paused}) {
     const own = group.filter((name) => is_reckoned(name) || of_flight(name)[1] === null);
     return id ? [...own, ...own.map((name) => in_flight(name, id)).filter(Boolean)] : own;
   })});
-  return html`<main class="plots">
+  return html`<main class="plots"><${Splits} name="plots" rows=${false} />
     <${Picker} on_pick=${pick} />
     <div class="column">
       <div class="toolbar">

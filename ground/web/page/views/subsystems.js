@@ -6,6 +6,7 @@ import {age_text, duration_text, number_text, rate_text, state_text, unit_text, 
 import {html} from '../html.js';
 import {Panel} from '../parts/panel.js';
 import {joint_of} from '../parts/robot_file.js';
+import {Splits} from '../parts/splits.js';
 import {StateDiagram} from '../parts/state_diagram.js';
 import {SubsystemCard, configuration_of, state_look, waits_text} from '../parts/subsystem_card.js';
 import {inhibited_text} from '../stop_story.js';
@@ -144,7 +145,7 @@ function Detail({name}) {
 export function Subsystems({rest}) {
   const list = mission.value?.subsystems ?? [];
   const chosen = list.find((one) => one.name === rest[0] || String(one.id) === rest[0]) ?? list.find((one) => one.id >= 10) ?? list[0];
-  return html`<main class="subsystems">
+  return html`<main class="subsystems"><${Splits} name="subsystems" rows=${false} />
     <div class="column">
       <${Panel} title="Subsystems">${list.map((one) => html`<${SubsystemCard} key=${one.name} name=${one.name} chosen=${one === chosen} />`)}</${Panel}>
       <${Commissioning} />

@@ -8,6 +8,7 @@ import {Flights} from '../parts/flights.js';
 import {Lanes} from '../parts/lanes.js';
 import {Panel} from '../parts/panel.js';
 import {Robot} from '../parts/robot.js';
+import {Splits} from '../parts/splits.js';
 import {events, moment_link, now_s, replay, replay_from, slow} from '../store.js';
 
 const spans = [[1, '1 s'], [60, '1 min'], [300, '5 min'], [3600, '1 h'], [86400, '1 d']];
@@ -17,7 +18,7 @@ const span_text = (s) => s < 1 ? `${+(s * 1000).toPrecision(3)} ms` : s < 100 ? 
 export function Timeline() {
   const [view, set_view] = useState({span_s: 300, end: null});
   slow.value;
-  return html`<main class="timeline_view">
+  return html`<main class="timeline_view"><${Splits} name="timeline" rows=${false} />
     <${Panel} title="Timeline" area="lanes" hint="wheel: 1 ms to a day; with Shift along it; a click replays from there">
       <div class="toolbar">${spans.map(([seconds, text]) => html`<button class=${`chip ${seconds === view.span_s ? 'on' : ''}`} onClick=${() => set_view({span_s: seconds, end: view.end})}>${text}</button>`)}
         <small data-test="span">${span_text(view.span_s)}</small>

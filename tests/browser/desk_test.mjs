@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// HIROSCO_PAGE_SERVER=… HIROSCO_PAGE=… node --test desk_test.mjs: what somebody at a desk with this page looks up, writes down and shares, against a made-up flight.
+import assert from 'node:assert/strict';
+import {spawn} from 'node:child_process';
+import {readFileSync} from 'node:fs';
+import {after, before, describe, it} from 'node:test';
+import {at_view, go, holds, open_browser, open_page, small} from './browser.mjs';
+
+const [server_file, page_folder] = [process.env.HIROSCO_PAGE_SERVER, process.env.HIROSCO_PAGE];
+
+async function serve(recording) {
+  const process_of = spawn('node', [server_file, recording, page_folder, '0'], {stdio: ['ignore', 'pipe', 'inherit']});
+  const url = await new Promise((resolve) => process_of.stdout.once('data', (data) => resolve(String(data).trim())));
+  return {url, end: () => process_of.kill()};
+}
+
+let browser, served;
+before(async () => {
+  browser = await open_browser({calm: true});
+  served = await serve('synthetic:well');
+});
+after(async () => {
+  served.end();
+  await browser.close();
+});
+
+describe('links', () => {
+  it('show how long samples take beside their cycle, and how many came late', async () => {
+    const {page, faults} = await open_page(browser.context, at_view(served.url, 'links'), small);
+    await page.waitForSelector('[data-test=bars-1] svg');
+    const bars = await page.locator('[data-test=bars-1] rect').evaluateAll((all) => all.map((one) => ({height: Number(one.getAttribute('height')), late: one.classList.contains('late'), words: one.textContent})));
+    assert.equal(bars.length, 9);
+    assert.deepEqual(bars.map((one) => one.late), [false, false, false, false, false, false, false, true, true]);
+    assert.ok(bars[5].height > bars[4].height && bars[4].height > bars[2].height && bars[2].height > 0, JSON.stringify(bars));
+    assert.equal(bars[0].height, 0);
+    assert.match(bars[6].words, /within 500 µs \(1 of a period\)/);
+    assert.equal(await page.textContent('[data-test=p99-1]'), '500 µs');
+    assert.match(await page.textContent('[data-test=bars-1]'), /half ≤ 250 µs.*max 620 µs.*later than a cycle, 500 µs/s);
+    assert.match(await page.getAttribute('[data-test=bars-1] svg', 'aria-label'), /^\d+ samples, half of them within 250 µs, 99 % within 500 µs, longest 620 µs, \d+ later than 500 µs$/);
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+});
+
+describe('two pages at one station', () => {
+  let anna, ben;
+  before(async () => {
+    anna = await open_page(browser.context, at_view(served.url, 'timeline'), small);
+    ben = await open_page(browser.context, at_view(served.url, 'commands/MANIPULATOR/HOLD'), small);
+    await ben.page.waitForSelector('[data-test=send]');
+  });
+  after(async () => {
+    await anna.page.close();
+    await ben.page.close();
+  });
+
+  it('know of each other, by name once that is typed, and who commands', async () => {
+    await holds(anna.page, () => document.querySelector('[data-test=others-count]')?.textContent === '+1');
+    await anna.page.click('[data-test=commander]');
+    await holds(anna.page, () => document.querySelector('[data-test=others]')?.textContent.includes('without a name'));
+    await ben.page.click('[data-test=commander]');
+    await ben.page.fill('[data-test=commander-menu] input', '<b>ben</b>');
+    await holds(anna.page, () => document.querySelector('[data-test=others] li b')?.textContent === '<b>ben</b>');
+    assert.doesNotMatch(await anna.page.textContent('[data-test=others]'), /may command.*commands|looks at the past/s);
+    await ben.page.click('[data-test=command-take]');
+    await holds(anna.page, () => /^<b>ben<\/b>\s*commands$/.test(document.querySelector('[data-test=others] li')?.textContent.trim()));
+    const third = await open_page(browser.context, at_view(served.url, 'help'), small);
+    await holds(anna.page, () => document.querySelector('[data-test=others-count]')?.textContent === '+2');
+    await third.page.close();
+    await holds(anna.page, () => document.querySelector('[data-test=others-count]')?.textContent === '+1');
+    await anna.page.keyboard.press('Escape');
+  });
+
+  it('share the notes of a flight: as text, the newest in the list, earlier ones by a click, after a reload, too', async () => {
+    await anna.page.waitForSelector('[data-test=notes-1]');
+    assert.match(await anna.page.textContent('[data-test=notes-1]'), /anna.*The rail was touched/s);
+    await go(ben.page, 'timeline');
+    for (const text of ['<img src=x onerror=alert(1)>', 'second', 'third']) {
+      await anna.page.click('[data-test=note-flight-2]');
+      assert.ok(await anna.page.locator('form:has([data-test=flight-note]) button').isDisabled(), 'an empty note is none');
+      await anna.page.fill('[data-test=flight-note]', text);
+      await anna.page.keyboard.press('Enter');
+      await anna.page.waitForSelector('[data-test=flight-note]', {state: 'detached'});
+    }
+    const texts = (page) => page.locator('[data-test=notes-2] li').evaluateAll((all) => all.map((one) => one.textContent.trim()));
+    await holds(ben.page, () => document.querySelector('[data-test=notes-2]')?.textContent.includes('third'));
+    const [more, second, third] = await texts(ben.page);
+    assert.equal(more, '1 earlier');
+    assert.match(second, /second$/);
+    assert.match(third, /third$/);
+    await ben.page.click('[data-test=notes-2] .link');
+    assert.match((await texts(ben.page))[1], /<img src=x onerror=alert\(1\)>$/);
+    assert.equal(await ben.page.locator('[data-test=notes-2] img').count(), 0);
+    await ben.page.reload();
+    await holds(ben.page, () => document.querySelector('[data-test=notes-2]')?.textContent.includes('third'));
+  });
+
+  it('have the stacks of each other at once', async () => {
+    await go(anna.page, 'commands/MANIPULATOR/HOLD');
+    await go(ben.page, 'commands/JOYSTICK/PASSIVITY');
+    await anna.page.click('[data-test=to-stack]');
+    await anna.page.fill('[data-test=stack-name]', 'calm down');
+    assert.equal(await ben.page.locator('[data-test=stack-open]').count(), 0);
+    await anna.page.click('[data-test=stack-keep]');
+    await ben.page.waitForSelector('[data-test=stack-open]');
+    await ben.page.selectOption('[data-test=stack-open]', 'calm down');
+    await holds(ben.page, () => document.querySelectorAll('[data-test=stack-row]').length === 1);
+    assert.match(await ben.page.textContent('[data-test=stack-row]'), /MANIPULATOR HOLD/);
+    await ben.page.click('[data-test=stack-forget]');
+    await anna.page.waitForSelector('[data-test=stack-open]', {state: 'detached'});
+  });
+
+  it('complain of nothing', () => assert.deepEqual([...anna.faults, ...ben.faults], []));
+});
+
+describe('the robot in 3D', () => {
+  let page, faults;
+  before(async () => {
+    ({page, faults} = await open_page(browser.context, at_view(served.url, 'overview'), small));
+    await page.waitForSelector('[data-test=robot][data-loaded]');
+    await holds(page, () => Number(document.querySelector('[data-test=robot]').dataset.frames) > 5);
+  });
+  after(() => page.close());
+
+  /// Places in the window where the arm is drawn, far apart, from what the picture shows.
+  const places_on_arm = () => page.evaluate(() => {
+    const canvas = [...document.querySelectorAll('[data-test=robot] canvas.live')].at(-1), box = canvas.getBoundingClientRect(), {data, width, height} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    const found = [];
+    for (let y = 10; y < height - 10; y += 12) for (let x = 10; x < width - 10; x += 12) {
+      const bright = (i) => data[4 * i + 3] === 255 && data[4 * i] > 60 && Math.abs(data[4 * i] - data[4 * i + 2]) < 40;
+      const at = y * width + x;
+      if ([at, at - 3, at + 3, at - 3 * width, at + 3 * width].every(bright)) found.push([box.left + x, box.top + y]);
+    }
+    return found.filter(([x, y]) => document.elementFromPoint(x, y)?.closest('[data-test=robot]'));
+  });
+
+  it('shows the plots of the joint that moves a part by one click on it, and turns by a drag', async () => {
+    const [x, y] = [620, 110];  // the sky
+    await page.mouse.click(x, y);
+    assert.match(await page.evaluate(() => location.hash), /#\/overview/);
+    const shown = new Set();
+    for (const part of [0.1, 0.3, 0.5, 0.7, 0.9]) {
+      await page.waitForSelector('[data-test=robot][data-loaded]');
+      const places = await places_on_arm();
+      assert.ok(places.length > 5, `the arm is seen at ${places.length} places`);
+      const place = places[Math.floor(part * places.length)];
+      await page.mouse.click(...place);
+      const hash = decodeURIComponent(await page.evaluate(() => location.hash));
+      if (!hash.startsWith('#/plots')) continue;
+      const joint = hash.match(/CUR_VALUES\.POSITION\[(\d)\]/)?.[1];
+      assert.equal(hash, `#/plots?p=MANIPULATOR.CUR_VALUES.POSITION[${joint}]+MANIPULATOR.DES_POSITION[${joint}]|MANIPULATOR.CUR_VALUES.TORQUE[${joint}]`);
+      await holds(page, () => document.querySelectorAll('main.plots [data-test=plot]').length === 2);
+      shown.add(joint);
+      await page.goBack();
+      await holds(page, () => location.hash.startsWith('#/overview'));
+      await holds(page, (frames) => Number(document.querySelector('main [data-test=robot]')?.dataset.frames) > frames, await page.evaluate(() => Number(document.querySelector('[data-test=robot]').dataset.frames)));
+    }
+    assert.ok(shown.size > 0, 'no click on the arm showed a plot');
+    const [from] = await places_on_arm();
+    await page.mouse.move(...from);
+    await page.mouse.down();
+    await page.mouse.move(from[0] + 40, from[1], {steps: 4});
+    await page.mouse.up();
+    assert.match(await page.evaluate(() => location.hash), /#\/overview/, 'a drag is no click');
+  });
+
+  it('is saved alone as a picture, with what it is of', async () => {
+    await holds(page, () => document.querySelector('[data-test=robot]')?.dataset.still === 'whole');
+    const [file] = await Promise.all([page.waitForEvent('download'), page.click('[data-test=scene-picture]')]);
+    assert.match(file.suggestedFilename(), /^rokviss-2026-01-01T.*\.png$/i);
+    const octets = readFileSync(await file.path());
+    assert.equal(octets.toString('latin1', 1, 4), 'PNG');
+    const [width, height] = await page.locator('[data-test=robot]').evaluate((node) => [node.clientWidth, node.clientHeight]);
+    assert.deepEqual([octets.readUInt32BE(16), octets.readUInt32BE(20)], [width, height + 22]);
+    const {lower, words} = await page.evaluate(async (base64) => {
+      const image = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (one) => one.charCodeAt(0))], {type: 'image/png'}));
+      const canvas = document.createElement('canvas');
+      [canvas.width, canvas.height] = [image.width, image.height];
+      const context = canvas.getContext('2d');
+      context.drawImage(image, 0, 0);
+      const share = (y, tall, least) => context.getImageData(0, y, image.width, tall).data.filter((value, i) => i % 4 === 0 && value > least).length / (image.width * tall);
+      return {lower: share(image.height >> 1, image.height / 3 | 0, 40), words: share(image.height - 22, 22, 100)};
+    }, octets.toString('base64'));
+    assert.ok(lower > 0.3, `${lower} of its lower half is bright`);
+    assert.ok(words > 0.005 && words < 0.3, `words below it: ${words}`);
+  });
+
+  it('complains of nothing', () => assert.deepEqual(faults, []));
+});
+
+describe('borders between panels', () => {
+  let page, faults;
+  before(async () => {
+    ({page, faults} = await open_page(browser.context, at_view(served.url, 'events'), small));
+    await page.waitForSelector('[data-test=split-columns-0]');
+  });
+  after(() => page.close());
+
+  const left = () => page.locator('main > .panel').first().evaluate((node) => Math.round(node.getBoundingClientRect().width));
+  const drag = async (border, by_x, by_y) => {
+    const box = await page.locator(`[data-test=${border}]`).boundingBox(), at = [box.x + box.width / 2, box.y + box.height / 2];
+    await page.mouse.move(...at);
+    await page.mouse.down();
+    await page.mouse.move(at[0] + by_x, at[1] + by_y, {steps: 4});
+    await page.mouse.up();
+  };
+
+  it('are dragged, remembered by the browser, moved by keys, and back at first by a double click', async () => {
+    const at_first = await left();
+    await drag('split-columns-0', -150, 0);
+    assert.ok(Math.abs(await left() - (at_first - 150)) <= 2, `${await left()} after ${at_first}`);
+    await page.reload();
+    await page.waitForSelector('[data-test=split-columns-0]');
+    assert.ok(Math.abs(await left() - (at_first - 150)) <= 2, 'after a reload');
+    await page.focus('[data-test=split-columns-0]');
+    await page.keyboard.press('ArrowRight');
+    assert.ok(Math.abs(await left() - (at_first - 134)) <= 2, 'by a key');
+    await drag('split-columns-0', -2000, 0);
+    assert.ok(await left() >= 199, 'as small as it may be');
+    await page.dblclick('[data-test=split-columns-0]');
+    assert.equal(await left(), at_first);
+    await page.reload();
+    await page.waitForSelector('[data-test=split-columns-0]');
+    assert.equal(await left(), at_first, 'nothing is remembered');
+  });
+
+  it('are of one view, keep their shares in another window, and are none in a narrow one', async () => {
+    const width = () => page.locator('main > .panel[aria-label=Subsystems]').evaluate((node) => node.getBoundingClientRect().width);
+    await go(page, 'overview');
+    await page.waitForSelector('[data-test=split-columns-1]');
+    await drag('split-columns-0', 100, 0);
+    await drag('split-rows-0', 0, -60);
+    const wide = await width();
+    await page.setViewportSize({width: 1440, height: 900});
+    await holds(page, (before) => Math.abs(document.querySelector('main > .panel[aria-label=Subsystems]').getBoundingClientRect().width / before - (1440 - 68 - 32) / (1280 - 68 - 32)) < 0.03, wide);
+    assert.ok(await page.locator('[data-test=send]').isVisible(), 'Send stays in sight');
+    await page.setViewportSize({width: 720, height: 1000});
+    await page.waitForSelector('.split', {state: 'detached'});
+    await page.setViewportSize(small);
+    await page.waitForSelector('[data-test=split-rows-0]');
+    await page.dblclick('[data-test=split-columns-0]');
+    await page.dblclick('[data-test=split-rows-0]');
+    assert.deepEqual(faults, []);
+  });
+});
