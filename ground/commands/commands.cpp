@@ -111,6 +111,7 @@ void Commands::preview(const json& body, std::function<void(Answered<json>)> don
   if (!ask(pus::st129::permission_question, *asked))
     return done(
         json{{"octets", octets}, {"permitted", nullptr}, {"code", nullptr}, {"reason", "no link to the spacecraft"}});
+  ++sent_;
   questions_.emplace(pus::read_primary_header(*asked)->request_id,
                      Question{octets, std::move(done), parts_.clock.now()});
 }
@@ -118,9 +119,7 @@ void Commands::preview(const json& body, std::function<void(Answered<json>)> don
 bool Commands::ask(std::uint8_t subtype, Octets data) {
   const auto query = make_telecommand({parts_.catalogue.mission().supervisor.id, pus::st129::service_type, subtype, 0},
                                       parts_.source, next_count(), data);
-  const bool sent = parts_.connected() && query && parts_.send(*query, Way::InTurn);
-  if (sent) ++sent_;
-  return sent;
+  return parts_.connected() && query && parts_.send(*query, Way::InTurn);
 }
 
 void Commands::mode_preview(const json& body, std::function<void(Answered<json>)> done) {
@@ -130,6 +129,7 @@ void Commands::mode_preview(const json& body, std::function<void(Answered<json>)
   if (wanted == mission.modes.end()) return done(refuse(400, "no mode '" + name + "'"));
   const std::array data{std::byte{wanted->id}};
   if (!ask(pus::st129::mode_question, data)) return done(refuse(503, "no link to the spacecraft"));
+  ++sent_;
   mode_questions_.push_back({wanted->id, std::move(done), parts_.clock.now()});
 }
 

@@ -43,7 +43,7 @@ class Commands {
   void preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
   /// {mode}: {mode, against, steps} through `done`, as the supervisor answers TC[129,4]; 503 at the latest after 2 s.
   void mode_preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
-  /// A question of ST[129] to the supervisor, without reports on it. False: it does not leave.
+  /// A question of ST[129] to the supervisor, without reports on it; of the station, not of a client. False: it does not leave.
   [[nodiscard]] bool ask(std::uint8_t subtype, Octets data);
   /// A telecommand that was to be sent has not left: its sender is told.
   void not_sent(Octets packet);
@@ -52,6 +52,7 @@ class Commands {
   /// Limits of time.
   void expire(TimePoint now);
 
+  /// For clients.
   [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
 
  private:
