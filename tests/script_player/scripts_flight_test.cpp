@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "simulation/scenarios/flight.hpp"
 
@@ -23,15 +25,15 @@ struct Scripted : ::testing::Test {
   simulation::CommandOutcome play(const char* script, Duration limit = 20s) {
     return flown->craft().command("PLAYER", "PLAY", {std::string{script}}, limit);
   }
-  /// Telecommands to HELLO that the log has, and from whom.
+  /// Telecommands to HELLO that the log has of the player, each once, whatever became of it.
   std::size_t moves_of_the_player() {
-    std::size_t count = 0;
+    std::set<std::uint32_t> found;
     for (const auto& record : flown->records()) {
       const auto telecommand = pus::TelecommandView::parse(record.packet);
       if (telecommand && telecommand->apid() == 7 && telecommand->service() == 8 && telecommand->source() == 25)
-        ++count;
+        found.insert(pus::read_primary_header(record.packet)->request_id);
     }
-    return count;
+    return found.size();
   }
 };
 

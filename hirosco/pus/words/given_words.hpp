@@ -32,7 +32,7 @@ using NamedNumber = std::function<std::optional<Number>(const std::string& word)
 [[nodiscard]] std::expected<std::vector<std::optional<Value>>, std::size_t> values_given(
     const descriptor::Function& request, std::span<const std::string> words, const NamedNumber& named = {});
 
-/// "MOVE_J GOAL[DOUBLE, -3 to 3] SPEED[DOUBLE, 0 to 1]": what a request takes.
+/// "MOVE_J GOAL[-3..3 rad] SPEED[0..1]": what a request takes.
 [[nodiscard]] std::string usage_text(const descriptor::Function& request);
 
 }  // namespace hirosco::pus
