@@ -59,6 +59,7 @@ describe('the page on a real flight', () => {
   it('lets one page command at a time: the other is refused by the station, asks, and is handed it', async () => {
     const {page: other} = await open_page(browser.context, at_view(flight.url, 'commands/MANIPULATOR/MOVE_TO'), small);
     const word = (where) => where.textContent('[data-test=commander] b');
+    for (const one of [page, other]) await holds(one, () => document.querySelector('[data-test=others-count]')?.textContent === '+1');
     await until('who sent first commands', async () => await word(page) === 'you' && await word(other) === 'operator');
     await other.waitForSelector('[data-test=not-commanding]');
     assert.ok(await other.locator('[data-test=send]').isDisabled());
@@ -75,6 +76,17 @@ describe('the page on a real flight', () => {
     await other.click('[data-test=command-hand-over]');
     await until('nobody commands', async () => await word(page) === 'nobody');
     await other.close();
+    await page.waitForSelector('[data-test=others-count]', {state: 'detached'});
+  });
+
+  it('shows how long the samples of both links took, as they were counted on board', async () => {
+    await go(page, 'links');
+    for (const link of [1, 2]) {
+      await page.waitForSelector(`[data-test=bars-${link}] svg`);
+      const words = await page.getAttribute(`[data-test=bars-${link}] svg`, 'aria-label');
+      const [, samples, late] = words.match(/^(\d+) samples, half of them within .*, (\d+) later than 500 µs$/).map(Number);
+      assert.ok(samples > 2000 && late < samples / 2, words);
+    }
   });
 
   it('changes the mode by two clicks, in whichever view, and says beforehand what that does', async () => {

@@ -241,6 +241,8 @@ static void attach(const request* of, uint8_t role, const char* set, const agree
     factor_ = agreed->producer_ns / period_ns > 1 ? (uint32_t)(agreed->producer_ns / period_ns) : 1;
     store32(vital_ + 96, link);
     store32(vital_ + 100, 0);
+    for (int bin = 0; bin < 9; ++bin) store32(vital_ + 2160 + 4 * bin, 0);
+    store32(vital_ + 2156, agreed->producer_ns < UINT32_MAX ? (uint32_t)agreed->producer_ns : UINT32_MAX);
   }
   done(of, 3);
   report(128, 132, of->source, (uint8_t[11]){link, role}, 11);  // it stands in memory: no address, no key

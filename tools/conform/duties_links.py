@@ -197,6 +197,11 @@ def consume(judged):
         craft.go(SAFE)
         craft.wait(0.3)
         expect(craft.inhibited() == 0, f"inhibited is {craft.inhibited()} with fresh samples")
+        for i, each in enumerate(needed[:64]):
+            period, counts = craft.vital.u32(2156 + 40 * i), [craft.vital.u32(2160 + 40 * i + 4 * bin) for bin in range(9)]
+            agreed = min(flown.links[each.get("name")].agreement.producer_ns, 0xFFFFFFFF)
+            expect(period in (0, agreed), f"latencies in the page are of a period of {period} ns, agreed are {agreed}")
+            expect(not period or sum(counts), "latencies in the page have a period and no counts after 0.3 s of samples")
 
 
 def age_s(judged, each):
