@@ -308,7 +308,7 @@ void Session::fault(const json& body, std::function<void(Answered<json>)> done) 
   if (std::ranges::none_of(devices, [&](const auto& known) { return known.name == device; }))
     return done(refuse(404, "the mission has no simulated device '" + device + "'"));
   constexpr std::size_t longest_line = 255;
-  if (line.empty() || line.size() > longest_line || std::ranges::any_of(line, [](char c) { return c >= 0 && c < ' '; }))
+  if (line.empty() || line.size() > longest_line || std::ranges::any_of(line, [](unsigned char c) { return c < ' '; }))
     return done(refuse(400, "line: one line of text is wanted"));
   constexpr std::size_t most_own = 100;
   if (parts_.outside.injected) own_faults_.emplace_back(device, line);

@@ -90,7 +90,8 @@ PointToPoint::Curve PointToPoint::quickest(double way, const MotionLimits& limit
     curve.steady = std::sqrt(half * half + way / a) - 3 * half;
     return curve;
   }
-  curve.ramp = std::cbrt(way / (2 * j));
+  // Not std::cbrt, whose last digit depends on the processor (docs/adr/0139).
+  curve.ramp = std::pow(way / (2 * j), 1.0 / 3);
   curve.steady = 0;
   return curve;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 namespace hirosco::simulation {
 
@@ -12,6 +13,8 @@ using Vec2 = std::array<double, 2>;
 using Mat2 = std::array<Vec2, 2>;
 
 [[nodiscard]] constexpr double dot(const Vec2& a, const Vec2& b) noexcept { return a[0] * b[0] + a[1] * b[1]; }
+/// Not std::hypot, whose last digit depends on the processor (docs/adr/0139). Squares of what this world has are far from overflow.
+[[nodiscard]] inline double magnitude(const Vec2& v) noexcept { return std::sqrt(dot(v, v)); }
 [[nodiscard]] constexpr Vec2 operator+(const Vec2& a, const Vec2& b) noexcept { return {a[0] + b[0], a[1] + b[1]}; }
 [[nodiscard]] constexpr Vec2 operator-(const Vec2& a, const Vec2& b) noexcept { return {a[0] - b[0], a[1] - b[1]}; }
 [[nodiscard]] constexpr Vec2 operator*(double s, const Vec2& a) noexcept { return {s * a[0], s * a[1]}; }

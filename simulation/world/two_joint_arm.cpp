@@ -81,7 +81,7 @@ Placement placement_of(const ArmParameters& arm, const Vec2& q) noexcept {
 Contact contact_at(const ContourParameters& contour, const Vec2& tip, const Vec2& velocity) noexcept {
   const double y = foot_point(contour, tip);
   const CurvePoint at = contour_at(contour, y);
-  const double scale = 1 / std::hypot(1.0, at.slope);
+  const double scale = 1 / magnitude({1.0, at.slope});
   const Vec2 normal{-scale, scale * at.slope};  // out of the rail, towards the arm
   const Vec2 tangent{scale * at.slope, scale};
   Contact contact;
@@ -147,7 +147,7 @@ int TwoJointArm::pieces_of(const Numbers& x, double h) const noexcept {
   if (contour.friction == 0 || tip[0] + contour.finger_radius_m < contour.rail_x_m - contour.bump_height_m) return 1;
   const Vec2 velocity = times(jacobian, {x[6], x[7]});
   const Contact contact = contact_at(contour, tip, velocity);
-  const double deeper_n = contour.stiffness_n_per_m * std::hypot(velocity[0], velocity[1]) * h;
+  const double deeper_n = contour.stiffness_n_per_m * magnitude(velocity) * h;
   const double normal_n = contact.normal_force_n + (contact.penetration_m > 0 ? deeper_n : 0);
   if (normal_n <= 0) return 1;
   // Along y, as if there were no bump: its slope of at most 38 degrees changes what is felt by less than the share's reserve.
@@ -184,7 +184,7 @@ Vec2 TwoJointArm::spring_force_at(const Vec2& tip) const noexcept {
   if (!hooked_) return {};
   const Spring& spring = parameters_.springs[*hooked_];
   const Vec2 along = tip - spring.anchor_m;
-  const double length = std::hypot(along[0], along[1]);
+  const double length = magnitude(along);
   if (length <= spring.free_length_m) return {};
   return -spring.stiffness_n_per_m * (length - spring.free_length_m) / length * along;
 }
@@ -201,7 +201,7 @@ double TwoJointArm::energy_j() const noexcept {
   if (!hooked_) return energy;
   const Spring& spring = parameters_.springs[*hooked_];
   const Vec2 along = tip_m() - spring.anchor_m;
-  const double stretch = std::max(0.0, std::hypot(along[0], along[1]) - spring.free_length_m);
+  const double stretch = std::max(0.0, magnitude(along) - spring.free_length_m);
   return energy + spring.stiffness_n_per_m * square(stretch) / 2;
 }
 
@@ -210,7 +210,7 @@ void TwoJointArm::set_friction(bool on) noexcept { parameters_ = on ? made_ : ma
 bool TwoJointArm::hook_spring(std::size_t spring) noexcept {
   if (spring >= parameters_.springs.size()) return false;
   const Vec2 away = tip_m() - parameters_.springs[spring].slack_end_m;
-  if (std::hypot(away[0], away[1]) > parameters_.hook_reach_m) return false;
+  if (magnitude(away) > parameters_.hook_reach_m) return false;
   hooked_ = spring;
   return true;
 }

@@ -79,7 +79,7 @@ void EvdevStick::feel(const Vec2& share) noexcept {
   constexpr int cycles_between = 40;  // 20 ms: what such motors and their bus can take
   if (!has_force_ || --cycles_to_feel_ > 0) return;
   cycles_to_feel_ = cycles_between;
-  const double size = std::min(std::hypot(share[0], share[1]), 1.0);
+  const double size = std::min(magnitude(share), 1.0);
   // Direction of the kernel: 0 down, 0x4000 left, in 1/65536 of a turn.
   const double turns = std::atan2(-share[0], share[1]) / (2 * std::numbers::pi);
   ff_effect effect{};

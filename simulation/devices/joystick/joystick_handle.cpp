@@ -35,7 +35,7 @@ void OperatorHand::sine(std::size_t axis, double amplitude_rad, double frequency
 
 void OperatorHand::ramp(const Vec2& offset_m, double speed_m_s) noexcept {
   const Vec2 way = offset_m - times(jacobian_, intent().angle_rad);
-  begin(Mode::Ramp, solve(jacobian_, offset_m), speed_m_s > 0 ? std::hypot(way[0], way[1]) / speed_m_s : 0);
+  begin(Mode::Ramp, solve(jacobian_, offset_m), speed_m_s > 0 ? magnitude(way) / speed_m_s : 0);
 }
 
 void OperatorHand::cartesian(const Vec2& offset_m, double span_s) noexcept {

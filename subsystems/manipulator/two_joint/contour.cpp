@@ -27,7 +27,7 @@ double surface_slope(const Surroundings& around, double y_m) noexcept {
 
 Point pressed_finger(const Surroundings& surroundings, double y_m, double depth_m) noexcept {
   const double slope = surface_slope(surroundings, y_m);
-  const double out_m = (surroundings.finger_radius_m - depth_m) / std::hypot(1.0, slope);
+  const double out_m = (surroundings.finger_radius_m - depth_m) / std::sqrt(1 + slope * slope);
   return {surface_x_m(surroundings, y_m) - out_m, y_m + slope * out_m};
 }
 
@@ -50,7 +50,8 @@ double Contour::gap_m(const Joints& position_rad) const noexcept {
 
 double distance_to_spring(std::size_t spring, const Point& tip_m) noexcept {
   const Point& end = springs[spring - 1].slack_end_m;
-  return std::hypot(tip_m[0] - end[0], tip_m[1] - end[1]);
+  const Point way{tip_m[0] - end[0], tip_m[1] - end[1]};
+  return std::sqrt(way[0] * way[0] + way[1] * way[1]);
 }
 
 }  // namespace hirosco::manipulator::two_joint

@@ -27,7 +27,7 @@ void Script::start(Id id, const Joints& from_rad, const Joints& home_rad, const 
   } else {
     const SpringPlace& spring = springs[vertical_spring - 1];
     const Point way{spring.slack_end_m[0] - spring.anchor_m[0], spring.slack_end_m[1] - spring.anchor_m[1]};
-    const double share = spring_stretch_m / std::hypot(way[0], way[1]);
+    const double share = spring_stretch_m / std::sqrt(way[0] * way[0] + way[1] * way[1]);
     const Point stretched{spring.slack_end_m[0] + share * way[0], spring.slack_end_m[1] + share * way[1]};
     straight(spring.slack_end_m, 2, vertical_spring);
     straight(stretched, 2);
