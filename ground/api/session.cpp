@@ -43,13 +43,15 @@ Session::Session(Parts parts)
                  .archive = parts_.archive,
                  .clock = parts_.clock,
                  .source = parts_.source,
-                 .ask = [this](const pus::st129::Retrieve& wanted) {
-                   return commands_.ask(pus::st129::retrieve, pus::st129::write_retrieve(wanted));
-                 },
+                 .ask =
+                     [this](const pus::st129::Retrieve& wanted) {
+                       return commands_.ask(pus::st129::retrieve, pus::st129::write_retrieve(wanted));
+                     },
                  .heard = [this](const Heard& heard, OnboardTime t) { take_past(heard, t); },
-                 .filled = [this](OnboardTime from, OnboardTime to) {
-                   broadcast({{"type", "filled"}, {"from", json_time(from)}, {"to", json_time(to)}});
-                 }}},
+                 .filled =
+                     [this](OnboardTime from, OnboardTime to) {
+                       broadcast({{"type", "filled"}, {"from", json_time(from)}, {"to", json_time(to)}});
+                     }}},
       flights_{parts_.catalogue, parts_.archive},
       alarms_{parts_.archive, flights_.began()},
       stacks_{parts_.archive},

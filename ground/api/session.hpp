@@ -137,7 +137,8 @@ class Session {
   Stacks stacks_;
   Authority authority_;
   bool connected_{false};
-  std::optional<OnboardTime> first_heard_;  ///< of a craft of which nothing was known, until it is known since when it flies
+  std::optional<OnboardTime>
+      first_heard_;  ///< of a craft of which nothing was known, until it is known since when it flies
   TimePoint newest_received_{};
   std::optional<OnboardTime> archived_until_;  ///< by those before this process
   std::vector<std::unique_ptr<Client>> clients_;

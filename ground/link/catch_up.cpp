@@ -64,7 +64,8 @@ void CatchUp::tick() {
 }
 
 bool CatchUp::hear(const pus::TelemetryView& packet) {
-  if (packet.apid() != parts_.catalogue.mission().supervisor.id || packet.service() != st129::service_type) return false;
+  if (packet.apid() != parts_.catalogue.mission().supervisor.id || packet.service() != st129::service_type)
+    return false;
   const bool report = st129::is_retrieved(packet);
   if (!report && packet.subtype() != st129::retrieval_end) return false;
   if (packet.destination() != parts_.source || !past_) return true;  // another station's

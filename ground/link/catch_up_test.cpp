@@ -9,7 +9,7 @@
 
 #include "hirosco/descriptor/read/read.hpp"
 
-/// A station that missed something of mission hello, whose supervisor the test plays.
+/// A station that missed something of a mission with a lamp, whose supervisor the test plays.
 namespace hirosco::ground {
 namespace {
 
@@ -25,7 +25,19 @@ constexpr OnboardTime midday{std::chrono::seconds{2'145'916'900}};
 class AStationThatMissedSomething : public ::testing::Test {
  protected:
   static descriptor::Mission mission() {
-    return *descriptor::read_mission(HIROSCO_SOURCE_DIR "/missions/hello/mission.xml", descriptor::file_system()).value;
+    const descriptor::FileSource source = [](const std::filesystem::path& file) -> Result<std::string> {
+      if (file == "lamp.xml")
+        return std::string{
+            R"(<Subsystem name="LAMP" id="11"><Configuration name="ON" id="1" sampling_us="10000"/></Subsystem>)"};
+      if (file == "mission.xml")
+        return std::string{R"(<Mission name="LIGHT" id="9"><Supervisor descriptor="supervisor.xml"/>
+<Subsystem executable="lamp" descriptor="lamp.xml"/><Modes initial="dark" start="dark"><Mode name="dark">
+<Permit subsystem="*" functions="SET_STATE CONFIGURE SET_MODE SHUTDOWN"/></Mode></Modes></Mission>)"};
+      return descriptor::file_system()(std::filesystem::path{HIROSCO_SOURCE_DIR} / "supervisor" / file.filename());
+    };
+    auto reading = descriptor::read_mission("mission.xml", source);
+    for (const auto& problem : reading.problems) ADD_FAILURE() << descriptor::render(problem, source, false);
+    return reading.value.value_or(descriptor::Mission{});
   }
   std::vector<std::byte> packet(std::uint8_t service, std::uint8_t subtype, Octets data, OnboardTime t,
                                 std::uint16_t destination = 0, std::uint16_t apid = supervisor) {
@@ -55,7 +67,8 @@ class AStationThatMissedSomething : public ::testing::Test {
                         midday, destination));
   }
   bool ends(const st129::RetrievalEnd& end = {}, std::uint16_t destination = us) {
-    return hears(packet(st129::service_type, st129::retrieval_end, st129::write_retrieval_end(end), midday, destination));
+    return hears(
+        packet(st129::service_type, st129::retrieval_end, st129::write_retrieval_end(end), midday, destination));
   }
   void pass(Duration time) {
     clock.advance(time);

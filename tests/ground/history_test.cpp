@@ -152,8 +152,8 @@ TEST_F(GroundStation, WhatWasSaidBeforeItsFirstLinkIsToldAsIfItHadHeardIt) {
   std::map<std::string, std::vector<std::string>> way_up;
   for (const json& state : timeline["states"]) way_up[state["subsystem"]].push_back(state["state"]);
   for (const char* one : {"MANIPULATOR", "JOYSTICK"})
-    EXPECT_THAT(way_up[one], ::testing::IsSupersetOf({"SoftwareInit", "HardwareInit", "PreOperational", "SafeOperational",
-                                                      "Operational"}))
+    EXPECT_THAT(way_up[one], ::testing::IsSupersetOf(
+                                 {"SoftwareInit", "HardwareInit", "PreOperational", "SafeOperational", "Operational"}))
         << one;
   // Nothing old is taken for new.
   EXPECT_EQ(subsystem_of(station.get("/api/status"), "MANIPULATOR")["state"], "Operational");

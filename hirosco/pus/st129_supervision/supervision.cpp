@@ -45,14 +45,12 @@ constexpr Part times[]{{.name = "FROM", .form = Form::Time},
                        {.name = "TO", .form = Form::Time},
                        {.name = "HOUSEKEEPING", .type = Type::Uint8, .names = yes_or_no}};
 constexpr Part retrieved_report[]{number("NUMBER", Type::Uint64), {.name = "REPORT", .form = Form::Rest}};
-constexpr Part counts[]{number("REPORTS", Type::Uint32), number("LEFT_OUT", Type::Uint32), number("MISSING", Type::Uint32),
-                        number("DAMAGED", Type::Uint32), word("WHY")};
-constexpr RequestKind requests[]{{permission_question, "IS_IT_PERMITTED", packet},
-                                 {mode_question, "PREVIEW_MODE", mode},
-                                 {plan_question, "PREVIEW_PLAN", event},
-                                 {subscribe, "SUBSCRIBE", subscribed},
-                                 {unsubscribe, "UNSUBSCRIBE", subscribed},
-                                 {retrieve, "RETRIEVE", times}};
+constexpr Part counts[]{number("REPORTS", Type::Uint32), number("LEFT_OUT", Type::Uint32),
+                        number("MISSING", Type::Uint32), number("DAMAGED", Type::Uint32), word("WHY")};
+constexpr RequestKind requests[]{
+    {permission_question, "IS_IT_PERMITTED", packet}, {mode_question, "PREVIEW_MODE", mode},
+    {plan_question, "PREVIEW_PLAN", event},           {subscribe, "SUBSCRIBE", subscribed},
+    {unsubscribe, "UNSUBSCRIBE", subscribed},         {retrieve, "RETRIEVE", times}};
 constexpr ReportKind reports[]{{permission_answer, "PERMISSION", answer},
                                {telecommand_copy, "COPY", packet},
                                {mode_preview, "MODE_PREVIEW", preview},

@@ -119,7 +119,8 @@ struct Retrieved {
   std::uint64_t number{};  ///< in the log
   Octets packet{};
 };
-inline constexpr std::size_t max_retrieved_octets = max_telemetry_octets - telemetry_overhead_octets - sizeof(std::uint64_t);
+inline constexpr std::size_t max_retrieved_octets =
+    max_telemetry_octets - telemetry_overhead_octets - sizeof(std::uint64_t);
 /// Into `buffer`; empty: the packet has more than max_retrieved_octets.
 [[nodiscard]] Octets write_retrieved(MutableOctets buffer, const Retrieved& report) noexcept;
 [[nodiscard]] std::optional<Retrieved> read_retrieved(Octets data) noexcept;

@@ -110,7 +110,8 @@ bool take_octets_text(std::string_view text, std::vector<std::byte>& octets) {
 constexpr std::size_t record_columns = 10;
 constexpr const char* select_records =
     "SELECT run, number, stored, monotonic, kind, source, peer, lost, note, packet FROM hirosco_log WHERE log = $1 AND "
-    "number >= $2::bigint AND stored BETWEEN $6::bigint AND $7::bigint AND ($3 = '' OR run = nullif($3, '')::bigint) AND ($4 = '' OR source = nullif($4, '')::int "
+    "number >= $2::bigint AND stored BETWEEN $6::bigint AND $7::bigint AND ($3 = '' OR run = nullif($3, '')::bigint) "
+    "AND ($4 = '' OR source = nullif($4, '')::int "
     "OR peer "
     "= nullif($4, '')::int OR apid = nullif($4, '')::int) AND ($5 = '' OR service = nullif($5, '')::int)";
 
@@ -318,7 +319,8 @@ Result<LogPage> PostgresqlDatabase::do_read(const LogQuery& query) {
   const bool oldest = query.end == LogEnd::Oldest;
   const std::string statement =
       std::string{select_records} + (oldest ? " ORDER BY run, number" : " ORDER BY run DESC, number DESC");
-  const std::vector<std::string> values{place_.log, std::to_string(std::min<std::uint64_t>(query.since, INT64_MAX)),
+  const std::vector<std::string> values{place_.log,
+                                        std::to_string(std::min<std::uint64_t>(query.since, INT64_MAX)),
                                         query.run ? time_in_ns(*query.run) : std::string{},
                                         query.apid ? std::to_string(*query.apid) : std::string{},
                                         query.service ? std::to_string(*query.service) : std::string{},

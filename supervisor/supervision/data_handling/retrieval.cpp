@@ -22,8 +22,7 @@ void Retrieval::begin(const pus::Request& asked, Octets data) {
   verification.accepted(asked);
   if (parts_.readings == nullptr) {
     pus::FailureNotice none{pus::FailureCode::NotPermittedNow};
-    return verification.start_failed(
-        asked, none.because({ErrorCode::Unavailable, 0, "this deployment reads no log"}));
+    return verification.start_failed(asked, none.because({ErrorCode::Unavailable, 0, "this deployment reads no log"}));
   }
   if (running_ && running_->destination != asked.source)
     return verification.start_failed(asked, pus::FailureNotice{pus::FailureCode::Busy});

@@ -42,11 +42,11 @@ class Retrieval final : public Watch {
   struct Running {
     pus::st129::Retrieve wanted;
     std::uint16_t destination{};
-    std::uint64_t next{1};     ///< number of the record to go on with
+    std::uint64_t next{1};  ///< number of the record to go on with
     std::uint64_t through{0};  ///< and of the last one
     TimePoint begun{};
-    bool reads{false};      ///< a page is under way
-    bool read_all{false};   ///< no page follows
+    bool reads{false};  ///< a page is under way
+    bool read_all{false};  ///< no page follows
     std::deque<LogRecord> page{};
     pus::st129::RetrievalEnd end{};
   };

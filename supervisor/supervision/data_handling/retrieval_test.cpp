@@ -257,7 +257,9 @@ struct PlayedLog final : LogReadings {
 struct SlowRetrievalTest : RetrievalTest {
   PlayedLog disk;
   Retrieval retrieval{{craft, parts.own, parts.telemetry, &disk}};
-  void begin() { retrieval.begin({.id = 1, .source = ground, .ack = 0}, st129::write_retrieve({never_before, always_after, true})); }
+  void begin() {
+    retrieval.begin({.id = 1, .source = ground, .ack = 0}, st129::write_retrieve({never_before, always_after, true}));
+  }
   Down step() {
     wait(10ms);
     retrieval.watch(clock.now());
