@@ -24,17 +24,10 @@ set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 # A folder of a newer Debian has libraries that want its own C and C++ library, which serve older compilers as well; the compiler would take those
 # that it came with.
 file(GLOB newest LIST_DIRECTORIES true ${HIROSCO_SYSROOT}/usr/lib/gcc/${CMAKE_LIBRARY_ARCHITECTURE}/*)
-set(flags " -L${HIROSCO_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}")
-foreach(folder IN LISTS newest)
-  string(APPEND flags " -L${folder}")
-endforeach()
-if(HIROSCO_LLD)
-  get_filename_component(folder ${HIROSCO_LLD} DIRECTORY)
-  # A list of symbols to show may name one that a module has not, as GNU's linker has it.
-  string(APPEND flags " -B${folder} -fuse-ld=lld -Wl,--undefined-version")
-endif()
 foreach(kind IN ITEMS EXE SHARED MODULE)
-  string(APPEND CMAKE_${kind}_LINKER_FLAGS_INIT "${flags}")
+  foreach(folder IN ITEMS ${HIROSCO_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE} ${newest})
+    string(APPEND CMAKE_${kind}_LINKER_FLAGS_INIT " -L${folder}")
+  endforeach()
 endforeach()
 
 find_program(HIROSCO_EMULATOR qemu-${HIROSCO_CROSS_PROCESSOR}-static)
