@@ -22,8 +22,9 @@ function Bars({link}) {
   const now = live_link(link.id), told = now.up === true ? now.latencies : null;
   if (!told) return null;
   const all = told.counts.reduce((sum, count) => sum + count, 0), most = Math.max(...told.counts), cycle = cycle_ns(link);
-  // Who looks more seldom than samples come finds them as old as his own cycles.
-  const budget = Math.max(told.period_ns, cycle || 0), limit = link.age_limit_cycles * cycle, late = late_count(told, budget);
+  // Who looks more seldom than samples come finds them as old as his own cycles. Two machines that cycle at the same instants find each other's sample a cycle old, and
+  // as much more as their start was late: only what takes two has missed one.
+  const one = Math.max(told.period_ns, cycle || 0), budget = 2 * one, limit = link.age_limit_cycles * cycle, late = late_count(told, budget);
   const quantiles = [0.5, 0.99].map((part) => quantile_ns(told, part, now.latency_max_ns ?? Infinity));
   const words = `${all} samples, half of them within ${duration_text(quantiles[0])}, 99 % within ${duration_text(quantiles[1])}, longest ${duration_text(now.latency_max_ns ?? NaN)}, ${late} later than ${duration_text(budget)}`;
   return html`<figure class="latency" data-test=${`bars-${link.id}`}>
@@ -32,12 +33,12 @@ function Bars({link}) {
       ${told.counts.map((count, i) => html`<rect class=${i > 0 && bounds[i - 1] * told.period_ns >= budget ? 'late' : ''} x=${i * step + 1.5} y=${foot - 40 * height_of(count, most)} width=${step - 3} height=${40 * height_of(count, most)}>
         <title>${`${count} ${i < bounds.length ? `within ${duration_text(bounds[i] * told.period_ns)} (${of_bound[i]} of a period)` : `longer than ${duration_text(2 * told.period_ns)}`}`}</title></rect>`)}
       <path class="foot" d=${`M0 ${foot + 0.5}H${width}`} />
-      <path class="budget" d=${`M${place_of(budget, told.period_ns) * step} 0V${foot + 4}`} />
+      <path class="budget" d=${`M${place_of(one, told.period_ns) * step} 0V${foot + 4}`} />
       ${Number.isFinite(limit) && limit > budget ? html`<path class="limit" d=${`M${place_of(limit, told.period_ns) * step} 0V${foot + 4}`}><title>${`limit: ${duration_text(limit)}`}</title></path>` : null}
       ${[0, 2, 4, 6].map((i) => html`<text class=${i === 6 ? 'here' : ''} x=${(i + 1) * step} y="59">${duration_text(bounds[i] * told.period_ns)}</text>`)}
     </svg>
     <p class="row"><span>half ≤ <b>${duration_text(quantiles[0])}</b></span><span>99 % ≤ <b data-test=${`p99-${link.id}`}>${duration_text(quantiles[1])}</b></span><span>max <b>${duration_text(now.latency_max_ns ?? NaN)}</b></span><small>${all.toLocaleString('en')}</small></p>
-    ${late ? html`<p class="late">${late.toLocaleString('en')} later than a cycle, ${duration_text(budget)}</p>` : null}
+    ${late ? html`<p class="late">${late.toLocaleString('en')} later than two cycles, ${duration_text(budget)}</p>` : null}
   </figure>`;
 }
 
@@ -45,6 +46,6 @@ export function LatencyBars() {
   const links = mission.value?.links ?? [], told = links.filter((link) => live_link(link.id).up === true && live_link(link.id).latencies);
   const silent = links.filter((link) => live_link(link.id).up === true && !live_link(link.id).latencies);
   return html`${told.map((link) => html`<${Bars} key=${link.id} link=${link} />`)}
-    ${told.length ? html`<p class="about">Counted on board since the link was made; ten times as many samples are one step higher. Line: one cycle of who sends, or of who uses it where that is longer. Dashed: the limit, older the newest sample must not be.</p>` : html`<p class="empty">No link that is up tells how long its samples take.</p>`}
+    ${told.length ? html`<p class="about">Counted on board since the link was made; ten times as many samples are one step higher. Line: one cycle of who sends, or of who uses it where that is longer. Amber: later than two. Dashed: the limit, older the newest sample must not be.</p>` : html`<p class="empty">No link that is up tells how long its samples take.</p>`}
     ${told.length && silent.length ? html`<p class="about">Not told: ${silent.map((link) => link.provides ?? `link ${link.id}`).join(', ')}</p>` : null}`;
 }
