@@ -201,7 +201,7 @@ class OnAFlight(unittest.TestCase):
         first.end(signal.SIGKILL)
         time.sleep(1.0)
         with Gateway(rokviss.folder, archive="killed.db") as second:
-            second.until(lambda status: status["link"]["rx"] > 50)
+            second.until(lambda status: status["link"]["rx"] > 50 and all(one["memory_kb"] for one in status["subsystems"]))
             again = time.monotonic()
             heard = witness.close()
             flight.measure(f"telemetry again {again - second.started:.2f} s after the restart")
