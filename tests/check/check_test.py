@@ -25,7 +25,7 @@ class Check(unittest.TestCase):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="hirosco-check-"))
         self.addCleanup(shutil.rmtree, self.folder)
         for name in ("missions", "subsystems", "supervisor"):
-            for file in (REPOSITORY / name).rglob("*.xml"):
+            for file in [*(REPOSITORY / name).rglob("*.xml"), *(REPOSITORY / name).rglob("*.script")]:
                 copy = self.folder / file.relative_to(REPOSITORY)
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 copy.write_text(file.read_text())

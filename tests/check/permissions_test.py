@@ -10,7 +10,7 @@ STATES = ["Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOper
 SAFE, OPERATIONAL = 4, 5
 ALWAYS, NEVER = set(range(10)), set()
 # Requests of the framework's services that anybody may be sent.
-SERVICES = {3: {1, 3, 5, 6, 9, 27, 29, 31, 33}, 5: {5, 6, 7}, 17: {1, 128, 130}, 20: {1}, 128: {1, 2, 3, 4, 5}, 129: {1, 4, 6, 8, 9}, 130: {1, 2}}
+SERVICES = {3: {1, 3, 5, 6, 9, 27, 29, 31, 33}, 5: {5, 6, 7}, 17: {1, 128, 130}, 20: {1}, 128: {1, 2, 3, 4, 5}, 129: {1, 4, 6, 8, 9, 11}, 130: {1, 2}}
 
 
 def words(element, name):
@@ -82,6 +82,9 @@ def expected(sender, addressee, mode, service, subtype, request, supervisor):
         # Only what its descriptor names is heard, and by subsystems only.
         names = {f"hear {what} of {whose}" for whose, all_ in getattr(sender, "heard", {}).items() for what in all_}
         return (ALWAYS, ALWAYS, ALWAYS) if request in names else (NEVER, NEVER, NEVER)
+    if service == 129 and subtype == 11:
+        # What was said before goes down to ground: nobody else asks for it.
+        return (ALWAYS, ALWAYS, ALWAYS) if ground else (NEVER, NEVER, NEVER)
     if service in (128, 130) and not on_board:
         return NEVER, NEVER, NEVER
     if ground and to_supervisor and (target is not None or function == "CONFIGURE"):
