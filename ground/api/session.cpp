@@ -58,7 +58,9 @@ Session::Session(Parts parts)
       authority_{[this](const StoredMark& mark) { keep(mark); }} {
   if (const auto extent = parts_.archive.extent()) archived_until_ = extent->to;
   // What the station before this one had not fetched yet.
-  for (const StoredGap& gap : parts_.archive.gaps({.from = flights_.began()})) catch_up_.missing(gap.from, gap.to);
+  for (const StoredGap& gap : parts_.archive.gaps({.from = flights_.began()}))
+    catch_up_.missing(gap.from, gap.to,
+                      gap.from <= flights_.began() ? CatchUp::After::TheBegin : CatchUp::After::APacket);
 }
 
 Session::~Session() { parts_.archive.commit(); }

@@ -116,10 +116,11 @@ void Commands::preview(const json& body, std::function<void(Answered<json>)> don
                      Question{octets, std::move(done), parts_.clock.now()});
 }
 
-bool Commands::ask(std::uint8_t subtype, Octets data) {
+std::optional<std::uint32_t> Commands::ask(std::uint8_t subtype, Octets data) {
   const auto query = make_telecommand({parts_.catalogue.mission().supervisor.id, pus::st129::service_type, subtype, 0},
                                       parts_.source, next_count(), data);
-  return parts_.connected() && query && parts_.send(*query, Way::InTurn);
+  if (!parts_.connected() || !query || !parts_.send(*query, Way::InTurn)) return std::nullopt;
+  return pus::read_primary_header(*query)->request_id;
 }
 
 void Commands::mode_preview(const json& body, std::function<void(Answered<json>)> done) {

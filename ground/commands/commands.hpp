@@ -43,8 +43,8 @@ class Commands {
   void preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
   /// {mode}: {mode, against, steps} through `done`, as the supervisor answers TC[129,4]; 503 at the latest after 2 s.
   void mode_preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
-  /// A question of ST[129] to the supervisor, without reports on it; of the station, not of a client. False: it does not leave.
-  [[nodiscard]] bool ask(std::uint8_t subtype, Octets data);
+  /// A question of ST[129] to the supervisor, without reports on it; of the station, not of a client. Its request id; empty: it does not leave.
+  [[nodiscard]] std::optional<std::uint32_t> ask(std::uint8_t subtype, Octets data);
   /// A telecommand that was to be sent has not left: its sender is told.
   void not_sent(Octets packet);
   /// What a packet said of telecommands.

@@ -56,7 +56,9 @@ void CatchUp::tick() {
   if (!connected_ || wanted_.empty() || now - heard_at_ < std::chrono::seconds{0}) return;
   Wanted& next = wanted_.front();
   const OnboardTime from = next.from - OnboardTime{} < margin ? OnboardTime{} : next.from - margin;
-  if (!parts_.ask({from, next.to + margin, next.housekeeping})) return;
+  const auto request = parts_.ask({from, next.to + margin, next.housekeeping});
+  if (!request) return;
+  request_ = *request;
   ++next.tries;
   past_.emplace(parts_.catalogue);
   first_.reset();
@@ -107,10 +109,15 @@ void CatchUp::take(Octets octets) {
 }
 
 void CatchUp::finish(const st129::RetrievalEnd& end) {
+  if (end.request != request_) {
+    // Of an earlier question, of the station before this one for example: what came until now was its.
+    first_.reset();
+    return;
+  }
   const Wanted wanted = wanted_.front();
   const auto first = first_;
   past_.reset();
-  // Asked anew by this station itself: that goes on.
+  // The next look asks again.
   if (!end.whole() && !end.why.empty() && wanted.tries < most_tries) return;
   wanted_.pop_front();
   // Where nothing came at all, the log is that of another flight.

@@ -24,8 +24,8 @@ class CatchUp {
     Archive& archive;
     const Clock& clock;
     std::uint16_t source{};  ///< of the station's telecommands
-    /// TC[129,11]; false: it certainly does not leave.
-    std::function<bool(const pus::st129::Retrieve&)> ask;
+    /// TC[129,11]: its request id; empty: it certainly does not leave.
+    std::function<std::optional<std::uint32_t>(const pus::st129::Retrieve&)> ask;
     /// What a packet said that was missed and is in the archive now.
     std::function<void(const Heard&, OnboardTime)> heard;
     /// From here to there nothing is missing any more, as far as there was a flight.
@@ -67,6 +67,7 @@ class CatchUp {
   std::deque<Wanted> wanted_;  ///< the first is being fetched where `past_` is there
   std::optional<Model> past_;
   std::optional<OnboardTime> first_;  ///< packet that came, known or not
+  std::uint32_t request_{0};  ///< id of what is being fetched
   TimePoint heard_at_{};
   bool connected_{false};
 };

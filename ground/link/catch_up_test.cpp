@@ -66,7 +66,9 @@ class AStationThatMissedSomething : public ::testing::Test {
     return hears(packet(st129::service_type, st129::retrieved, st129::write_retrieved(buffer, {number++, missed}),
                         midday, destination));
   }
-  bool ends(const st129::RetrievalEnd& end = {}, std::uint16_t destination = us) {
+  /// Of what was asked last, where nothing else is said.
+  bool ends(st129::RetrievalEnd end = {}, std::uint16_t destination = us) {
+    if (end.request == 0) end.request = static_cast<std::uint32_t>(asked.size());
     return hears(
         packet(st129::service_type, st129::retrieval_end, st129::write_retrieval_end(end), midday, destination));
   }
@@ -102,11 +104,11 @@ class AStationThatMissedSomething : public ::testing::Test {
                     .archive = *archive,
                     .clock = clock,
                     .source = us,
-                    .ask =
-                        [this](const st129::Retrieve& wanted) {
-                          if (link) asked.push_back(wanted);
-                          return link;
-                        },
+                    .ask = [this](const st129::Retrieve& wanted) -> std::optional<std::uint32_t> {
+                      if (!link) return std::nullopt;
+                      asked.push_back(wanted);
+                      return static_cast<std::uint32_t>(asked.size());
+                    },
                     .heard =
                         [this](const Heard& heard, OnboardTime) {
                           if (heard.event) events.push_back(heard.event->name);
@@ -238,6 +240,21 @@ TEST_F(AStationThatMissedSomething, WhatAnotherStationFetchesIsNeitherLiveNorIts
   EXPECT_THAT(archived(), IsEmpty());
   EXPECT_FALSE(hears(packet(17, 2, {}, midday))) << "and all else is said now";
   EXPECT_FALSE(hears(packet(st129::service_type, st129::telecommand_copy, {}, midday)));
+}
+
+TEST_F(AStationThatMissedSomething, IsNotEndedByTheEndOfWhatTheStationBeforeItAskedFor) {
+  catch_up.link_up();
+  archive->add(StoredGap{midday, midday + 60s});
+  catch_up.missing(midday, midday + 60s);
+  pass(50ms);
+  EXPECT_TRUE(comes_down(state_changed(descriptor::State::Offline, midday - 1h))) << "of that";
+  EXPECT_TRUE(ends({.request = 99, .reports = 1, .why = "asked anew"}));
+  pass(50ms);
+  EXPECT_THAT(asked, SizeIs(1)) << "its own is still under way";
+  EXPECT_TRUE(comes_down(state_changed(descriptor::State::Operational, midday + 20s)));
+  EXPECT_TRUE(ends({.reports = 1}));
+  ASSERT_THAT(archive->gaps({}), SizeIs(1));
+  EXPECT_EQ(archive->gaps({})[0].to, midday + 20s) << "as far as its own has brought it";
 }
 
 TEST_F(AStationThatMissedSomething, ManySmallGapsAreFetchedTogether) {

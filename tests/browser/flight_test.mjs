@@ -114,6 +114,24 @@ describe('the page on a real flight', () => {
     assert.match(await page.textContent('[data-test=verdict]'), /TOO_FAST/);
   });
 
+  it('minds a goal that lies in the rail beside Send, though it is permitted, and asks once more', async () => {
+    await go(page, 'overview');
+    await page.waitForSelector('.quick [data-test=field-Q1]');
+    for (const [name, text] of Object.entries({Q1: '-0.5', Q2: '1.4', DURATION: '5'})) {
+      await page.click(`.quick [data-test=field-${name}]`, {clickCount: 3});
+      await page.keyboard.type(text);
+    }
+    await page.waitForSelector('[data-test=permission].yes');
+    await page.waitForSelector('[data-test=goal-in-the-way]');
+    assert.match(await page.textContent('[data-test=goal-in-the-way]'), /meets the rail/);
+    await page.click('[data-test=send]');
+    await holds(page, () => /Once more/.test(document.querySelector('[data-test=send]').textContent));
+    assert.equal(await page.locator('[data-test=verdict]').count(), 0, 'nothing was sent');
+    await page.click('.quick [data-test=field-Q1]', {clickCount: 3});
+    await page.keyboard.type('-1.5');
+    await page.waitForSelector('[data-test=goal-in-the-way]', {state: 'detached'});
+  });
+
   it('moves the arm by its fields and one click beside its picture, without scrolling, and shows the whole chain of verdicts', async () => {
     await go(page, 'overview');
     await page.waitForSelector('.quick [data-test=field-Q1]');

@@ -77,7 +77,8 @@ TEST_F(GroundArchive, AGatewayThatEndsWhileItFetchesIsFollowedByOneThatFetchesTh
     station.session().closed(page);
   }
   Station station{flight, file};
-  EXPECT_TRUE(station.run_until([&] { return gaps(station) == 0; }));
+  EXPECT_TRUE(station.run_until([&] { return gaps(station) == 0; }))
+      << station.get("/api/timeline?from=0&to=4000000000")["gaps"];
 }
 
 }  // namespace

@@ -45,8 +45,9 @@ constexpr Part times[]{{.name = "FROM", .form = Form::Time},
                        {.name = "TO", .form = Form::Time},
                        {.name = "HOUSEKEEPING", .type = Type::Uint8, .names = yes_or_no}};
 constexpr Part retrieved_report[]{number("NUMBER", Type::Uint64), {.name = "REPORT", .form = Form::Rest}};
-constexpr Part counts[]{number("REPORTS", Type::Uint32), number("LEFT_OUT", Type::Uint32),
-                        number("MISSING", Type::Uint32), number("DAMAGED", Type::Uint32), word("WHY")};
+constexpr Part counts[]{number("REQUEST", Type::Uint32),  number("REPORTS", Type::Uint32),
+                        number("LEFT_OUT", Type::Uint32), number("MISSING", Type::Uint32),
+                        number("DAMAGED", Type::Uint32),  word("WHY")};
 constexpr RequestKind requests[]{
     {permission_question, "IS_IT_PERMITTED", packet}, {mode_question, "PREVIEW_MODE", mode},
     {plan_question, "PREVIEW_PLAN", event},           {subscribe, "SUBSCRIBE", subscribed},
@@ -216,10 +217,10 @@ bool is_retrieved(const TelemetryView& report) noexcept {
 }
 
 std::vector<std::byte> write_retrieval_end(const RetrievalEnd& end) {
-  constexpr std::size_t numbers = 16;
+  constexpr std::size_t numbers = 20;
   std::vector<std::byte> data(numbers + 1 + most);
   OctetWriter writer{data};
-  writer.put(end.reports).put(end.left_out).put(end.missing).put(end.damaged);
+  writer.put(end.request).put(end.reports).put(end.left_out).put(end.missing).put(end.damaged);
   put_words(writer, end.why);
   data.resize(writer.size());
   return data;
@@ -228,7 +229,7 @@ std::vector<std::byte> write_retrieval_end(const RetrievalEnd& end) {
 std::optional<RetrievalEnd> read_retrieval_end(Octets data) {
   OctetReader reader{data};
   RetrievalEnd end;
-  for (std::uint32_t* const count : {&end.reports, &end.left_out, &end.missing, &end.damaged})
+  for (std::uint32_t* const count : {&end.request, &end.reports, &end.left_out, &end.missing, &end.damaged})
     *count = reader.get<std::uint32_t>();
   end.why = get_words(reader);
   return reader.exhausted() ? std::optional{std::move(end)} : std::nullopt;

@@ -35,7 +35,7 @@
 ///   TC[129,11] send down what the log of this flight has (docs/adr/0140): the reports that were stored from one time to another, 7 octets
 ///              each, and whether housekeeping is among them, 1 or 0 u8. Of a ground only; completed as soon as it is begun
 ///   TM[129,12] one report of these: its number in the log u64; the whole packet as it was sent. It is not logged again
-///   TM[129,13] and the end of it: how many reports came u32; how many were left out, as they find no room in a report u32; how many numbers of
+///   TM[129,13] and the end of it: request id of the TC[129,11] u32; how many reports came u32; how many were left out, as they find no room in a report u32; how many numbers of
 ///              the log are missing there u32, how many of its records are damaged u32; why it ended early, as words (none: it did not)
 namespace hirosco::pus::st129 {
 
@@ -128,6 +128,7 @@ inline constexpr std::size_t max_retrieved_octets =
 [[nodiscard]] bool is_retrieved(const TelemetryView& report) noexcept;
 
 struct RetrievalEnd {
+  std::uint32_t request{};  ///< id of the TC[129,11]
   std::uint32_t reports{}, left_out{}, missing{}, damaged{};
   std::string why{};  ///< it ended early; empty: it did not
   [[nodiscard]] bool whole() const noexcept { return why.empty() && left_out == 0 && missing == 0 && damaged == 0; }

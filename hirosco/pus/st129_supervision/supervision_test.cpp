@@ -91,7 +91,7 @@ TEST(RetrievalEnd, IsWholeOnlyIfNothingIsMissing) {
   EXPECT_FALSE((RetrievalEnd{.left_out = 1}.whole()));
   EXPECT_FALSE((RetrievalEnd{.missing = 1}.whole()));
   EXPECT_FALSE((RetrievalEnd{.damaged = 1}.whole()));
-  for (const RetrievalEnd& end : {whole, early, RetrievalEnd{1, 2, 3, 4, "x"}}) {
+  for (const RetrievalEnd& end : {whole, early, RetrievalEnd{5, 1, 2, 3, 4, "x"}}) {
     const auto data = write_retrieval_end(end);
     EXPECT_EQ(read_retrieval_end(data), end);
     EXPECT_FALSE(read_retrieval_end(Octets{data}.first(data.size() - 1)));

@@ -29,6 +29,7 @@ void Retrieval::begin(const pus::Request& asked, Octets data) {
   if (running_) finish("asked anew");
   verification.started(asked);
   running_ = Running{.wanted = *wanted, .destination = asked.source, .begun = parts_.craft.now};
+  running_->end.request = asked.id;
   // Its own number is where it ends: what follows is said now, to whoever listens.
   running_->through = parts_.craft.log.append(
       {.kind = LogKind::Action, .source = supervisor_apid, .note = "what was said before is sent down again"});

@@ -212,6 +212,8 @@ TEST_F(RetrievalTest, AnotherGroundWaitsAndTheSameOneAsksAnew) {
   const Down down = go_on();
   ASSERT_THAT(down.ends, SizeIs(2));
   EXPECT_EQ(down.ends[0].why, "asked anew");
+  EXPECT_EQ(down.ends[0].request % pus::sequence_counts, 0U) << "the first one's";
+  EXPECT_EQ(down.ends[1].request % pus::sequence_counts, 2U);
   EXPECT_TRUE(down.ends[1].whole());
   ask({never_before, always_after, true}, other_ground);
   EXPECT_THAT(go_on().ends, SizeIs(1));
@@ -226,7 +228,9 @@ TEST_F(RetrievalTest, WhatFindsNoRoomInAReportIsLeftOutAndCounted) {
   ask({from, clock.onboard(), true});
   const Down down = go_on();
   EXPECT_THAT(down.packets, ElementsAre(SizeIs(st129::max_retrieved_octets)));
-  EXPECT_EQ(down.ends.at(0), (st129::RetrievalEnd{.reports = 1, .left_out = 1}));
+  ASSERT_THAT(down.ends, SizeIs(1));
+  EXPECT_EQ(down.ends[0].reports, 1U);
+  EXPECT_EQ(down.ends[0].left_out, 1U);
 }
 
 TEST_F(RetrievalTest, WhatIsNoRangeOfTimesIsRefused) {
@@ -293,7 +297,7 @@ TEST_F(SlowRetrievalTest, WhatTheLogLacksAndWhatIsDamagedIsCounted) {
   page.damaged = 3;
   disk.next = page;
   const Down down = step();
-  EXPECT_THAT(down.ends, ElementsAre(st129::RetrievalEnd{.missing = 12, .damaged = 3}));
+  EXPECT_THAT(down.ends, ElementsAre(st129::RetrievalEnd{.request = 1, .missing = 12, .damaged = 3}));
   EXPECT_FALSE(down.ends.at(0).whole());
 }
 

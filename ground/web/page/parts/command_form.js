@@ -19,7 +19,7 @@ import {judged, range_of, range_text} from './judged.js';
 import {joints_of} from './robot_file.js';
 import {numbers_in} from './numbers.js';
 import {scene_of_mission} from './scene_file.js';
-import {fill_form, kept_texts, typed} from './typed.js';
+import {fill_form, goal_says, kept_texts, typed} from './typed.js';
 import {as_python, as_tc} from './written.js';
 
 const first_text = (argument, choices) => {
@@ -185,6 +185,8 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
   const answer = usePreview(subsystem, action, sent_values);
   const mine = commands.value.find((one) => one.id === sent);
   const now = led_by(subsystem, action.name), jog = jog_of(action);
+  // The spacecraft permits it all the same: what it meets, it presses until a limit stops it.
+  const said = goal_says.value, in_its_way = sent_values && said?.subsystem === subsystem && said.action === action.name ? said.wrong : '';
   useEffect(() => {
     const touched = Object.keys(texts).length > 0;
     const numbers = () => Object.fromEntries(list.map((argument) => [argument.name, numbers_in(text_of(argument), argument.count ?? 1)]));
@@ -197,8 +199,8 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
     event.preventDefault();
     if (wrong || !may_send(action)) return;
     set_problem('');
-    // The descriptor wants a second thought of some.
-    if (action.confirm && !asked) {
+    // The descriptor wants a second thought of some, and so does a goal that cannot be reached.
+    if ((action.confirm || in_its_way) && !asked) {
       set_asked(true);
       setTimeout(() => set_asked(false), confirm_within_ms);
       return;
@@ -222,6 +224,7 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
     ${replay.value ? html`<p class="permission no">replay: telecommands are locked</p>` :
       !operator.value ? html`<p class="permission none">an observer's token: reading only</p>` : sent_values ?
       html`<${Permission} answer=${answer} problem=${answer?.problem} subsystem=${subsystem} action=${action} />` : html`<p class="permission none">fill in to ask the supervisor</p>`}
+    ${in_its_way ? html`<p class="permission mind" data-test="goal-in-the-way"><b>Mind the goal:</b> ${in_its_way}. The arm would be stopped on its way.</p>` : null}
     <${Authority} action=${action} />
     ${operator.value ? html`<button class=${`primary ${asked ? 'sure' : ''}`} type="submit" disabled=${wrong > 0 || !may_send(action)} data-test="send">
       ${wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : asked ? `Really ${action.name}? Once more` : `Send ${action.name}`}</button>` : null}

@@ -24,7 +24,7 @@ function Device({device}) {
 }
 
 export const FaultsDrawer = ({on_close}) => html`<aside class="drawer" data-test="faults-drawer">
-  <h2>Faults <small>simulated devices only</small><button class="tiny" aria-label="close" onClick=${on_close}>×</button></h2>
+  <h2>Inject faults <small>simulated devices only</small><button class="tiny" aria-label="close" onClick=${on_close}>×</button></h2>
   <p class="about">These go to the simulated devices by a door of their own. The spacecraft is told nothing: it has to find out.</p>
   ${(mission.value?.devices ?? []).map((device) => html`<${Device} key=${device.name} device=${device} />`)}
 </aside>`;

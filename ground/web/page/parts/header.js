@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useRef, useState} from 'preact/hooks';
 import {say, send_and_say} from '../commanding.js';
-import {age_text, clock_text, date_text} from '../format.js';
+import {age_text, clock_text, date_text, iso_text} from '../format.js';
 import {html} from '../html.js';
 import {calling, link, mission, now_s, operator, replay, slow, subsystem_of} from '../store.js';
 import {Commander} from './commander.js';
@@ -31,7 +31,9 @@ function Clock() {
   slow.value;
   const t = now_s();
   const known = link.value.state === 'up' || replay.value !== null;
-  return html`<span class=${`obt ${known ? '' : 'stale'}`} title=${known ? 'On-board time' : 'On-board time as it would be: nothing comes'}><small>${date_text(t)}</small>
+  const utc = iso_text(t).slice(11, 19);
+  const title = `${known ? 'On-board time' : 'On-board time as it would be: nothing comes'}${utc ? `. It is TAI, which counts no leap seconds: ${utc} UTC` : ''}`;
+  return html`<span class=${`obt ${known ? '' : 'stale'}`} title=${title}><small>${date_text(t)}</small>
     <b>${clock_text(t)}</b><small>on board</small></span>`;
 }
 
@@ -86,7 +88,7 @@ export function Header({on_faults, faults_open}) {
       <${Severity} severity=${severity} /><b>${count}</b><span class="word">${severity}</span></a>`)}
     ${operator.value ? null : html`<span class="pill" title="this token reads everything and commands nothing">observer</span>`}
     ${operator.value && mission.value?.simulated && mission.value.devices?.length ? html`
-      <button class=${`quiet ${faults_open ? 'on' : ''}`} data-test="faults" onClick=${on_faults}>Faults</button>` : null}
+      <button class=${`quiet ${faults_open ? 'on' : ''}`} data-test="faults" title="breaks something of a simulated device" onClick=${on_faults}>Inject</button>` : null}
     <${SafeAll} />
   </header>`;
 }

@@ -38,7 +38,8 @@ function Hand({description, window_ref}) {
   slow.value;
   const robot = description.robots.find((one) => one.inset);
   const down = fallen.value.some((one) => one.subsystem === robot?.subsystem);
-  const lost = down && /lost|unplug|silent|device/i.test(fallen_text(robot.subsystem));
+  // Its own, not that of whom it was stopped with.
+  const lost = down && fallen_text(robot.subsystem).includes(`: ${robot.subsystem} lost its device`);
   const known = (robot?.torque ?? []).filter((name) => values.has(name)), felt = Math.hypot(...known.map((name) => values.get(name).v));
   const first = robot && Object.values(robot.joints)[0];
   return html`<div class=${`hand ${down ? 'bad' : ''}`}><h3>${description.inset.title}</h3><div class="window" ref=${window_ref} />

@@ -28,7 +28,7 @@ import {StillPicture} from '../scene/still.js';
 import {surface_x_m} from './hand.js';
 import {plots_address, plots_of_link} from './joint_plots.js';
 import {save} from './save.js';
-import {typed} from './typed.js';
+import {goal_says, typed} from './typed.js';
 
 const still_after_ms = 250, resized_after_ms = 200;
 /// What is around the robot waits until it was seen to move, or for as long.
@@ -247,6 +247,9 @@ export class RobotView {
     robot.goal.may_be_led = this.may_set_goal();
     robot.goal_told = robot.goal.show(wanted, this.camera);
     robot.goal_wanted = wanted;
+    const wrong = wanted && !wanted.sent ? robot.goal_told?.wrong ?? '' : '';
+    const {subsystem, goal} = robot.about, before = goal_says.peek();
+    if (before?.subsystem !== subsystem || before.action !== goal.function || before.wrong !== wrong) goal_says.value = {subsystem, action: goal.function, wrong};
   }
 
   follow_stick(robot) {
@@ -358,6 +361,7 @@ export class RobotView {
 
   /// Draws nothing until it is entered again.
   leave() {
+    goal_says.value = null;
     this.pace.close();
     clearTimeout(this.still_timer);
     clearTimeout(this.size_timer);

@@ -4,7 +4,7 @@
 // A stop, said where one looks, until it is acknowledged or mended: who and why, when, what went down, what is still well, the way out.
 import {clock_text} from '../format.js';
 import {html} from '../html.js';
-import {link, mission, operator, replay_from} from '../store.js';
+import {link, mission, mode_of, operator, replay_from} from '../store.js';
 import {acknowledge, bring_up_again, fallen, rising, stop} from '../stop_story.js';
 import {plot_names, scene_of_mission} from './scene_file.js';
 import {Severity} from './icons.js';
@@ -21,7 +21,8 @@ export function StopBanner() {
   const told = stop.value;
   if (!told) return null;
   const plots = plot_names(scene_of_mission.value?.plots?.at(-1));
-  const up_again = fallen.value.length === 0;
+  // A mode that has nobody up says nothing of who was stopped.
+  const up_again = fallen.value.length === 0 && mode_of.value.commission?.length > 0;
   const mode = mission.value?.modes.find((one) => one.name === told.mode && one.commission?.length)?.name ?? mission.value?.start_mode;
   const replay_it = () => {
     location.hash = '#/overview';
@@ -34,8 +35,8 @@ export function StopBanner() {
     <a class="out" href="#/events" data-test="stop-why">Why</a>
     <button class="out" onClick=${replay_it} data-test="stop-replay">Replay 5 s before</button>
     <a class="out" href=${plots.length ? `#/plots?p=${plots.map(encodeURIComponent).join('+')}` : '#/plots'} data-test="stop-plot">Plot</a>
-    ${operator.value ? html`<button class="out" onClick=${() => acknowledge()} data-test="stop-acknowledge">Acknowledge</button>` : null}
-    ${operator.value && mode ? html`<button class="way_out" data-test="stop-bring-up" disabled=${rising.value?.running || link.value.state !== 'up'}
+    ${operator.value ? html`<button class=${up_again && !rising.value ? 'way_out' : 'out'} onClick=${() => acknowledge()} data-test="stop-acknowledge">Acknowledge</button>` : null}
+    ${operator.value && mode && (!up_again || rising.value) ? html`<button class="way_out" data-test="stop-bring-up" disabled=${rising.value?.running || link.value.state !== 'up'}
       onClick=${bring_up_again}>Bring ${mode} up</button>` : null}
   </section>`;
 }
