@@ -44,6 +44,65 @@ describe('links', () => {
   });
 });
 
+describe('the log', () => {
+  let page, faults;
+  before(async () => {
+    ({page, faults} = await open_page(browser.context, at_view(served.url, 'events'), small));
+    await page.waitForSelector('[data-test=log]');
+  });
+  after(() => page.close());
+
+  const newest = () => page.textContent('[data-test=log] tr .words');
+  const note = (text) => page.evaluate(async (words) => {
+    const answer = await fetch('/api/faults', {method: 'POST', headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}, body: JSON.stringify({device: 'joystick', line: `tell ${words}`})});
+    if (!answer.ok) throw new Error(await answer.text());
+  }, text);
+  const hint = () => page.textContent('.panel[aria-label=Log] > h2 small');
+
+  it('goes on by itself while its top is in sight', async () => {
+    await note('first of all');
+    await holds(page, () => /first of all/.test(document.querySelector('[data-test=log] tr .words').textContent));
+    const lines = await page.locator('[data-test=log] tr').count();
+    await note('second');
+    await holds(page, () => /second/.test(document.querySelector('[data-test=log] tr .words').textContent));
+    assert.equal(await page.locator('[data-test=log] tr').count(), lines + 1, 'each packet once');
+    assert.match(await hint(), /^goes on, \d+ lines/);
+  });
+
+  it('stands still for who reads further down, says so, and goes on with what came meanwhile', async () => {
+    await page.evaluate(() => { document.querySelector('.panel[aria-label=Log] > .body').scrollTop = 200; });
+    await page.waitForSelector('[data-test=log-newest]');
+    assert.match(await hint(), /^stands still/);
+    const before = await newest();
+    await note('third');
+    await new Promise((resolve) => setTimeout(resolve, 5000));
+    assert.equal(await newest(), before);
+    await page.click('[data-test=log-newest]');
+    await holds(page, () => /third/.test(document.querySelector('[data-test=log] tr .words').textContent));
+    await page.waitForSelector('[data-test=log-newest]', {state: 'detached'});
+  });
+
+  it('goes on with what was sought, not with what is being typed', async () => {
+    await page.fill('[data-test=log-text]', 'joystick');
+    await page.press('[data-test=log-text]', 'Enter');
+    await holds(page, () => [...document.querySelectorAll('[data-test=log] tr .words')].every((one) => /joystick/i.test(one.textContent)));
+    await page.fill('[data-test=log-text]', 'nothing has this');
+    await note('fourth');
+    await holds(page, () => /fourth/.test(document.querySelector('[data-test=log] tr .words').textContent));
+    assert.ok(await page.locator('[data-test=log] tr').count() > 1);
+    assert.deepEqual(faults, []);
+  });
+
+  it('says that it does not go on when the station does not answer', async () => {
+    await page.route('**/api/log*', (route) => route.abort());
+    await page.waitForSelector('[data-test=log-problem]');
+    assert.match(await page.textContent('[data-test=log-problem]'), /^The log does not go on: the gateway does not answer/);
+    assert.match(await hint(), /^does not go on/);
+    await page.unroute('**/api/log*');
+    await page.waitForSelector('[data-test=log-problem]', {state: 'detached'});
+  });
+});
+
 describe('two pages at one station', () => {
   let anna, ben;
   before(async () => {
