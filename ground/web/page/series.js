@@ -6,6 +6,7 @@
 import {get} from './api.js';
 import {is_reckoned, of_flight, reckoned} from './parts/curves.js';
 import {reckon} from './parts/expression.js';
+import {thinned} from './parts/thinned.js';
 import {columns, filled, flight, flights, freshness, gateway, newest_s, now_s, on_values, replay, values} from './store.js';
 
 const most_samples = 40000;
@@ -46,24 +47,8 @@ class Series {
     this.v.push(Number.isFinite(v) ? v : null);
     this.low.push(null);
     this.high.push(null);
-    if (this.t.length > most_samples) this.#thin();
+    if (this.t.length > most_samples) Object.assign(this, thinned(this, most_samples / 2, middle_of(this.name)));
     ++this.version;
-  }
-
-  /// The older half as ranges of two samples each: what is kept goes back as far as before, only coarser. A gap stays one.
-  #thin() {
-    const half = most_samples / 2, middle = middle_of(this.name), kept = {t: [], v: [], low: [], high: []};
-    for (let i = 0; i < half; ++i) {
-      const pair = i + 1 < half && this.v[i] !== null && this.v[i + 1] !== null;
-      const low = pair ? Math.min(this.low[i] ?? this.v[i], this.low[i + 1] ?? this.v[i + 1]) : this.low[i];
-      const high = pair ? Math.max(this.high[i] ?? this.v[i], this.high[i + 1] ?? this.v[i + 1]) : this.high[i];
-      kept.t.push(this.t[i]);
-      kept.v.push(pair ? middle(low, high) : this.v[i]);
-      kept.low.push(low);
-      kept.high.push(high);
-      if (pair) ++i;
-    }
-    for (const key of Object.keys(kept)) this[key] = kept[key].concat(this[key].slice(half));
   }
 
   /// The archive from `from` on, before what is here already.

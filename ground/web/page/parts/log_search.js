@@ -7,22 +7,12 @@ import {get} from '../api.js';
 import {clock_text} from '../format.js';
 import {html} from '../html.js';
 import {flight, now_s, replay} from '../store.js';
+import {with_newest} from './log_lines.js';
 import {Panel} from './panel.js';
 
-const page_lines = 200, most_lines = 2000;
+const page_lines = 200;
 /// A station that takes long for an answer, as a long search does, is not asked all the time.
 const refresh_ms = 2000, rests_per_answer = 9;
-
-/// The newest lines before those that are here already; alone where they do not reach these, as nobody then knows what is between, and
-/// where a replay has gone back.
-export function with_newest(found, answer) {
-  if (!answer.packets.length) return found;
-  if (answer.packets[0].number < found.packets[0]?.number) return answer;
-  const fresh = new Set(answer.packets.map((one) => one.number));
-  if (!found.packets.some((one) => fresh.has(one.number))) return answer;
-  const packets = [...answer.packets, ...found.packets.filter((one) => !fresh.has(one.number))];
-  return packets.length > most_lines ? {packets: packets.slice(0, most_lines), before: packets[most_lines - 1].number} : {packets, before: found.before};
-}
 
 export function LogSearch() {
   const [text, set_text] = useState('');
