@@ -44,6 +44,173 @@ describe('links', () => {
   });
 });
 
+describe('the log', () => {
+  let page, faults;
+  before(async () => {
+    ({page, faults} = await open_page(browser.context, at_view(served.url, 'events'), small));
+    await page.waitForSelector('[data-test=log]');
+  });
+  after(() => page.close());
+
+  const newest = () => page.textContent('[data-test=log] tr .words');
+  const note = (text) => page.evaluate(async (words) => {
+    const answer = await fetch('/api/faults', {method: 'POST', headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}, body: JSON.stringify({device: 'joystick', line: `tell ${words}`})});
+    if (!answer.ok) throw new Error(await answer.text());
+  }, text);
+  const hint = () => page.textContent('.panel[aria-label=Log] > h2 small');
+
+  it('goes on by itself while its top is in sight', async () => {
+    await note('first of all');
+    await holds(page, () => /first of all/.test(document.querySelector('[data-test=log] tr .words').textContent));
+    const lines = await page.locator('[data-test=log] tr').count();
+    await note('second');
+    await holds(page, () => /second/.test(document.querySelector('[data-test=log] tr .words').textContent));
+    assert.equal(await page.locator('[data-test=log] tr').count(), lines + 1, 'each packet once');
+    assert.match(await hint(), /^goes on, \d+ lines/);
+  });
+
+  it('stands still for who reads further down, says so, and goes on with what came meanwhile', async () => {
+    await page.evaluate(() => { document.querySelector('.panel[aria-label=Log] > .body').scrollTop = 200; });
+    await page.waitForSelector('[data-test=log-newest]');
+    assert.match(await hint(), /^stands still/);
+    const before = await newest();
+    await note('third');
+    await new Promise((resolve) => setTimeout(resolve, 5000));
+    assert.equal(await newest(), before);
+    await page.click('[data-test=log-newest]');
+    await holds(page, () => /third/.test(document.querySelector('[data-test=log] tr .words').textContent));
+    await page.waitForSelector('[data-test=log-newest]', {state: 'detached'});
+  });
+
+  it('goes on with what was sought, not with what is being typed', async () => {
+    await page.fill('[data-test=log-text]', 'joystick');
+    await page.press('[data-test=log-text]', 'Enter');
+    await holds(page, () => [...document.querySelectorAll('[data-test=log] tr .words')].every((one) => /joystick/i.test(one.textContent)));
+    await page.fill('[data-test=log-text]', 'nothing has this');
+    await note('fourth');
+    await holds(page, () => /fourth/.test(document.querySelector('[data-test=log] tr .words').textContent));
+    assert.ok(await page.locator('[data-test=log] tr').count() > 1);
+    assert.deepEqual(faults, []);
+  });
+
+  it('says that it does not go on when the station does not answer', async () => {
+    await page.route('**/api/log*', (route) => route.abort());
+    await page.waitForSelector('[data-test=log-problem]');
+    assert.match(await page.textContent('[data-test=log-problem]'), /^The log does not go on: the gateway does not answer/);
+    assert.match(await hint(), /^does not go on/);
+    await page.unroute('**/api/log*');
+    await page.waitForSelector('[data-test=log-problem]', {state: 'detached'});
+  });
+});
+
+describe('plots', () => {
+  const name = 'MANIPULATOR.CUR_VALUES.POSITION[0]', view = (window) => `plots?p=${encodeURIComponent(name)}|MANIPULATOR.CUR_VALUES.POSITION%5B1%5D&w=${window}`;
+  let page, faults;
+  before(async () => {
+    ({page, faults} = await open_page(browser.context, at_view(served.url, view(10)), small));
+    await holds(page, () => document.querySelectorAll('.legend .statistics').length === 2);
+  });
+  after(() => page.close());
+
+  const seconds = (text) => text.split(':').reduce((sum, part) => 60 * sum + Number(part), 0);
+  const legend = () => page.textContent('.legend b');
+  const asked = (path) => page.evaluate(async (of) => (await fetch(of, {headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}})).json(), path);
+  const at = async (place, across, down) => {
+    const box = await page.locator('.u-over').nth(place).boundingBox();
+    return [box.x + across * box.width, box.y + down * box.height];
+  };
+  const drag = async (place, from, to) => {
+    await page.mouse.move(...await at(place, ...from));
+    await page.mouse.down();
+    await page.mouse.move(...await at(place, ...to), {steps: 5});
+    await page.mouse.up();
+  };
+  const zoomed = async () => (await page.textContent('.plots .toolbar > small')).split(' … ').map(seconds);
+
+  it('zoom to what was aimed at while they run: the axis stands still under a button that is down', async () => {
+    const cursor = async () => seconds(/^[\d:.]+/.exec(await page.textContent('[data-test=cursors]'))[0]);
+    await page.mouse.move(...await at(0, 0.5, 0.5));
+    await page.mouse.move(...await at(0, 0.7, 0.5));
+    await page.waitForSelector('[data-test=cursors]');
+    await page.mouse.down();
+    const aimed = await cursor();
+    await page.mouse.move(...await at(0, 0.8, 0.5));
+    await new Promise((resolve) => setTimeout(resolve, 4000));
+    await page.mouse.move(...await at(0, 0.9, 0.5), {steps: 3});
+    await page.mouse.up();
+    const [from, to] = await zoomed();
+    assert.ok(Math.abs(from - aimed) < 1, `from ${from}, aimed at ${aimed}`);
+    assert.ok(Math.abs(to - from - 2) < 0.1, `${to - from} s, of 10 s a fifth`);
+    await page.mouse.dblclick(...await at(1, 0.5, 0.5));
+    await page.waitForSelector('.plots .toolbar > small', {state: 'detached'});
+  });
+
+  it('tell no value of after what they show, zoomed or paused', async () => {
+    await drag(0, [0.2, 0.5], [0.6, 0.5]);
+    const [, to] = await zoomed();
+    await page.mouse.move(5, 300);
+    await holds(page, () => !document.querySelector('.legend .at'));
+    assert.ok(Math.abs(seconds((await page.getAttribute('.legend b', 'title')).replace('at ', '')) - to) < 0.002);
+    const told = await legend();
+    for (let now = told; now === told; await new Promise((resolve) => setTimeout(resolve, 500))) now = (await asked('/api/status')).values[name].v.toFixed(3).replace('-', '−');
+    assert.equal(await legend(), told);
+    await page.mouse.dblclick(...await at(0, 0.5, 0.5));
+    await page.mouse.move(5, 300);
+    await holds(page, (before) => document.querySelector('.legend b').textContent !== before, told);
+  });
+
+  it('tell when the least and the most was, and put the cursor there by a click', async () => {
+    await page.click('[data-test=pause]');
+    for (const what of ['least', 'most']) {
+      const words = await page.textContent(`[data-test=${what}]`), when = /at ([\d:.]+):/.exec(await page.getAttribute(`[data-test=${what}]`, 'title'))[1];
+      assert.ok(words.endsWith(`at ${when.slice(0, -2)}`), `${words}, ${when}`);
+      await page.locator(`[data-test=${what}]`).first().click();
+      await holds(page, (t) => document.querySelector('[data-test=cursors]')?.textContent.includes(`from ${t}`), when);
+      await page.waitForSelector('.legend .at');
+      assert.equal(await legend(), words.split(' at ')[0].trim());
+    }
+    const [least, most] = await Promise.all(['least', 'most'].map((what) => page.textContent(`[data-test=${what}]`)));
+    assert.notEqual(least, most);
+  });
+
+  it('show what they did before by a double click in whichever of them, after zooms of any of them', async () => {
+    await page.click('[aria-label="take the cursors away"]');
+    const pictures = () => page.evaluate(() => [...document.querySelectorAll('.plot canvas')].map((one) => one.toDataURL()));
+    await page.mouse.move(5, 300);
+    await page.waitForSelector('[data-test=cursors]', {state: 'detached'});
+    const first = await pictures();
+    await drag(0, [0.5, 0.2], [0.503, 0.6]);
+    await drag(1, [0.3, 0.5], [0.7, 0.5]);
+    await drag(1, [0.3, 0.5], [0.7, 0.5]);
+    await page.waitForSelector('.plots .toolbar > small');
+    const then = await pictures();
+    assert.ok(first.every((one, i) => one !== then[i]));
+    await page.mouse.dblclick(...await at(1, 0.5, 0.5));
+    await page.waitForSelector('.plots .toolbar > small', {state: 'detached'});
+    await holds(page, (before) => [...document.querySelectorAll('.plot canvas')].every((one, i) => one.toDataURL() === before[i]), first);
+    assert.equal(await page.textContent('[data-test=pause]').then((text) => text.trim()), 'paused');
+    await page.click('[data-test=pause]');
+  });
+
+  it('show the whole flight, also from an address', async () => {
+    await page.click('.plots .toolbar .chip:has-text("whole flight")');
+    await holds(page, () => location.hash.endsWith('&w=flight'));
+    const {flights: [{from}]} = await asked('/api/flights');
+    const first_t = async () => {
+      const [file] = await Promise.all([page.waitForEvent('download'), page.locator('.plots .chip', {hasText: /^CSV$/}).first().click()]);
+      return Number(readFileSync(await file.path(), 'utf8').split('\n')[1].split(',')[0]);
+    };
+    for (const reload of [false, true]) {
+      if (reload) await page.reload();
+      await holds(page, () => document.querySelector('.plots .chip.on')?.textContent === 'whole flight' && document.querySelector('.legend .statistics'));
+      let began;
+      for (let i = 0; i < 40 && !(began - from < 1.5); ++i, await new Promise((resolve) => setTimeout(resolve, 250))) began = await first_t();
+      assert.ok(began - from < 1.5 && began >= from, `${began - from} s after the flight began`);
+    }
+    assert.deepEqual(faults, []);
+  });
+});
+
 describe('two pages at one station', () => {
   let anna, ben;
   before(async () => {

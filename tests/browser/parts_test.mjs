@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the page reckons without a browser: goals that are dragged, small steps of a tool, numbers in the words of forms and axes, expressions
-// of parameters, plots of a part, borders between panels, latencies of links, stacks of telecommands as text, triangles, when the next picture is drawn; how large it is.
+// of parameters, plots of a part, borders between panels, latencies of links, samples of a long time, lines of a log, stacks of telecommands as text, triangles, when the next picture is drawn; how large it is.
 import assert from 'node:assert/strict';
 import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
@@ -21,6 +21,8 @@ const {joint_above, plots_of_angle, plots_of_link} = await of_page('parts/joint_
 const {extent_of, moved, remembered, template_of} = await of_page('parts/splits_reckoned.js');
 const {height_of, late_count, place_of, quantile_ns} = await of_page('parts/latency.js');
 const {parse, reckon} = await of_page('parts/expression.js');
+const {most_lines, with_newest} = await of_page('parts/log_lines.js');
+const {thinned} = await of_page('parts/thinned.js');
 const {most_rows, read_stack, stack_text, words_of} = await of_page('parts/stack_text.js');
 
 const near = (one, other, what = '') => assert.ok(Math.hypot(...one.map((value, i) => value - other[i])) < 1e-4, `${what} ${one} instead of ${other}`);
@@ -229,6 +231,43 @@ describe('an expression of parameters', () => {
     const {t, v} = reckon(program, [{t: [1, 2, 3, 9], v: [10, 20, null, 30]}, {t: [1.5, 2, 4, 8.5], v: [2, 4, 0, 5]}], [2, 2]);
     assert.deepEqual(t, [1, 1.5, 2, 3, 4, 8.5, 9]);
     assert.deepEqual(v, [null, 5, 5, null, null, null, 6]);
+  });
+});
+
+describe('samples of a long time', () => {
+  it('go back as far as before, coarser where they are old, with every least and most, and with their gaps', () => {
+    const none = [null, null, null, null, null, null, null];
+    const halves = (low, high) => (low + high) / 2;
+    const once = thinned({t: [0, 1, 2, 3, 4, 5, 6], v: [1, 9, null, -5, 7, 3, 4], low: none, high: none}, 5, halves);
+    assert.deepEqual(once, {t: [0, 2, 3, 5, 6], v: [5, null, 1, 3, 4], low: [1, null, -5, null, null], high: [9, null, 7, null, null]});
+    const twice = thinned({t: [0, 1, 2], v: [5, 1, 3], low: [1, -5, null], high: [9, 7, null]}, 3, halves);
+    assert.deepEqual(twice, {t: [0, 2], v: [2, 3], low: [-5, null], high: [9, null]});
+  });
+});
+
+describe('the lines of a log that goes on', () => {
+  const lines = (...numbers) => numbers.map((number) => ({number}));
+
+  it('are those that are new before those that were there, each once', () => {
+    assert.deepEqual(with_newest({packets: lines(7, 5, 2), before: null}, {packets: lines(9, 8, 7, 5), before: 5}), {packets: lines(9, 8, 7, 5, 2), before: null});
+    const found = {packets: lines(7, 5), before: 5};
+    assert.equal(with_newest(found, {packets: [], before: 3}), found, 'words that the newest packets do not have');
+  });
+
+  it('have no hole that nobody sees: so many new ones that they do not reach the old ones take their place', () => {
+    const answer = {packets: lines(30, 29), before: 29};
+    assert.equal(with_newest({packets: lines(7, 5), before: 5}, answer), answer);
+  });
+
+  it('go back with a replay', () => {
+    const answer = {packets: lines(5, 2), before: null};
+    assert.equal(with_newest({packets: lines(7, 5, 2), before: null}, answer), answer);
+  });
+
+  it('are bounded, and older ones are asked for from where they end', () => {
+    const all = Array.from({length: most_lines}, (_, i) => ({number: most_lines - i}));
+    const {packets, before} = with_newest({packets: all, before: null}, {packets: lines(most_lines + 2, most_lines + 1, most_lines), before: most_lines});
+    assert.deepEqual([packets.length, packets[0].number, packets.at(-1).number, before], [most_lines, most_lines + 2, 3, 3]);
   });
 });
 

@@ -232,8 +232,8 @@ const server = createServer(async (request, response) => {
     '/api/flights': () => request.method === 'POST' ? tell_of_flight(body) : {flights: state === 'fresh' ? [] : [{id: 2, from: first_t, to: now, name: '', named_by: '', notes: notes[2], high: 0, medium: 0, commands: commands.length},
       {id: 1, from: earlier_t, to: first_t - 600, name: 'first light', named_by: 'anna', notes: notes[1], high: 2, medium: 1, commands: 14}]},
     '/api/log': () => {
-      const lines = archive.filter((one) => one.type === 'event').reverse().map((one, i) => ({number: archive.length - i, t: one.t, apid: one.apid,
-        subsystem: one.subsystem, service: 5, subtype: 1, text: `TM[5,1] ${one.subsystem} ${one.name} ${one.text}`}));
+      const lines = archive.filter((one) => one.type === 'event').map((one, i) => ({number: i + 1, t: one.t, apid: one.apid,
+        subsystem: one.subsystem, service: 5, subtype: 1, text: `TM[5,1] ${one.subsystem} ${one.name} ${one.text}`})).reverse();
       const words = (query.get('text') ?? '').toLowerCase().split(/\s+/).filter(Boolean);
       return {packets: lines.filter((one) => words.every((word) => one.text.toLowerCase().includes(word))).slice(0, +(query.get('limit') ?? 200)), before: null};
     },
@@ -242,6 +242,11 @@ const server = createServer(async (request, response) => {
       causes: archive.filter((one) => one.type === 'event' && one.severity === 'high').slice(-3).map((one, i) => ({t: one.t, after_ms: i, severity: 'high', text: `${one.subsystem} reports ${one.name}`}))}),
     '/api/faults': () => {
       if (body.line === 'burst') for (let i = 0; i < burst_events; ++i) tell({...list.find((one) => one.type === 'event'), t: now, id: 3, text: `burst ${i}`});
+      if (body.line.startsWith('tell ')) {
+        const one = {...list.find((message) => message.type === 'event' && message.subsystem === 'JOYSTICK'), t: now, id: 3, name: 'TOLD', text: body.line};
+        take(one);
+        tell(one);
+      }
       injections = [...injections, {t: now, device: body.device, line: body.line, answer: 'ok'}];
       return {answer: 'ok'};
     },

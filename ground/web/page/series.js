@@ -6,15 +6,25 @@
 import {get} from './api.js';
 import {is_reckoned, of_flight, reckoned} from './parts/curves.js';
 import {reckon} from './parts/expression.js';
+import {thinned} from './parts/thinned.js';
 import {columns, filled, flight, flights, freshness, gateway, newest_s, now_s, on_values, replay, values} from './store.js';
 
 const most_samples = 40000;
-const longest_window_s = 3600;
+/// A window as long as the flight that is shown.
+export const whole_flight = Infinity;
+/// Of another flight that is drawn beside this one.
+const longest_past_s = 3600;
 /// A sample of an expression's parameter holds for three of its periods, for this long at least.
-const least_held_s = 2;
+const least_held_s = 2, least_flight_s = 1;
 const backlog_points = 3000, flight_points = 20000;
 
 const known = new Map();
+
+/// What stands for a range of samples: of values that have names one that there was.
+function middle_of(name) {
+  const column = columns.peek().get(name);
+  return column?.enumeration?.length || column?.type === 'BOOL' ? (low, high) => high : (low, high) => (low + high) / 2;
+}
 
 class Series {
   t = [];
@@ -37,7 +47,7 @@ class Series {
     this.v.push(Number.isFinite(v) ? v : null);
     this.low.push(null);
     this.high.push(null);
-    if (this.t.length > most_samples) for (const list of [this.t, this.v, this.low, this.high]) list.splice(0, most_samples / 8);
+    if (this.t.length > most_samples) Object.assign(this, thinned(this, most_samples / 2, middle_of(this.name)));
     ++this.version;
   }
 
@@ -49,7 +59,7 @@ class Series {
     this.from = from;
     try {
       const answer = await get('/api/history', {parameter: this.name, from, to, points: backlog_points});
-      const middle = answer.v ?? answer.min.map((low, i) => (low + answer.max[i]) / 2);
+      const between = middle_of(this.name), middle = answer.v ?? answer.min.map((low, i) => between(low, answer.max[i]));
       let end = answer.t.length;
       const first = this.t[0] ?? Infinity;
       while (end > 0 && answer.t[end - 1] >= first) --end;
@@ -89,10 +99,10 @@ class PastSeries extends Series {
     if (!other || !Number.isFinite(began) || this.from === began) return;
     this.from = began;
     try {
-      const answer = await get('/api/history', {parameter: this.parameter, from: other.from, to: Math.min(other.to, other.from + longest_window_s), points: flight_points});
-      const number = (value) => Number.isFinite(value) ? value : null;
+      const answer = await get('/api/history', {parameter: this.parameter, from: other.from, to: Math.min(other.to, other.from + longest_past_s), points: flight_points});
+      const number = (value) => Number.isFinite(value) ? value : null, between = middle_of(this.parameter);
       this.t = answer.t.map((t) => t - other.from + began);
-      this.v = (answer.v ?? answer.min.map((low, i) => (low + answer.max[i]) / 2)).map(number);
+      this.v = (answer.v ?? answer.min.map((low, i) => between(low, answer.max[i]))).map(number);
       [this.low, this.high] = [answer.min, answer.max].map((list) => list ? list.map(number) : this.t.map(() => null));
       ++this.version;
     } catch {
@@ -101,10 +111,16 @@ class PastSeries extends Series {
   }
 }
 
-/// When the flight that is shown began: that of now, or the one that is replayed.
-function began_s() {
+/// When the flight that is shown began: that of now, or the one that is replayed; undefined while nobody knows.
+export function began_s() {
   const at = replay.peek()?.at;
   return at === undefined ? flight.peek()?.from : flights.peek().find((one) => one.from <= at)?.from;
+}
+
+/// [from, to] of what a plot shows: `range` where it stands still, else a window that ends now.
+export function shown_span(window_s, range, to = now_s()) {
+  if (range) return range;
+  return window_s === whole_flight ? [Math.min(began_s() ?? to - least_flight_s, to - least_flight_s), to] : [to - window_s, to];
 }
 
 /// An expression at the times of its parameters' samples.
@@ -153,7 +169,8 @@ export function extend(series, window_s) {
   const newest = newest_s();
   // Nothing of an earlier flight, but in a replay of it.
   const began = replay.value ? -Infinity : flight.value?.from ?? -Infinity;
-  if (Number.isFinite(newest)) series.fetch(Math.max(began, newest - Math.min(longest_window_s, window_s) - 1));
+  const from = window_s === whole_flight ? began_s() : Math.max(began, newest - window_s - 1);
+  if (Number.isFinite(newest) && Number.isFinite(from)) series.fetch(from);
 }
 
 export function drop_series(series) {
@@ -260,17 +277,19 @@ export function newest_of(name) {
   return {v: value_at(name, now_s()), stale};
 }
 
-/// {count, min, mean, max} of the samples in [from, to]; null where there are none. Of buckets their own ends count.
+/// {count, min, min_t, mean, max, max_t} of the samples in [from, to]; null where there are none. Of buckets their own ends count, at the time
+/// of the bucket; of equal ones the first.
 export function statistics(name, from, to) {
   const series = known.get(name);
-  let count = 0, sum = 0, min = Infinity, max = -Infinity;
+  let count = 0, sum = 0, min = Infinity, max = -Infinity, min_t = NaN, max_t = NaN;
   for (let i = 0; i < (series?.t.length ?? 0); ++i) {
     const v = series.v[i];
     if (series.t[i] < from || series.t[i] > to || v === null) continue;
     ++count;
     sum += v;
-    min = Math.min(min, series.low[i] ?? v);
-    max = Math.max(max, series.high[i] ?? v);
+    const low = series.low[i] ?? v, high = series.high[i] ?? v;
+    if (low < min) [min, min_t] = [low, series.t[i]];
+    if (high > max) [max, max_t] = [high, series.t[i]];
   }
-  return count ? {count, min, mean: sum / count, max} : null;
+  return count ? {count, min, min_t, mean: sum / count, max, max_t} : null;
 }

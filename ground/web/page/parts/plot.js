@@ -4,11 +4,11 @@ import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import uPlot from 'uplot';
 import {brief_text, clock_text, quantity_text, ticks_text, unit_text, value_text} from '../format.js';
 import {html} from '../html.js';
-import {aligned, drop_series, extend, has_samples, newest_of, statistics, use_series, value_at} from '../series.js';
+import {aligned, began_s, drop_series, extend, has_samples, newest_of, shown_span, statistics, use_series, value_at} from '../series.js';
 import {columns, now_s, replay, slow} from '../store.js';
 import {colour, theme} from '../theme.js';
 import {column_of, curve_words, is_reckoned, of_flight, reckoned} from './curves.js';
-import {cursor_t, look_at, pin, pins, unpin} from './plot_cursor.js';
+import {cursor_t, look_at, pin, pins, put, show_all, unpin, whole} from './plot_cursor.js';
 import {bare, event_marks, gap_shade, gauge, limit_bands, marks_in, pinned_cursors, stop_mark} from './plot_layers.js';
 import {is_named, StateLanes} from './state_lanes.js';
 
@@ -87,7 +87,8 @@ function options_of(names, size, on_zoom, about) {
   return {...size, series, bands, legend: {show: false}, padding: [about.range ? 18 : 8, about.range ? 48 : units.length > 1 ? 0 : 30, 0, 0],
     scales: {x: {time: false}, ...zoomable(scales_of(units, about))}, plugins: [gap_shade, limit_bands(names), event_marks, stop_mark, pinned_cursors, bare, ...(about.range ? [gauge(about.range, names[0])] : [])],
     axes: [axis_of_time(about.relative), ...units.map((unit, i) => axis_of(unit, i, about.relative))],
-    cursor: {sync: {key: sync.key, scales: ['x', null]}, drag: {x: true, y: true, uni: 24, setScale: false}, points: {size: 6}},
+    // Where the mouse is, all plots know; what it drags, and a double click, are of the page.
+    cursor: {sync: {key: sync.key, scales: ['x', null], filters: {pub: (type) => type === 'mousemove', sub: () => true}}, bind: {dblclick: () => null}, drag: {x: true, y: true, uni: 24, setScale: false}, points: {size: 6}},
     hooks: {
       setCursor: [(plot) => { if (plot.over.matches(':hover')) look_at(plot.cursor.left >= 0 ? plot.posToVal(plot.cursor.left, 'x') : null); }],
       ready: [(plot) => watch_mouse(plot)],
@@ -103,11 +104,18 @@ function options_of(names, size, on_zoom, about) {
 }
 
 const click_px = 3;
-/// A click pins the cursor; the wheel zooms the heights about the mouse; a double click shows all of them again.
+/// A click pins the cursor; the wheel zooms the heights about the mouse; a double click shows all again. While the button is down nothing moves.
 function watch_mouse(plot) {
   const {over} = plot;
   let down = null;
-  over.addEventListener('pointerdown', (event) => { down = [event.clientX, event.clientY]; });
+  over.addEventListener('pointerdown', (event) => {
+    down = [event.clientX, event.clientY];
+    if (event.button !== 0) return;
+    plot.held = true;
+    // After uPlot, which hears of it at the document, has taken what was selected.
+    const ended = new AbortController();
+    for (const name of ['mouseup', 'pointercancel', 'blur']) addEventListener(name, () => { plot.held = false; ended.abort(); }, {signal: ended.signal});
+  });
   over.addEventListener('pointerup', (event) => {
     if (down && event.button === 0 && Math.hypot(event.clientX - down[0], event.clientY - down[1]) < click_px) {
       pin(plot.posToVal(event.clientX - over.getBoundingClientRect().left, 'x'));
@@ -115,11 +123,7 @@ function watch_mouse(plot) {
     down = null;
   });
   over.addEventListener('pointerleave', () => look_at(null));
-  over.addEventListener('dblclick', () => {
-    plot.zoomed = {};
-    unpin();
-    plot.redraw();
-  });
+  over.addEventListener('dblclick', show_all);
   over.addEventListener('wheel', (event) => {
     event.preventDefault();
     const at = event.clientY - over.getBoundingClientRect().top, times = event.deltaY > 0 ? 1.25 : 0.8;
@@ -161,7 +165,7 @@ export function TimePlot({names: all_names, window_s = 60, range = null, on_zoom
     return () => list.forEach(drop_series);
   }, [key, live]);
   useEffect(() => drawn.current.list?.forEach((series) => extend(series, range ? now_s() - range[0] : window_s)),
-    [window_s, range?.[0], Number.isFinite(now_s())]);
+    [window_s, range?.[0], Number.isFinite(now_s()), began_s()]);
 
   useEffect(() => {
     if (!size || !columns.value.size || !names.length) return;
@@ -180,8 +184,8 @@ export function TimePlot({names: all_names, window_s = 60, range = null, on_zoom
 
   const draw = () => {
     const {plot, list} = drawn.current;
-    if (!plot || !list) return;
-    const to = range ? range[1] : now_s(), from = range ? range[0] : to - window_s;
+    if (!plot || !list || plot.held) return;
+    const [from, to] = shown_span(window_s, range);
     if (!Number.isFinite(to)) return;
     plot.setData(aligned(list, from, to), false);
     plot.bare = !list.some((series) => has_samples(series, from, to));
@@ -192,32 +196,43 @@ export function TimePlot({names: all_names, window_s = 60, range = null, on_zoom
   // At once: what came after the page's next picture would be put together by itself.
   useLayoutEffect(draw);
   useEffect(() => pins.subscribe(() => drawn.current.plot?.redraw(false)), []);
+  useEffect(() => whole.subscribe(() => {
+    if (!drawn.current.plot) return;
+    drawn.current.plot.zoomed = {};
+    drawn.current.plot.redraw();
+  }), []);
   const edges = drawn.current.plot?.bbox, ratio = devicePixelRatio || 1;
   return html`<div class="plot" ref=${node} data-test="plot" style=${names.length ? undefined : {display: 'none'}} />
     ${named.length ? html`<${StateLanes} names=${named} window_s=${window_s} range=${range} left=${edges ? edges.left / ratio : 110}
       right=${edges ? (size?.width ?? 0) - (edges.left + edges.width) / ratio : 12} />` : null}`;
 }
 
-/// What the curves are, with their newest values, or those under the mouse; stale ones are grey. With `window` ([from, to]) also what the
-/// samples in it, or between two pinned cursors, have in common.
-export function Legend({names, brief, on_remove, about = nothing, window = null}) {
+/// The least or the most of the statistics, and when that was.
+const Extreme = ({what, value, t}) => html`<button class="extreme" data-test=${what} title=${`the ${what}, at ${clock_text(t, 3)}: a click puts the cursor there`}
+  onClick=${() => put(t)}>${value} <small>at ${clock_text(t, 1)}</small></button>`;
+
+/// What the curves are, with their newest values, or those at the cursor; stale ones are grey. With `window` ([from, to]) also what the
+/// samples in it, or between two pinned cursors, have in common. Where that is `frozen`, nothing is told of what came after it.
+export function Legend({names, brief, on_remove, about = nothing, window = null, frozen = false}) {
   slow.value;
-  const at = cursor_t.value, [first, last] = pins.value;
+  const [first, last] = pins.value;
+  const pinned = window && last === undefined && first >= window[0] && first <= window[1] ? first : null;
+  const at = cursor_t.value ?? pinned, when = at ?? (frozen ? window[1] : null);
   const span = last !== undefined ? [first, last] : window;
   const curves = names.filter((name) => !is_named(name));
   return html`<div class=${`legend ${brief ? 'brief' : ''}`} data-test="legend">${names.map((name, place) => {
     const i = is_named(name) ? place : curves.indexOf(name);
     const column = column_of(name), newest = newest_of(name), [before, own] = curve_words(name);
     const look = look_of(name, about.looks?.[i]), problem = is_reckoned(name) ? reckoned(name).problem : null;
-    const words = (value) => is_named(name) ? value_text(column?.type === 'BOOL' ? value === 1 || value === true : value, column) : quantity_text(value, column?.unit);
-    const under = at === null ? undefined : value_at(name, at);
+    const words = (value) => value === undefined ? '–' : is_named(name) ? value_text(column?.type === 'BOOL' ? value === 1 || value === true : value, column) : quantity_text(value, column?.unit);
+    const value = when === null ? newest.v : value_at(name, when);
     const told = span && !brief && !is_named(name) ? statistics(name, ...span) : null;
     const apart = last !== undefined && !is_named(name) ? value_at(name, last) - value_at(name, first) : NaN;
-    return html`<span class=${under !== undefined ? 'at' : newest.stale ? 'stale' : ''} title=${name}><svg viewBox="0 0 12 6" aria-hidden="true"><path d="M0 3h12" stroke=${curve_colour(i, about.looks?.[i])}
-      stroke-width="2" stroke-dasharray=${look?.dash ? '3 2' : undefined} /></svg>${about.labels?.[i] ?? (brief ? name.split('.').at(-1) : html`<small>${before}</small> ${own}`)} <b>${
-      problem ?? words(under ?? newest.v)}</b>${brief ? null : html` <small>${unit_text(column?.unit)}</small>`}
+    return html`<span class=${at !== null ? 'at' : newest.stale && !frozen ? 'stale' : ''} title=${name}><svg viewBox="0 0 12 6" aria-hidden="true"><path d="M0 3h12" stroke=${curve_colour(i, about.looks?.[i])}
+      stroke-width="2" stroke-dasharray=${look?.dash ? '3 2' : undefined} /></svg>${about.labels?.[i] ?? (brief ? name.split('.').at(-1) : html`<small>${before}</small> ${own}`)} <b title=${when === null ? undefined : `at ${clock_text(when, 3)}`}>${
+      problem ?? words(value)}</b>${brief ? null : html` <small>${unit_text(column?.unit)}</small>`}
       ${Number.isFinite(apart) ? html` <span data-test="delta">Δ ${quantity_text(apart, column?.unit)}</span>` : null}
-      ${told ? html` <span class="statistics">${quantity_text(told.min, column?.unit)} … ${quantity_text(told.max, column?.unit)}, mean ${quantity_text(told.mean, column?.unit)}</span>` : null}
+      ${told ? html` <span class="statistics"><${Extreme} what="least" value=${quantity_text(told.min, column?.unit)} t=${told.min_t} /> … <${Extreme} what="most" value=${quantity_text(told.max, column?.unit)} t=${told.max_t} />, mean ${quantity_text(told.mean, column?.unit)}</span>` : null}
       ${on_remove ? html`<button class="tiny" title=${`take ${name} out`} onClick=${() => on_remove(name)}>×</button>` : null}</span>`;
   })}</div>`;
 }
@@ -241,12 +256,12 @@ export function XyPlot({names, window_s = 60, range = null}) {
   useEffect(() => {
     used.current = names.slice(0, 2).map((name) => use_series(name, window_s));
     return () => used.current.forEach(drop_series);
-  }, [names.join('|'), window_s]);
+  }, [names.join('|'), window_s, began_s()]);
   slow.value;
   useEffect(() => {
-    if (size && used.current.length === 2) draw_xy(canvas.current, size, used.current, names, range ?? [now_s() - window_s, now_s()]);
+    if (size && used.current.length === 2) draw_xy(canvas.current, size, used.current, names, shown_span(window_s, range));
   });
-  return html`<div class="plot" ref=${node}>${names.length < 2 ? html`<p class="empty">x-y needs two parameters.</p>` : null}
+  return html`<div class="plot" ref=${node} onDblClick=${show_all}>${names.length < 2 ? html`<p class="empty">x-y needs two parameters.</p>` : null}
     <canvas ref=${canvas} /></div>`;
 }
 

@@ -12,6 +12,15 @@ export function pin(t) {
   pins.value = pins.value.length === 2 ? [t] : [...pins.value, t].sort((a, b) => a - b);
 }
 export const unpin = () => { pins.value = []; };
+/// One cursor there, whatever was pinned before.
+export const put = (t) => { pins.value = [t]; };
+
+/// Counts how often somebody wanted to see all again: every plot of the view shows what it did before it was zoomed.
+export const whole = signal(0);
+export function show_all() {
+  unpin();
+  ++whole.value;
+}
 
 let wanted = null, waiting = 0;
 /// At most once for each frame: a mouse tells more often.

@@ -5,9 +5,10 @@
 import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import {clock_text, state_text, value_text} from '../format.js';
 import {html} from '../html.js';
-import {drop_series, extend, use_series} from '../series.js';
+import {began_s, drop_series, extend, shown_span, use_series} from '../series.js';
 import {now_s, replay, slow} from '../store.js';
 import {column_of} from './curves.js';
+import {show_all} from './plot_cursor.js';
 
 export const is_named = (name) => {
   const column = column_of(name);
@@ -42,11 +43,11 @@ export function StateLanes({names, window_s, range, left, right}) {
     used.current = names.map((name) => use_series(name, window_s));
     return () => used.current.forEach(drop_series);
   }, [names.join('|'), live]);
-  useEffect(() => used.current.forEach((series) => extend(series, range ? now_s() - range[0] : window_s)), [window_s, range?.[0], Number.isFinite(now_s())]);
+  useEffect(() => used.current.forEach((series) => extend(series, range ? now_s() - range[0] : window_s)), [window_s, range?.[0], Number.isFinite(now_s()), began_s()]);
   slow.value;
-  const to = range ? range[1] : now_s(), from = range ? range[0] : to - window_s;
+  const [from, to] = shown_span(window_s, range);
   const x = (t) => left + (t - from) / (to - from) * Math.max(10, width - left - right);
-  return html`<svg class="lanes_of_states" ref=${node} height=${names.length * lane_height + 2} data-test="state-lanes">${names.map((name, i) => {
+  return html`<svg class="lanes_of_states" ref=${node} height=${names.length * lane_height + 2} data-test="state-lanes" onDblClick=${show_all}>${names.map((name, i) => {
     const column = column_of(name);
     const spans = used.current[i] ? spans_of(used.current[i], from, to) : [];
     return html`<g transform=${`translate(0 ${i * lane_height})`}><text class="label" x="4" y="14">${name.split('.').at(-1).slice(0, Math.max(3, Math.floor(left / 7) - 1))}</text>${spans.map((span, k) => {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-import {useRef, useState} from 'preact/hooks';
+import {useEffect, useRef, useState} from 'preact/hooks';
 import {token} from '../api.js';
 import {copy, say} from '../commanding.js';
 import {clock_text, iso_text, unit_text} from '../format.js';
@@ -10,25 +10,27 @@ import {longest_text} from '../parts/expression.js';
 import {Panel} from '../parts/panel.js';
 import {save} from '../parts/save.js';
 import {Cursors, curve_colour, Legend, TimePlot, XyPlot} from '../parts/plot.js';
+import {whole} from '../parts/plot_cursor.js';
 import {Splits} from '../parts/splits.js';
 import {is_named} from '../parts/state_lanes.js';
-import {aligned} from '../series.js';
-import {columns, flight, flights, mission, now_s, replay} from '../store.js';
+import {aligned, shown_span, whole_flight} from '../series.js';
+import {columns, flight, flights, mission, now_s, replay, slow} from '../store.js';
 import {colour} from '../theme.js';
 import {first_plots, plot_title} from './overview.js';
 
-const windows = [[10, '10 s'], [30, '30 s'], [60, '1 min'], [300, '5 min'], [900, '15 min'], [3600, '1 h']];
+const windows = [[10, '10 s'], [30, '30 s'], [60, '1 min'], [300, '5 min'], [900, '15 min'], [3600, '1 h'], [whole_flight, 'whole flight']];
+const flight_word = 'flight';
 
 const decoded = (text) => { try { return decodeURIComponent(text); } catch { return text; } };
-/// #/plots?p=A+B|C&w=60&xy=1: groups divided by |, names of curves (parts/curves.js) by +.
+/// #/plots?p=A+B|C&w=60&xy=1: groups divided by |, names of curves (parts/curves.js) by +; w in seconds, or `flight`.
 export function parsed(query) {
   const groups = (query.get_raw('p') ?? '').split('|').map((group) => group.split('+').filter(Boolean).map(decoded)).filter((group) => group.length);
-  return {groups, window_s: Number(query.get_raw('w')) || 60, xy: new Set((query.get_raw('xy') ?? '').split(',').filter(Boolean).map(Number))};
+  return {groups, window_s: query.get_raw('w') === flight_word ? whole_flight : Number(query.get_raw('w')) || 60, xy: new Set((query.get_raw('xy') ?? '').split(',').filter(Boolean).map(Number))};
 }
 
 function address({groups, window_s, xy}) {
   const p = groups.map((group) => group.map(encodeURIComponent).join('+')).join('|');
-  return `#/plots?p=${p}&w=${window_s}${xy.size ? `&xy=${[...xy].join(',')}` : ''}`;
+  return `#/plots?p=${p}&w=${window_s === whole_flight ? flight_word : window_s}${xy.size ? `&xy=${[...xy].join(',')}` : ''}`;
 }
 
 /// The picture with what it is of: mission, day, the names of the curves in their colours.
@@ -67,7 +69,8 @@ function save_csv(list, names, range) {
 function PlotPanel({names, window_s, range, xy, on_zoom, on_remove, on_xy, on_drop}) {
   const plot_ref = useRef(null);
   const curves = names.filter((name) => !is_named(name));
-  const shown = range ?? [now_s() - window_s, now_s()];
+  if (!range) slow.value;
+  const shown = shown_span(window_s, range);
   const whole = `/api/export.csv?${[...new Set(names.flatMap(parameters_of))].map((name) => `parameter=${encodeURIComponent(name)}`).join('&')}&from=${shown[0]}&to=${shown[1]}`;
   const fetch_whole = async () => {
     try {
@@ -85,7 +88,7 @@ function PlotPanel({names, window_s, range, xy, on_zoom, on_remove, on_xy, on_dr
     <button class="chip" title="every sample of the archive, of the parameters themselves" onClick=${fetch_whole}>archive CSV</button>
     <button class="tiny" title="close this plot" aria-label="close this plot" onClick=${on_drop}>×</button>`;
   return html`<${Panel} title=${plot_title(names)} bare tools=${tools}>
-    <${Legend} names=${names} on_remove=${on_remove} window=${shown} />
+    <${Legend} names=${names} on_remove=${on_remove} window=${shown} frozen=${Boolean(range)} />
     ${xy ? html`<${XyPlot} names=${names} window_s=${window_s} range=${range} />` :
       html`<${TimePlot} names=${names} window_s=${window_s} range=${range} on_zoom=${on_zoom} plot_ref=${plot_ref} />`}</${Panel}>`;
 }
@@ -161,7 +164,8 @@ export function Plots({query, paused, set_paused}) {
   const state = asked.groups.length ? asked : {...asked, groups: first_plots().map((plot) => plot.names)};
   const [zoom, set_zoom] = useState(null);
   const go = (change) => { location.hash = address({...state, ...change}); };
-  const range = zoom ?? (paused !== null ? [paused - state.window_s, paused] : null);
+  const range = zoom ?? (paused !== null ? shown_span(state.window_s, null, paused) : null);
+  useEffect(() => whole.subscribe(() => set_zoom(null)), []);
   const pick = (name, alone) => {
     const groups = state.groups.map((group) => [...group]);
     if (alone || groups.length === 0) groups.push([name]);
