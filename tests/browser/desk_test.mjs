@@ -183,8 +183,7 @@ describe('plots', () => {
     await drag(1, [0.3, 0.5], [0.7, 0.5]);
     await drag(1, [0.3, 0.5], [0.7, 0.5]);
     await page.waitForSelector('.plots .toolbar > small');
-    const then = await pictures();
-    assert.ok(first.every((one, i) => one !== then[i]));
+    await holds(page, (before) => [...document.querySelectorAll('.plot canvas')].every((one, i) => one.toDataURL() !== before[i]), first);
     await page.mouse.dblclick(...await at(1, 0.5, 0.5));
     await page.waitForSelector('.plots .toolbar > small', {state: 'detached'});
     await holds(page, (before) => [...document.querySelectorAll('.plot canvas')].every((one, i) => one.toDataURL() === before[i]), first);
