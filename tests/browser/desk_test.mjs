@@ -127,6 +127,12 @@ describe('plots', () => {
   };
   const zoomed = async () => (await page.textContent('.plots .toolbar > small')).split(' … ').map(seconds);
 
+  /// [[t, value of the first curve]] as the first plot saves them.
+  const samples = async () => {
+    const [file] = await Promise.all([page.waitForEvent('download'), page.locator('.plots .chip', {hasText: /^CSV$/}).first().click()]);
+    return readFileSync(await file.path(), 'utf8').trim().split('\n').slice(1).map((line) => line.split(',')).map(([t, , value]) => [Number(t), Number(value)]);
+  };
+
   it('zoom to what was aimed at while they run: the axis stands still under a button that is down', async () => {
     const cursor = async () => seconds(/^[\d:.]+/.exec(await page.textContent('[data-test=cursors]'))[0]);
     await page.mouse.move(...await at(0, 0.5, 0.5));
@@ -167,7 +173,9 @@ describe('plots', () => {
       await page.locator(`[data-test=${what}]`).first().click();
       await holds(page, (t) => document.querySelector('[data-test=cursors]')?.textContent.includes(`from ${t}`), when);
       await page.waitForSelector('.legend .at');
-      assert.equal(await legend(), words.split(' at ')[0].trim());
+      const value = words.split(' at ')[0].trim(), sample = (await samples()).find(([t]) => Math.abs(t % 86400 - seconds(when)) < 0.002);
+      assert.equal(await legend(), value);
+      assert.equal(sample?.[1].toFixed(3).replace('-', '−'), value, `the sample at ${when}`);
     }
     const [least, most] = await Promise.all(['least', 'most'].map((what) => page.textContent(`[data-test=${what}]`)));
     assert.notEqual(least, most);
@@ -183,8 +191,7 @@ describe('plots', () => {
     await drag(1, [0.3, 0.5], [0.7, 0.5]);
     await drag(1, [0.3, 0.5], [0.7, 0.5]);
     await page.waitForSelector('.plots .toolbar > small');
-    const then = await pictures();
-    assert.ok(first.every((one, i) => one !== then[i]));
+    await holds(page, (before) => [...document.querySelectorAll('.plot canvas')].every((one, i) => one.toDataURL() !== before[i]), first);
     await page.mouse.dblclick(...await at(1, 0.5, 0.5));
     await page.waitForSelector('.plots .toolbar > small', {state: 'detached'});
     await holds(page, (before) => [...document.querySelectorAll('.plot canvas')].every((one, i) => one.toDataURL() === before[i]), first);
@@ -196,15 +203,11 @@ describe('plots', () => {
     await page.click('.plots .toolbar .chip:has-text("whole flight")');
     await holds(page, () => location.hash.endsWith('&w=flight'));
     const {flights: [{from}]} = await asked('/api/flights');
-    const first_t = async () => {
-      const [file] = await Promise.all([page.waitForEvent('download'), page.locator('.plots .chip', {hasText: /^CSV$/}).first().click()]);
-      return Number(readFileSync(await file.path(), 'utf8').split('\n')[1].split(',')[0]);
-    };
     for (const reload of [false, true]) {
       if (reload) await page.reload();
       await holds(page, () => document.querySelector('.plots .chip.on')?.textContent === 'whole flight' && document.querySelector('.legend .statistics'));
       let began;
-      for (let i = 0; i < 40 && !(began - from < 1.5); ++i, await new Promise((resolve) => setTimeout(resolve, 250))) began = await first_t();
+      for (let i = 0; i < 40 && !(began - from < 1.5); ++i, await new Promise((resolve) => setTimeout(resolve, 250))) [[began]] = await samples();
       assert.ok(began - from < 1.5 && began >= from, `${began - from} s after the flight began`);
     }
     assert.deepEqual(faults, []);
