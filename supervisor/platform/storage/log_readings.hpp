@@ -7,6 +7,7 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "supervisor/platform/storage/database.hpp"
 
