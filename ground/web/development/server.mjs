@@ -243,7 +243,7 @@ const server = createServer(async (request, response) => {
     '/api/faults': () => {
       if (body.line === 'burst') for (let i = 0; i < burst_events; ++i) tell({...list.find((one) => one.type === 'event'), t: now, id: 3, text: `burst ${i}`});
       if (body.line.startsWith('tell ')) {
-        const one = {...list.find((message) => message.type === 'event' && message.subsystem === 'JOYSTICK'), t: now, id: 3, name: 'TOLD', text: body.line};
+        const one = {...list.findLast((message) => message.type === 'event'), t: now, id: 3, name: 'TOLD', text: body.line};
         take(one);
         tell(one);
       }
