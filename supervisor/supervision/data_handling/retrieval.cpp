@@ -26,13 +26,14 @@ void Retrieval::begin(const pus::Request& asked, Octets data) {
   }
   if (running_ && running_->destination != asked.source)
     return verification.start_failed(asked, pus::FailureNotice{pus::FailureCode::Busy});
+  // Its own number is where it ends: what follows is said now, to whoever listens.
+  const std::uint64_t through = parts_.craft.log.append(
+      {.kind = LogKind::Action, .source = supervisor_apid, .note = "what was said before is sent down again"});
+  if (through == 0) return verification.start_failed(asked, pus::FailureNotice{pus::FailureCode::QueueFull});
   if (running_) finish("asked anew");
   verification.started(asked);
-  running_ = Running{.wanted = *wanted, .destination = asked.source, .begun = parts_.craft.now};
+  running_ = Running{.wanted = *wanted, .destination = asked.source, .through = through, .begun = parts_.craft.now};
   running_->end.request = asked.id;
-  // Its own number is where it ends: what follows is said now, to whoever listens.
-  running_->through = parts_.craft.log.append(
-      {.kind = LogKind::Action, .source = supervisor_apid, .note = "what was said before is sent down again"});
   verification.completed(asked);
 }
 
@@ -59,7 +60,10 @@ void Retrieval::watch(TimePoint now) {
 void Retrieval::read_on(Running& running, TimePoint now) {
   if (running.reads || abandoned_) return;
   PacketLog& log = parts_.craft.log;
-  if (log.durable() < running.through && now - running.begun < disk_patience) return;
+  if (log.durable() < running.through) {
+    if (now - running.begun >= disk_patience) finish("what was said last is not on the disk yet");
+    return;
+  }
   const auto begun = parts_.readings->begin({.housekeeping = running.wanted.housekeeping,
                                              .since = running.next,
                                              .run = log.run(),

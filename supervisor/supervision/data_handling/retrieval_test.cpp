@@ -301,6 +301,35 @@ TEST_F(SlowRetrievalTest, WhatTheLogLacksAndWhatIsDamagedIsCounted) {
   EXPECT_FALSE(down.ends.at(0).whole());
 }
 
+/// Takes nothing, and says so.
+struct DeafDatabase final : Database {
+  Result<> do_append(std::span<const LogRecord>) override { return fail(ErrorCode::Unavailable, "the disk is asleep"); }
+  Result<LogPage> do_read(const LogQuery&) override { return LogPage{}; }
+  std::string_view do_strategy() const noexcept override { return "deaf"; }
+};
+
+TEST_F(SlowRetrievalTest, WhatIsNotOnTheDiskInTimeIsNoWholeAnswer) {
+  log.switch_to(std::make_unique<DeafDatabase>());
+  begin();
+  EXPECT_THAT(step().ends, IsEmpty());
+  EXPECT_EQ(disk.begun, 0) << "what was said just before would be missing";
+  wait(Retrieval::disk_patience);
+  const Down down = step();
+  ASSERT_THAT(down.ends, SizeIs(1));
+  EXPECT_EQ(down.ends[0].why, "what was said last is not on the disk yet");
+  EXPECT_FALSE(down.ends[0].whole());
+}
+
+TEST_F(SlowRetrievalTest, ALogThatIsFullRefusesTheQuestion) {
+  log.switch_to(std::make_unique<DeafDatabase>());
+  while (log.append({.kind = LogKind::Action, .note = "fills it"}) != 0) {}
+  begin();
+  const Down down = step();
+  EXPECT_THAT(down.ends, IsEmpty());
+  EXPECT_EQ(disk.begun, 0);
+  EXPECT_THAT(down.verdicts, ElementsAre("1.4 of 1 " + std::to_string(static_cast<int>(pus::FailureCode::QueueFull))));
+}
+
 TEST_F(SlowRetrievalTest, ALogThatCannotBeReadEndsItInWords) {
   begin();
   static_cast<void>(step());
