@@ -199,7 +199,7 @@ class OnAFlight(unittest.TestCase):
         before = first.request(history)["t"]
         witness = Witness()
         first.end(signal.SIGKILL)
-        time.sleep(1.0)
+        time.sleep(2.0)  # some 45 packets a second
         with Gateway(rokviss.folder, archive="killed.db") as second:
             second.until(lambda status: status["link"]["rx"] > 50 and all(one["memory_kb"] for one in status["subsystems"]))
             again = time.monotonic()
