@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The missions of this folder with real processes: what is ready in subsystems/ flies in a mission that is not its own."""
 import pathlib
+import time
 import unittest
 
 import flight
@@ -16,7 +17,8 @@ class StockMissions(unittest.TestCase):
             craft.wait_told("commissioned: mode remote", 30.0)
             begin = craft.count()
             self.assertEqual(craft.tc("COMMUNICATION", "SET_DELAY", 20, 1)[0], 0)
-            craft.wait_told("MANIPULATOR is SafeOperational", 10.0, begin)
+            craft.wait_told("plan ground-lost: MANIPULATOR to SafeOperational", 10.0, begin)
+            craft.wait_told("MANIPULATOR info STATE_CHANGED STATE=SafeOperational", 5.0, begin)
             craft.end()
 
     def test_a_platform_goes_through_an_eclipse(self):
@@ -25,9 +27,13 @@ class StockMissions(unittest.TestCase):
             begin = craft.count()
             craft.fault("power", "eclipse on")
             craft.wait_told("ECLIPSE_BEGINS", 5.0, begin)
+            time.sleep(1.5)  # each half second the supervisor hears what power there is
             self.assertNotEqual(craft.tc("SUPERVISOR", "SET_MODE", "work")[0], 0, "there is no power for the arm")
             craft.fault("power", "eclipse off")
             craft.wait_told("ECLIPSE_ENDS", 5.0, begin)
+            time.sleep(1.5)
+            code, said = craft.tc("SUPERVISOR", "SET_MODE", "work")[:2]
+            self.assertEqual(code, 0, said)
             craft.end()
 
     def test_a_script_takes_a_box_and_puts_it_back(self):
