@@ -224,7 +224,7 @@ struct Evolution : ::testing::Test {
   const Mission flown = read_mission(testing::data / "mission.xml", file_system()).value.value();
   [[nodiscard]] Reading<Mission> with(const std::string& from, const std::string& to) const {
     const Subsystem& subsystem = flown.find_subsystem("FLYWHEEL")->subsystem;
-    return read_again(flown, subsystem.file, changed(from, to, *subsystem.text));
+    return read_again(flown, subsystem.file, changed(from, to, *subsystem.text), file_system());
   }
 };
 

@@ -57,6 +57,8 @@ struct MissionSubsystem {
   std::vector<Readdressed> addresses;
   std::vector<Redirected> redirected;
   Location at;
+  /// What the files that its devices' settings name bring along (brought_files()), when they were read last (docs/adr/0144).
+  std::vector<std::filesystem::path> brought{};
 };
 
 /// What makes an instance of the descriptor in its file the subsystem of the mission, as words for its process: pairs

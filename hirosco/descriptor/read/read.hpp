@@ -46,16 +46,18 @@ struct Reading {
 
 /// Reads and checks a subsystem descriptor. `name` is used in the diagnostics.  Realtime: allocates.
 [[nodiscard]] Reading<Subsystem> read_subsystem(const std::filesystem::path& file, const FileSource& source);
-/// Reads and checks a mission with every subsystem it names (paths relative to the mission file).  Realtime: allocates.
+/// Reads and checks a mission with every subsystem it names (paths relative to the mission file), and looks up what files of their settings
+/// bring along.  Realtime: allocates.
 [[nodiscard]] Reading<Mission> read_mission(const std::filesystem::path& file, const FileSource& source);
 
 /// Another text of the descriptor of a subsystem that flies, with `changes` of it applied as its process was told them when it started
 /// (changes_of()); whom it commands stays as resolved.  Realtime: allocates.
 [[nodiscard]] Reading<Subsystem> read_again(const Subsystem& flown, std::string_view text,
                                             const std::vector<std::pair<std::string, std::string>>& changes);
-/// The mission that flies with another text of one of its files, judged as a whole: the others are as they were when it was read.
-/// Realtime: allocates.
-[[nodiscard]] Reading<Mission> read_again(const Mission& flown, const std::filesystem::path& file, std::string text);
+/// The mission that flies with another text of one of its files, judged as a whole: the others are as they were when it was read. What files of
+/// other formats bring along is looked up in `disk` anew (brought_files.hpp).  Realtime: allocates, and as `disk`.
+[[nodiscard]] Reading<Mission> read_again(const Mission& flown, const std::filesystem::path& file, std::string text,
+                                          const FileSource& disk);
 
 /// Reads the manifest of a mission (docs/adr/0089).  Realtime: allocates.
 [[nodiscard]] Reading<Manifest> read_manifest(const std::filesystem::path& file, const FileSource& source);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "hirosco/descriptor/read/brought_files.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 
 namespace hirosco::descriptor {
@@ -59,9 +60,11 @@ Reading<Subsystem> read_again(const Subsystem& flown, std::string_view text,
   return reading;
 }
 
-Reading<Mission> read_again(const Mission& flown, const std::filesystem::path& file, std::string text) {
+Reading<Mission> read_again(const Mission& flown, const std::filesystem::path& file, std::string text,
+                            const FileSource& disk) {
   return read_mission(flown.file, [&](const std::filesystem::path& asked) -> Result<std::string> {
     if (asked == file) return text;
+    if (bringing_format_of(asked) != nullptr) return disk(asked);
     const auto known = flown.texts.find(asked);
     if (known == flown.texts.end()) return fail(ErrorCode::NotFound, "is no file of this flight");
     return *known->second;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hirosco/descriptor/model/status_rows.hpp"
+#include "hirosco/descriptor/read/brought_files.hpp"
 #include "hirosco/descriptor/read/detail/mission_reader.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
 #include "hirosco/utilities/lower_case.hpp"
@@ -406,6 +407,7 @@ Reading<Mission> read_mission(const std::filesystem::path& file, const FileSourc
   if (!root) return {std::nullopt, problems.take(), {}};
   detail::MissionReader reader{problems, once};
   Mission mission = reader.read(*root);
+  for (MissionSubsystem& member : mission.subsystems) member.brought = brought_files(member.subsystem, once);
   mission.texts = std::move(texts);
   mission.file = file;
   reading.problems = problems.take();

@@ -4,10 +4,8 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include "hirosco/utilities/os/file_descriptor.hpp"
-#include "hirosco/utilities/result.hpp"
 
 namespace hirosco {
 
@@ -31,15 +29,13 @@ struct Sandbox {
 /// no system calls that no subsystem needs, among them those that start a process.
 class PreparedSandbox {
  public:
-  /// Files are left open where the system cannot refuse them (isolation_lacks()).
-  [[nodiscard]] static Result<PreparedSandbox> prepare(const Sandbox& sandbox);
-  /// 0, or the system's error number.  Async-signal-safe.
+  /// Touches no file: a disk that stands still holds up who enters, and nobody else.
+  explicit PreparedSandbox(Sandbox sandbox) noexcept : sandbox_{std::move(sandbox)} {}
+  /// 0, or the system's error number. Files are left open where the system cannot refuse them (isolation_lacks()).  Async-signal-safe.
   [[nodiscard]] int enter() const noexcept;
-  [[nodiscard]] const FileDescriptor& rules() const noexcept { return rules_; }
 
  private:
-  explicit PreparedSandbox(FileDescriptor rules) noexcept : rules_{std::move(rules)} {}
-  FileDescriptor rules_;  ///< empty: no rules of files
+  Sandbox sandbox_;
 };
 
 /// From now on each system call that the sandbox refuses is named on standard error, at most ten times, and fails with EPERM; without this

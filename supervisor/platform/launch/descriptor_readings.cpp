@@ -21,7 +21,7 @@ DescriptorReading read_now(const descriptor::Mission& flown, const std::filesyst
     return reading;
   }
   reading.text = std::make_shared<const std::string>(std::move(*text));
-  reading.mission = descriptor::read_again(flown, file, *reading.text);
+  reading.mission = descriptor::read_again(flown, file, *reading.text, source);
   return reading;
 }
 

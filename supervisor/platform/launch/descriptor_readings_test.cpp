@@ -45,6 +45,21 @@ TEST_F(DescriptorReadingsTest, TheOtherFilesAreAsTheyWereWhenTheFlightBegan) {
   EXPECT_THAT(asked, ::testing::ElementsAre("flywheel.xml"));
 }
 
+TEST_F(DescriptorReadingsTest, WhatItsFilesBringAlongIsLookedUpOnTheDiskAnew) {
+  const std::string settings = R"(<Setting name="MODEL_FILE" value="coronagraph.urdf"/>)";
+  file = flown.find_subsystem("CORONAGRAPH")->subsystem.file;
+  std::string text = *flown.find_subsystem("CORONAGRAPH")->subsystem.text;
+  files["coronagraph.xml"] = text.insert(text.find("<Setting "), settings);
+  for (const char* mesh : {"a.stl", "b.stl"}) {
+    files["coronagraph.urdf"] = std::string{"<robot><mesh filename='"} + mesh + "'/></robot>";
+    const auto reading = read_now(flown, file, source);
+    ASSERT_TRUE(reading.mission.value);
+    EXPECT_THAT(reading.mission.value->find_subsystem("CORONAGRAPH")->brought,
+                ::testing::ElementsAre(file.parent_path() / mesh));
+    flown = *reading.mission.value;
+  }
+}
+
 TEST_F(DescriptorReadingsTest, AllProblemsAreToldWithTheirPlaces) {
   files["flywheel.xml"] =
       text_with(R"(type="DOUBLE" count="2" unit="rad"/>)", R"(type="DOUBLE" count="none" wrong="x"/>)");

@@ -6,9 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "hirosco/descriptor/model/mesh_files.hpp"
 #include "hirosco/descriptor/model/setting_files.hpp"
-#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 
 namespace hirosco::supervisor {
@@ -21,12 +19,8 @@ namespace {
   return find_shipped(std::string_view{text}.substr(shipped_prefix.size()));
 }
 
-/// It, and the meshes beside it that it names.
 void add_file(const std::filesystem::path& file, Sandbox& sandbox) {
   sandbox.readable.push_back(place_of(file).string());
-  if (file.extension() != ".urdf") return;
-  if (const auto text = descriptor::file_system()(file))
-    for (const auto& mesh : descriptor::meshes_named(file, *text)) sandbox.readable.push_back(place_of(mesh).string());
 }
 
 void add_address(const descriptor::Endnode& endnode, Sandbox& sandbox) {
@@ -70,13 +64,14 @@ Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::fil
                            "/dev/urandom", "/sys/devices/system/cpu"})
     sandbox.readable.emplace_back(file);
   if (!program.empty()) sandbox.executable.push_back(std::filesystem::absolute(program).string());
-  sandbox.readable.push_back(place_of(subsystem.subsystem.file).string());
+  add_file(subsystem.subsystem.file, sandbox);
   for (const auto& commanded : subsystem.subsystem.commands)
-    if (!commanded.file.empty()) sandbox.readable.push_back(place_of(commanded.file).string());
+    if (!commanded.file.empty()) add_file(commanded.file, sandbox);
   for (const auto& heard : subsystem.subsystem.subscribes)
-    if (!heard.file.empty()) sandbox.readable.push_back(place_of(heard.file).string());
+    if (!heard.file.empty()) add_file(heard.file, sandbox);
   for (const auto& script : subsystem.subsystem.scripts)
     add_file(descriptor::file_of(subsystem.subsystem, script.file), sandbox);
+  for (const auto& brought : subsystem.brought) add_file(brought, sandbox);
   sandbox.writable.emplace_back("/dev/null");
   for (const auto& configuration : subsystem.subsystem.configurations)
     for (const auto& use : configuration.devices) {

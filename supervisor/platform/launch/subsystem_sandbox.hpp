@@ -13,7 +13,8 @@ namespace hirosco::supervisor {
 /// What the system itself refuses beyond. Memory is not limited where a sanitizer needs more than there is.
 [[nodiscard]] ProcessLimits limits_of(const descriptor::Resources& resources) noexcept;
 
-/// Its program, descriptors and libraries to read, what its devices' transfers need to write, and nothing else.
+/// Its program, descriptors, libraries, files of its settings and what those bring along to read, what its devices' transfers need to write, and
+/// nothing else. Opens no file.
 [[nodiscard]] Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program);
 
 /// A script reaches what its interpreter needs, which nobody says.

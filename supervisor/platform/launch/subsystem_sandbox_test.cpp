@@ -2,11 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <string>
+
+#include "hirosco/descriptor/read/brought_files.hpp"
+#include "hirosco/utilities/os/file_descriptor.hpp"
+#include "supervisor/platform/storage/testing/test_folder.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -57,17 +68,68 @@ TEST(SubsystemSandbox, LetsReadWhatASettingOfADeviceNamesAsAFileAndNothingElseTh
   EXPECT_THAT(sandbox.readable, Not(Contains("/missions/secret.txt")));
 }
 
+/// ARM with a file of a robot that names a mesh beside it, in a folder of its own, as a mission's reader leaves it.
+struct RobotOnDisk {
+  TestFolder folder;
+  std::filesystem::path robot = folder.path() / "arm.urdf";
+  descriptor::MissionSubsystem arm = with_device(Transfer::Udp, "127.0.0.1:5000");
+
+  RobotOnDisk() {
+    std::filesystem::create_directories(folder.path() / "parts");
+    for (const char* name : {"parts/a.stl", "parts/b.stl", "notes"}) std::ofstream{folder.path() / name} << name;
+    std::ofstream{robot} << "<robot><link><mesh filename='parts/a.stl'/><mesh filename='../b.stl'/></link></robot>";
+    arm.subsystem.file = folder.path() / "arm.xml";
+    arm.subsystem.configurations[0].devices[0].settings = {{"MODEL_FILE", "arm.urdf", {}}};
+    arm.brought = descriptor::brought_files(arm.subsystem, descriptor::file_system());
+  }
+  [[nodiscard]] std::string place_of(const char* name) const { return (folder.path() / name).string(); }
+};
+
 TEST(SubsystemSandbox, LetsReadTheMeshesBesideARobotsFileThatItNames) {
-  const std::filesystem::path folder{::testing::TempDir()};
-  std::ofstream{folder / "arm.urdf"}
-      << "<robot><link><mesh filename='parts/a.stl'/><mesh filename='../b.stl'/></link></robot>";
-  auto arm = with_device(Transfer::Udp, "127.0.0.1:5000");
-  arm.subsystem.file = folder / "arm.xml";
-  arm.subsystem.configurations[0].devices[0].settings = {{"MODEL_FILE", "arm.urdf", {}}};
-  const Sandbox sandbox = sandbox_of(arm, "/bin/arm");
-  EXPECT_THAT(sandbox.readable, Contains((folder / "arm.urdf").string()));
-  EXPECT_THAT(sandbox.readable, Contains((folder / "parts/a.stl").string()));
+  const RobotOnDisk disk;
+  const Sandbox sandbox = sandbox_of(disk.arm, "/bin/arm");
+  EXPECT_THAT(sandbox.readable, Contains(disk.place_of("arm.urdf")));
+  EXPECT_THAT(sandbox.readable, Contains(disk.place_of("parts/a.stl")));
   EXPECT_THAT(sandbox.readable, Not(Contains(::testing::HasSubstr("b.stl"))));
+}
+
+TEST(SubsystemSandbox, IsMadeWithoutAFileBeingOpenedSoThatADiskThatStandsStillHoldsNobodyUp) {
+  const RobotOnDisk disk;
+  const FileDescriptor watch{::inotify_init1(IN_NONBLOCK | IN_CLOEXEC)};
+  ASSERT_GE(::inotify_add_watch(watch.get(), disk.folder.path().c_str(), IN_OPEN | IN_ACCESS), 0);
+  std::array<char, 4096> events{};
+  const auto opened = [&] { return ::read(watch.get(), events.data(), events.size()) > 0; };
+  const Sandbox before = sandbox_of(disk.arm, "/bin/arm");
+  EXPECT_FALSE(opened());
+  static_cast<void>(std::ifstream{disk.robot}.get());
+  EXPECT_TRUE(opened()) << "who opens one is seen";
+  // A file that never answers who reads it.
+  std::filesystem::remove(disk.robot);
+  ASSERT_EQ(::mkfifo(disk.robot.c_str(), 0600), 0);
+  EXPECT_EQ(sandbox_of(disk.arm, "/bin/arm").readable, before.readable);
+}
+
+/// Apart (CMakeLists.txt), where the system has what a sandbox needs.
+TEST(SubsystemInItsSandbox, ReadsTheRobotsFileAndItsMeshAndNothingElseInTheFolder) {
+  const auto lacks = isolation_lacks();
+  ASSERT_TRUE(lacks.empty()) << lacks.front();
+  const RobotOnDisk disk;
+  const PreparedSandbox prepared{sandbox_of(disk.arm, {})};
+  const auto opens = [&](const char* name) {
+    const FileDescriptor file{::open(disk.place_of(name).c_str(), O_RDONLY | O_CLOEXEC)};
+    return static_cast<bool>(file);
+  };
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (prepared.enter() != 0) ::_exit(99);
+    if (!opens("arm.urdf") || !opens("parts/a.stl")) ::_exit(1);
+    if (opens("parts/b.stl") || opens("notes") || opens(".") || opens("parts")) ::_exit(2);
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 TEST(SubsystemSandbox, KnowsAScriptByItsFirstLine) {

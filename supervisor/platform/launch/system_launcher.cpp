@@ -163,15 +163,19 @@ std::string SystemLauncher::shut_out(const descriptor::MissionSubsystem& flown,
 }
 
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
-  std::filesystem::path& program = programs_[subsystem.executable];
+  auto& [program, script] = programs_[subsystem.executable];
   const ProgramImage* image = nullptr;
   if (held_) {
     const auto found = held_->find(file_of(subsystem));
     if (!found) return fail(found.error().why);
     image = *found;
     program = image->file();
+    script = image->is_script();
   }
-  if (program.empty()) program = find_program(subsystem.executable);
+  if (program.empty()) {
+    program = find_program(subsystem.executable);
+    script = is_script(program);
+  }
   if (program.empty()) return fail(ErrorCode::NotFound, "its executable is neither beside this program nor in PATH");
   HIROSCO_TRY_LET(auto vital, make_page<VitalPage>(memory_, "hirosco-vital"));
   HIROSCO_TRY_LET(auto permit, make_page<PermitPage>(memory_, "hirosco-permit"));
@@ -198,12 +202,11 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   }
   start.limits = limits_of(subsystem.subsystem.resources);
   std::optional<PreparedSandbox> sandbox;
-  const bool script = image != nullptr ? image->is_script() : is_script(program);
   if (image != nullptr) start.image = image->descriptor();
   if (image != nullptr && script) start.inherited.push_back({image->descriptor(), script_number});
   if (!sandbox_is_off() && !script) {
     // Of one that runs from memory no file is executed.
-    HIROSCO_TRY_LET(sandbox, PreparedSandbox::prepare(sandbox_of(subsystem, image != nullptr ? "" : program)));
+    sandbox.emplace(sandbox_of(subsystem, image != nullptr ? "" : program));
     start.sandbox = &*sandbox;
   }
   // What it writes to its standard error is shown with its name, within limits.

@@ -65,8 +65,12 @@ class SystemLauncher final : public FlightLauncher {
   std::map<std::string, Mapping, std::less<>> vital_;  ///< newest page of each subsystem, outlives its process
   std::unique_ptr<HeldPrograms> held_;  ///< null: the mission has no manifest
   std::map<std::string, std::string, std::less<>> versions_;  ///< by subsystem, where it is not the mission's own
-  /// Without one: where each executable was found: a disk is not searched again in flight, where it might hang.
-  std::map<std::string, std::filesystem::path, std::less<>> programs_;
+  /// Without one: where each executable was found, and what it is: a disk is not asked again in flight, where it might hang.
+  struct FoundProgram {
+    std::filesystem::path file;  ///< empty: not looked for yet, or to be looked for again
+    bool script{false};
+  };
+  std::map<std::string, FoundProgram, std::less<>> programs_;
   StoreClient store_{-1};
   std::map<std::string, std::size_t, std::less<>> slots_;
   InheritedParts inherited_;

@@ -127,7 +127,12 @@ void Descriptors::judge(DescriptorReading reading) {
     return give_up(FailureCode::WrongStatus, "it has left Offline and Pre-Operational, or a change has begun");
   text_ = std::move(reading.text);
   const auto flown = flying(file_);
+  texts_ = std::move(reading.mission.value->texts);
   if (flown.front()->subsystem.text && *flown.front()->subsystem.text == *text_) {
+    // What its files bring along may be another all the same.
+    for (descriptor::MissionSubsystem* member : flown)
+      if (auto* fresh = reading.mission.value->find_subsystem(member->subsystem.id)) member->brought = fresh->brought;
+    take_texts();
     craft_.tell(fmt::format("{}: the text is the one in force", file_.string()), apid_);
     return finish();
   }
@@ -254,11 +259,19 @@ void Descriptors::take_over() {
     auto fresh = fresh_.extract(member->subsystem.id);
     parts_.stored.redeclared(declared_.at(member->subsystem.id));
     descriptor::take_over(member->subsystem, std::move(fresh.mapped().subsystem));
+    member->brought = std::move(fresh.mapped().brought);
     craft_.tell(fmt::format("{} flies by {} as it is now, CRC-32 {:08x}", member->subsystem.name, file_.string(), hash),
                 member->subsystem.id);
     parts_.own.announce("DESCRIPTOR_TAKEN", {static_cast<double>(member->subsystem.id), static_cast<double>(hash)});
   }
+  take_texts();
+}
+
+/// Its own and those of the files that bring others along; all others are the same.
+void Descriptors::take_texts() {
+  for (auto& [file, text] : texts_) craft_.mission.texts[file] = std::move(text);
   craft_.mission.texts[file_] = text_;
+  texts_.clear();
 }
 
 /// Each problem reaches whoever asked; the story has all of them.

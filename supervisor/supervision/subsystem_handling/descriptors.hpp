@@ -67,6 +67,7 @@ class Descriptors final : public Watch {
   void judged();
   void taken();
   void take_over();
+  void take_texts();
   void refuse(const Problems& problems);
   void finish();
   void give_up(pus::FailureCode code, const char* words, std::int64_t number = 0);
@@ -81,6 +82,7 @@ class Descriptors final : public Watch {
   TimePoint deadline_{};
   std::uint32_t round_{0};  ///< answers to an earlier one count for nothing
   std::shared_ptr<const std::string> text_;
+  std::map<std::filesystem::path, std::shared_ptr<const std::string>> texts_;  ///< all that the newest reading read
   std::map<std::uint16_t, descriptor::Subsystem> declared_;  ///< the same before anything was set
   std::map<std::uint16_t, descriptor::MissionSubsystem> fresh_;  ///< by APID: who flies the file
   std::map<std::uint16_t, Asked> asked_;  ///< of them those whose process runs

@@ -246,6 +246,29 @@ TEST_F(DescriptorsTest, AFileThatIsNotReadInTimeIsGivenUp) {
   ASSERT_EQ(reread().kind, Came::Running) << "the first is over";
 }
 
+TEST_F(DescriptorsTest, WhatFilesBringAlongIsTakenWithItAndAlsoWithTheTextInForce) {
+  const auto bringing = [&](DescriptorReading reading, const char* mesh) {
+    for (auto& member : reading.mission.value->subsystems)
+      if (member.subsystem.id != hand) member.brought = {mesh};
+    reading.mission.value->texts["arm.urdf"] = std::make_shared<const std::string>(mesh);
+    return reading;
+  };
+  const auto brought = [&](std::uint16_t apid) { return craft.mission.find_subsystem(apid)->brought; };
+  is_read(bringing(wider(), "a.stl"));
+  EXPECT_THAT(brought(arm), IsEmpty()) << "nobody has taken it yet";
+  answer(true);
+  answer(true);
+  EXPECT_THAT(brought(arm), ElementsAre("a.stl"));
+  EXPECT_THAT(brought(hand), IsEmpty());
+  EXPECT_THAT(brought(camera), IsEmpty()) << "its descriptor was not read";
+  EXPECT_EQ(*craft.mission.texts.at("arm.urdf"), "a.stl");
+  DescriptorReading same = another([](descriptor::Subsystem&) {});
+  is_read(bringing(std::move(same), "b.stl"));
+  EXPECT_TRUE(was_told("the text is the one in force"));
+  EXPECT_THAT(brought(arm), ElementsAre("b.stl"));
+  EXPECT_EQ(*craft.mission.texts.at("arm.urdf"), "b.stl") << "who goes on for this supervisor looks there";
+}
+
 TEST_F(DescriptorsTest, TheTextInForceChangesNothing) {
   DescriptorReading same = another([](descriptor::Subsystem&) {});
   same.text = std::make_shared<const std::string>("old");

@@ -122,7 +122,7 @@ void set_limit(const Plan& plan, int resource, const std::optional<std::uint64_t
   reset_signals(plan.blocked);
   if (plan.sandbox != nullptr)
     if (const int error = plan.sandbox->enter(); error != 0) give_up(plan.report, error);
-  // Last: until then all of ours are still open, and a sandbox opens one more.
+  // Last: until then all of ours are still open, and a sandbox opens two more.
   set_limit(plan, RLIMIT_DATA, plan.limits.memory_octets);
   set_limit(plan, RLIMIT_NOFILE, plan.limits.descriptors);
   if (plan.image >= 0)

@@ -86,6 +86,33 @@ constexpr std::uint64_t of_plain_files = LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_A
   return added;
 }
 
+/// Async-signal-safe.
+[[nodiscard]] bool permit_paths(int rules, const std::vector<std::string>& paths, std::uint64_t rights) noexcept {
+  for (const std::string& path : paths)
+    if (!permit_path(rules, path.c_str(), rights)) return false;
+  return true;
+}
+
+/// 0, or the system's error number; also where the system knows no rules of files.  Async-signal-safe.
+[[nodiscard]] int restrict_files(const Sandbox& sandbox) noexcept {
+  const long version = rules_version();
+  if (version < 1) return 0;
+  const Rules known = rules_of(version);
+  const int rules = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &known, octets_of(version), 0));
+  if (rules < 0) return errno;
+  constexpr std::uint64_t to_execute = LANDLOCK_ACCESS_FS_EXECUTE | to_read;
+  // Devices are controlled by nobody but who may write them.
+  const std::uint64_t to_write = known.files & ~std::uint64_t{LANDLOCK_ACCESS_FS_EXECUTE};
+  // /proc/self is of this process: another one that has the same number later is outside.
+  const bool done = permit_paths(rules, sandbox.readable, to_read) &&
+                    permit_paths(rules, sandbox.executable, to_execute) &&
+                    permit_paths(rules, sandbox.writable, to_write) && permit_path(rules, "/proc/self", to_read) &&
+                    ::syscall(SYS_landlock_restrict_self, rules, 0) == 0;
+  const int error = done ? 0 : errno;
+  ::close(rules);
+  return error;
+}
+
 // --- system calls ----------------------------------------------------------------------------------------------------------
 
 struct Call {
@@ -258,33 +285,10 @@ std::vector<std::string> isolation_lacks() {
   return lacks;
 }
 
-Result<PreparedSandbox> PreparedSandbox::prepare(const Sandbox& sandbox) {
-  const long rules_known = rules_version();
-  if (rules_known < 1) return PreparedSandbox{FileDescriptor{}};
-  const Rules rules = rules_of(rules_known);
-  FileDescriptor made{static_cast<int>(::syscall(SYS_landlock_create_ruleset, &rules, octets_of(rules_known), 0))};
-  if (!made) return fail(ErrorCode::SystemFailure, "rules of files", errno);
-  const auto all = [&](const std::vector<std::string>& paths, std::uint64_t rights) {
-    for (const std::string& path : paths)
-      if (!permit_path(made.get(), path.c_str(), rights)) return false;
-    return true;
-  };
-  // Devices are controlled by nobody but who may write them.
-  const std::uint64_t to_execute = LANDLOCK_ACCESS_FS_EXECUTE | to_read;
-  const std::uint64_t to_write = rules.files & ~std::uint64_t{LANDLOCK_ACCESS_FS_EXECUTE};
-  if (!all(sandbox.readable, to_read) || !all(sandbox.executable, to_execute) || !all(sandbox.writable, to_write))
-    return fail(ErrorCode::SystemFailure, "a rule of files", errno);
-  return PreparedSandbox{std::move(made)};
-}
-
 int PreparedSandbox::enter() const noexcept {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return errno;
   give_up_rights();
-  if (rules_) {
-    // Of this process: another one that has the same number later is outside.
-    if (!permit_path(rules_.get(), "/proc/self", to_read)) return errno;
-    if (::syscall(SYS_landlock_restrict_self, rules_.get(), 0) != 0) return errno;
-  }
+  if (const int error = restrict_files(sandbox_); error != 0) return error;
   static constexpr Filter calls = call_filter();
   sock_fprog program{};
   program.len = calls.length;

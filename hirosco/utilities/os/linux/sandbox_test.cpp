@@ -31,12 +31,11 @@ constexpr int could_not_enter = 99;
 
 /// What a process in a sandbox returns; 128 and more: the signal that ended it.
 int inside(const Sandbox& sandbox, const std::function<int()>& work) {
-  const auto prepared = PreparedSandbox::prepare(sandbox);
-  EXPECT_TRUE(prepared) << prepared.error().text << " " << prepared.error().value;
+  const PreparedSandbox prepared{sandbox};
   const pid_t child = ::fork();
   if (child == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    ::_exit(prepared->enter() == 0 ? work() : could_not_enter);
+    ::_exit(prepared.enter() == 0 ? work() : could_not_enter);
   }
   int status = 0;
   ::waitpid(child, &status, 0);
@@ -126,7 +125,7 @@ TEST_F(SandboxTest, KeepsWhatACycleNeeds) {
 TEST_F(SandboxTest, AStartedProcessIsInIt) {
   const Sandbox sandbox{
       .readable = {"/etc"}, .executable = {"/bin", "/usr", "/lib", "/lib64"}, .writable = {"/dev/null"}};
-  const auto prepared = PreparedSandbox::prepare(sandbox).value();
+  const PreparedSandbox prepared{sandbox};
   std::vector<FileDescriptor> ours;  // more than it may have
   for (int i = 0; i < 80; ++i) ours.emplace_back(::open("/dev/null", O_RDONLY | O_CLOEXEC));
   ProcessStart start{.executable = "/bin/sh",

@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The HIROSCO developers
+# SPDX-License-Identifier: Apache-2.0
+"""Each folder of subsystems/ is flown twice: by a mission of missions/, and by a test mission, a file in tests/ that commissions it into Operational and
+that a test beside it flies or simulates. Who is flown by what is the table of subsystems/README.md. Prints who is not and what to do, and takes
+it away from a copy itself, to be caught. `--write` makes the table."""
+import pathlib
+import re
+import sys
+import tempfile
+import xml.etree.ElementTree as xml
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PROGRAM = re.compile(r"^\s*hirosco_(?:subsystem|executable)\((hirosco-[a-z0-9-]+)", re.M)
+BEGIN, END = "<!-- flown: made by tools/check_flown.py --write -->\n", "<!-- end -->\n"
+KINDS = ("missions", "tests")
+SOURCES = (".py", ".cpp", ".hpp", ".mjs")
+
+
+def programs(folder):
+    """What the build makes of a subsystem's folder."""
+    return [name for path in sorted(folder.rglob("CMakeLists.txt")) for name in PROGRAM.findall(path.read_text())]
+
+
+def place(root, mission, named):
+    """Where a descriptor is that a mission names."""
+    return root / named.removeprefix("@hirosco/") if named.startswith("@hirosco/") else mission.parent / named
+
+
+def commissioned(root, mission):
+    """(program, configuration) of all whom a mode of this mission brings into Operational."""
+    tree = xml.parse(mission).getroot()
+    if tree.tag != "Mission":
+        return
+    program = {}
+    for member in tree.iter("Subsystem"):
+        name = member.get("name") or xml.parse(place(root, mission, member.get("descriptor"))).getroot().get("name")
+        program[name] = member.get("executable")
+    for step in tree.iter("Commission"):
+        if step.get("state") == "Operational":
+            yield program[step.get("subsystem")], step.get("configuration")
+
+
+def is_used(root, mission):
+    """A program in tests/ names it: by its way from the root, by its name from beside it, by the folder of a mission."""
+    words = [mission.relative_to(root).as_posix()]
+    if mission.relative_to(root).parts[0] == "missions":
+        words.append(mission.parent.relative_to(root).as_posix() + '"')
+    for path in sorted((root / "tests").rglob("*")):
+        if path.suffix in SOURCES and "node_modules" not in path.parts:
+            text = path.read_text()
+            if any(word in text for word in words) or (path.parent == mission.parent and f'"{mission.name}"' in text):
+                return True
+    return False
+
+
+def flights(root):
+    """By kind and program: the missions that fly it, each with the configurations."""
+    found = {kind: {} for kind in KINDS}
+    for kind in KINDS:
+        for mission in sorted((root / kind).rglob("*.xml")):
+            flown = list(commissioned(root, mission))
+            if flown and is_used(root, mission):
+                for program, configuration in flown:
+                    found[kind].setdefault(program, {}).setdefault(mission, set()).add(configuration)
+    return found
+
+
+def folders(root):
+    return [path for path in sorted((root / "subsystems").iterdir()) if path.is_dir() and programs(path)]
+
+
+def cell(root, kind, flown, names):
+    """"light (NOMINAL, DIM)"."""
+    told = {}
+    for name in names:
+        for mission, configurations in flown[kind].get(name, {}).items():
+            told.setdefault(mission.relative_to(root / kind).as_posix().removesuffix("/mission.xml"), set()).update(configurations)
+    return ", ".join(f"{mission} ({', '.join(sorted(configurations))})" for mission, configurations in sorted(told.items()))
+
+
+def table(root, flown):
+    text = "| subsystem | programs | flown by `missions/` | and by `tests/` |\n|---|---|---|---|\n"
+    for folder in folders(root):
+        names = programs(folder)
+        text += f"| [{folder.name}]({folder.name}/README.md) | {', '.join(f'`{name}`' for name in names)} |"
+        text += "".join(f" {cell(root, kind, flown, names)} |" for kind in KINDS) + "\n"
+    return text
+
+
+def written(root, flown):
+    """The README as it has to be."""
+    text = (root / "subsystems/README.md").read_text()
+    before, _, rest = text.partition(BEGIN)
+    return before + BEGIN + table(root, flown) + END + rest.partition(END)[2]
+
+
+def problems(root):
+    flown = flights(root)
+    todo = {"missions": "put <Subsystem> and <Commission ... state=\"Operational\"/> of it into a mission.xml there, which a test flies",
+            "tests": "put them into a test mission and judge it in the test beside that (tests/stock/ has three that others may join)"}
+    for folder in folders(root):
+        names = programs(folder)
+        for kind in KINDS:
+            if not any(flown[kind].get(name) for name in names):
+                yield f"subsystems/{folder.name}: no mission of {kind}/ flies {' or '.join(names)}: {todo[kind]}"
+    if written(root, flown) != (root / "subsystems/README.md").read_text():
+        yield "subsystems/README.md: its table is not what flies: tools/check_flown.py --write"
+
+
+def self_test():
+    """Each thing that it is for is missed in a copy that lacks it."""
+    mission = '<Mission><Subsystem executable="hirosco-lamp" descriptor="../../subsystems/lamp/lamp.xml"/>' \
+        '<Mode><Commission subsystem="LAMP" configuration="NOMINAL" state="Operational"/></Mode></Mission>'
+    with tempfile.TemporaryDirectory() as name:
+        root = pathlib.Path(name)
+        files = {"subsystems/lamp/CMakeLists.txt": "hirosco_subsystem(hirosco-lamp SOURCES lamp.cpp)\n", "subsystems/lamp/lamp.xml": '<Subsystem name="LAMP"/>',
+                 "subsystems/README.md": BEGIN + END, "missions/light/mission.xml": mission, "tests/dark/dark.xml": mission,
+                 "tests/dark/dark_test.cpp": '"missions/light/mission.xml" "dark.xml"'}
+        for path, text in files.items():
+            (root / path).parent.mkdir(parents=True, exist_ok=True)
+            (root / path).write_text(text)
+        assert len(list(problems(root))) == 1, list(problems(root))
+        (root / "subsystems/README.md").write_text(written(root, flights(root)))
+        assert not list(problems(root)), list(problems(root))
+        assert "| light (NOMINAL) | dark/dark.xml (NOMINAL) |" in (root / "subsystems/README.md").read_text()
+        for path, wrong in (("missions/light/mission.xml", mission.replace("Operational", "PreOperational")),
+                            ("tests/dark/dark.xml", mission.replace("hirosco-lamp", "hirosco-rogue-lamp")),
+                            ("tests/dark/dark.xml", mission.replace("NOMINAL", "BRIGHT")),
+                            ("tests/dark/dark_test.cpp", '"dark.xml"'), ("tests/dark/dark_test.cpp", '"missions/light/mission.xml"')):
+            (root / path).write_text(wrong)
+            assert list(problems(root)), wrong
+            (root / path).write_text(files[path])
+        assert not list(problems(root))
+
+
+def main():
+    self_test()
+    if sys.argv[1:] == ["--write"]:
+        (ROOT / "subsystems/README.md").write_text(written(ROOT, flights(ROOT)))
+    found = list(problems(ROOT))
+    for problem in found:
+        print(problem)
+    sys.exit(1 if found else 0)
+
+
+if __name__ == "__main__":
+    main()
