@@ -307,7 +307,7 @@ describe('the robot in 3D', () => {
   });
 
   it('shows the plots of the joint that moves a part by one click on it, and turns by a drag', async () => {
-    const [x, y] = [620, 110];  // the sky
+    const [x, y] = [620, 150];  // the sky
     await page.mouse.click(x, y);
     assert.match(await page.evaluate(() => location.hash), /#\/overview/);
     const shown = new Set();
@@ -401,7 +401,7 @@ describe('borders between panels', () => {
     await go(page, 'overview');
     await page.waitForSelector('[data-test=split-columns-1]');
     await drag('split-columns-0', 100, 0);
-    await drag('split-rows-0', 0, -60);
+    await drag('split-rows-0', 0, -40);
     const wide = await width();
     await page.setViewportSize({width: 1440, height: 900});
     await holds(page, (before) => Math.abs(document.querySelector('main > .panel[aria-label=Subsystems]').getBoundingClientRect().width / before - (1440 - 68 - 32) / (1280 - 68 - 32)) < 0.03, wide);

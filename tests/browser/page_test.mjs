@@ -112,6 +112,10 @@ describe('a flight that means well', () => {
 
   it('accepts the ends of a range and rejects what lies beyond, text, NaN and fractions of whole numbers', async () => {
     await go(page, 'commands/MANIPULATOR/MOVE_TO');
+    // That it is refused is said before anything is typed.
+    await page.waitForSelector('[data-test=permission].no');
+    assert.equal(await page.textContent('[data-test=send]'), 'MOVE_TO is not permitted now');
+    assert.ok(await page.locator('[data-test=send]').isDisabled());
     const wrong = (field) => page.locator(`label.field:has([data-test=field-${field}])`).evaluate((node) => node.classList.contains('wrong'));
     const cases = {Q1: {good: ['-2', '1', '0.5', '1e-3'], bad: ['-2.001', '1.001', 'NaN', 'Infinity', 'left', '0x1', '1 2']},
       Q2: {good: ['0.2', '2.6'], bad: ['0.19', '2.61', '-']}, STEPS: {good: ['0', '65535'], bad: ['-1', '65536', '1.5', 'NaN', 'two']}};
@@ -133,6 +137,7 @@ describe('a flight that means well', () => {
   it('shows octets and the refusal before sending, and the verdict after', async () => {
     await holds(page, () => /^[0-9A-F]{2} /.test(document.querySelector('[data-test=octets]').textContent));
     await page.waitForSelector('[data-test=permission].no');
+    assert.equal(await page.textContent('[data-test=send].refused'), 'Send MOVE_TO all the same');
     await page.click('[data-test=send]');
     await page.waitForSelector('[data-test=verdict].failed');
     assert.match(await page.textContent('[data-test=verdict]'), /setpoint owned by a link/);
@@ -249,6 +254,17 @@ describe('a flight that means well', () => {
     await until('three curves with samples', async () => { const all = await told(); return all.length === 3 && all.every(([, value, between]) => Number.isFinite(value) && between); });
     assert.deepEqual((await told()).map(([name]) => name), ['MANIPULATOR.CUR_VALUES.POSITION[0]', 'MANIPULATOR.CUR_VALUES.POSITION[0]@1', '=2 * MANIPULATOR.DES_POSITION[0]']);
     await page.selectOption('[data-test=compare]', '');
+  });
+
+  it('plots the force at the tip as the one number that stands at its arrow', async () => {
+    await go(page, 'plots?p=SUPERVISOR.MODE&w=60');
+    await page.click('[data-test=pictured] button:has-text("force at the tip")', {modifiers: ['Shift']});
+    const told = () => page.evaluate(() => [...document.querySelectorAll('[data-test=legend] > span')].map((one) => [one.title, one.textContent, one.querySelector('[data-test=most]')?.textContent]).at(-1));
+    // The flight pushes with up to 30 N.
+    await until('its greatest', async () => /^30\.0 at/.test((await told())[2] ?? ''));
+    const [name, words] = await told();
+    assert.equal(name, '=hypot(MANIPULATOR.TIP_FORCE[0], MANIPULATOR.TIP_FORCE[1])');
+    assert.match(words, /^MANIPULATOR force at the tip [\d.]+ N/);
   });
 
   it('shows what has names for its values as words, not as heights', async () => {
@@ -378,6 +394,19 @@ describe('a flight that means well', () => {
       if (width > 900) assert.ok(await is_in_sight(page, '[data-test=send]'), `Send at ${width}x${height}`);
     }
     await page.setViewportSize(small);
+  });
+
+  it('cuts no field of the form beside the robot where an answer stands below them', async () => {
+    await page.selectOption('[data-test=quick-command]', 'MOVE_TO');
+    for (const [field, text] of Object.entries({Q1: '-1.5', Q2: '0.5', STEPS: '3'})) await page.fill(`.quick [data-test=field-${field}]`, text);
+    await page.click('.quick [data-test=send]');
+    await page.waitForSelector('.quick [data-test=verdict].failed');
+    const hidden = await page.evaluate(() => {
+      const foot = document.querySelector('.quick .foot').getBoundingClientRect().top;
+      return [...document.querySelectorAll('.quick .field input')].filter((node) => node.getBoundingClientRect().bottom > foot).length;
+    });
+    assert.equal(hidden, 0);
+    assert.ok(await page.evaluate(() => [...document.querySelectorAll('.quick, .quick *')].every((node) => node.scrollTop === 0)));
   });
 
   it('has no serious finding of axe-core in any view', async () => {

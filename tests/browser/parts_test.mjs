@@ -16,7 +16,9 @@ const of_page = (file) => import(pathToFileURL(join(process.env.HIROSCO_SOURCES,
 const {beyond_rad, reach} = await of_page('scene/reach.js');
 const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numbers.js');
 const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
-const {ticks_text} = await of_page('format.js');
+const {in_words, ticks_text} = await of_page('format.js');
+const {borne_by, missed_words, MissedLately, rate_of} = await of_page('parts/missed.js');
+const {risings} = await of_page('parts/risings.js');
 const {joint_above, plots_of_angle, plots_of_link} = await of_page('parts/joint_plots.js');
 const {extent_of, moved, remembered, template_of} = await of_page('parts/splits_reckoned.js');
 const {height_of, late_count, place_of, quantile_ns} = await of_page('parts/latency.js');
@@ -43,9 +45,58 @@ describe('a part of the robot that is clicked', () => {
 
   it('shows the forces of a tip, all joints of a handle, and nothing of what stands still', () => {
     assert.deepEqual(plots_of_link(finger, {about, links}, columns), [['ARM.TIP_FORCE[0]', 'ARM.TIP_FORCE[1]']]);
+    assert.deepEqual(plots_of_link(finger, {about: {...about, force: about.force.slice(0, 2)}, links}, columns), [['=hypot(ARM.TIP_FORCE[0], ARM.TIP_FORCE[1])', 'ARM.TIP_FORCE[0]', 'ARM.TIP_FORCE[1]']],
+      'first the one number that stands at the arrow');
     assert.deepEqual(plots_of_link(lower, {about: {joints: about.joints, handle: 'lower'}, links}, columns), [['ARM.CUR.POSITION[0]', 'ARM.CUR.POSITION[1]'], ['ARM.CUR.TORQUE[0]', 'ARM.CUR.TORQUE[1]']]);
     assert.deepEqual(plots_of_link(base, {about, links}, columns), []);
     assert.deepEqual(plots_of_angle('ARM.NOTHING[0]', columns), []);
+  });
+});
+
+describe('cycles that were missed', () => {
+  it('are told as a rate of the last minute, and begin anew with a smaller count or an earlier time', () => {
+    const lately = new MissedLately();
+    for (let t = 0; t <= 300; t += 0.2) lately.take(t, [{name: 'ARM', missed: t < 200 ? 40 : 40 + Math.floor((t - 200) / 10)}]);
+    const told = lately.of('ARM', 50);
+    assert.equal(told.seconds, 60);
+    assert.ok(Math.abs(told.count - 6) <= 1, `${told.count} of one each 10 s`);
+    assert.equal(rate_of({count: 1, seconds: 30}), 2);
+    lately.take(301, [{name: 'ARM', missed: 0}]);
+    assert.equal(lately.of('ARM', 0), null, 'started again');
+    lately.take(303, [{name: 'ARM', missed: 0}]);
+    lately.take(100, [{name: 'ARM', missed: 3}]);
+    assert.equal(lately.of('ARM', 3), null, 'another flight');
+    assert.equal(lately.of('HAND', 3), null);
+  });
+
+  it('stand beside what is too many: of the links that need their samples the one that bears least', () => {
+    const links = [{from: 'ARM', to: 'HAND', required: true, age_limit_cycles: 5}, {from: 'ARM', to: 'LOG', required: true, age_limit_cycles: 3}, {from: 'ARM', to: 'EYE', required: false, age_limit_cycles: 1},
+      {from: 'HAND', to: 'ARM', required: true, age_limit_cycles: null}];
+    assert.deepEqual(borne_by('ARM', links), {cycles: 3, who: 'LOG'});
+    assert.equal(borne_by('HAND', links), null);
+    assert.equal(missed_words({missed: 12, cycles: 120000, lately: {count: 3, seconds: 60}, borne: borne_by('ARM', links)}),
+      '12 of 120,000 cycles missed since the start, 3 in the last 60 s. LOG is stopped when it lacks samples for 3 cycles in a row.');
+  });
+});
+
+describe('what came up', () => {
+  const modes = [{id: 0, name: 'commissioning', commission: []}, {id: 1, name: 'pair', commission: [{subsystem: 'ARM', state: 'Operational'}, {subsystem: 'HAND', state: 'Operational'}]}];
+  const state = (t, subsystem, name) => ({t, subsystem, state: name}), mode = (t, id) => ({t, mode: id});
+
+  it('is told when the last member and the mode are there, each time, and not of what was up before anybody looked', () => {
+    const changes = [mode(1, 0), state(1, 'ARM', 'Offline'), state(1, 'HAND', 'Offline'), state(2, 'ARM', 'Operational'), state(3, 'HAND', 'Operational'), mode(4, 1), state(9, 'HAND', 'Offline'), state(12, 'HAND', 'Operational')];
+    assert.deepEqual(risings(changes, modes), [{t: 4, name: 'pair'}, {t: 12, name: 'pair'}]);
+    assert.deepEqual(risings([mode(1, 1), state(1, 'ARM', 'Operational'), state(1, 'HAND', 'Operational'), state(5, 'ARM', 'Operational')], modes), []);
+  });
+});
+
+describe('an event in words', () => {
+  it('has names for numbers of subsystems and none of the words of programmers', () => {
+    const name_of = (apid) => ({10: 'ARM'})[apid];
+    assert.equal(in_words('APID=10 BUDGET=70 W RESERVED=20 W', name_of), 'ARM budget 70 W reserved 20 W');
+    assert.equal(in_words('REASON=hung up SILENT_CYCLES=0', name_of), 'connection closed silent cycles 0');
+    assert.equal(in_words('APID=77', name_of), 'apid 77');
+    assert.equal(in_words('three words of text', name_of), 'three words of text');
   });
 });
 

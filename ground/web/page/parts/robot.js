@@ -43,7 +43,7 @@ function Hand({description, window_ref}) {
   const known = (robot?.torque ?? []).filter((name) => values.has(name)), felt = Math.hypot(...known.map((name) => values.get(name).v));
   const first = robot && Object.values(robot.joints)[0];
   return html`<div class=${`hand ${down ? 'bad' : ''}`}><h3>${description.inset.title}</h3><div class="window" ref=${window_ref} />
-    <p>${down ? html`<b>${lost ? 'Device lost' : 'Stopped'}</b><span>${age_text(freshness(first).age_s)} ago</span>` : html`felt<span><b>${known.length ? fixed_text(felt, 3) : '–'}</b> N m</span>`}</p></div>`;
+    <p>${down ? html`<b>${lost ? 'Device lost' : 'Stopped'}</b><span>${age_text(freshness(first).age_s)} ago</span>` : html`felt<span><b>${known.length ? fixed_text(felt, 3) : '–'}</b> N·m</span>`}</p></div>`;
 }
 
 /// What the picture alone would not say: that it is old, and that nothing there can move.
@@ -172,7 +172,7 @@ export function Robot() {
     ${description?.inset ? html`<${Hand} description=${description} window_ref=${window_ref} />` : null}
     ${description ? html`<${Verdict} description=${description} />
       <div class="key">${stopped.length ? html`<span><i />last known pose</span><span><i class="fallen" />inhibited</span>` : html`${description.robots.length ? html`<span><i />measured</span>` : html`<span><i />Operational</span><span><i class="fallen" />inhibited or failed</span>`}${
-        goal_typed || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : 'goal, not sent'}</span>` : null}${feels(description) ? html`<span><i class="touched" />touched</span>` : null}${
+        goal_typed || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : typed.value?.refused ? 'goal, refused' : 'goal, not sent'}</span>` : null}${feels(description) ? html`<span><i class="touched" />touched</span>` : null}${
         description.inset ? html`<span><i class="felt" />felt</span>` : null}`}${hand && operator.value && !replay.value && !stopped.length ? html`<span class="hint">${goal_typed && !goal_sent ? 'drag the goal by its ball or a link' : 'drag the handle or the fingertip'}</span>` : null}</div>` : null}
   </div>`;
 }
