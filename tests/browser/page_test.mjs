@@ -398,7 +398,7 @@ describe('a flight that means well', () => {
 
   it('cuts no field of the form beside the robot where an answer stands below them', async () => {
     await page.selectOption('[data-test=quick-command]', 'MOVE_TO');
-    for (const [field, text] of Object.entries({Q1: '-1.5', Q2: '0.5', STEPS: '3'})) await page.fill(`.quick [data-test=field-${field}]`, text);
+    for (const [field, text] of Object.entries({Q1: '-1', Q2: '1.5', STEPS: '3'})) await page.fill(`.quick [data-test=field-${field}]`, text);
     await page.click('.quick [data-test=send]');
     await page.waitForSelector('.quick [data-test=verdict].failed');
     const hidden = await page.evaluate(() => {
