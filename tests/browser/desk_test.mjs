@@ -336,6 +336,25 @@ describe('the robot in 3D', () => {
     assert.match(await page.evaluate(() => location.hash), /#\/overview/, 'a drag is no click');
   });
 
+  it('is seen from where its cube is clicked, or turned by keys, and the cube goes along', async () => {
+    const faces = () => page.locator('[data-test=view-cube] .face').evaluateAll((all) => all.filter((one) => one.style.display !== 'none').map((one) => one.querySelector('text').textContent));
+    const becomes = (wanted) => holds(page, (names) => [...document.querySelectorAll('[data-test=view-cube] .face')].filter((one) => one.style.display !== 'none').map((one) => one.querySelector('text').textContent).join() === names, wanted);
+    assert.ok((await faces()).includes('top'), `${await faces()}`);
+    await page.click('[data-test=look-top] polygon');
+    await becomes('top');
+    await page.focus('[data-test=view-cube]');
+    await page.keyboard.press('ArrowDown');
+    await becomes('front,top');
+    await page.keyboard.press('ArrowRight');
+    await becomes('front,right,top');
+    assert.match(await page.getAttribute('[data-test=view-cube]', 'aria-label'), /from the (front|right), above/);
+    const [x, y] = await page.locator('[data-test=look-front-right] line').evaluate((node) => { const box = node.getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; });
+    await page.mouse.click(x, y);
+    await becomes('front,right');
+    await page.keyboard.press('Home');
+    await becomes('front,left,top');
+  });
+
   it('is saved alone as a picture, with what it is of', async () => {
     await holds(page, () => document.querySelector('[data-test=robot]')?.dataset.still === 'whole');
     const [file] = await Promise.all([page.waitForEvent('download'), page.click('[data-test=scene-picture]')]);

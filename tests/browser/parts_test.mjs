@@ -18,6 +18,7 @@ const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numb
 const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
 const {in_words, ticks_text} = await of_page('format.js');
 const {borne_by, missed_words, MissedLately, rate_of} = await of_page('parts/missed.js');
+const {cube_as_seen, cube_px, direction_of, turned_by, words_of: seen_from} = await of_page('scene/view_cube.js');
 const {risings} = await of_page('parts/risings.js');
 const {joint_above, plots_of_angle, plots_of_link} = await of_page('parts/joint_plots.js');
 const {extent_of, moved, remembered, template_of} = await of_page('parts/splits_reckoned.js');
@@ -76,6 +77,47 @@ describe('cycles that were missed', () => {
     assert.equal(borne_by('HAND', links), null);
     assert.equal(missed_words({missed: 12, cycles: 120000, lately: {count: 3, seconds: 60}, borne: borne_by('ARM', links)}),
       '12 of 120,000 cycles missed since the start, 3 in the last 60 s. LOG is stopped when it lacks samples for 3 cycles in a row.');
+  });
+});
+
+describe('the cube that says from where the scene is seen', () => {
+  /// [right, up, towards the eye] of an eye that looks from there with z up.
+  const axes_of = (eye) => {
+    const [x, y, z] = eye, flat = Math.hypot(x, y), right = flat ? [-y / flat, x / flat, 0] : [1, 0, 0];
+    return [right, [-z * right[1], z * right[0], x * right[1] - y * right[0]], eye];
+  };
+  const unit = (x, y, z) => [x, y, z].map((value) => value / Math.hypot(x, y, z));
+  const shown = (eye) => cube_as_seen(axes_of(eye));
+  const names = (list) => list.map((one) => one.name).sort();
+
+  it('shows the faces that are towards the eye, and the edges of those', () => {
+    assert.deepEqual(names(shown(unit(0, -1, 0.02)).faces), ['front']);
+    assert.deepEqual(names(shown(unit(0.4, -1, 0.6)).faces), ['front', 'right', 'top']);
+    assert.deepEqual(names(shown([0, 0, 1]).faces), ['top']);
+    assert.deepEqual(names(shown([0, 0, 1]).edges), ['top back', 'top front', 'top left', 'top right']);
+    assert.deepEqual(names(shown(unit(0, -1, 0.02)).edges), ['front right', 'left front', 'top front']);
+  });
+
+  it('stands upright in its own picture: what is right in the scene is right here, and the top above', () => {
+    const {faces} = shown(unit(0.2, -1, 0.5)), middle = (name) => faces.find((one) => one.name === name).matrix.slice(4);
+    assert.ok(middle('right')[0] > middle('front')[0] && middle('top')[1] < middle('front')[1]);
+    for (const {corners} of faces) for (const [x, y] of corners) assert.ok(x > 0 && y > 0 && x < cube_px && y < cube_px, `${x}, ${y}`);
+    const front = faces.find((one) => one.name === 'front');
+    assert.ok(front.matrix[0] > 0.9 && front.matrix[3] > 0.7, 'its word is read from left to right');
+  });
+
+  it('looks from where a face or an edge points', () => {
+    assert.deepEqual(direction_of('right'), [1, 0, 0]);
+    assert.deepEqual(direction_of('top front'), unit(0, -1, 1));
+    assert.deepEqual(direction_of('front right'), unit(1, -1, 0));
+  });
+
+  it('is turned by keys to the next eighth, not below the horizon nor over the top', () => {
+    near(turned_by(unit(0.1, -1, 0.5), [1, 0]), [Math.SQRT1_2, -Math.SQRT1_2, 0].map((value) => value * Math.cos(Math.asin(unit(0.1, -1, 0.5)[2]))).with(2, unit(0.1, -1, 0.5)[2]));
+    near(turned_by([0, -1, 0], [0, 1]), unit(0, -1, 1));
+    near(turned_by(unit(0, -1, 1), [0, 1]), [0, 0, 1]);
+    assert.ok(turned_by(unit(0, -1, 0.1), [0, -1])[2] > 0);
+    assert.deepEqual([seen_from([0, 0, 1]), seen_from([1, 0, 0]), seen_from(unit(0.2, -1, 0.8))], ['from above', 'from the right', 'from the front, above']);
   });
 });
 

@@ -76,7 +76,7 @@ function picture_of(description) {
   if (kept?.description === description) return kept;
   kept?.view?.close();
   const nodes = {still: node('canvas', {class: 'still', 'aria-hidden': 'true'}), stage: node('div', {class: 'stage', 'data-test': 'robot'}), shade: node('div', {class: 'shade'}),
-    leads: node('svg', {class: 'leads', 'aria-hidden': 'true'}, 'http://www.w3.org/2000/svg'), tags: node('div', {class: 'readout'})};
+    leads: node('svg', {class: 'leads', 'aria-hidden': 'true'}, 'http://www.w3.org/2000/svg'), tags: node('div', {class: 'readout'}), cube: node('svg', {class: 'cube', 'data-test': 'view-cube'}, 'http://www.w3.org/2000/svg')};
   const picture = kept = {description, nodes, view: null, ready: null, entered: null, leave: null};
   picture.ready = drawing_code().then(async ({RobotView}) => {
     picture.view = new RobotView(nodes, description);
@@ -111,7 +111,7 @@ export function Robot() {
     const picture = picture_of(description), {nodes} = picture;
     // A view of before may be told that it is over only after this one has begun.
     picture.leave?.();
-    home.current.append(nodes.still, nodes.stage, nodes.shade, nodes.leads, nodes.tags);
+    home.current.append(nodes.still, nodes.stage, nodes.shade, nodes.leads, nodes.tags, nodes.cube);
     stage.current = nodes.stage;
     picture.entered = () => {
       view.current = picture.view;
@@ -181,7 +181,7 @@ export function Robot() {
 function taken_boxes(stage) {
   const robot = stage?.closest('.robot'), home = robot?.getBoundingClientRect();
   if (!home) return [];
-  return [...robot.querySelectorAll('.tools, .hand, .key, .inhibited')].map((node) => {
+  return [...robot.querySelectorAll('.tools, .hand, .key, .inhibited, .cube')].map((node) => {
     const box = node.getBoundingClientRect();
     return {left: box.left - home.left, right: box.right - home.left, top: box.top - home.top, bottom: box.bottom - home.top};
   });
