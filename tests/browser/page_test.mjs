@@ -256,17 +256,6 @@ describe('a flight that means well', () => {
     await page.selectOption('[data-test=compare]', '');
   });
 
-  it('plots the force at the tip as the one number that stands at its arrow', async () => {
-    await go(page, 'plots?p=SUPERVISOR.MODE&w=60');
-    await page.click('[data-test=pictured] button:has-text("force at the tip")', {modifiers: ['Shift']});
-    const told = () => page.evaluate(() => [...document.querySelectorAll('[data-test=legend] > span')].map((one) => [one.title, one.textContent, one.querySelector('[data-test=most]')?.textContent]).at(-1));
-    // The flight pushes with up to 30 N.
-    await until('its greatest', async () => /^30\.0 at/.test((await told())[2] ?? ''));
-    const [name, words] = await told();
-    assert.equal(name, '=hypot(MANIPULATOR.TIP_FORCE[0], MANIPULATOR.TIP_FORCE[1])');
-    assert.match(words, /^MANIPULATOR force at the tip [\d.]+ N/);
-  });
-
   it('shows what has names for its values as words, not as heights', async () => {
     await go(page, 'plots?p=MANIPULATOR.PHASE&w=60');
     await holds(page, () => /REST/.test(document.querySelector('[data-test=state-lanes]')?.textContent));
@@ -394,19 +383,6 @@ describe('a flight that means well', () => {
       if (width > 900) assert.ok(await is_in_sight(page, '[data-test=send]'), `Send at ${width}x${height}`);
     }
     await page.setViewportSize(small);
-  });
-
-  it('cuts no field of the form beside the robot where an answer stands below them', async () => {
-    await page.selectOption('[data-test=quick-command]', 'MOVE_TO');
-    for (const [field, text] of Object.entries({Q1: '-1', Q2: '1.5', STEPS: '3'})) await page.fill(`.quick [data-test=field-${field}]`, text);
-    await page.click('.quick [data-test=send]');
-    await page.waitForSelector('.quick [data-test=verdict].failed');
-    const hidden = await page.evaluate(() => {
-      const foot = document.querySelector('.quick .foot').getBoundingClientRect().top;
-      return [...document.querySelectorAll('.quick .field input')].filter((node) => node.getBoundingClientRect().bottom > foot).length;
-    });
-    assert.equal(hidden, 0);
-    assert.ok(await page.evaluate(() => [...document.querySelectorAll('.quick, .quick *')].every((node) => node.scrollTop === 0)));
   });
 
   it('has no serious finding of axe-core in any view', async () => {

@@ -418,8 +418,7 @@ TEST_F(GroundStation, WhyNamesWhoLostItsDeviceAndNotWhoSawTheEffectInTheSameInst
 TEST_F(GroundStation, WhyCallsADeviceThatHungUpByWhatThatMeans) {
   std::vector<std::byte> data(40);
   const auto lost = descriptor::framework_event::device_lost(0);
-  data[0] = static_cast<std::byte>(lost >> 8);
-  data[1] = static_cast<std::byte>(lost & 0xFF);
+  data[0] = static_cast<std::byte>(lost >> 8), data[1] = static_cast<std::byte>(lost & 0xFF);
   data[2] = static_cast<std::byte>(descriptor::DeviceLoss::HungUp);
   ASSERT_TRUE(station.session().receive(telemetry(11, 5, 4, noon, data)));
   EXPECT_EQ(station.get("/api/why")["title"], "JOYSTICK lost its device: the connection was closed.");

@@ -40,7 +40,7 @@ export function borne_by(name, links) {
 /// In a minute, reckoned where less of one is known; "0 /min", "0.4 /min".
 export const rate_of = ({count, seconds}) => count * 60 / Math.max(1, seconds);
 
-/// "12 of 120,000 cycles since the start, 3 in the last 60 s. MANIPULATOR is stopped when 3 in a row are missing."
+/// "12 of 120,000 cycles since the start, 3 in the last 60 s. ARM is stopped when it lacks samples for 3 cycles in a row."
 export function missed_words({missed, cycles, lately, borne}) {
   const number = (value) => Math.round(value).toLocaleString('en');
   return `${number(missed)} of ${number(cycles)} cycles missed since the start${lately ? `, ${number(lately.count)} in the last ${lately.seconds.toFixed(0)} s` : ''}.${
