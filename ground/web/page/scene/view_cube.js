@@ -81,7 +81,7 @@ export class ViewCube {
       made.addEventListener('click', () => look(direction_of(name)));
       return made;
     };
-    for (const name of names) this.#faces.set(name, shape('face', name, node('polygon', {}), node('text', {'text-anchor': 'middle', y: '3.5'}, name)));
+    for (const name of names) this.#faces.set(name, shape('face', name, node('polygon', {}), node('text', {'text-anchor': 'middle', y: '3.5', 'aria-hidden': 'true'}, name)));
     for (const [name] of edges) this.#edges.set(name, shape('edge', name, node('line', {})));
     picture.replaceChildren(...this.#faces.values(), ...this.#edges.values());
     picture.addEventListener('keydown', (event) => {
