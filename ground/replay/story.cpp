@@ -81,6 +81,37 @@ struct Line {
   });
 }
 
+[[nodiscard]] std::optional<double> number_in(const json& values, const char* name) {
+  const auto found = values.is_object() ? values.find(name) : values.end();
+  if (!values.is_object() || found == values.end() || !found->is_number()) return std::nullopt;
+  return found->get<double>();
+}
+[[nodiscard]] std::optional<State> state_in(const json& values) {
+  const auto number = number_in(values, "STATE");
+  if (!number || *number < 0 || *number > static_cast<double>(State::SoftwareDeinit)) return std::nullopt;
+  return static_cast<State>(*number);
+}
+
+/// ": watchdog let go": the reason that the framework gives for a loss; its counters stand in the event.
+[[nodiscard]] std::string loss(const json& values) {
+  const auto reason = number_in(values, "REASON");
+  if (!reason) return {};
+  // As a person would say it.
+  if (*reason == static_cast<double>(descriptor::DeviceLoss::HungUp)) return ": the connection was closed";
+  const std::string_view text = to_text(static_cast<descriptor::DeviceLoss>(*reason));
+  return text == "?" ? std::string{} : ": " + std::string{text};
+}
+
+/// "HAND_STATE (the newest is 4 cycles old)": the set of a framework's event that it is late; empty for every other event.
+[[nodiscard]] std::string late_set(const StoredEvent& event, const json& values) {
+  constexpr std::string_view late = "_STALE";
+  const auto age = number_in(values, "AGE");
+  if (!age || !event.name.ends_with(late)) return {};
+  const std::string set = event.name.substr(0, event.name.size() - late.size());
+  // One that was taken away has no age.
+  return *age > 0 ? fmt::format("{} (the newest is {:.0f} cycles old)", set, *age) : set;
+}
+
 class Teller {
  public:
   Teller(const Catalogue& catalogue, Archive& archive) : catalogue_{catalogue}, archive_{archive} {}
@@ -213,17 +244,6 @@ class Teller {
     lines_.push_back({t, Severity::Info, "link", {}, text});
   }
 
-  [[nodiscard]] static std::optional<double> number_in(const json& values, const char* name) {
-    const auto found = values.is_object() ? values.find(name) : values.end();
-    if (!values.is_object() || found == values.end() || !found->is_number()) return std::nullopt;
-    return found->get<double>();
-  }
-  [[nodiscard]] static std::optional<State> state_in(const json& values) {
-    const auto number = number_in(values, "STATE");
-    if (!number || *number < 0 || *number > static_cast<double>(State::SoftwareDeinit)) return std::nullopt;
-    return static_cast<State>(*number);
-  }
-
   /// As the supervisor chooses: the most specific plan, of equal ones the first (event, subsystem, mode, severity).
   [[nodiscard]] std::string plan() const {
     const descriptor::Plan* best = nullptr;
@@ -254,13 +274,6 @@ class Teller {
     return found != subsystem->devices.end() ? found->name : std::string{};
   }
 
-  /// ": watchdog let go": the reason that the framework gives for a loss; its counters stand in the event.
-  [[nodiscard]] static std::string loss(const json& values) {
-    const auto reason = number_in(values, "REASON");
-    const auto text = reason ? to_text(static_cast<descriptor::DeviceLoss>(*reason)) : std::string_view{"?"};
-    return text == "?" ? std::string{} : ": " + std::string{text};
-  }
-
   /// "JOINT 2, VALUE 12.3 N m": arguments with their units.
   [[nodiscard]] std::string arguments(const StoredEvent& event, const json& values) const {
     std::string text;
@@ -277,6 +290,10 @@ class Teller {
       const bool named = at != std::string::npos && at + marker.size() < event.text.size() &&
                          std::isalpha(static_cast<unsigned char>(event.text[at + marker.size()])) != 0;
       const auto rest = named ? event.text.substr(at + marker.size()) : std::string{};
+      if (argument.name == "APID") {
+        text += (text.empty() ? "" : ", ") + catalogue_.name_of(static_cast<std::uint16_t>(*value));
+        continue;
+      }
       const std::string shown = named ? lower_case(rest.substr(0, rest.find(' '))) : fmt::format("{:.4g}", *value);
       text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", lower_case(argument.name), shown,
                           argument.unit.empty() ? "" : " ", argument.unit);
@@ -290,6 +307,7 @@ class Teller {
       return fmt::format("The process of {} died", catalogue_.name_of(static_cast<std::uint16_t>(*apid)));
     if (apid && event.name == "HANG")
       return fmt::format("{} does not cycle any more", catalogue_.name_of(static_cast<std::uint16_t>(*apid)));
+    if (const auto set = late_set(event, values); !set.empty()) return event.subsystem + " misses samples of " + set;
     const std::string more = arguments(event, values);
     const std::string device = lost_device(event);
     if (!device.empty())

@@ -135,10 +135,15 @@ describe('the page of an arm of six joints', () => {
   it('shows where it would go before that is sent: at which speed, how long at least, red where it cannot be', async () => {
     await go(page, 'overview');
     await page.waitForSelector('[data-test=robot][data-loaded]');
+    // What was sent and done stands in the form still, and is no goal any more.
+    assert.equal(await page.inputValue('.quick [data-test=field-GOAL]'), '0.2 0.5 0.6 0.5 0.7 0.1');
+    await holds(page, () => [...document.querySelectorAll('.readout .tag.goal')].every((node) => node.hidden) && document.querySelector('.robot .key'));
+    assert.doesNotMatch(await page.textContent('.robot .key'), /goal/);
     await page.fill('.quick [data-test=field-GOAL]', '-0.8 0.5 1.2 -0.6 0.7 0.1');
     await page.fill('.quick [data-test=field-SPEED]', '0.5');
     // 1 rad at half of 2 rad/s.
     await holds(page, () => [...document.querySelectorAll('.readout .tag.goal')].some((node) => !node.hidden && node.textContent === 'goal 6 joints at 50 %, at least 1.0 s'));
+    assert.match(await page.textContent('.robot .key'), /goal, not sent/);
     await page.fill('.quick [data-test=field-GOAL]', '-0.8 2.5 1.2 -0.6 0.7 0.1');
     await holds(page, () => [...document.querySelectorAll('.readout .tag.wrong')].some((node) => node.textContent.includes('2 lift beyond its limit')));
   });

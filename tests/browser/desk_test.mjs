@@ -6,7 +6,7 @@ import assert from 'node:assert/strict';
 import {spawn} from 'node:child_process';
 import {readFileSync} from 'node:fs';
 import {after, before, describe, it} from 'node:test';
-import {at_view, go, holds, open_browser, open_page, small} from './browser.mjs';
+import {at_view, go, holds, open_browser, open_page, small, until} from './browser.mjs';
 
 const [server_file, page_folder] = [process.env.HIROSCO_PAGE_SERVER, process.env.HIROSCO_PAGE];
 
@@ -199,6 +199,17 @@ describe('plots', () => {
     await page.click('[data-test=pause]');
   });
 
+  it('show the force at the tip as the one number that stands at its arrow', async () => {
+    await go(page, 'plots?p=SUPERVISOR.MODE&w=60');
+    await page.click('[data-test=pictured] button:has-text("force at the tip")', {modifiers: ['Shift']});
+    const told = () => page.evaluate(() => [...document.querySelectorAll('[data-test=legend] > span')].map((one) => [one.title, one.textContent, one.querySelector('[data-test=most]')?.textContent]).at(-1));
+    // The flight pushes with up to 30 N.
+    await until('its greatest', async () => /^30\.0 at/.test((await told())[2] ?? ''));
+    const [name, words] = await told();
+    assert.equal(name, '=hypot(MANIPULATOR.TIP_FORCE[0], MANIPULATOR.TIP_FORCE[1])');
+    assert.match(words, /^MANIPULATOR force at the tip [\d.]+ N/);
+  });
+
   it('show the whole flight, also from an address', async () => {
     await page.click('.plots .toolbar .chip:has-text("whole flight")');
     await holds(page, () => location.hash.endsWith('&w=flight'));
@@ -307,7 +318,7 @@ describe('the robot in 3D', () => {
   });
 
   it('shows the plots of the joint that moves a part by one click on it, and turns by a drag', async () => {
-    const [x, y] = [620, 110];  // the sky
+    const [x, y] = [620, 150];  // the sky
     await page.mouse.click(x, y);
     assert.match(await page.evaluate(() => location.hash), /#\/overview/);
     const shown = new Set();
@@ -334,6 +345,40 @@ describe('the robot in 3D', () => {
     await page.mouse.move(from[0] + 40, from[1], {steps: 4});
     await page.mouse.up();
     assert.match(await page.evaluate(() => location.hash), /#\/overview/, 'a drag is no click');
+  });
+
+  it('is seen from where its cube is clicked, or turned by keys, and the cube goes along', async () => {
+    const faces = () => page.locator('[data-test=view-cube] .face').evaluateAll((all) => all.filter((one) => one.style.display !== 'none').map((one) => one.querySelector('text').textContent));
+    const becomes = (wanted) => holds(page, (names) => [...document.querySelectorAll('[data-test=view-cube] .face')].filter((one) => one.style.display !== 'none').map((one) => one.querySelector('text').textContent).join() === names, wanted);
+    assert.ok((await faces()).includes('top'), `${await faces()}`);
+    await page.click('[data-test=look-top] polygon');
+    await becomes('top');
+    await page.focus('[data-test=view-cube]');
+    await page.keyboard.press('ArrowDown');
+    await becomes('front,top');
+    await page.keyboard.press('ArrowRight');
+    await becomes('front,right,top');
+    assert.match(await page.getAttribute('[data-test=view-cube]', 'aria-label'), /from the (front|right), above/);
+    const [x, y] = await page.locator('[data-test=look-front-right] line').evaluate((node) => { const box = node.getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; });
+    await page.mouse.click(x, y);
+    await becomes('front,right');
+    await page.keyboard.press('Home');
+    await becomes('front,left,top');
+  });
+
+  it('cuts no field of the form beside the robot where an answer stands below them', async () => {
+    // Somebody else commanded here before.
+    await page.evaluate(() => fetch('/api/authority', {method: 'POST', headers: {Authorization: `Bearer ${sessionStorage.getItem('hirosco-token')}`}, body: '{"action":"hand_over"}'}));
+    await page.selectOption('[data-test=quick-command]', 'MOVE_TO');
+    for (const [field, text] of Object.entries({Q1: '-1', Q2: '1.5', STEPS: '3'})) await page.fill(`.quick [data-test=field-${field}]`, text);
+    await page.click('.quick [data-test=send]');
+    await page.waitForSelector('.quick [data-test=verdict].failed');
+    const hidden = await page.evaluate(() => {
+      const foot = document.querySelector('.quick .foot').getBoundingClientRect().top;
+      return [...document.querySelectorAll('.quick .field input')].filter((node) => node.getBoundingClientRect().bottom > foot).length;
+    });
+    assert.equal(hidden, 0);
+    assert.ok(await page.evaluate(() => [...document.querySelectorAll('.quick, .quick *')].every((node) => node.scrollTop === 0)));
   });
 
   it('is saved alone as a picture, with what it is of', async () => {
@@ -401,7 +446,7 @@ describe('borders between panels', () => {
     await go(page, 'overview');
     await page.waitForSelector('[data-test=split-columns-1]');
     await drag('split-columns-0', 100, 0);
-    await drag('split-rows-0', 0, -60);
+    await drag('split-rows-0', 0, -40);
     const wide = await width();
     await page.setViewportSize({width: 1440, height: 900});
     await holds(page, (before) => Math.abs(document.querySelector('main > .panel[aria-label=Subsystems]').getBoundingClientRect().width / before - (1440 - 68 - 32) / (1280 - 68 - 32)) < 0.03, wide);

@@ -153,8 +153,17 @@ describe('the page on a real flight', () => {
   });
 
   it('brings telepresence back', async () => {
+    // What the page says meanwhile, and at the end.
+    await page.evaluate(() => {
+      window.said = new Set();
+      new MutationObserver(() => document.querySelectorAll('[data-test=state-head], [data-test=mode-progress], .toasts p').forEach((node) => window.said.add(node.textContent)))
+          .observe(document.body, {subtree: true, childList: true, characterData: true});
+    });
     await bring_up(page, 'telepresence');
     await state_is('JOYSTICK', 'Operational');
+    await holds(page, () => [...window.said].some((text) => /^telepresence is up since \d/.test(text)));
+    const said = await page.evaluate(() => [...window.said]);
+    for (const words of [/^telepresence is being brought up: \d+ of \d+$/, /^→ telepresence \d+ of \d+$/, /^telepresence is up$/]) assert.ok(said.some((text) => words.test(text)), `${words} in ${said.join(' | ')}`);
   });
 
   it('shows both machines down after the joystick is unplugged, and why', async () => {

@@ -51,7 +51,7 @@ after(() => browser.close());
 for (const state of ['synthetic:well', 'synthetic:stopped']) {
   describe(`the page of a flight that is ${state === 'synthetic:well' ? 'well' : 'stopped'}`, () => {
     let served;
-    const found = {cut: [], overlapping: [], faint: [], strangers: new Set(), loud: []};
+    const found = {cut: [], overlapping: [], faint: [], strangers: new Set(), loud: [], tops: new Set()};
     // One way through all views for all that is judged: entering one costs most where the processor draws, another size of it little.
     before(async () => {
       served = await serve(state);
@@ -72,6 +72,7 @@ for (const state of ['synthetic:well', 'synthetic:stopped']) {
         for (const [width, height] of sizes) {
           await page.setViewportSize({width, height});
           await settled();
+          found.tops.add(await page.evaluate(() => document.querySelector('main').getBoundingClientRect().top - (innerHeight > 800 ? 40 : 36)));
           if (sizes.length > 1) await placed(page);
           await judge_layout(`${view} ${width}x${height}`);
         }
@@ -98,6 +99,8 @@ for (const state of ['synthetic:well', 'synthetic:stopped']) {
     });
     after(() => served.end());
 
+    // Whether something stopped or not: what comes moves nothing below it.
+    it('begins each view at the same height', () => assert.deepEqual([...found.tops], [48]));
     it('cuts no text', () => assert.deepEqual(found.cut, []));
     it('has no text on another', () => assert.deepEqual(found.overlapping, []));
     it('has no word with a contrast below 4.5, dark or light', () => assert.deepEqual(found.faint, []));

@@ -112,6 +112,10 @@ describe('a flight that means well', () => {
 
   it('accepts the ends of a range and rejects what lies beyond, text, NaN and fractions of whole numbers', async () => {
     await go(page, 'commands/MANIPULATOR/MOVE_TO');
+    // That it is refused is said before anything is typed.
+    await page.waitForSelector('[data-test=permission].no');
+    assert.equal(await page.textContent('[data-test=send]'), 'MOVE_TO is not permitted now');
+    assert.ok(await page.locator('[data-test=send]').isDisabled());
     const wrong = (field) => page.locator(`label.field:has([data-test=field-${field}])`).evaluate((node) => node.classList.contains('wrong'));
     const cases = {Q1: {good: ['-2', '1', '0.5', '1e-3'], bad: ['-2.001', '1.001', 'NaN', 'Infinity', 'left', '0x1', '1 2']},
       Q2: {good: ['0.2', '2.6'], bad: ['0.19', '2.61', '-']}, STEPS: {good: ['0', '65535'], bad: ['-1', '65536', '1.5', 'NaN', 'two']}};
@@ -133,6 +137,7 @@ describe('a flight that means well', () => {
   it('shows octets and the refusal before sending, and the verdict after', async () => {
     await holds(page, () => /^[0-9A-F]{2} /.test(document.querySelector('[data-test=octets]').textContent));
     await page.waitForSelector('[data-test=permission].no');
+    assert.equal(await page.textContent('[data-test=send].refused'), 'Send MOVE_TO all the same');
     await page.click('[data-test=send]');
     await page.waitForSelector('[data-test=verdict].failed');
     assert.match(await page.textContent('[data-test=verdict]'), /setpoint owned by a link/);

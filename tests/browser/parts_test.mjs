@@ -16,7 +16,10 @@ const of_page = (file) => import(pathToFileURL(join(process.env.HIROSCO_SOURCES,
 const {beyond_rad, reach} = await of_page('scene/reach.js');
 const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numbers.js');
 const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
-const {ticks_text} = await of_page('format.js');
+const {in_words, ticks_text} = await of_page('format.js');
+const {borne_by, missed_words, MissedLately, rate_of} = await of_page('parts/missed.js');
+const {cube_as_seen, cube_px, direction_of, turned_by, words_of: seen_from} = await of_page('scene/view_cube.js');
+const {risings} = await of_page('parts/risings.js');
 const {joint_above, plots_of_angle, plots_of_link} = await of_page('parts/joint_plots.js');
 const {extent_of, moved, remembered, template_of} = await of_page('parts/splits_reckoned.js');
 const {height_of, late_count, place_of, quantile_ns} = await of_page('parts/latency.js');
@@ -43,9 +46,99 @@ describe('a part of the robot that is clicked', () => {
 
   it('shows the forces of a tip, all joints of a handle, and nothing of what stands still', () => {
     assert.deepEqual(plots_of_link(finger, {about, links}, columns), [['ARM.TIP_FORCE[0]', 'ARM.TIP_FORCE[1]']]);
+    assert.deepEqual(plots_of_link(finger, {about: {...about, force: about.force.slice(0, 2)}, links}, columns), [['=hypot(ARM.TIP_FORCE[0], ARM.TIP_FORCE[1])', 'ARM.TIP_FORCE[0]', 'ARM.TIP_FORCE[1]']],
+      'first the one number that stands at the arrow');
     assert.deepEqual(plots_of_link(lower, {about: {joints: about.joints, handle: 'lower'}, links}, columns), [['ARM.CUR.POSITION[0]', 'ARM.CUR.POSITION[1]'], ['ARM.CUR.TORQUE[0]', 'ARM.CUR.TORQUE[1]']]);
     assert.deepEqual(plots_of_link(base, {about, links}, columns), []);
     assert.deepEqual(plots_of_angle('ARM.NOTHING[0]', columns), []);
+  });
+});
+
+describe('cycles that were missed', () => {
+  it('are told as a rate of the last minute, and begin anew with a smaller count or an earlier time', () => {
+    const lately = new MissedLately();
+    for (let t = 0; t <= 300; t += 0.2) lately.take(t, [{name: 'ARM', missed: t < 200 ? 40 : 40 + Math.floor((t - 200) / 10)}]);
+    const told = lately.of('ARM', 50);
+    assert.equal(told.seconds, 60);
+    assert.ok(Math.abs(told.count - 6) <= 1, `${told.count} of one each 10 s`);
+    assert.equal(rate_of({count: 1, seconds: 30}), 2);
+    lately.take(301, [{name: 'ARM', missed: 0}]);
+    assert.equal(lately.of('ARM', 0), null, 'started again');
+    lately.take(303, [{name: 'ARM', missed: 0}]);
+    lately.take(100, [{name: 'ARM', missed: 3}]);
+    assert.equal(lately.of('ARM', 3), null, 'another flight');
+    assert.equal(lately.of('HAND', 3), null);
+  });
+
+  it('stand beside what is too many: of the links that need their samples the one that bears least', () => {
+    const links = [{from: 'ARM', to: 'HAND', required: true, age_limit_cycles: 5}, {from: 'ARM', to: 'LOG', required: true, age_limit_cycles: 3}, {from: 'ARM', to: 'EYE', required: false, age_limit_cycles: 1},
+      {from: 'HAND', to: 'ARM', required: true, age_limit_cycles: null}];
+    assert.deepEqual(borne_by('ARM', links), {cycles: 3, who: 'LOG'});
+    assert.equal(borne_by('HAND', links), null);
+    assert.equal(missed_words({missed: 12, cycles: 120000, lately: {count: 3, seconds: 60}, borne: borne_by('ARM', links)}),
+      '12 of 120,000 cycles missed since the start, 3 in the last 60 s. LOG is stopped when it lacks samples for 3 cycles in a row.');
+  });
+});
+
+describe('the cube that says from where the scene is seen', () => {
+  /// [right, up, towards the eye] of an eye that looks from there with z up.
+  const axes_of = (eye) => {
+    const [x, y, z] = eye, flat = Math.hypot(x, y), right = flat ? [-y / flat, x / flat, 0] : [1, 0, 0];
+    return [right, [-z * right[1], z * right[0], x * right[1] - y * right[0]], eye];
+  };
+  const unit = (x, y, z) => [x, y, z].map((value) => value / Math.hypot(x, y, z));
+  const shown = (eye) => cube_as_seen(axes_of(eye));
+  const names = (list) => list.map((one) => one.name).sort();
+
+  it('shows the faces that are towards the eye, and the edges of those', () => {
+    assert.deepEqual(names(shown(unit(0, -1, 0.02)).faces), ['front']);
+    assert.deepEqual(names(shown(unit(0.4, -1, 0.6)).faces), ['front', 'right', 'top']);
+    assert.deepEqual(names(shown([0, 0, 1]).faces), ['top']);
+    assert.deepEqual(names(shown([0, 0, 1]).edges), ['top back', 'top front', 'top left', 'top right']);
+    assert.deepEqual(names(shown(unit(0, -1, 0.02)).edges), ['front right', 'left front', 'top front']);
+  });
+
+  it('stands upright in its own picture: what is right in the scene is right here, and the top above', () => {
+    const {faces} = shown(unit(0.2, -1, 0.5)), middle = (name) => faces.find((one) => one.name === name).matrix.slice(4);
+    assert.ok(middle('right')[0] > middle('front')[0] && middle('top')[1] < middle('front')[1]);
+    for (const {corners} of faces) for (const [x, y] of corners) assert.ok(x > 0 && y > 0 && x < cube_px && y < cube_px, `${x}, ${y}`);
+    const front = faces.find((one) => one.name === 'front');
+    assert.ok(front.matrix[0] > 0.9 && front.matrix[3] > 0.7, 'its word is read from left to right');
+  });
+
+  it('looks from where a face or an edge points', () => {
+    assert.deepEqual(direction_of('right'), [1, 0, 0]);
+    assert.deepEqual(direction_of('top front'), unit(0, -1, 1));
+    assert.deepEqual(direction_of('front right'), unit(1, -1, 0));
+  });
+
+  it('is turned by keys to the next eighth, not below the horizon nor over the top', () => {
+    near(turned_by(unit(0.1, -1, 0.5), [1, 0]), [Math.SQRT1_2, -Math.SQRT1_2, 0].map((value) => value * Math.cos(Math.asin(unit(0.1, -1, 0.5)[2]))).with(2, unit(0.1, -1, 0.5)[2]));
+    near(turned_by([0, -1, 0], [0, 1]), unit(0, -1, 1));
+    near(turned_by(unit(0, -1, 1), [0, 1]), [0, 0, 1]);
+    assert.ok(turned_by(unit(0, -1, 0.1), [0, -1])[2] > 0);
+    assert.deepEqual([seen_from([0, 0, 1]), seen_from([1, 0, 0]), seen_from(unit(0.2, -1, 0.8))], ['from above', 'from the right', 'from the front, above']);
+  });
+});
+
+describe('what came up', () => {
+  const modes = [{id: 0, name: 'commissioning', commission: []}, {id: 1, name: 'pair', commission: [{subsystem: 'ARM', state: 'Operational'}, {subsystem: 'HAND', state: 'Operational'}]}];
+  const state = (t, subsystem, name) => ({t, subsystem, state: name}), mode = (t, id) => ({t, mode: id});
+
+  it('is told when the last member and the mode are there, each time, and not of what was up before anybody looked', () => {
+    const changes = [mode(1, 0), state(1, 'ARM', 'Offline'), state(1, 'HAND', 'Offline'), state(2, 'ARM', 'Operational'), state(3, 'HAND', 'Operational'), mode(4, 1), state(9, 'HAND', 'Offline'), state(12, 'HAND', 'Operational')];
+    assert.deepEqual(risings(changes, modes), [{t: 4, name: 'pair'}, {t: 12, name: 'pair'}]);
+    assert.deepEqual(risings([mode(1, 1), state(1, 'ARM', 'Operational'), state(1, 'HAND', 'Operational'), state(5, 'ARM', 'Operational')], modes), []);
+  });
+});
+
+describe('an event in words', () => {
+  it('has names for numbers of subsystems and none of the words of programmers', () => {
+    const name_of = (apid) => ({10: 'ARM'})[apid];
+    assert.equal(in_words('APID=10 BUDGET=70 W RESERVED=20 W', name_of), 'ARM budget 70 W reserved 20 W');
+    assert.equal(in_words('REASON=hung up SILENT_CYCLES=0', name_of), 'connection closed silent cycles 0');
+    assert.equal(in_words('APID=77', name_of), 'apid 77');
+    assert.equal(in_words('three words of text', name_of), 'three words of text');
   });
 });
 

@@ -411,6 +411,17 @@ TEST_F(GroundStation, WhyNamesWhoLostItsDeviceAndNotWhoSawTheEffectInTheSameInst
   EXPECT_EQ(why["severity"], "high");
   ASSERT_EQ(why["causes"].size(), 2U);
   EXPECT_THAT(why["causes"][0]["text"].get<std::string>(), ::testing::StartsWith("JOYSTICK lost its device"));
+  EXPECT_EQ(why["causes"][1]["text"], "MANIPULATOR misses samples of JOYSTICK_STATE")
+      << "no age of what was taken away";
+}
+
+TEST_F(GroundStation, WhyCallsADeviceThatHungUpByWhatThatMeans) {
+  std::vector<std::byte> data(40);
+  const auto lost = descriptor::framework_event::device_lost(0);
+  data[0] = static_cast<std::byte>(lost >> 8), data[1] = static_cast<std::byte>(lost & 0xFF);
+  data[2] = static_cast<std::byte>(descriptor::DeviceLoss::HungUp);
+  ASSERT_TRUE(station.session().receive(telemetry(11, 5, 4, noon, data)));
+  EXPECT_EQ(station.get("/api/why")["title"], "JOYSTICK lost its device: the connection was closed.");
 }
 
 TEST_F(GroundStation, WhyFoldsTheStepsOfAHandThatTrippedTheLimit) {

@@ -75,8 +75,8 @@ export async function asset(path) {
   return response;
 }
 
-/// What SET_MODE would do now: {steps: [words], reasons: [words]}, as the supervisor says.
+/// What SET_MODE would do now: {steps: [words], stages, reasons: [words]}, as the supervisor says; steps of one stage go on at once.
 export async function mode_preview(mode) {
   const {steps, against} = await post('/api/modes/preview', {mode});
-  return {steps: steps.map((one) => `${one.subsystem} ${one.what}`), reasons: against};
+  return {stages: Math.max(0, ...steps.map((one) => one.stage)), steps: steps.map((one) => `${one.subsystem} ${one.what}`), reasons: against};
 }

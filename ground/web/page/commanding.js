@@ -130,10 +130,27 @@ export function state_value(name) {
 export const legal_states = (from) => state_names.filter((to) => route(from, to));
 
 const wait_after_step_ms = 250;
+const is_done = (step) => ['completed', 'not needed'].includes(step.stage);
+
+/// The bring-up that this page is at: {mode, done, all, text of the present step}; null when it is at none.
+export const bringing = signal(null);
 
 /// Sends what brings `mode` up, one after the other; the first refusal ends it. `told(steps)` hears of every change of a step's `stage`;
 /// `stopped()` true ends it before the next. Resolves with the steps.
-export async function bring_up(mode, told = () => {}, stopped = () => false) {
+export async function bring_up(mode, tell = () => {}, stopped = () => false) {
+  const told = (steps) => {
+    const done = steps.filter(is_done).length;
+    bringing.value = {mode: mode.name, done, all: steps.length, text: steps.find((step) => !is_done(step))?.text ?? `${mode.name} holds`};
+    tell(steps);
+  };
+  try {
+    return await brought_up(mode, told, stopped);
+  } finally {
+    bringing.value = null;
+  }
+}
+
+async function brought_up(mode, told, stopped) {
   const began_s = now_s();
   const steps = commissioning_steps(mode).map((step) => ({...step, stage: 'waiting'}));
   for (const step of steps) {

@@ -99,3 +99,10 @@ export const hex_text = (octets) => (octets ?? '').match(/.{1,2}/g)?.join(' ').t
 export const stage_text = {
   sent: 'sent', accepted: 'accepted', started: 'started', progress: 'progress', completed: 'completed', failed: 'failed',
 };
+
+/// What the flight software says as NAME=VALUE, in words: who for its number, and no jargon of programs.
+const jargon = {'hung up': 'connection closed'};
+export function in_words(text, name_of) {
+  return text.replaceAll(/\b[A-Z][A-Z0-9_]*=/g, (marker) => `${marker.slice(0, -1).toLowerCase().replaceAll('_', ' ')} `)
+      .replaceAll(/\bapid (\d+)\b/g, (whole, apid) => name_of(Number(apid)) ?? whole).replaceAll(/\breason (hung up)\b/g, (_, word) => jargon[word]);
+}

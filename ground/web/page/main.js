@@ -11,6 +11,7 @@ import {FaultsDrawer} from './parts/faults.js';
 import {Header} from './parts/header.js';
 import {Icon} from './parts/icons.js';
 import {ReplayBar} from './parts/replay_bar.js';
+import {StateLine} from './parts/state_line.js';
 import {StopBanner} from './parts/stop_banner.js';
 import {calling, live, mission, now_s, problem, replay_from, start} from './store.js';
 import {switch_theme, theme} from './theme.js';
@@ -101,6 +102,7 @@ function Page() {
     <${Header} on_faults=${() => { faults_open.value = !faults_open.value; }} faults_open=${faults_open.value} />
     <${ReplayBar} />
     <${StopBanner} />
+    <${StateLine} />
     <nav aria-label="views">${Object.entries(views).map(([name, [title]]) => html`<a href=${`#/${name}`} class=${name === view ? 'on' : ''}
       aria-current=${name === view ? 'page' : undefined} title=${title}><${Icon} name=${name} /><span>${title}</span>${
       name === 'events' && calling.value.high + calling.value.medium ? html`<i class="news">${calling.value.high + calling.value.medium}</i>` : null}</a>${

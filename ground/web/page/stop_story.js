@@ -4,9 +4,9 @@
 // What stopped and why, latched until somebody has seen it. The words are the gateway's (GET /api/why), the same as `hirosco why`.
 import {computed, effect, signal} from '@preact/signals';
 import {get} from './api.js';
-import {bring_up, state_name} from './commanding.js';
+import {bring_up, say, state_name} from './commanding.js';
 import {acknowledge_all} from './people.js';
-import {commands, events, flight, gateway, mission, mode_of, replay, seen_until, status, status_of, subsystem_of} from './store.js';
+import {commands, events, flight, gateway, link, mission, mode_of, now_s, replay, seen_until, status, status_of, subsystem_of} from './store.js';
 
 /// The newest story, whatever became of it since; null while none is known.
 export const story = signal(null);
@@ -52,6 +52,23 @@ export const fallen = computed(() => (mode_of.value.commission ?? []).flatMap((m
   const lower = state !== member.state || (Array.isArray(now.inhibited) && now.inhibited.length > 0);
   return lower ? [{subsystem: member.subsystem, state, wanted: member.state}] : [];
 }));
+
+/// The mode that is up with all its members; empty where one is lacking, or nobody is to be up; undefined while nobody knows.
+const whole = computed(() => {
+  if (replay.value || link.value.state !== 'up' || mode_of.value.name === 'unknown') return undefined;
+  return mode_of.value.commission?.length && !fallen.value.length ? mode_of.value.name : '';
+});
+/// {name, t} of what came up while this page looked on, whoever brought it up; null before.
+export const risen = signal(null);
+let was_whole;
+effect(() => {
+  const now = whole.value;
+  if (now && was_whole !== undefined && now !== was_whole) {
+    risen.value = {name: now, t: now_s()};
+    say(`${now} is up`, 'good');
+  }
+  was_whole = now;
+});
 
 const reasons = {
   stop: 'stopped by SAFE ALL or by the supervisor', link: 'a link that it requires is missing', device: 'its device is lost',

@@ -16,7 +16,7 @@ export function tour(page) {
     const mode = mission.value.modes.find((one) => one.name === name);
     if (!mode?.commission) return say(`This mission has no mode ${name}.`, 'bad');
     const failed = (await bring_up(mode)).find((step) => step.stage === 'failed');
-    return failed ? say(`${failed.text}: ${failed.reason ?? failed.code}`, 'bad') : say(`${name} is up`, 'good');
+    if (failed) say(`${failed.text}: ${failed.reason ?? failed.code}`, 'bad');
   }
 
   /// The wall of the next step is where the arm stands at home.
@@ -49,7 +49,7 @@ export function tour(page) {
       // An arm that is coupled takes no MOVE_TO: it was apart. How it was coupled again is the visitor's.
       done: () => is_coupled() && sent('MOVE_TO', 'completed')},
     {title: 'Feel the wall', view: '#/overview',
-      text: 'Press the fingertip against the rail, by mouse or by the button. The teal arrow is the contact force; the torque plot shows what the joystick gives back to the hand.',
+      text: 'Press the fingertip against the rail, by mouse or by the button. The teal arrow is the contact force, with its number; “Touched and felt” below plots that number, and what the joystick gives back to the hand.',
       act: ['Press with 43 N', () => fault('joystick', 'hand cartesian 0.0226 0 1')], done: () => force_n() > 10},
     {title: 'Unplug the joystick', view: '#/overview',
       text: 'The test of the paper: the joystick loses its cable. Both machines must stop by themselves, at once and in order, without the ground: watch the ten lamps of each.',

@@ -19,7 +19,7 @@ import {judged, range_of, range_text} from './judged.js';
 import {joints_of} from './robot_file.js';
 import {numbers_in} from './numbers.js';
 import {scene_of_mission} from './scene_file.js';
-import {fill_form, goal_says, kept_texts, typed} from './typed.js';
+import {fill_form, goal_says, kept_texts, spend, spent, typed} from './typed.js';
 import {as_python, as_tc} from './written.js';
 
 const first_text = (argument, choices) => {
@@ -81,7 +81,7 @@ function modes_that_permit(subsystem, action) {
 const Lock = () => html`<svg viewBox="0 0 12 12" aria-hidden="true"><rect x="1.8" y="5.4" width="8.4" height="5.8" rx="1.2" fill="currentColor" /><path d="M3.7 5.4V3.7a2.3 2.3 0 0 1 4.6 0v1.7" fill="none" stroke="currentColor" stroke-width="1.5" /></svg>`;
 
 /// What the supervisor answers to "now?", and what would make it permit.
-function Permission({answer, problem, subsystem, action}) {
+function Permission({answer, problem, subsystem, action, brief}) {
   if (problem) return html`<p class="permission none">${problem}</p>`;
   if (!answer) return html`<p class="permission none">asking the supervisor …</p>`;
   if (answer.permitted === null || answer.permitted === undefined) {
@@ -90,7 +90,8 @@ function Permission({answer, problem, subsystem, action}) {
   if (answer.permitted) return html`<p class="permission yes" data-test="permission">permitted now</p>`;
   const modes = modes_that_permit(subsystem, action).map((mode) => mode.name);
   const states = (action.states ?? []).map(state_text);
-  return html`<p class="permission no" data-test="permission"><${Lock} /><b>Not now:</b> ${answer.reason ?? `code ${answer.code}`}.
+  if (brief && !modes.length && !in_wrong_state(subsystem, action)) return null;
+  return html`<p class="permission no" data-test="permission">${brief ? null : html`<${Lock} /><b>Not now:</b> ${answer.reason ?? `code ${answer.code}`}.`}
     ${modes.length ? html` Permitted in ${modes.slice(0, 3).join(', ')}${states.length ? `, ${states.join(' or ')}` : ''}.` : states.length ? html` Taken in ${states.join(' and ')}.` : null}
     ${modes.length && operator.value ? html`<button type="button" class="link" data-test="permit-mode" onClick=${() => { mode_wanted.value = modes[0]; }}>Go ${modes[0]} …</button>` : null}
     ${in_wrong_state(subsystem, action) ? html`<a class="link" data-test="permit-state" href=${`#/subsystems/${subsystem}`}>Bring ${subsystem} there …</a>` : null}</p>`;
@@ -122,6 +123,14 @@ async function to_stack(one) {
 }
 
 const preview_after_ms = 180, confirm_within_ms = 6000;
+
+/// Of those the supervisor judges by mode and state alone, whatever stands in them: it can be asked before anything does.
+const judged_as_such = (action) => action.service === 8 ? !['SET_STATE', 'CONFIGURE'].includes(action.name) : action.service >= 128;
+/// Values that are no one's, for that question.
+function any_values(list) {
+  const one = (argument) => argument.type === 'TEXT' ? '' : argument.enumeration?.[0]?.value ?? argument.default ?? Number(Math.max(Number(range_of(argument)[0]), Math.min(0, Number(range_of(argument)[1]))));
+  return Object.fromEntries(list.map((argument) => [argument.name, (argument.count ?? 1) > 1 && argument.type !== 'TEXT' ? new Array(argument.count).fill(one(argument)) : one(argument)]));
+}
 
 function usePreview(subsystem, action, values) {
   const [answer, set_answer] = useState(null);
@@ -182,16 +191,18 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
   const results = list.map((argument) => judged(argument, text_of(argument)));
   const wrong = results.filter((result) => result.error).length;
   const sent_values = wrong ? null : Object.fromEntries(list.map((argument, i) => [argument.name, results[i].value]));
-  const answer = usePreview(subsystem, action, sent_values);
-  const mine = commands.value.find((one) => one.id === sent);
+  const answer = usePreview(subsystem, action, sent_values ?? (judged_as_such(action) ? any_values(list) : null));
+  const refused = answer?.permitted === false;
+  const mine = commands.value.find((one) => one.id === sent), answered = Boolean(mine) && spent.value[key] === sent && !problem;
   const now = led_by(subsystem, action.name), jog = jog_of(action);
   // The spacecraft permits it all the same: what it meets, it presses until a limit stops it.
   const said = goal_says.value, in_its_way = sent_values && said?.subsystem === subsystem && said.action === action.name ? said.wrong : '';
+  const was_sent = commands.value.find((one) => one.id === spent.value[key]), became = was_sent ? outcome_of(was_sent).stage : '';
   useEffect(() => {
-    const touched = Object.keys(texts).length > 0;
+    const touched = Object.keys(texts).length > 0 && became !== 'completed';
     const numbers = () => Object.fromEntries(list.map((argument) => [argument.name, numbers_in(text_of(argument), argument.count ?? 1)]));
-    typed.value = {subsystem, action: action.name, values: touched ? sent_values : null, numbers: touched ? numbers() : null};
-  }, [key, JSON.stringify(texts), JSON.stringify(sent_values)]);
+    typed.value = {subsystem, action: action.name, values: touched ? sent_values : null, numbers: touched ? numbers() : null, refused: became === 'failed'};
+  }, [key, JSON.stringify(texts), JSON.stringify(sent_values), became]);
   // With the form, not after a picture: by then another one may stand there.
   useLayoutEffect(() => () => { typed.value = null; }, []);
 
@@ -207,7 +218,9 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
     }
     set_asked(false);
     try {
-      set_sent(await send(subsystem, action.name, sent_values, Boolean(action.confirm)));
+      const id = await send(subsystem, action.name, sent_values, Boolean(action.confirm));
+      set_sent(id);
+      spend(subsystem, action.name, id);
     } catch (error) {
       set_problem(error.message);
     }
@@ -220,14 +233,14 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
       on_text=${(text) => fill_form(subsystem, action.name, {[argument.name]: text})} />`)}
     ${operator.value ? html`<${Words} subsystem=${subsystem} action=${action} texts=${Object.fromEntries(list.map((argument) => [argument.name, text_of(argument)]))} values=${sent_values} />` : null}
     ${recent ? html`<${Recent} subsystem=${subsystem} />` : null}
-    <div class="foot"><p class="octets" title="the telecommand packet" data-test="octets">${sent_values ? hex_text(answer?.octets) || '…' : ''}</p>
+    <div class=${`foot ${answered ? 'answered' : ''}`}><p class="octets" title="the telecommand packet" data-test="octets">${sent_values ? hex_text(answer?.octets) || '…' : ''}</p>
     ${replay.value ? html`<p class="permission no">replay: telecommands are locked</p>` :
-      !operator.value ? html`<p class="permission none">an observer's token: reading only</p>` : sent_values ?
-      html`<${Permission} answer=${answer} problem=${answer?.problem} subsystem=${subsystem} action=${action} />` : html`<p class="permission none">fill in to ask the supervisor</p>`}
+      !operator.value ? html`<p class="permission none">an observer's token: reading only</p>` : sent_values || refused ?
+      html`<${Permission} answer=${answer} problem=${answer?.problem} subsystem=${subsystem} action=${action} brief=${recent && answered} />` : html`<p class="permission none">${answer?.permitted ? 'permitted now, once it is filled in' : 'fill in to ask the supervisor'}</p>`}
     ${in_its_way ? html`<p class="permission mind" data-test="goal-in-the-way"><b>Mind the goal:</b> ${in_its_way}. The arm would be stopped on its way.</p>` : null}
     <${Authority} action=${action} />
-    ${operator.value ? html`<button class=${`primary ${asked ? 'sure' : ''}`} type="submit" disabled=${wrong > 0 || !may_send(action)} data-test="send">
-      ${wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : asked ? `Really ${action.name}? Once more` : `Send ${action.name}`}</button>` : null}
+    ${operator.value ? html`<button class=${`primary ${asked ? 'sure' : refused ? 'refused' : ''}`} type="submit" disabled=${wrong > 0 || !may_send(action)} data-test="send" title=${refused ? `the supervisor would refuse it: ${answer.reason ?? `code ${answer.code}`}` : undefined}>
+      ${refused && !asked ? html`<${Lock} />` : null}${wrong && refused ? `${action.name} is not permitted now` : wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : refused && !asked ? `Send ${action.name} all the same` : asked ? `Really ${action.name}? Once more` : `Send ${action.name}`}</button>` : null}
     ${problem ? html`<p class="permission no">${problem}</p>` : null}
     ${mine ? html`<div class=${`verdict ${outcome_of(mine).stage}`} data-test="verdict">
       <small>${clock_text(mine.t, 3)}</small><${VerdictChain} command=${mine} /></div>` : null}</div>

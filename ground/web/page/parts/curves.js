@@ -3,9 +3,12 @@
 //
 // Names of curves, as they stand in the address of a plot: a parameter, `NAME@3` for the same in flight 3 of the archive, `=EXPRESSION` for
 // what is reckoned of them.
+import {signal} from '@preact/signals';
 import {columns, flights} from '../store.js';
 import {parse} from './expression.js';
 
+/// What the robot's picture has as one number of several parameters, by the expression that says so: =EXPRESSION -> {subsystem, words}.
+export const pictured = signal(new Map());
 export const is_reckoned = (name) => name.startsWith('=');
 /// [parameter, the flight's number or null].
 export function of_flight(name) {
@@ -51,6 +54,8 @@ export const parameters_of = (name) => [...new Set((is_reckoned(name) ? reckoned
 
 /// [what stands grey before it, the name].
 export function curve_words(name) {
+  const known = pictured.value.get(name);
+  if (known) return [known.subsystem, known.words];
   if (is_reckoned(name)) return ['', name.slice(1)];
   const [parameter, id] = of_flight(name), [subsystem, ...rest] = parameter.split('.');
   return [id === null ? subsystem : `${flight_title(id)} · ${subsystem}`, rest.join('.') || parameter];

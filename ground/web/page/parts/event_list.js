@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-import {clock_text, number_text, state_text, unit_text} from '../format.js';
+import {clock_text, in_words, number_text, state_text, unit_text} from '../format.js';
 import {html} from '../html.js';
-import {subsystem_of} from '../store.js';
+import {mission, subsystem_of} from '../store.js';
 import {Severity} from './icons.js';
 
 /// A name of the flight software may go on in the next line after each of its words, and nowhere else.
 const breakable = (name) => String(name).split('_').map((word, i) => i ? html`_<wbr />${word}` : word);
+
+const name_of = (apid) => mission.value?.subsystems.find((one) => one.id === apid)?.name;
 
 /// Text as the gateway tells it, else arguments by name.
 export function event_text(event) {
@@ -17,7 +19,7 @@ export function event_text(event) {
       return `${event.name === 'STATE_FAILED' ? 'failed in' : '→'} ${state_text(typeof state === 'number' ? names?.[state] : state)}`;
     }
   }
-  if (event.text && event.text !== event.name) return event.text.startsWith(event.name) ? event.text.slice(event.name.length).trim() : event.text;
+  if (event.text && event.text !== event.name) return in_words(event.text.startsWith(event.name) ? event.text.slice(event.name.length).trim() : event.text, name_of);
   const known = subsystem_of(event.subsystem)?.events?.find((one) => one.id === event.id)?.arguments ?? [];
   return Object.entries(event.values ?? {}).map(([name, value]) =>
     `${name} ${number_text(value)}${unit_text(known.find((one) => one.name === name)?.unit) ? ` ${unit_text(known.find((one) => one.name === name).unit)}` : ''}`).join(', ');

@@ -3,6 +3,8 @@
 //
 // What a part of the robot has to show in plots: the joint that moves it, by its angle, and what of the subsystem belongs to the same joint.
 
+import {size_of} from './size_of.js';
+
 const most = 4;
 const base_of = (name) => name.replace(/\[\d+\]$/, '');
 const place_of = (name) => name.match(/\[\d+\]$/)?.[0] ?? '';
@@ -34,7 +36,11 @@ export function joint_above(link, joints) {
 /// What a click on `link` shows: the forces of a tip, all joints of a handle, the joint that moves it. [[names of one plot]].
 export function plots_of_link(link, {about, links}, columns) {
   const angles = Object.values(about.joints);
-  if (about.tip && link === links[about.tip] && about.force) return [about.force.filter((name) => columns.has(name))].filter((group) => group.length);
+  if (about.tip && link === links[about.tip] && about.force) {
+    const known = about.force.filter((name) => columns.has(name));
+    // First the one number that the picture has, then what it is of.
+    return known.length ? [[...known.length === about.force.length ? [size_of(known)] : [], ...known]] : [];
+  }
   if (about.handle && link === links[about.handle]) {
     const all = angles.map((angle) => plots_of_angle(angle, columns));
     return [0, 1].map((i) => all.flatMap((groups) => (groups[i] ?? []).slice(0, 1))).filter((group) => group.length);

@@ -11,6 +11,7 @@ import {html} from '../html.js';
 import {commands, events, flight, mission, mode_of, newest_s, now_s, outcome_of, replay, replay_from, slow} from '../store.js';
 import {fallen, stop} from '../stop_story.js';
 import {is_wanted} from './link_graph.js';
+import {risings} from './risings.js';
 import {is_known, state_look} from './subsystem_card.js';
 
 const refresh_ms = 2000, zoomed_ms = 120;
@@ -132,8 +133,10 @@ export function Lanes({window_s = 120, end = null, on_view = null, big = false, 
     ${x(span.to) - x(span.from) > text.length * 7 + 8 ? html`<text x=${x(span.from) + 6} y=${lane_height / 2 + 4}>${text}</text>` : null}</g>`;
   const current = {t: begin, mode: mode_of.value.name};
   const mode_list = data.modes.length ? data.modes : [current];
+  const up = risings([...data.modes, ...data.states.map((one) => ({...one, state: state_name(one.state)}))], mission.value?.modes ?? []).filter((one) => one.t >= begin && one.t <= to);
   lanes.push({label: 'mode', body: spans(mode_list, (one) => one.mode, begin, told_to)
       .flatMap((span, i) => bars(span, `mode ${i % 2 ? 'odd' : ''}`, mission.value?.modes.find((mode) => mode.id === span.value)?.name ?? String(span.value)))});
+  const up_marks = up.map((one) => html`<path class="up" transform=${`translate(${x(one.t)} ${lane_height / 2})`} d="M-4 0L-1 3L4-4"><title>${one.name} is up, ${clock_text(one.t)}</title></path>`);
   for (const name of names) {
     const own = data.states.filter((one) => one.subsystem === name);
     lanes.push({label: name, body: spans(own, (one) => state_name(one.state), begin, told_to)
@@ -154,7 +157,7 @@ export function Lanes({window_s = 120, end = null, on_view = null, big = false, 
   const told = replay.value ? data.events : merged(data.events, events.value.slice(0, 200), (one) => `${one.t}/${one.id}/${one.subsystem}`);
   const shown = told.filter((one) => one.t >= begin && one.t <= to && !(small && one.severity === 'info'));
   const marks = shown.filter((one) => one.severity !== 'info').concat(shown.filter((one) => one.severity === 'info')).slice(0, 600);
-  lanes[small ? 'unshift' : 'push']({label: 'events', body: [small ? command_marks : null, marks.reverse().map((one) => html`<path class=${`mark ${one.severity}`}
+  lanes[small ? 'unshift' : 'push']({label: 'events', body: [small ? command_marks : null, up_marks, marks.reverse().map((one) => html`<path class=${`mark ${one.severity}`}
     transform=${`translate(${x(one.t)} ${lane_height / 2})`} d=${{high: 'M-3-5h6l3 5l-3 5h-6l-3-5z', medium: 'M0-6L6 5H-6z', low: 'M-3.5-3.5h7v7h-7z'}[one.severity] ?? 'M-1.5-4h3v8h-3z'}>
     <title>${one.subsystem} ${one.name} ${clock_text(one.t)}</title></path>`)]});
   const faults = data.faults ?? [];

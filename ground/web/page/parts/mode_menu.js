@@ -6,7 +6,7 @@
 import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {mode_preview} from '../api.js';
-import {finished, send} from '../commanding.js';
+import {bringing, finished, say, send} from '../commanding.js';
 import {state_text} from '../format.js';
 import {html} from '../html.js';
 import {commands, link, mission, mode_of, operator, outcome_of, replay} from '../store.js';
@@ -15,8 +15,8 @@ import {usePopup} from './popup.js';
 
 const meant_ms = 200;
 
-/// What the supervisor is told to change to: {name, id (of the telecommand), steps, failed}; null when nothing is under way.
-const changing = signal(null);
+/// What the supervisor is told to change to: {name, id (of the telecommand), stages, failed}; null when nothing is under way.
+export const changing = signal(null);
 
 /// The name of a mode that somebody elsewhere in the page would go to: the menu opens with it.
 export const mode_wanted = signal('');
@@ -42,22 +42,26 @@ function usePreview(mode) {
   return answer;
 }
 
-async function go(mode, steps) {
+async function go(mode, {steps, stages}) {
   try {
     const name = mission.value.subsystems[0].functions.find((one) => one.name === 'SET_MODE').arguments[0].name;
     const id = await send(mission.value.subsystems[0].name, 'SET_MODE', {[name]: mode.id});
-    changing.value = {name: mode.name, id, steps};
+    changing.value = {name: mode.name, id, stages};
     const outcome = await finished(id, Math.max(20, 4 * steps.length));
     changing.value = outcome.stage === 'failed' ? {...changing.value, failed: outcome.reason ?? `code ${outcome.code}`} : null;
+    if (outcome.stage !== 'failed' && !steps.length) say(`mode ${mode.name}`, 'good');
   } catch (error) {
-    changing.value = {name: mode.name, id: 0, steps, failed: error.message};
+    changing.value = {name: mode.name, id: 0, stages, failed: error.message};
   }
 }
 
-/// How many of the stages are done, as the progress reports of SET_MODE tell.
-function progress() {
-  const told = commands.value.find((one) => one.id === changing.value.id);
-  return (told?.stages ?? []).filter((one) => one.stage === 'progress').length;
+/// What is under way, by this page's own steps or by SET_MODE, of whose stages its progress reports tell: {name, done, all, text}; null
+/// when nothing is.
+export function under_way() {
+  if (bringing.value) return {...bringing.value, name: bringing.value.mode};
+  if (!changing.value || changing.value.failed) return null;
+  const told = commands.value.find((one) => one.id === changing.value.id), {name, stages} = changing.value;
+  return {name, done: Math.min(stages, (told?.stages ?? []).filter((one) => one.stage === 'progress').length), all: stages, text: ''};
 }
 
 function Steps({answer}) {
@@ -66,7 +70,7 @@ function Steps({answer}) {
   if (!answer.steps.length && !answer.reasons.length) return html`<p>Nobody moves; other telecommands are permitted.</p>`;
   return html`${answer.reasons.length ? html`<p data-test="mode-refused"><b>Not now:</b> ${answer.reasons.join('; ')}</p>` : null}
     <ol data-test="mode-steps">${answer.steps.map((step) => html`<li>${step}</li>`)}</ol>
-    ${answer.steps.length ? html`<p>${answer.steps.length} ${answer.steps.length > 1 ? 'steps' : 'step'}. What moves holds no force meanwhile.</p>` : null}`;
+    ${answer.steps.length ? html`<p>${answer.steps.length} ${answer.steps.length > 1 ? 'steps' : 'step'}. Until it is done their motors give no force.</p>` : null}`;
 }
 
 function Menu({on_close}) {
@@ -88,7 +92,7 @@ function Menu({on_close}) {
     <div class="what"><h3>${mode_of.value.name} → ${chosen?.name}</h3><${Steps} answer=${answer} />
       <div class="choice"><button class="quiet" onClick=${on_close}>Cancel</button>
         ${operator.value ? html`<button class="primary" data-test="mode-go" disabled=${refused || !operator.value || replay.value !== null || link.value.state !== 'up'}
-          onClick=${() => { on_close(); go(chosen, answer.steps); }}>Go ${chosen?.name}</button>` : null}</div></div></div>`;
+          onClick=${() => { on_close(); go(chosen, answer); }}>Go ${chosen?.name}</button>` : null}</div></div></div>`;
 }
 
 /// The mode, and whether it is true: what its members have fallen from is no telepresence any more.
@@ -100,13 +104,13 @@ export function Mode() {
     if (!value) mode_wanted.value = '';
   };
   const node = usePopup(open, set_open);
-  const down = fallen.value, under_way = changing.value;
+  const down = fallen.value, refused = changing.value?.failed, on_its_way = under_way();
   const words = down.map((one) => `${one.subsystem} is ${state_text(one.state)}`).join(', ');
   return html`<div class="mode_pill" ref=${node}>
-    <button class=${`pill mode ${down.length && !under_way ? 'bad' : ''}`} data-test="mode" aria-expanded=${open} title=${under_way?.failed ?? (words || 'every member is where this mode has it')}
-      onClick=${() => { if (under_way?.failed) changing.value = null; set_open(!open); }}><span>Mode</span><b>${mode_of.value.name}</b>${
-      under_way?.failed ? html`<em data-test="mode-failed">${under_way.name} refused</em>` :
-        under_way ? html`<span data-test="mode-progress">→ ${under_way.name} ${progress()}</span>` :
+    <button class=${`pill mode ${down.length && !refused && !on_its_way ? 'bad' : ''}`} data-test="mode" aria-expanded=${open} title=${refused ?? (words || 'every member is where this mode has it')}
+      onClick=${() => { if (refused) changing.value = null; set_open(!open); }}><span>Mode</span><b>${mode_of.value.name}</b>${
+      refused ? html`<em data-test="mode-failed">${changing.value.name} refused</em>` :
+        on_its_way ? html`<span data-test="mode-progress">→ ${on_its_way.name} ${on_its_way.all ? `${on_its_way.done} of ${on_its_way.all}` : ''}</span>` :
           down.length ? html`<em data-test="mode-stopped">stopped</em>` : null}
       <svg viewBox="0 0 10 6" aria-hidden="true"><path d="M1 1l4 4 4-4" fill="none" stroke="currentColor" stroke-width="1.6" /></svg></button>
     ${open ? html`<${Menu} key=${mode_wanted.value} on_close=${() => set_open(false)} />` : null}</div>`;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import uPlot from 'uplot';
-import {brief_text, clock_text, quantity_text, ticks_text, unit_text, value_text} from '../format.js';
+import {brief_text, clock_text, fixed_text, quantity_text, ticks_text, unit_text, value_text} from '../format.js';
 import {html} from '../html.js';
 import {aligned, began_s, drop_series, extend, has_samples, newest_of, shown_span, statistics, use_series, value_at} from '../series.js';
 import {columns, now_s, replay, slow} from '../store.js';
@@ -54,7 +54,8 @@ function scales_of(units, about) {
   const range = (_, low, high) => {
     if (!Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
     const middle = (low + high) / 2, half = Math.max((high - low) * 0.6, (about.least ?? 0) / 2, 1e-9);
-    return [middle - half, middle + half];
+    // What is never below zero, as the size of a force, has no axis of it.
+    return low >= 0 && middle < half ? [-0.08 * half, 2 * half] : [middle - half, middle + half];
   };
   return Object.fromEntries(units.map((unit) => [unit, unit.startsWith('times ') ?
     {from: first, dir: Math.sign(Number(unit.slice(6))), range: (_, low, high) => [low, high].map((value) => value / Number(unit.slice(6))).sort((a, b) => a - b)} : about.least || about.range ? {range} : {}]));
@@ -220,17 +221,19 @@ export function Legend({names, brief, on_remove, about = nothing, window = null,
   const at = cursor_t.value ?? pinned, when = at ?? (frozen ? window[1] : null);
   const span = last !== undefined ? [first, last] : window;
   const curves = names.filter((name) => !is_named(name));
+  // The title of a small plot says the unit, unless its curves have several.
+  const units = !brief || new Set(names.map((name) => column_of(name)?.unit)).size > 1;
   return html`<div class=${`legend ${brief ? 'brief' : ''}`} data-test="legend">${names.map((name, place) => {
     const i = is_named(name) ? place : curves.indexOf(name);
     const column = column_of(name), newest = newest_of(name), [before, own] = curve_words(name);
     const look = look_of(name, about.looks?.[i]), problem = is_reckoned(name) ? reckoned(name).problem : null;
-    const words = (value) => value === undefined ? '–' : is_named(name) ? value_text(column?.type === 'BOOL' ? value === 1 || value === true : value, column) : quantity_text(value, column?.unit);
+    const words = (value) => value === undefined ? '–' : is_named(name) ? value_text(column?.type === 'BOOL' ? value === 1 || value === true : value, column) : about.digits?.[i] >= 0 ? fixed_text(value, about.digits[i]) : quantity_text(value, column?.unit);
     const value = when === null ? newest.v : value_at(name, when);
     const told = span && !brief && !is_named(name) ? statistics(name, ...span) : null;
     const apart = last !== undefined && !is_named(name) ? value_at(name, last) - value_at(name, first) : NaN;
     return html`<span class=${at !== null ? 'at' : newest.stale && !frozen ? 'stale' : ''} title=${name}><svg viewBox="0 0 12 6" aria-hidden="true"><path d="M0 3h12" stroke=${curve_colour(i, about.looks?.[i])}
       stroke-width="2" stroke-dasharray=${look?.dash ? '3 2' : undefined} /></svg>${about.labels?.[i] ?? (brief ? name.split('.').at(-1) : html`<small>${before}</small> ${own}`)} <b title=${when === null ? undefined : `at ${clock_text(when, 3)}`}>${
-      problem ?? words(value)}</b>${brief ? null : html` <small>${unit_text(column?.unit)}</small>`}
+      problem ?? words(value)}</b>${!units ? null : html` <small>${unit_text(column?.unit)}</small>`}
       ${Number.isFinite(apart) ? html` <span data-test="delta">Δ ${quantity_text(apart, column?.unit)}</span>` : null}
       ${told ? html` <span class="statistics"><${Extreme} what="least" value=${quantity_text(told.min, column?.unit)} t=${told.min_t} /> … <${Extreme} what="most" value=${quantity_text(told.max, column?.unit)} t=${told.max_t} />, mean ${quantity_text(told.mean, column?.unit)}</span>` : null}
       ${on_remove ? html`<button class="tiny" title=${`take ${name} out`} onClick=${() => on_remove(name)}>×</button>` : null}</span>`;

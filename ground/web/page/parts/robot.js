@@ -43,7 +43,7 @@ function Hand({description, window_ref}) {
   const known = (robot?.torque ?? []).filter((name) => values.has(name)), felt = Math.hypot(...known.map((name) => values.get(name).v));
   const first = robot && Object.values(robot.joints)[0];
   return html`<div class=${`hand ${down ? 'bad' : ''}`}><h3>${description.inset.title}</h3><div class="window" ref=${window_ref} />
-    <p>${down ? html`<b>${lost ? 'Device lost' : 'Stopped'}</b><span>${age_text(freshness(first).age_s)} ago</span>` : html`felt<span><b>${known.length ? fixed_text(felt, 3) : '–'}</b> N m</span>`}</p></div>`;
+    <p>${down ? html`<b>${lost ? 'Device lost' : 'Stopped'}</b><span>${age_text(freshness(first).age_s)} ago</span>` : html`felt<span><b>${known.length ? fixed_text(felt, 3) : '–'}</b> N·m</span>`}</p></div>`;
 }
 
 /// What the picture alone would not say: that it is old, and that nothing there can move.
@@ -76,7 +76,7 @@ function picture_of(description) {
   if (kept?.description === description) return kept;
   kept?.view?.close();
   const nodes = {still: node('canvas', {class: 'still', 'aria-hidden': 'true'}), stage: node('div', {class: 'stage', 'data-test': 'robot'}), shade: node('div', {class: 'shade'}),
-    leads: node('svg', {class: 'leads', 'aria-hidden': 'true'}, 'http://www.w3.org/2000/svg'), tags: node('div', {class: 'readout'})};
+    leads: node('svg', {class: 'leads', 'aria-hidden': 'true'}, 'http://www.w3.org/2000/svg'), tags: node('div', {class: 'readout'}), cube: node('svg', {class: 'cube', 'data-test': 'view-cube'}, 'http://www.w3.org/2000/svg')};
   const picture = kept = {description, nodes, view: null, ready: null, entered: null, leave: null};
   picture.ready = drawing_code().then(async ({RobotView}) => {
     picture.view = new RobotView(nodes, description);
@@ -111,7 +111,7 @@ export function Robot() {
     const picture = picture_of(description), {nodes} = picture;
     // A view of before may be told that it is over only after this one has begun.
     picture.leave?.();
-    home.current.append(nodes.still, nodes.stage, nodes.shade, nodes.leads, nodes.tags);
+    home.current.append(nodes.still, nodes.stage, nodes.shade, nodes.leads, nodes.tags, nodes.cube);
     stage.current = nodes.stage;
     picture.entered = () => {
       view.current = picture.view;
@@ -172,7 +172,7 @@ export function Robot() {
     ${description?.inset ? html`<${Hand} description=${description} window_ref=${window_ref} />` : null}
     ${description ? html`<${Verdict} description=${description} />
       <div class="key">${stopped.length ? html`<span><i />last known pose</span><span><i class="fallen" />inhibited</span>` : html`${description.robots.length ? html`<span><i />measured</span>` : html`<span><i />Operational</span><span><i class="fallen" />inhibited or failed</span>`}${
-        goal_typed || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : 'goal, not sent'}</span>` : null}${feels(description) ? html`<span><i class="touched" />touched</span>` : null}${
+        goal_typed || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : typed.value?.refused ? 'goal, refused' : 'goal, not sent'}</span>` : null}${feels(description) ? html`<span><i class="touched" />touched</span>` : null}${
         description.inset ? html`<span><i class="felt" />felt</span>` : null}`}${hand && operator.value && !replay.value && !stopped.length ? html`<span class="hint">${goal_typed && !goal_sent ? 'drag the goal by its ball or a link' : 'drag the handle or the fingertip'}</span>` : null}</div>` : null}
   </div>`;
 }
@@ -181,7 +181,7 @@ export function Robot() {
 function taken_boxes(stage) {
   const robot = stage?.closest('.robot'), home = robot?.getBoundingClientRect();
   if (!home) return [];
-  return [...robot.querySelectorAll('.tools, .hand, .key, .inhibited')].map((node) => {
+  return [...robot.querySelectorAll('.tools, .hand, .key, .inhibited, .cube')].map((node) => {
     const box = node.getBoundingClientRect();
     return {left: box.left - home.left, right: box.right - home.left, top: box.top - home.top, bottom: box.bottom - home.top};
   });

@@ -25,6 +25,7 @@ import {cast_on_plane} from '../scene/skins.js';
 import {snapshot_of} from '../scene/snapshot.js';
 import {lights, sun_from} from '../scene/space.js';
 import {StillPicture} from '../scene/still.js';
+import {ViewCube} from '../scene/view_cube.js';
 import {surface_x_m} from './hand.js';
 import {plots_address, plots_of_link} from './joint_plots.js';
 import {save} from './save.js';
@@ -50,7 +51,7 @@ function live_canvas(stage) {
 }
 
 export class RobotView {
-  /// `nodes`: {stage, still, tags, leads}: where it draws, the canvas behind, what lies above; `window`, where the inset is, comes with each view.
+  /// `nodes`: {stage, still, tags, leads, cube}: where it draws, the canvas behind, what lies above; `window`, where the inset is, comes with each view.
   constructor(nodes, description) {
     Object.assign(this, {nodes, description, robots: [], frames: 0, poses: 0, show: {goal: true, limits: true, force: true, trail: true, frames: false}});
     [this.context, this.software] = probe();
@@ -85,6 +86,7 @@ export class RobotView {
     Object.assign(this.controls, {maxDistance: 4 * this.scale, minDistance: 0.15 * this.scale, maxPolarAngle: Math.PI / 2 - 0.02, zoomToCursor: true});
     this.controls.addEventListener('change', () => this.camera_moved());
     this.controls.update();
+    this.cube = new ViewCube(nodes.cube, (direction) => this.look_from(direction), () => this.view_from(camera.from_m));
     this.grips = new Grips(this);
     this.picker = new Picker(this, (robot, link) => {
       const groups = plots_of_link(link, {about: robot.about, links: robot.body.links}, columns.value);
@@ -274,6 +276,7 @@ export class RobotView {
       if (robot.make_goal) this.follow_goal(robot);
     }
     this.grips.stretch();
+    this.cube.follow(this.camera);
     ++this.frames;
     this.nodes.stage.dataset.frames = this.frames;
     this.nodes.stage.dataset.moving = this.robots.some((robot) => robot.motion.moving()) ? 'yes' : 'no';
@@ -343,6 +346,12 @@ export class RobotView {
     this.camera_moved(true);
   }
 
+  /// From the side where `direction`, a unit vector, points, as far away as before.
+  look_from(direction) {
+    const {target} = this.controls, far = this.camera.position.distanceTo(target);
+    this.view_from(new Vector3().fromArray(direction).multiplyScalar(far).add(target).toArray(), target.toArray());
+  }
+
   view_tip() {
     const robot = this.robots.find((one) => one.tip), from = this.description.camera.tip_from_m;
     if (robot?.body.visible && from) this.view_from(new Vector3().fromArray(from).sub(new Vector3().fromArray(this.description.camera.to_m)).add(robot.tip).toArray(), robot.tip.toArray());
@@ -386,5 +395,6 @@ export class RobotView {
     this.inset?.canvas?.remove();
     this.nodes.tags.replaceChildren();
     this.nodes.leads.replaceChildren();
+    this.nodes.cube.replaceChildren();
   }
 }

@@ -3,10 +3,18 @@
 //
 // scene.json of the mission's page folder: what there is to be seen, and which parameters move it (docs/guide/ground_station.md).
 import {signal} from '@preact/signals';
+import {pictured} from './curves.js';
+import {size_of} from './size_of.js';
 import {mission_code, mission_has, mission_json, mission_text} from '../mission_files.js';
 
 /// scene.json of the mission; null when there is none, undefined while it is not known.
 export const scene_of_mission = signal(undefined);
+
+/// A force that is drawn is an arrow with one number, and so is what a hand feels: both can be plotted as that.
+scene_of_mission.subscribe((scene) => {
+  pictured.value = new Map((scene?.robots ?? []).flatMap(({subsystem, force, torque}) => [[force, 'force at the tip'], [torque, 'torque felt by the hand']]
+      .filter(([names]) => names?.length).map(([names, words]) => [size_of(names), {subsystem, words}])));
+});
 
 /// The parameters of a plot of scene.json, which has them alone or among its curves.
 export const plot_names = (plot) => Array.isArray(plot) ? plot : (plot?.curves ?? []).map((one) => one.name);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A stop, said where one looks, until it is acknowledged or mended: who and why, when, what went down, what is still well, the way out.
+import {bringing} from '../commanding.js';
 import {clock_text} from '../format.js';
 import {html} from '../html.js';
 import {link, mission, mode_of, operator, replay_from} from '../store.js';
@@ -10,11 +11,9 @@ import {plot_names, scene_of_mission} from './scene_file.js';
 import {Severity} from './icons.js';
 
 function Rising() {
-  const {running, steps, failed, mode} = rising.value;
-  const done = steps.filter((step) => ['completed', 'not needed'].includes(step.stage)).length;
+  const {failed, mode} = rising.value, now = bringing.value;
   if (failed) return html`<p class="second" data-test="stop-failed"><b>${mode} is not up.</b> “${failed.text}”: ${failed.reason ?? `code ${failed.code}`}</p>`;
-  return html`<p class="second" data-test="stop-rising">${running ? 'Bringing' : 'Brought'} ${mode} up: ${done} / ${steps.length} ${
-    steps.find((step) => !['completed', 'not needed'].includes(step.stage))?.text ?? ''}</p>`;
+  return html`<p class="second" data-test="stop-rising">${now ? `Bringing ${mode} up: ${now.done} of ${now.all}, ${now.text}` : `${mode} is up`}</p>`;
 }
 
 export function StopBanner() {
@@ -30,8 +29,8 @@ export function StopBanner() {
   };
   return html`<section class="stop_banner" role="alert" data-test="stop-banner">
     <${Severity} severity=${told.severity} />
-    <div class="words"><p class="first" data-test="stop-title">${told.title}</p>
-      ${rising.value ? html`<${Rising} />` : html`<p class="second"><b>${clock_text(told.t, 3)}</b> ${told.detail} ${up_again ? 'It is up again.' : told.advice}</p>`}</div>
+    <div class="words"><p class="first" data-test="stop-title" title=${told.title}>${told.title}</p>
+      ${rising.value ? html`<${Rising} />` : html`<p class="second" title=${`${told.detail} ${told.advice}`}><b>${clock_text(told.t, 3)}</b> ${up_again ? 'It is up again.' : told.advice} ${told.detail}</p>`}</div>
     <a class="out" href="#/events" data-test="stop-why">Why</a>
     <button class="out" onClick=${replay_it} data-test="stop-replay">Replay 5 s before</button>
     <a class="out" href=${plots.length ? `#/plots?p=${plots.map(encodeURIComponent).join('+')}` : '#/plots'} data-test="stop-plot">Plot</a>

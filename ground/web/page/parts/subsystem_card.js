@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 import {computed} from '@preact/signals';
 import {state_name, state_names} from '../commanding.js';
-import {duration_text, rate_text, state_text} from '../format.js';
+import {brief_text, duration_text, rate_text, state_text} from '../format.js';
 import {html} from '../html.js';
 import {fallen_text, inhibited_text, is_switched_off} from '../stop_story.js';
-import {link, replay, slow, status_of, subsystem_of} from '../store.js';
+import {link, mission, now_s, replay, slow, status, status_of, subsystem_of} from '../store.js';
+import {borne_by, missed_words, MissedLately, rate_of} from './missed.js';
 
 export const state_look = (state) => ({Operational: 'good', SafeOperational: 'amber', PreOperational: 'amber',
   ErrorOperational: 'bad', PostOperational: 'amber', Offline: 'off'})[state] ?? 'busy';
@@ -23,6 +24,14 @@ export function configuration_of(name) {
   const known = subsystem_of(name)?.configurations ?? [];
   return known.find((one) => one.id === now || one.name === now) ?? (now ? {name: String(now)} : null);
 }
+
+const missed_of = new MissedLately();
+replay.subscribe(() => missed_of.forget());
+status.subscribe((told) => { if (told) missed_of.take(told.t ?? now_s(), told.subsystems ?? []); });
+/// {count, seconds} of the last minute of a subsystem of the status; null while nobody knows.
+export const missed_lately = (now) => missed_of.of(now.name, now.missed);
+export const borne_missed = (name) => borne_by(name, mission.value?.links ?? []);
+export const missed_title = (name, now) => Number.isFinite(now.missed) ? missed_words({missed: now.missed, cycles: now.cycles ?? 0, lately: missed_lately({...now, name}), borne: borne_missed(name)}) : '';
 
 export const waits_text = (waits) => Array.isArray(waits) ? waits.join(', ') : waits ? String(waits) : '';
 
@@ -45,7 +54,7 @@ export function SubsystemCard({name, chosen}) {
     now.overruns > 0 ? `${now.overruns} overruns` : null,
     now.memory_kb ? `${(now.memory_kb / 1024).toFixed(1)} MB` : null,
   ].filter(Boolean).join(', ');
-  const stopped = fallen_text(name);
+  const stopped = fallen_text(name), lately = missed_lately({...now, name});
   const inhibited = inhibited_text(now);
   const quiet = stopped || inhibited || waits;
   return html`<a class=${`card ${chosen ? 'chosen' : ''} ${stopped ? 'fallen' : ''} ${is_known() ? '' : 'stale'}`} href=${`#/subsystems/${name}`}
@@ -60,6 +69,6 @@ export function SubsystemCard({name, chosen}) {
       <b><${Quantity} text=${configuration?.sampling_hz ? rate_text(configuration.sampling_hz) : '–'} /></b>
       <b><${Quantity} text=${now.execution_mean_ns ? duration_text(now.execution_mean_ns) : '–'} /></b>
       <b><${Quantity} text=${now.latency_max_ns ? duration_text(now.latency_max_ns) : '–'} /></b>
-      <b class="end">${now.missed ?? '–'}</b></div>`}
+      <b class="end" title=${missed_title(name, now)}><${Quantity} text=${lately ? `${brief_text(+rate_of(lately).toFixed(1))} /min` : now.missed ?? '–'} /></b></div>`}
   </a>`;
 }

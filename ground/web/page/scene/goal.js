@@ -31,6 +31,7 @@ export function goal_of(about, typed, commands) {
   const under_way = commands.find((one) => one.subsystem === about.subsystem && one.function === about.goal.function && !['completed', 'failed'].includes(outcome_of(one).stage));
   if (under_way) return read(under_way.arguments, true);
   // Also what cannot be is shown, in red: the form says why.
+  // What was sent so and done is no goal any more: `numbers` are null then.
   if (typed?.subsystem !== about.subsystem || typed.action !== about.goal.function || !typed.numbers) return null;
   return read(typed.numbers, false);
 }

@@ -6,7 +6,7 @@ import {EventTable} from '../parts/event_list.js';
 import {wanted_form} from '../parts/goal_form.js';
 import {Lanes} from '../parts/lanes.js';
 import {LinkRows, links_hint} from '../parts/link_rows.js';
-import {is_reckoned, of_flight} from '../parts/curves.js';
+import {column_of, is_reckoned, of_flight, reckoned} from '../parts/curves.js';
 import {Panel} from '../parts/panel.js';
 import {Legend, TimePlot} from '../parts/plot.js';
 import {Robot} from '../parts/robot.js';
@@ -50,10 +50,11 @@ export function first_plots() {
 
 /// A plot of scene.json: names alone, or {title, hint, curves: [{name, label, look, times}], range, least}.
 function told_by(plot) {
-  const curves = (Array.isArray(plot) ? plot.map((name) => ({name})) : plot.curves).filter(({name}) => columns.value.has(name));
+  const known = (name) => is_reckoned(name) ? columns.value.size > 0 && !reckoned(name).problem : columns.value.has(name);
+  const curves = (Array.isArray(plot) ? plot.map((name) => ({name})) : plot.curves).filter(({name}) => known(name));
   const names = curves.map((one) => one.name);
   return {names, title: plot.title ?? plot_title(names), hint: plot.hint,
-    about: {looks: curves.map((one) => one.look), labels: curves.map((one) => one.label), times: curves.map((one) => one.times), range: plot.range, least: plot.least}};
+    about: {looks: curves.map((one) => one.look), labels: curves.map((one) => one.label), digits: curves.map((one) => one.digits), times: curves.map((one) => one.times), range: plot.range, least: plot.least}};
 }
 
 export const plot_title = (names) => {
@@ -113,7 +114,7 @@ export function Overview() {
     <${Panel} title="3D" area="robot" bare titleless><${Robot} /></${Panel}>
     <${Panel} title="Telecommand" area="command" href="#/commands"><${QuickCommand} /></${Panel}>
     <${Panel} title="Links" hint=${links_hint()} area="links" href="#/links"><${LinkRows} /></${Panel}>
-    <div class="plots_row">${wanted.map(({names, title, hint, about}) => names.length ? html`<${Panel} key=${title} title=${title} hint=${hint ?? unit_text(columns.value.get(names[0])?.unit)} bare
+    <div class="plots_row">${wanted.map(({names, title, hint, about}) => names.length ? html`<${Panel} key=${title} title=${title} hint=${hint ?? [...new Set(names.map((name) => unit_text(column_of(name)?.unit)))].join(', ')} bare
       href=${`#/plots?p=${names.map(encodeURIComponent).join('+')}`}>
       <${Legend} names=${names} about=${about} brief /><${TimePlot} names=${names} window_s=${30} about=${{...about, relative: true}} /></${Panel}>` :
       html`<${Panel} title="Plot" href="#/plots"><p class="empty">${none}</p></${Panel}>`)}</div>

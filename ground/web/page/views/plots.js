@@ -5,7 +5,7 @@ import {token} from '../api.js';
 import {copy, say} from '../commanding.js';
 import {clock_text, iso_text, unit_text} from '../format.js';
 import {html} from '../html.js';
-import {column_of, curve_words, flight_title, in_flight, is_reckoned, of_flight, parameters_of, program_of} from '../parts/curves.js';
+import {column_of, curve_words, flight_title, in_flight, is_reckoned, of_flight, parameters_of, pictured, program_of} from '../parts/curves.js';
 import {longest_text} from '../parts/expression.js';
 import {Panel} from '../parts/panel.js';
 import {save} from '../parts/save.js';
@@ -147,12 +147,16 @@ function Picker({on_pick: pick}) {
   // The mission's own subsystems before those that every mission has.
   const own = mission.value?.subsystems.filter((one) => one.id >= 10) ?? [], common = mission.value?.subsystems.filter((one) => one.id < 10) ?? [];
   const groups = [...own, ...common].map(({name}) => [name, by_base(found.filter((column) => column.subsystem === name))]).filter(([, list]) => list.length);
+  // What the robot's picture shows as one number stands first.
+  const numbers = text !== null ? [] : [...pictured.value].filter(([name, one]) => !parameters_of(name).some((known) => !columns.value.has(known)) && words.every((word) => `${one.subsystem} ${one.words}`.toLowerCase().includes(word)));
   const button = (column, name) => html`<button class="action" title=${`${column.name}: a click adds it, with Shift in a plot of its own`} onClick=${(event) => on_pick(column.name, event.shiftKey)}><span>${
     column.name.slice(name.length + 1)}</span><small>${unit_text(column.unit)}</small></button>`;
   return html`<${Panel} title="Parameters" hint=${text === null ? null : 'click: its name'}
     tools=${text === null ? html`<button class="chip" title="plot what is reckoned of parameters" data-test="expression-open" onClick=${() => set_text('')}>f(x)</button>` : null}>
     ${text === null ? null : html`<${Writer} text=${text} set_text=${set_text} node=${node} on_pick=${pick} />`}
     <input class="search" type="search" placeholder="search  /" aria-label="search parameters" data-search value=${search} onInput=${(event) => set_search(event.currentTarget.value)} />
+    ${numbers.length ? html`<div class="group" data-test="pictured"><h3>in the picture</h3>${numbers.map(([name, one]) => html`<button class="action" key=${name} title=${`${name.slice(1)}: a click adds it, with Shift in a plot of its own`}
+      onClick=${(event) => on_pick(name, event.shiftKey)}><span>${one.words}</span><small>${unit_text(column_of(name)?.unit)}</small></button>`)}</div>` : null}
     ${groups.map(([name, list]) => html`<div class="group" key=${name}><h3>${name}</h3>${list.map(([base, elements]) =>
       elements.length < long_array || words.length ? elements.map((column) => button(column, name)) :
       html`<details><summary class="action" title=${base}><span>${base.slice(name.length + 1)}</span><small>${elements.length}×</small></summary>${elements.map((column) => button(column, name))}</details>`)}</div>`)}

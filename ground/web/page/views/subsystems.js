@@ -8,7 +8,7 @@ import {Panel} from '../parts/panel.js';
 import {joint_of} from '../parts/robot_file.js';
 import {Splits} from '../parts/splits.js';
 import {StateDiagram} from '../parts/state_diagram.js';
-import {SubsystemCard, configuration_of, state_look, waits_text} from '../parts/subsystem_card.js';
+import {SubsystemCard, borne_missed, configuration_of, missed_lately, state_look, waits_text} from '../parts/subsystem_card.js';
 import {inhibited_text} from '../stop_story.js';
 import {columns, freshness, link, mission, mode_of, operator, replay, slow, status_of, subsystem_of, values} from '../store.js';
 
@@ -50,13 +50,15 @@ function Commissioning() {
 
 function Facts({name}) {
   const now = status_of(name) ?? {};
-  const configuration = configuration_of(name);
+  const configuration = configuration_of(name), lately = missed_lately({...now, name}), borne = borne_missed(name);
   const rows = [
     ['configuration', configuration?.name ?? 'none'],
     ['sampling', rate_text(configuration?.sampling_hz)],
     ['cycles', number_text(now.cycles)],
     ['overruns', number_text(now.overruns)],
-    ['missed', number_text(now.missed)],
+    ['missed', now.missed === undefined ? '–' : `${number_text(now.missed)} of ${number_text(now.cycles)}`],
+    ['missed, last minute', lately ? String(lately.count) : '–'],
+    ...borne ? [['too many', `${borne.cycles} in a row stop ${borne.who}`]] : [],
     ['latency, largest', duration_text(now.latency_max_ns ?? NaN)],
     ['execution, mean', duration_text(now.execution_mean_ns ?? NaN)],
     ['memory', now.memory_kb ? `${(now.memory_kb / 1024).toFixed(1)} MB` : '–'],

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+//
+// Cycles that were missed, as a rate and beside what is too many: a count since the start alone says neither. Without browser and clock.
+
+const lately_s = 60, apart_s = 1;
+
+/// The counts of the last minute of each subsystem: `take` each status, `of` says how many of them were missed in which time.
+export class MissedLately {
+  #counts = new Map();
+
+  take(t, subsystems) {
+    for (const {name, missed} of subsystems) {
+      if (!Number.isFinite(missed)) continue;
+      const list = this.#counts.get(name) ?? [], last = list.at(-1);
+      // A smaller count is another start, an earlier time another flight.
+      if (last && (missed < last.missed || t < last.t)) list.length = 0;
+      else if (last && t - last.t < apart_s) continue;
+      list.push({t, missed});
+      while (list.length > 1 && t - list[1].t >= lately_s) list.shift();
+      this.#counts.set(name, list);
+    }
+  }
+
+  forget() { this.#counts.clear(); }
+
+  /// {count, seconds}, of a minute at most; null while one sample alone is known.
+  of(name, missed) {
+    const list = this.#counts.get(name);
+    return list?.length > 1 ? {count: missed - list[0].missed, seconds: Math.min(lately_s, list.at(-1).t - list[0].t)} : null;
+  }
+}
+
+/// How many cycles in a row of `name` its links bear: {cycles, who}, of the one that bears least; null where no link that is required bounds them.
+export function borne_by(name, links) {
+  const limits = links.filter((one) => one.from === name && one.required && one.age_limit_cycles > 0);
+  return limits.length ? limits.map((one) => ({cycles: one.age_limit_cycles, who: one.to})).sort((a, b) => a.cycles - b.cycles)[0] : null;
+}
+
+/// In a minute, reckoned where less of one is known; "0 /min", "0.4 /min".
+export const rate_of = ({count, seconds}) => count * 60 / Math.max(1, seconds);
+
+/// "12 of 120,000 cycles since the start, 3 in the last 60 s. ARM is stopped when it lacks samples for 3 cycles in a row."
+export function missed_words({missed, cycles, lately, borne}) {
+  const number = (value) => Math.round(value).toLocaleString('en');
+  return `${number(missed)} of ${number(cycles)} cycles missed since the start${lately ? `, ${number(lately.count)} in the last ${lately.seconds.toFixed(0)} s` : ''}.${
+    borne ? ` ${borne.who} is stopped when it lacks samples for ${borne.cycles} cycles in a row.` : ''}`;
+}
