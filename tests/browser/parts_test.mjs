@@ -17,7 +17,7 @@ const {beyond_rad, reach} = await of_page('scene/reach.js');
 const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numbers.js');
 const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
 const {in_words, ticks_text} = await of_page('format.js');
-const {borne_by, missed_words, MissedLately, rate_of} = await of_page('parts/missed.js');
+const {borne_by, missed_words, MissedLately, rate_of, share_text} = await of_page('parts/missed.js');
 const {cube_as_seen, cube_px, direction_of, turned_by, words_of: seen_from} = await of_page('scene/view_cube.js');
 const {risings} = await of_page('parts/risings.js');
 const {joint_above, plots_of_angle, plots_of_link} = await of_page('parts/joint_plots.js');
@@ -62,12 +62,22 @@ describe('cycles that were missed', () => {
     assert.equal(told.seconds, 60);
     assert.ok(Math.abs(told.count - 6) <= 1, `${told.count} of one each 10 s`);
     assert.equal(rate_of({count: 1, seconds: 30}), 2);
+    assert.ok(Number.isNaN(told.cycles), 'nobody told how many were due');
     lately.take(301, [{name: 'ARM', missed: 0}]);
     assert.equal(lately.of('ARM', 0), null, 'started again');
     lately.take(303, [{name: 'ARM', missed: 0}]);
     lately.take(100, [{name: 'ARM', missed: 3}]);
     assert.equal(lately.of('ARM', 3), null, 'another flight');
     assert.equal(lately.of('HAND', 3), null);
+  });
+
+  it('are a share of those that were due in the same minute', () => {
+    const lately = new MissedLately();
+    for (let t = 0; t <= 120; ++t) lately.take(t, [{name: 'ARM', cycles: 2000 * t, missed: 8 * t}]);
+    const told = lately.of('ARM', 960);
+    assert.deepEqual(told, {count: 480, cycles: 120000, seconds: 60});
+    assert.equal(share_text(told), '0.40 %');
+    assert.deepEqual([[3, 100], [1, 120000], [5, NaN]].map(([count, cycles]) => share_text({count, cycles})), ['3.0 %', 'less than 0.01 %', '5']);
   });
 
   it('stand beside what is too many: of the links that need their samples the one that bears least', () => {

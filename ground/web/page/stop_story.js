@@ -6,7 +6,7 @@ import {computed, effect, signal} from '@preact/signals';
 import {get} from './api.js';
 import {bring_up, say, state_name} from './commanding.js';
 import {acknowledge_all} from './people.js';
-import {commands, events, flight, gateway, link, mission, mode_of, now_s, replay, seen_until, status, status_of, subsystem_of} from './store.js';
+import {calling, commands, events, flight, gateway, link, mission, mode_of, now_s, replay, seen_until, status, status_of, subsystem_of} from './store.js';
 
 /// The newest story, whatever became of it since; null while none is known.
 export const story = signal(null);
@@ -106,7 +106,9 @@ export async function bring_up_again() {
   const failed = steps.find((step) => step.stage === 'failed');
   rising.value = {running: false, steps, failed, mode: mode.name};
   if (failed) return;
+  const open = calling.value.high + calling.value.medium;
   await acknowledge(`brought ${mode.name} up`);
+  if (open) say(`${mode.name} is up. ${open === 1 ? 'The alarm' : `The ${open} alarms`} of before counted as acknowledged: see Events.`, 'good');
   rising.value = null;
 }
 

@@ -189,7 +189,7 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
   const text_of = (argument) => texts[argument.name] ?? given[argument.name] ??
     first_text(argument, choices_of(subsystem, action, argument));
   const results = list.map((argument) => judged(argument, text_of(argument)));
-  const wrong = results.filter((result) => result.error).length;
+  const wrong = results.filter((result) => result.error).length, mistyped = results.findIndex((result, i) => result.error && text_of(list[i]) !== '');
   const sent_values = wrong ? null : Object.fromEntries(list.map((argument, i) => [argument.name, results[i].value]));
   const answer = usePreview(subsystem, action, sent_values ?? (judged_as_such(action) ? any_values(list) : null));
   const refused = answer?.permitted === false;
@@ -240,7 +240,7 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
     ${in_its_way ? html`<p class="permission mind" data-test="goal-in-the-way"><b>Mind the goal:</b> ${in_its_way}. The arm would be stopped on its way.</p>` : null}
     <${Authority} action=${action} />
     ${operator.value ? html`<button class=${`primary ${asked ? 'sure' : refused ? 'refused' : ''}`} type="submit" disabled=${wrong > 0 || !may_send(action)} data-test="send" title=${refused ? `the supervisor would refuse it: ${answer.reason ?? `code ${answer.code}`}` : undefined}>
-      ${refused && !asked ? html`<${Lock} />` : null}${wrong && refused ? `${action.name} is not permitted now` : wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : refused && !asked ? `Send ${action.name} all the same` : asked ? `Really ${action.name}? Once more` : `Send ${action.name}`}</button>` : null}
+      ${refused && !asked ? html`<${Lock} />` : null}${wrong && refused ? `${action.name} is not permitted now` : mistyped >= 0 ? `${list[mistyped].name}: ${results[mistyped].error}` : wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : refused && !asked ? `Send ${action.name} all the same` : asked ? `Really ${action.name}? Once more` : `Send ${action.name}`}</button>` : null}
     ${problem ? html`<p class="permission no">${problem}</p>` : null}
     ${mine ? html`<div class=${`verdict ${outcome_of(mine).stage}`} data-test="verdict">
       <small>${clock_text(mine.t, 3)}</small><${VerdictChain} command=${mine} /></div>` : null}</div>

@@ -34,7 +34,7 @@ function Clock() {
   const utc = iso_text(t).slice(11, 19);
   const title = `${known ? 'On-board time' : 'On-board time as it would be: nothing comes'}${utc ? `. It is TAI, which counts no leap seconds: ${utc} UTC` : ''}`;
   return html`<span class=${`obt ${known ? '' : 'stale'}`} title=${title}><small>${date_text(t)}</small>
-    <b>${clock_text(t)}</b><small>on board</small></span>`;
+    <b>${clock_text(t)}</b><small class="scale">TAI</small><small>on board</small></span>`;
 }
 
 /// Pressed for 0.8 s, so that neither a slip nor a held Enter of another field stops the spacecraft.

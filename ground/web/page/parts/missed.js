@@ -10,13 +10,13 @@ export class MissedLately {
   #counts = new Map();
 
   take(t, subsystems) {
-    for (const {name, missed} of subsystems) {
+    for (const {name, missed, cycles} of subsystems) {
       if (!Number.isFinite(missed)) continue;
       const list = this.#counts.get(name) ?? [], last = list.at(-1);
       // A smaller count is another start, an earlier time another flight.
       if (last && (missed < last.missed || t < last.t)) list.length = 0;
       else if (last && t - last.t < apart_s) continue;
-      list.push({t, missed});
+      list.push({t, missed, cycles});
       while (list.length > 1 && t - list[1].t >= lately_s) list.shift();
       this.#counts.set(name, list);
     }
@@ -24,10 +24,10 @@ export class MissedLately {
 
   forget() { this.#counts.clear(); }
 
-  /// {count, seconds}, of a minute at most; null while one sample alone is known.
+  /// {count, cycles, seconds}, of a minute at most; null while one sample alone is known. `cycles`: those that were due meanwhile, NaN where nobody counts them.
   of(name, missed) {
-    const list = this.#counts.get(name);
-    return list?.length > 1 ? {count: missed - list[0].missed, seconds: Math.min(lately_s, list.at(-1).t - list[0].t)} : null;
+    const list = this.#counts.get(name), first = list?.[0], last = list?.at(-1);
+    return list?.length > 1 ? {count: missed - first.missed, cycles: last.cycles - first.cycles, seconds: Math.min(lately_s, last.t - first.t)} : null;
   }
 }
 
@@ -39,6 +39,12 @@ export function borne_by(name, links) {
 
 /// In a minute, reckoned where less of one is known; "0 /min", "0.4 /min".
 export const rate_of = ({count, seconds}) => count * 60 / Math.max(1, seconds);
+
+/// "0.4 %" of those that were due, or how many where that is not known. Less than a hundredth is still something.
+export function share_text({count, cycles}) {
+  const share = 100 * count / cycles;
+  return !(cycles > 0) ? String(count) : share < 0.01 ? 'less than 0.01 %' : `${share.toFixed(share < 1 ? 2 : 1)} %`;
+}
 
 /// "12 of 120,000 cycles since the start, 3 in the last 60 s. ARM is stopped when it lacks samples for 3 cycles in a row."
 export function missed_words({missed, cycles, lately, borne}) {

@@ -7,6 +7,8 @@ import {age_text, clock_text, state_text} from '../format.js';
 import {html} from '../html.js';
 import {fallen, risen, stop} from '../stop_story.js';
 import {calling, link, mission, mode_of, now_s, replay, status} from '../store.js';
+import {is_wanted} from './link_graph.js';
+import {share_text} from './missed.js';
 import {changing, under_way} from './mode_menu.js';
 import {missed_lately} from './subsystem_card.js';
 
@@ -14,13 +16,14 @@ const counted = (count, what) => `${count} ${what}${count === 1 ? '' : 's'}`;
 
 /// How many of those who are to be up are, links, cycles that were missed lately.
 function Well() {
-  const list = status.value?.subsystems ?? [], links = status.value?.links ?? [], mode = mode_of.value;
+  const list = status.value?.subsystems ?? [], links = (status.value?.links ?? []).filter((one) => one.up || is_wanted(one)), mode = mode_of.value;
   const up = list.filter((one) => state_name(one.state) === 'Operational').length;
-  const missing = list.map((one) => ({name: one.name, count: missed_lately(one)?.count ?? 0})).filter((one) => one.count > 0);
+  const missing = list.map((one) => ({name: one.name, ...missed_lately(one)})).filter((one) => one.count > 0);
   const {high, medium} = calling.value, since = risen.value?.name === mode.name && !fallen.value.length ? ` since ${clock_text(risen.value.t, 0)}` : '';
   const head = mode.commission?.length ? `${mode.name} is up${since}` : `Mode ${mode.name}`;
   return html`<b data-test="state-head">${head}</b><span>${up} of ${list.length} Operational${links.length ? `, ${links.filter((one) => one.up).length} of ${counted(links.length, 'link')} up` : ''}</span>
-    <span data-test="state-missed">${missing.length ? `${counted(missing.reduce((sum, one) => sum + one.count, 0), 'cycle')} missed in the last minute by ${missing.map((one) => one.name).join(', ')}` : 'no cycle missed in the last minute'}</span>
+    ${missing.length ? html`<a href="#/links" data-test="state-missed" title="What stops a subsystem is too many in a row, not their number: see the links.">cycles missed in the last minute: ${
+      missing.map((one) => `${one.name} ${share_text(one)}`).join(', ')}</a>` : html`<span data-test="state-missed">no cycle missed in the last minute</span>`}
     ${high + medium ? html`<a href="#/events">${counted(high + medium, 'alarm')} nobody has acknowledged</a>` : null}`;
 }
 
