@@ -57,27 +57,18 @@ describe('a part of the robot that is clicked', () => {
 describe('cycles that were missed', () => {
   it('are told as a rate of the last minute, and begin anew with a smaller count or an earlier time', () => {
     const lately = new MissedLately();
-    for (let t = 0; t <= 300; t += 0.2) lately.take(t, [{name: 'ARM', missed: t < 200 ? 40 : 40 + Math.floor((t - 200) / 10)}]);
+    for (let t = 0; t <= 300; t += 0.2) lately.take(t, [{name: 'ARM', cycles: 2000 * t, missed: t < 200 ? 40 : 40 + Math.floor((t - 200) / 10)}]);
     const told = lately.of('ARM', 50);
     assert.equal(told.seconds, 60);
     assert.ok(Math.abs(told.count - 6) <= 1, `${told.count} of one each 10 s`);
     assert.equal(rate_of({count: 1, seconds: 30}), 2);
-    assert.ok(Number.isNaN(told.cycles), 'nobody told how many were due');
+    assert.deepEqual([told, {count: told.cycles / 250, cycles: told.cycles}, {count: 3, cycles: 100}, {count: 5, cycles: NaN}].map(share_text), ['less than 0.01 %', '0.40 %', '3.0 %', '5'], 'of those that were due');
     lately.take(301, [{name: 'ARM', missed: 0}]);
     assert.equal(lately.of('ARM', 0), null, 'started again');
     lately.take(303, [{name: 'ARM', missed: 0}]);
     lately.take(100, [{name: 'ARM', missed: 3}]);
     assert.equal(lately.of('ARM', 3), null, 'another flight');
     assert.equal(lately.of('HAND', 3), null);
-  });
-
-  it('are a share of those that were due in the same minute', () => {
-    const lately = new MissedLately();
-    for (let t = 0; t <= 120; ++t) lately.take(t, [{name: 'ARM', cycles: 2000 * t, missed: 8 * t}]);
-    const told = lately.of('ARM', 960);
-    assert.deepEqual(told, {count: 480, cycles: 120000, seconds: 60});
-    assert.equal(share_text(told), '0.40 %');
-    assert.deepEqual([[3, 100], [1, 120000], [5, NaN]].map(([count, cycles]) => share_text({count, cycles})), ['3.0 %', 'less than 0.01 %', '5']);
   });
 
   it('stand beside what is too many: of the links that need their samples the one that bears least', () => {
