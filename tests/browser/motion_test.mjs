@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Motion between samples (ground/web/page/scene/motion.js) by a stepped clock: between what was measured, never ahead of it, and no picture
-// repeats the one before while the robot moves.
+// repeats the one before while the robot moves. And curves: none where there was nothing.
 import assert from 'node:assert/strict';
 import {join} from 'node:path';
 import {describe, it} from 'node:test';
 import {pathToFileURL} from 'node:url';
 
-const {Motion} = await import(pathToFileURL(join(process.env.HIROSCO_SOURCES, 'ground/web/page/scene/motion.js')));
+const of_page = (file) => import(pathToFileURL(join(process.env.HIROSCO_SOURCES, 'ground/web/page', file)));
+const {Motion} = await of_page('scene/motion.js');
+const {silences} = await of_page('parts/silences.js');
 
 /// Samples of `path(t_s)` each `period_ms`, drawn each `frame_ms`: [{now_ms, shown, newest, oldest}].
 function play(path, {period_ms, frame_ms, seconds = 4, jitter = () => 0}) {
@@ -75,4 +77,26 @@ describe('motion between samples', () => {
     assert.ok(Math.abs(motion.at(1000)[0] - 0.2) < 1e-12);
     assert.ok(Math.abs(motion.at(1000)[1] - 0.6) < 1e-12);
   });
+});
+
+describe('a curve', () => {
+  const every = (period_s, from, to) => Array.from({length: Math.round((to - from) / period_s)}, (_, i) => from + i * period_s);
+  const of = (t, held_s = 2) => silences(t, 0, t.length, held_s);
+
+  it('ends where its parameter fell silent, and nowhere else', () => {
+    const t = [...every(0.5, 0, 10), ...every(0.5, 30, 40)];
+    assert.deepEqual(of(t), [11.5]);
+    assert.deepEqual(of(every(0.5, 0, 40)), []);
+    assert.deepEqual(silences(t, 0, 20, 2), [], 'what is not shown is not looked at');
+  });
+
+  it('goes through ranges of an archive, however far apart they all are, and through what was made coarser', () => {
+    assert.deepEqual(of(every(8, 0, 800)), []);
+    assert.deepEqual(of([...every(6, 0, 600), ...every(3, 600, 700), ...every(0.5, 700, 720)]), []);
+    assert.deepEqual(of([...every(3, 0, 60), ...every(3, 200, 260)]), [59]);
+  });
+
+  it('ends behind a sample that stands alone', () => assert.deepEqual(of([...every(0.5, 0, 5), 60, ...every(0.5, 120, 125)]), [6.5, 62]));
+  it('of two samples far apart is none', () => assert.deepEqual(of([0, 50]), [2]));
+  it('of one sample, or of none, has no end', () => assert.deepEqual([of([3]), of([])], [[], []]));
 });

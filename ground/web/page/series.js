@@ -6,6 +6,7 @@
 import {get} from './api.js';
 import {is_reckoned, of_flight, reckoned} from './parts/curves.js';
 import {reckon} from './parts/expression.js';
+import {silences} from './parts/silences.js';
 import {thinned} from './parts/thinned.js';
 import {columns, filled, flight, flights, freshness, gateway, newest_s, now_s, on_values, replay, values} from './store.js';
 
@@ -123,6 +124,12 @@ export function shown_span(window_s, range, to = now_s()) {
   return window_s === whole_flight ? [Math.min(began_s() ?? to - least_flight_s, to - least_flight_s), to] : [to - window_s, to];
 }
 
+/// For how long a sample of a series holds: three of its periods, of an expression those of its slowest parameter.
+function held_s(series) {
+  if (series.inputs) return Math.max(...series.inputs.map(held_s), least_held_s);
+  return Math.max(least_held_s, 3 * (columns.peek().get(of_flight(series.name)[0])?.period_s ?? 1));
+}
+
 /// An expression at the times of its parameters' samples.
 class ReckonedSeries {
   uses = 0;
@@ -150,7 +157,7 @@ class ReckonedSeries {
     for (const one of this.inputs) of += one.version;
     if (of !== this.#of) {
       this.#of = of;
-      const {t, v} = reckon(this.program, this.inputs, this.inputs.map((one) => Math.max(least_held_s, 3 * (columns.peek().get(of_flight(one.name)[0])?.period_s ?? 1))));
+      const {t, v} = reckon(this.program, this.inputs, this.inputs.map(held_s));
       this.#made = {t, v, none: t.map(() => null)};
     }
     return this.#made;
@@ -225,8 +232,9 @@ replay.subscribe((value) => {
   was = is;
 });
 
-/// Rows on the union of the times, nulls where a series has no sample: what uPlot wants.
-export function aligned(list, from, to) {
+/// Rows on the union of the times, undefined where a series has no sample: what uPlot wants. `drawn`: with a time at which it has none, null, where it fell
+/// silent, so that no line goes across.
+export function aligned(list, from, to, {drawn = false} = {}) {
   const cut = list.map((series) => {
     const t = series.t;
     let first = 0, end = t.length;
@@ -239,6 +247,8 @@ export function aligned(list, from, to) {
   });
   const times = new Set();
   list.forEach((series, i) => { for (let k = cut[i][0]; k < cut[i][1]; ++k) times.add(series.t[k]); });
+  const silent = list.map((series, i) => new Set(drawn ? silences(series.t, cut[i][0], cut[i][1], held_s(series)) : []));
+  silent.forEach((set) => set.forEach((t) => times.add(t)));
   const union = Float64Array.from(times).sort();
   const rows = [union];
   list.forEach((series, i) => {
@@ -246,7 +256,7 @@ export function aligned(list, from, to) {
     let k = cut[i][0];
     for (let j = 0; j < union.length; ++j) {
       const hit = k < cut[i][1] && series.t[k] === union[j];
-      v[j] = hit ? series.v[k] : undefined;
+      v[j] = hit ? series.v[k] : silent[i].has(union[j]) ? null : undefined;
       low[j] = hit ? series.low[k] : undefined;
       high[j] = hit ? series.high[k] : undefined;
       while (k < cut[i][1] && series.t[k] <= union[j]) ++k;

@@ -188,7 +188,7 @@ export function TimePlot({names: all_names, window_s = 60, range = null, on_zoom
     if (!plot || !list || plot.held) return;
     const [from, to] = shown_span(window_s, range);
     if (!Number.isFinite(to)) return;
-    plot.setData(aligned(list, from, to), false);
+    plot.setData(aligned(list, from, to, {drawn: true}), false);
     plot.bare = !list.some((series) => has_samples(series, from, to));
     plot.setScale('x', {min: from, max: to});
   };
