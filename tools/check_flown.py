@@ -97,13 +97,13 @@ def written(root, flown):
 
 def problems(root):
     flown = flights(root)
-    todo = {"missions": "put <Subsystem> and <Commission ... state=\"Operational\"/> of it into a mission.xml there, which a test flies",
-            "tests": "put them into a test mission and judge it in the test beside that (tests/stock/ has three that others may join)"}
+    mended_by = {"missions": "put <Subsystem> and <Commission ... state=\"Operational\"/> of it into a mission.xml there, which a test flies",
+                 "tests": "put them into a test mission and judge it in the test beside that (tests/stock/ has three that others may join)"}
     for folder in folders(root):
         names = programs(folder)
         for kind in KINDS:
             if not any(flown[kind].get(name) for name in names):
-                yield f"subsystems/{folder.name}: no mission of {kind}/ flies {' or '.join(names)}: {todo[kind]}"
+                yield f"subsystems/{folder.name}: no mission of {kind}/ flies {' or '.join(names)}: {mended_by[kind]}"
     if written(root, flown) != (root / "subsystems/README.md").read_text():
         yield "subsystems/README.md: its table is not what flies: tools/check_flown.py --write"
 

@@ -10,7 +10,7 @@ import {pathToFileURL} from 'node:url';
 
 const of_page = (file) => import(pathToFileURL(join(process.env.HIROSCO_SOURCES, 'ground/web/page', file)));
 const {Motion} = await of_page('scene/motion.js');
-const {silences} = await of_page('parts/silences.js');
+const {alone, silences} = await of_page('parts/silences.js');
 
 /// Samples of `path(t_s)` each `period_ms`, drawn each `frame_ms`: [{now_ms, shown, newest, oldest}].
 function play(path, {period_ms, frame_ms, seconds = 4, jitter = () => 0}) {
@@ -98,5 +98,11 @@ describe('a curve', () => {
 
   it('ends behind a sample that stands alone', () => assert.deepEqual(of([...every(0.5, 0, 5), 60, ...every(0.5, 120, 125)]), [6.5, 62]));
   it('of two samples far apart is none', () => assert.deepEqual(of([0, 50]), [2]));
+  it('shows a sample that no line reaches as a point', () => {
+    assert.deepEqual(alone([1, undefined, 2, null, 3, undefined, null, undefined, 4, 5]), [4]);
+    assert.deepEqual(alone([undefined, 7, undefined]), [1]);
+    assert.deepEqual([alone([1, 2, 3]), alone([null, undefined]), alone([])], [[], [], []]);
+    assert.deepEqual(alone([1, null, 2]), [0, 2]);
+  });
   it('of one sample, or of none, has no end', () => assert.deepEqual([of([3]), of([])], [[], []]));
 });

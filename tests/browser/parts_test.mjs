@@ -77,7 +77,7 @@ describe('cycles that were missed', () => {
     assert.deepEqual(borne_by('ARM', links), {cycles: 3, who: 'LOG'});
     assert.equal(borne_by('HAND', links), null);
     assert.equal(missed_words({missed: 12, cycles: 120000, lately: {count: 3, seconds: 60}, borne: borne_by('ARM', links)}),
-      '12 of 120,000 cycles missed since the start, 3 in the last 60 s. LOG is stopped when it lacks samples for 3 cycles in a row.');
+      '12 of 120,012 cycles missed since the start, 3 in the last 60 s. LOG is stopped when it lacks samples for 3 cycles in a row.');
   });
 });
 

@@ -24,10 +24,10 @@ export class MissedLately {
 
   forget() { this.#counts.clear(); }
 
-  /// {count, cycles, seconds}, of a minute at most; null while one sample alone is known. `cycles`: those that were due meanwhile, NaN where nobody counts them.
+  /// {count, cycles, seconds}, of a minute at most; null while one sample alone is known. `cycles`: those that were due meanwhile, those that ran and those that did not; NaN where nobody counts them.
   of(name, missed) {
     const list = this.#counts.get(name), first = list?.[0], last = list?.at(-1);
-    return list?.length > 1 ? {count: missed - first.missed, cycles: last.cycles - first.cycles, seconds: Math.min(lately_s, last.t - first.t)} : null;
+    return list?.length > 1 ? {count: missed - first.missed, cycles: last.cycles - first.cycles + missed - first.missed, seconds: Math.min(lately_s, last.t - first.t)} : null;
   }
 }
 
@@ -46,9 +46,9 @@ export function share_text({count, cycles}) {
   return !(cycles > 0) ? String(count) : share < 0.01 ? 'less than 0.01 %' : `${share.toFixed(share < 1 ? 2 : 1)} %`;
 }
 
-/// "12 of 120,000 cycles since the start, 3 in the last 60 s. ARM is stopped when it lacks samples for 3 cycles in a row."
+/// "12 of 120,012 cycles missed since the start, 3 in the last 60 s. ARM is stopped when it lacks samples for 3 cycles in a row."
 export function missed_words({missed, cycles, lately, borne}) {
   const number = (value) => Math.round(value).toLocaleString('en');
-  return `${number(missed)} of ${number(cycles)} cycles missed since the start${lately ? `, ${number(lately.count)} in the last ${lately.seconds.toFixed(0)} s` : ''}.${
+  return `${number(missed)} of ${number(cycles + missed)} cycles missed since the start${lately ? `, ${number(lately.count)} in the last ${lately.seconds.toFixed(0)} s` : ''}.${
     borne ? ` ${borne.who} is stopped when it lacks samples for ${borne.cycles} cycles in a row.` : ''}`;
 }

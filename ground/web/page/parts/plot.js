@@ -10,6 +10,7 @@ import {colour, theme} from '../theme.js';
 import {column_of, curve_words, is_reckoned, of_flight, reckoned} from './curves.js';
 import {cursor_t, look_at, pin, pins, put, show_all, unpin, whole} from './plot_cursor.js';
 import {bare, event_marks, gap_shade, gauge, limit_bands, marks_in, pinned_cursors, stop_mark} from './plot_layers.js';
+import {alone} from './silences.js';
 import {is_named, StateLanes} from './state_lanes.js';
 
 /// Of curves that have no meaning of their own; what is measured, set, touched or felt has the colour of that everywhere.
@@ -80,7 +81,7 @@ function options_of(names, size, on_zoom, about) {
     const scale = scale_of(name, i), look = look_of(name, about.looks?.[i]);
     const stepped = Boolean(column_of(name)?.enumeration?.length) || column_of(name)?.type === 'BOOL';
     const stroke = () => curve_colour(i, about.looks?.[i]);
-    series.push({label: name, scale, stroke, width: look?.width ?? 1.4, dash: look?.dash, points: {show: false}, spanGaps: false,
+    series.push({label: name, scale, stroke, width: look?.width ?? 1.4, dash: look?.dash, points: {show: false, size: 4, fill: stroke, filter: (plot, place) => alone(plot.data[place])}, spanGaps: false,
       paths: stepped ? uPlot.paths.stepped({align: 1}) : undefined},
     {scale, stroke: 'transparent', points: {show: false}}, {scale, stroke: 'transparent', points: {show: false}});
     bands.push({series: [3 * i + 3, 3 * i + 2], fill: () => `${stroke()}33`});

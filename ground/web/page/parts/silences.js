@@ -17,3 +17,18 @@ export function silences(t, first, end, held_s) {
   }
   return found;
 }
+
+/// Which of the values of a curve no line joins to another one: null ends a curve, undefined is of another curve's times.
+export function alone(values) {
+  const found = [];
+  let joined = false, newest = -1;
+  const end = () => { if (newest >= 0 && !joined) found.push(newest); newest = -1; joined = false; };
+  values.forEach((value, i) => {
+    if (value === null) end();
+    if (!Number.isFinite(value)) return;
+    joined = newest >= 0;
+    newest = i;
+  });
+  end();
+  return found;
+}

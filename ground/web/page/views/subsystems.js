@@ -56,7 +56,7 @@ function Facts({name}) {
     ['sampling', rate_text(configuration?.sampling_hz)],
     ['cycles', number_text(now.cycles)],
     ['overruns', number_text(now.overruns)],
-    ['missed', now.missed === undefined ? '–' : `${number_text(now.missed)} of ${number_text(now.cycles)}`],
+    ['missed', now.missed === undefined ? '–' : `${number_text(now.missed)} of ${number_text(now.cycles + now.missed)}`],
     ['missed, last minute', lately ? String(lately.count) : '–'],
     ...borne ? [['too many', `${borne.cycles} in a row stop ${borne.who}`]] : [],
     ['latency, largest', duration_text(now.latency_max_ns ?? NaN)],
