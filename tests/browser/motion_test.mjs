@@ -11,6 +11,7 @@ import {pathToFileURL} from 'node:url';
 const of_page = (file) => import(pathToFileURL(join(process.env.HIROSCO_SOURCES, 'ground/web/page', file)));
 const {Motion} = await of_page('scene/motion.js');
 const {alone, silences} = await of_page('parts/silences.js');
+const {aligned} = await of_page('parts/rows.js');
 
 /// Samples of `path(t_s)` each `period_ms`, drawn each `frame_ms`: [{now_ms, shown, newest, oldest}].
 function play(path, {period_ms, frame_ms, seconds = 4, jitter = () => 0}) {
@@ -85,7 +86,7 @@ describe('a curve', () => {
 
   it('ends where its parameter fell silent, and nowhere else', () => {
     const t = [...every(0.5, 0, 10), ...every(0.5, 30, 40)];
-    assert.deepEqual(of(t), [11.5]);
+    assert.deepEqual(of(t), [[9.5, 30]]);
     assert.deepEqual(of(every(0.5, 0, 40)), []);
     assert.deepEqual(silences(t, 0, 20, 2), [], 'what is not shown is not looked at');
   });
@@ -93,11 +94,20 @@ describe('a curve', () => {
   it('goes through ranges of an archive, however far apart they all are, and through what was made coarser', () => {
     assert.deepEqual(of(every(8, 0, 800)), []);
     assert.deepEqual(of([...every(6, 0, 600), ...every(3, 600, 700), ...every(0.5, 700, 720)]), []);
-    assert.deepEqual(of([...every(3, 0, 60), ...every(3, 200, 260)]), [59]);
+    assert.deepEqual(of([...every(3, 0, 60), ...every(3, 200, 260)]), [[57, 200]]);
   });
 
-  it('ends behind a sample that stands alone', () => assert.deepEqual(of([...every(0.5, 0, 5), 60, ...every(0.5, 120, 125)]), [6.5, 62]));
-  it('of two samples far apart is none', () => assert.deepEqual(of([0, 50]), [2]));
+  it('ends behind a sample that stands alone', () => assert.deepEqual(of([...every(0.5, 0, 5), 60, ...every(0.5, 120, 125)]), [[4.5, 60], [60, 120]]));
+  it('of two samples far apart is none', () => assert.deepEqual(of([0, 50]), [[0, 50]]));
+  it('is nothing at any time of a silence, whoever else has samples then', () => {
+    const none = (t) => t.map(() => null);
+    const [one, other] = [[...every(0.5, 0, 5), ...every(0.5, 20, 25)], every(1, 0, 25)].map((t) => ({t, v: t.map(() => 7), low: none(t), high: none(t)}));
+    const [t, values, , , others] = aligned([one, other], 0, 25, () => 2);
+    t.forEach((at, i) => assert.equal(values[i], at > 4.5 && at < 20 ? null : one.t.includes(at) ? 7 : undefined, `at ${at}`));
+    assert.ok(t.includes(6.5), 'where there would be no time at all, one is put in');
+    assert.ok(others.every((value) => value !== null), 'the other one was never silent');
+    assert.deepEqual(aligned([one, other], 0, 25)[1].filter((value) => value === null), [], 'in a table of samples there is no more than samples');
+  });
   it('shows a sample that no line reaches as a point', () => {
     assert.deepEqual(alone([1, undefined, 2, null, 3, undefined, null, undefined, 4, 5]), [4]);
     assert.deepEqual(alone([undefined, 7, undefined]), [1]);

@@ -6,7 +6,7 @@
 import {get} from './api.js';
 import {is_reckoned, of_flight, reckoned} from './parts/curves.js';
 import {reckon} from './parts/expression.js';
-import {silences} from './parts/silences.js';
+import {aligned} from './parts/rows.js';
 import {thinned} from './parts/thinned.js';
 import {columns, filled, flight, flights, freshness, gateway, newest_s, now_s, on_values, replay, values} from './store.js';
 
@@ -232,39 +232,8 @@ replay.subscribe((value) => {
   was = is;
 });
 
-/// Rows on the union of the times, undefined where a series has no sample: what uPlot wants. `drawn`: with a time at which it has none, null, where it fell
-/// silent, so that no line goes across.
-export function aligned(list, from, to, {drawn = false} = {}) {
-  const cut = list.map((series) => {
-    const t = series.t;
-    let first = 0, end = t.length;
-    for (let low = 0, high = t.length; low < high;) {
-      const middle = (low + high) >> 1;
-      if (t[middle] < from) first = low = middle + 1; else high = middle;
-    }
-    while (end > first && t[end - 1] > to) --end;
-    return [Math.max(0, first - 1), Math.min(t.length, end + 1)];
-  });
-  const times = new Set();
-  list.forEach((series, i) => { for (let k = cut[i][0]; k < cut[i][1]; ++k) times.add(series.t[k]); });
-  const silent = list.map((series, i) => new Set(drawn ? silences(series.t, cut[i][0], cut[i][1], held_s(series)) : []));
-  silent.forEach((set) => set.forEach((t) => times.add(t)));
-  const union = Float64Array.from(times).sort();
-  const rows = [union];
-  list.forEach((series, i) => {
-    const v = new Array(union.length), low = new Array(union.length), high = new Array(union.length);
-    let k = cut[i][0];
-    for (let j = 0; j < union.length; ++j) {
-      const hit = k < cut[i][1] && series.t[k] === union[j];
-      v[j] = hit ? series.v[k] : silent[i].has(union[j]) ? null : undefined;
-      low[j] = hit ? series.low[k] : undefined;
-      high[j] = hit ? series.high[k] : undefined;
-      while (k < cut[i][1] && series.t[k] <= union[j]) ++k;
-    }
-    rows.push(v, low, high);
-  });
-  return rows;
-}
+/// Rows of what is drawn: none across a silence.
+export const drawn_rows = (list, from, to) => aligned(list, from, to, held_s);
 
 export const has_samples = ({t, v}, from, to) => t.some((at, i) => at >= from && at <= to && v[i] !== null);
 

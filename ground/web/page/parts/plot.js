@@ -4,7 +4,7 @@ import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 import uPlot from 'uplot';
 import {brief_text, clock_text, fixed_text, quantity_text, ticks_text, unit_text, value_text} from '../format.js';
 import {html} from '../html.js';
-import {aligned, began_s, drop_series, extend, has_samples, newest_of, shown_span, statistics, use_series, value_at} from '../series.js';
+import {began_s, drawn_rows, drop_series, extend, has_samples, newest_of, shown_span, statistics, use_series, value_at} from '../series.js';
 import {columns, now_s, replay, slow} from '../store.js';
 import {colour, theme} from '../theme.js';
 import {column_of, curve_words, is_reckoned, of_flight, reckoned} from './curves.js';
@@ -189,7 +189,7 @@ export function TimePlot({names: all_names, window_s = 60, range = null, on_zoom
     if (!plot || !list || plot.held) return;
     const [from, to] = shown_span(window_s, range);
     if (!Number.isFinite(to)) return;
-    plot.setData(aligned(list, from, to, {drawn: true}), false);
+    plot.setData(drawn_rows(list, from, to), false);
     plot.bare = !list.some((series) => has_samples(series, from, to));
     plot.setScale('x', {min: from, max: to});
   };

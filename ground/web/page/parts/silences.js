@@ -5,15 +5,15 @@
 
 const times_usual = 4;
 
-/// The times at which the curve through t[first..end[ ends: `held_s` behind each sample that none follows for longer than that, and for much longer than is
-/// usual before or after. Ranges of an archive, which stand far apart all along, are no silence, nor is where they pass into samples.
+/// Where no curve goes through t[first..end[: [sample before, sample behind], for longer than `held_s` apart and for much longer than is usual before or after.
+/// Ranges of an archive, which stand far apart all along, are no silence, nor is where they pass into samples.
 export function silences(t, first, end, held_s) {
   const found = [], apart = (i) => i > first && i < end ? t[i] - t[i - 1] : Infinity;
   for (let i = first + 1; i < end; ++i) {
     if (t[i] - t[i - 1] <= held_s) continue;
     // Of two on each side, as one of them may be another silence.
     const sides = [Math.min(apart(i - 1), apart(i - 2)), Math.min(apart(i + 1), apart(i + 2))].filter(Number.isFinite);
-    if (!sides.length || apart(i) > times_usual * Math.max(...sides)) found.push(t[i - 1] + held_s);
+    if (!sides.length || apart(i) > times_usual * Math.max(...sides)) found.push([t[i - 1], t[i]]);
   }
   return found;
 }

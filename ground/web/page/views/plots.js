@@ -13,7 +13,8 @@ import {Cursors, curve_colour, Legend, TimePlot, XyPlot} from '../parts/plot.js'
 import {whole} from '../parts/plot_cursor.js';
 import {Splits} from '../parts/splits.js';
 import {is_named} from '../parts/state_lanes.js';
-import {aligned, shown_span, whole_flight} from '../series.js';
+import {aligned} from '../parts/rows.js';
+import {shown_span, whole_flight} from '../series.js';
 import {columns, flight, flights, mission, now_s, replay, slow} from '../store.js';
 import {colour} from '../theme.js';
 import {first_plots, plot_title} from './overview.js';
