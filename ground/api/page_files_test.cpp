@@ -57,8 +57,18 @@ TEST_F(PageFilesTest, OfAMissionAreListedSoThatAPageNeedNotTry) {
 TEST_F(PageFilesTest, OfAMissionWithoutThemAreAnEmptyList) {
   EXPECT_EQ(PageFiles({}, folder / "none").file("/mission/index.json", {})->body, "[]");
   EXPECT_EQ(PageFiles({}, {}).file("/mission/index.json", {})->body, "[]");
-  EXPECT_FALSE(PageFiles({}, {}).file("/mission/scene.json", {}));
+  EXPECT_FALSE(PageFiles({}, {}).file("/mission/arm.urdf", {}));
   EXPECT_FALSE(PageFiles({}, {}).file("/mission/etc/passwd.txt", {}));
+}
+
+TEST_F(PageFilesTest, OfAMissionHaveASceneAlwaysWhichIsNullWhereThereIsNone) {
+  for (const PageFiles& none : {PageFiles({}, folder / "none"), PageFiles({}, {})}) {
+    const auto scene = none.file("/mission/scene.json", {});
+    ASSERT_TRUE(scene);
+    EXPECT_EQ(scene->body, "null");
+    EXPECT_EQ(scene->type, "application/json");
+    EXPECT_FALSE(none.file("/mission/meshes/scene.json", {}));
+  }
 }
 
 TEST_F(PageFilesTest, LeadOutOfTheirFolderByNoName) {

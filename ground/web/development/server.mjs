@@ -198,6 +198,7 @@ const server = createServer(async (request, response) => {
   if (!url.pathname.startsWith('/api/')) {
     const of_mission = url.pathname.startsWith('/mission/');
     if (url.pathname === '/mission/index.json') return answer(response, 200, existsSync(mission_page) ? readdirSync(mission_page) : []);
+    if (url.pathname === '/mission/scene.json' && !existsSync(join(mission_page, 'scene.json'))) return answer(response, 200, null);
     const folder = of_mission ? mission_page : page;
     const file = join(folder, normalize(url.pathname === '/' ? '/index.html' : of_mission ? url.pathname.slice('/mission'.length) : url.pathname));
     if (!file.startsWith(folder) || !existsSync(file) || !statSync(file).isFile()) return answer(response, 404, {error: 'no such file'});

@@ -5,6 +5,7 @@
 // whether all this is live or from the archive. One source at a time: going to a replay and back empties what depends on time.
 import {batch, computed, effect, signal} from '@preact/signals';
 import {get, introduce, seat, token} from './api.js';
+import {when_through} from './through.js';
 
 const most_events = 10000;
 const most_commands = 500;
@@ -349,18 +350,15 @@ async function really_fetch_present() {
 const worker = new Worker(new URL('feed_worker.js', document.baseURI), {type: 'module'});
 export const send_to_gateway = (message) => worker.postMessage({kind: 'send', message});
 
+const begun_ms = [];
+const taken = when_through(() => worker.postMessage({kind: 'taken', took_ms: performance.now() - begun_ms.shift()}));
 /// Tells the worker when what the batch brought about has been rendered, and how long all of it took.
 function take_batch(list) {
-  const began_ms = performance.now();
-  const through = new MessageChannel();
-  through.port1.onmessage = () => {
-    through.port1.close();
-    worker.postMessage({kind: 'taken', took_ms: performance.now() - began_ms});
-  };
+  begun_ms.push(performance.now());
   try {
     take(list);
   } finally {
-    through.port2.postMessage(null);
+    taken.soon();
   }
 }
 

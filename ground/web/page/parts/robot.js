@@ -7,6 +7,7 @@ import {html} from '../html.js';
 import {target_line} from './hand.js';
 import {usual_description} from '../scene/usual.js';
 import {goal_where_it_stands} from './goal_form.js';
+import {open} from './opening.js';
 import {drawing_code, opens_with_robot, scene_of_mission} from './scene_file.js';
 import {typed} from './typed.js';
 import {fallen, fallen_text, inhibited_text} from '../stop_story.js';
@@ -84,6 +85,7 @@ function picture_of(description) {
     await picture.view.load();
     nodes.stage.dataset.loaded = 'yes';
   }).catch((error) => {
+    open();
     picture.view?.close();
     if (kept === picture) kept = null;
     throw error;
@@ -146,9 +148,6 @@ export function Robot() {
   if (view.current) {
     view.current.hand_allowed = Boolean(hand) && operator.value;
     view.current.goal_allowed = operator.value;
-    const boxes = taken_boxes(stage.current);
-    if (JSON.stringify(boxes) !== JSON.stringify(view.current.taken)) view.current.draw_soon();
-    view.current.taken = boxes;
   }
   slow.value;
   const from = description?.camera, movable = description?.robots.find((one) => one.goal);
@@ -175,14 +174,4 @@ export function Robot() {
         goal_typed || goal_sent ? html`<span><i class="goal" />${goal_sent ? 'goal, sent' : typed.value?.refused ? 'goal, refused' : 'goal, not sent'}</span>` : null}${feels(description) ? html`<span><i class="touched" />touched</span>` : null}${
         description.inset ? html`<span><i class="felt" />felt</span>` : null}`}${hand && operator.value && !replay.value && !stopped.length ? html`<span class="hint">${goal_typed && !goal_sent ? 'drag the goal by its ball or a link' : 'drag the handle or the fingertip'}</span>` : null}</div>` : null}
   </div>`;
-}
-
-/// Where tags must not lie: on the buttons above, the hand, the key and the verdict.
-function taken_boxes(stage) {
-  const robot = stage?.closest('.robot'), home = robot?.getBoundingClientRect();
-  if (!home) return [];
-  return [...robot.querySelectorAll('.tools, .hand, .key, .inhibited, .cube')].map((node) => {
-    const box = node.getBoundingClientRect();
-    return {left: box.left - home.left, right: box.right - home.left, top: box.top - home.top, bottom: box.bottom - home.top};
-  });
 }

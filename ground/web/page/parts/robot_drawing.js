@@ -25,15 +25,19 @@ import {cast_on_plane} from '../scene/skins.js';
 import {snapshot_of} from '../scene/snapshot.js';
 import {lights, sun_from} from '../scene/space.js';
 import {StillPicture} from '../scene/still.js';
+import {watch_taken} from '../scene/taken.js';
 import {ViewCube} from '../scene/view_cube.js';
 import {surface_x_m} from './hand.js';
 import {plots_address, plots_of_link} from './joint_plots.js';
+import {open} from './opening.js';
 import {save} from './save.js';
 import {goal_says, typed} from './typed.js';
 
 const still_after_ms = 250, resized_after_ms = 200;
 /// What is around the robot waits until it was seen to move, or for as long.
-const first_poses = 8, patience_ms = 1500;
+const first_poses = 7, patience_ms = 1500;
+/// And what is beside it until so many of its poses were drawn, or it has stood there for as long.
+const seen_poses = 5, unmoved_ms = 400;
 
 /// A context of WebGL, or null where the browser has none, and whether a processor draws it by itself.
 function probe() {
@@ -135,6 +139,8 @@ export class RobotView {
     }
     this.resize();
     this.update();
+    this.pace.anew();
+    setTimeout(open, unmoved_ms);
     if (this.software) this.surroundings_timer = setTimeout(() => this.add_surroundings_later(), patience_ms);
     else this.add_surroundings_later();
   }
@@ -261,13 +267,15 @@ export class RobotView {
     if (this.felt.group.visible) this.felt.point(new Vector3(0, 0, 0.19), new Vector3(x / size, y / size, 0), Math.min(0.1, 0.03 + 0.5 * size));
   }
 
-  draw_soon() { this.pace.soon(); }
+  /// Nothing is drawn before there is something.
+  draw_soon() { if (this.kit) this.pace.soon(); }
 
   draw(began_ms) {
     with_picture();
+    let moved = false;
     for (const robot of this.robots) {
       const posed = robot.pose(began_ms);
-      if (posed && this.surroundings_timer && ++this.poses >= first_poses) this.add_surroundings_later();
+      moved ||= posed;
       const limits = this.finished && this.show.limits;
       robot.show_limits(limits);
       if (robot.frame) robot.frame.visible = this.show.frames || !robot.about.inset && limits;
@@ -283,15 +291,21 @@ export class RobotView {
     this.nodes.stage.dataset.pose = this.robots.map((robot) => robot.last.map((angle) => angle?.toFixed(6))).join();
     const unfinished = this.still?.draw(this.camera, this.size, began_ms - this.moved_at < still_after_ms - 20) ?? false;
     if (this.still?.whole && !this.still.wanted && !this.still.held) this.nodes.stage.dataset.still = 'whole';
-    this.draw_live();
+    this.camera.updateMatrixWorld();
     this.readout.lay(began_ms);
-    return {unfinished, moving: this.robots.some((robot) => robot.motion.moving())};
+    this.draw_live(this.readout.leads.all?.());
+    const moving = this.robots.some((robot) => robot.motion.moving());
+    if (moved) ++this.poses;
+    if (this.poses >= seen_poses) open();
+    if (this.surroundings_timer && this.poses >= first_poses) this.add_surroundings_later();
+    return {unfinished, moving};
   }
 
-  draw_live() {
+  /// `leads` of numbers are drawn where a processor draws.
+  draw_live(leads = []) {
     const {renderer, inset, live} = this, {x: width, y: height} = this.size;
     if (live) {
-      live.draw(this.scene, this.camera, width, height);
+      live.draw(this.scene, this.camera, width, height, {leads});
       if (inset?.box.width) inset.live.draw(inset.scene, inset.camera, Math.round(inset.box.width), Math.round(inset.box.height));
       return;
     }
@@ -361,6 +375,10 @@ export class RobotView {
   enter(window) {
     this.window = window;
     if (window && this.inset?.canvas) window.append(this.inset.canvas);
+    this.forget_taken = watch_taken(this.nodes.stage.closest('.robot'), (boxes) => {
+      this.taken = boxes;
+      this.draw_soon();
+    });
     this.pace.open();
     this.forget();
     this.resize();
@@ -375,6 +393,7 @@ export class RobotView {
     clearTimeout(this.still_timer);
     clearTimeout(this.size_timer);
     this.readout.close();
+    this.forget_taken?.();
     this.window = null;
   }
 

@@ -5,7 +5,7 @@
 import {signal} from '@preact/signals';
 import {pictured} from './curves.js';
 import {size_of} from './size_of.js';
-import {mission_code, mission_has, mission_json, mission_text} from '../mission_files.js';
+import {mission_code, mission_json, mission_text} from '../mission_files.js';
 
 /// scene.json of the mission; null when there is none, undefined while it is not known.
 export const scene_of_mission = signal(undefined);
@@ -18,14 +18,19 @@ scene_of_mission.subscribe((scene) => {
 
 /// The parameters of a plot of scene.json, which has them alone or among its curves.
 export const plot_names = (plot) => Array.isArray(plot) ? plot : (plot?.curves ?? []).map((one) => one.name);
-export const drawing_code = () => import('./robot_drawing.js');
+let code = null;
+/// Asked for once: a promise that was kept is not waited for again.
+export function drawing_code() {
+  code ??= import('./robot_drawing.js').catch((error) => {
+    code = null;
+    throw error;
+  });
+  return code;
+}
 // A page that opens with the robot in it asks for the code before it knows what to draw.
 export const opens_with_robot = !/^#\/(?!overview)/.test(location.hash);
-mission_has('scene.json').then((there) => {
-  if (!there) return null;
-  if (opens_with_robot) drawing_code().catch(() => {});
-  return mission_json('scene.json');
-})
+if (opens_with_robot) drawing_code().catch(() => {});
+mission_json('scene.json')
     .then((description) => {
       // What it names is on its way while the page is put together.
       if (description && opens_with_robot) {

@@ -35,7 +35,10 @@ export function surroundings_in_steps(view) {
       if (standing.length) far.add(...standing);    // three.js minds when there is nothing to add
       view.contact.stand_still(far, () => view.camera_moved(true));
     },
-    () => view.still?.grown(),
+    () => {
+      view.still?.grown();
+      delete view.nodes.stage.dataset.still;
+    },
   ];
 }
 

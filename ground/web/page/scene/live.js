@@ -7,7 +7,7 @@ import {BackSide, DoubleSide, Matrix4, Vector3} from 'three';
 import {Raster, Texture} from './raster.js';
 import {sun_from} from './space.js';
 
-const numbers = 9, shades = 16384, step_px = 64, usual_gloss = 0.2, depth_step = 1.2e-7, black = {r: 0, g: 0, b: 0};
+const numbers = 9, shades = 16384, step_px = 64, usual_gloss = 0.2, depth_step = 1.2e-7, lead_colour = [255, 255, 255], lead_opacity = 0.5, black = {r: 0, g: 0, b: 0};
 /// What `userData.raster` of a material says; of three.js' own ones those that light falls on are lit.
 const kind_of = (material) => material.userData.raster ?? (material.isMeshStandardMaterial || material.isMeshLambertMaterial || material.isMeshPhongMaterial ? 'lit' : 'flat');
 const sun = sun_from.clone().normalize();
@@ -42,8 +42,8 @@ export class LivePicture {
     this.#canvas.width = this.#canvas.height = 0;
   }
 
-  /// `scene` as `camera` sees it, `width` by `height` px, its upper left at [x, y] of what the canvas stands in.
-  draw(scene, camera, width, height, [x, y] = [0, 0]) {
+  /// `scene` as `camera` sees it, `width` by `height` px; `leads` are lines in px above it.
+  draw(scene, camera, width, height, {leads = []} = {}) {
     const raster = this.#raster, opaque = [], clear = [];
     raster.begin(width, height);
     if (scene.matrixWorldAutoUpdate) scene.updateMatrixWorld();
@@ -62,7 +62,8 @@ export class LivePicture {
     clear.sort((a, b) => a.renderOrder - b.renderOrder || far(b) - far(a));
     for (const part of opaque) this.#draw_part(part);
     for (const part of clear) this.#draw_part(part);
-    this.#show(x, y);
+    for (const [x0, y0, x1, y1] of leads) raster.line(x0, y0, x1, y1, lead_colour, lead_opacity);
+    this.#show();
   }
 
   /// What it shows, where that is, into a picture of what the canvas stands in.
@@ -70,23 +71,29 @@ export class LivePicture {
     if (this.#place) context.drawImage(this.#canvas, ...this.#place);
   }
 
-  #show(x, y) {
+  #show() {
     const box = this.#raster.drawn(), canvas = this.#canvas, hidden = box ? '' : 'hidden';
     if (canvas.style.visibility !== hidden) canvas.style.visibility = hidden;
-    this.#place = null;
-    if (!box) return;
-    // Of a few sizes only: another one is new memory.
-    const wide = Math.ceil(box.width / step_px) * step_px, tall = Math.ceil(box.height / step_px) * step_px;
-    if (wide > canvas.width || tall > canvas.height || wide < canvas.width - step_px || tall < canvas.height - step_px) {
-      [canvas.width, canvas.height] = [wide, tall];
-      [canvas.style.width, canvas.style.height] = [`${wide}px`, `${tall}px`];
-      this.context = canvas.getContext('2d');
-    }
-    const left = Math.max(0, Math.min(box.left, this.#raster.width - canvas.width)), top = Math.max(0, Math.min(box.top, this.#raster.height - canvas.height));
+    if (!box) return void (this.#place = null);
+    this.#stretch(box);
+    const [left, top] = this.#place;
     // All of it, with what is empty: so nothing of the picture before stays.
     this.context.putImageData(this.#raster.image, -left, -top, left, top, canvas.width, canvas.height);
-    this.#place = [x + left, y + top];
-    canvas.style.transform = `translate(${x + left}px, ${y + top}px)`;
+  }
+
+  /// Another place makes the browser list all layers anew, another size is new memory: it is one of few, and stays while it will do.
+  #stretch({left, top, width, height}) {
+    const canvas = this.#canvas, [x, y] = this.#place ?? [Infinity, Infinity], [right, bottom] = [left + width, top + height];
+    const holds = x <= left && y <= top && x + canvas.width >= right && y + canvas.height >= bottom;
+    if (holds && canvas.width < width + 3 * step_px && canvas.height < height + 3 * step_px) return;
+    const at = [left, top].map((value) => Math.floor(value / step_px) * step_px), size = [Math.ceil((right - at[0]) / step_px) * step_px, Math.ceil((bottom - at[1]) / step_px) * step_px];
+    if (canvas.width !== size[0] || canvas.height !== size[1]) {
+      [canvas.width, canvas.height] = size;
+      [canvas.style.width, canvas.style.height] = size.map((value) => `${value}px`);
+      this.context = canvas.getContext('2d');
+    }
+    this.#place = at;
+    canvas.style.transform = `translate(${at[0]}px, ${at[1]}px)`;
   }
 
   /// Corners in px and depths: the first three of nine numbers each.

@@ -137,8 +137,9 @@ export class Raster {
     if (!this.#edges(a, b, d)) return;
     const {corners: c, width, depth, middle_x} = this, e = this.#edge, from = e[0], to = e[1], ym = e[2], long = e[3], begin = e[4], upper = e[5], lower = e[6], k = this.#light;
     const ax = c[a], ay = c[a + 1], bx = (c[b] - ax) * inverse, by = (c[b + 1] - ay) * inverse, dx = (c[d] - ax) * inverse, dy = (c[d + 1] - ay) * inverse;
-    // The slopes of depth, colour, opacity, u and v along x and y.
-    for (let n = 0; n < 7; ++n) {
+    // The slopes of depth, colour, opacity, u and v along x and y; what hides and what darkens has no colour.
+    const slopes = !write || write === 'darkest' ? 1 : texture ? 7 : 5;
+    for (let n = 0; n < slopes; ++n) {
       const nb = c[b + 2 + n] - c[a + 2 + n], nd = c[d + 2 + n] - c[a + 2 + n];
       k[2 * n] = nb * dy - nd * by;
       k[2 * n + 1] = nd * bx - nb * dx;
@@ -189,13 +190,13 @@ export class Raster {
   }
 
   /// One point wide, above everything.
-  line(x0, y0, x1, y1, [r, g, b]) {
+  line(x0, y0, x1, y1, [r, g, b], opacity = 1) {
     const steps = Math.min(4096, Math.ceil(Math.max(Math.abs(x1 - x0), Math.abs(y1 - y0))));
     if (!Number.isFinite(steps)) return;
     for (let i = 0; i <= steps; ++i) {
       const x = Math.floor(x0 + (x1 - x0) * i / (steps || 1)), y = Math.floor(y0 + (y1 - y0) * i / (steps || 1));
       if (x < 0 || y < 0 || x >= this.width || y >= this.height) continue;
-      this.points[y * this.width + x] = 0xff000000 | b << 16 | g << 8 | r;
+      this.#blend(y * this.width + x, r, g, b, opacity);
       this.first_row = Math.min(this.first_row, y);
       this.last_row = Math.max(this.last_row, y);
       this.#touch(x, x + 1, y, y + 1);

@@ -5,6 +5,7 @@
 // a goal. Told five times a second, laid to their points with every picture.
 import {Vector3} from 'three';
 import {fixed_text} from '../format.js';
+import {leads_above, leads_within} from './leads.js';
 import {Tags} from './tags.js';
 
 const words_ms = 200;
@@ -15,10 +16,10 @@ export class Readout {
   #told_ms = -Infinity;
   #timer;
 
-  /// `view`: {nodes, description, camera, size, show, stale, taken, modules, robots}; `again()` is asked for the last words when all is at rest.
+  /// `view`: {nodes, software, description, camera, size, show, stale, taken, modules, robots}; `again()` is asked for the last words when all is at rest.
   constructor(view, again) {
-    Object.assign(this, {view, again});
-    this.tags = new Tags(view.nodes.tags, view.nodes.leads);
+    Object.assign(this, {view, again, leads: view.software ? leads_within() : leads_above(view.nodes.leads)});
+    this.tags = new Tags(view.nodes.tags, this.leads);
   }
 
   add_robot(robot) {

@@ -5,12 +5,13 @@
 // one for each frame of the robot, so that the page never waits for all of it; coarse while the camera turns.
 
 const bands = 8, coarse = 0.34;
-const background = 0x04060a;
+const background = 0x04060a, empty = '#04060a';
 
 export class StillPicture {
   /// `renderer` is given to it before there is something in `scene`.
   constructor(scene, canvas) {
-    Object.assign(this, {renderer: null, scene, canvas, band: 0, wanted: false, held: false, whole: false, unseen: null});
+    // Nothing is seen through it: a browser has less to mix.
+    Object.assign(this, {renderer: null, scene, canvas, context: canvas.getContext('2d', {alpha: false}), band: 0, wanted: false, held: false, whole: false, unseen: null, grown_once: false});
   }
 
   /// The camera moved, or there is more to be seen.
@@ -28,7 +29,7 @@ export class StillPicture {
 
   /// One step of it; true when there is more to do. The renderer's own canvas is spoiled by it.
   draw(camera, {x: width, y: height}, turning) {
-    if (!this.wanted || !this.renderer || !this.scene.children.length) return false;
+    if (!this.wanted || !this.renderer || !this.grown_once) return false;
     const {canvas} = this;
     if (canvas.width !== width || canvas.height !== height) this.#stretch(width, height);
     if (this.unseen === null) this.unseen = kinds_of(this.scene);
@@ -40,7 +41,7 @@ export class StillPicture {
       this.band = 0;
       const wide = Math.round(width * coarse), tall = Math.round(height * coarse);
       this.#render(camera, wide, tall);
-      canvas.getContext('2d').drawImage(this.renderer.domElement, 0, height - tall, wide, tall, 0, 0, width, height);
+      this.context.drawImage(this.renderer.domElement, 0, height - tall, wide, tall, 0, 0, width, height);
       this.#shade(width, height);
       return true;
     }
@@ -48,7 +49,7 @@ export class StillPicture {
     camera.setViewOffset(width, height, 0, top, width, tall);
     this.#render(camera, width, tall);
     camera.clearViewOffset();
-    canvas.getContext('2d').drawImage(this.renderer.domElement, 0, height - tall, width, tall, 0, top, width, tall);
+    this.context.drawImage(this.renderer.domElement, 0, height - tall, width, tall, 0, top, width, tall);
     this.wanted = ++this.band < bands;
     if (this.wanted) return true;
     this.whole = true;
@@ -56,8 +57,9 @@ export class StillPicture {
     return false;
   }
 
-  /// More has been added: its programs are made first.
+  /// More has been added, of which its programs are made first; before, there is nothing worth a picture.
   grown() {
+    this.grown_once = true;
     this.unseen = null;
     this.ask();
   }
@@ -68,12 +70,14 @@ export class StillPicture {
     [before.width, before.height] = [Math.max(1, canvas.width), Math.max(1, canvas.height)];
     before.getContext('2d').drawImage(canvas, 0, 0);
     [canvas.width, canvas.height] = [width, height];
-    if (this.whole) canvas.getContext('2d').drawImage(before, 0, 0, width, height);
+    this.context.fillStyle = empty;
+    this.context.fillRect(0, 0, width, height);
+    if (this.whole) this.context.drawImage(before, 0, 0, width, height);
   }
 
   /// Darker towards the edges, once: a layer above would be mixed in with every frame.
   #shade(width, height) {
-    const context = this.canvas.getContext('2d');
+    const {context} = this;
     context.save();
     context.scale(width / 2, height / 2);
     const shade = context.createRadialGradient(1, 1, 0, 1, 1, 1.64);

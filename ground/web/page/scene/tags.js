@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Numbers that stand at what they measure. Each tag takes the first free of eight places around its point and keeps it as long as it may.
+import {placing} from './place.js';
+
 const places = [[1, -0.2], [-1, -0.2], [1, 1], [-1, 1], [0, -1], [0, 1], [1, -1.2], [-1, -1.2]];
 const gap_px = 34, lead_from_px = 26;
-const svg = 'http://www.w3.org/2000/svg';
 
 const overlap = (a, b) => a.left < b.right + 3 && b.left < a.right + 3 && a.top < b.bottom + 3 && b.top < a.bottom + 3;
 
 export class Tags {
+  /// `leads`, of leads.js, take the lines of those that stand away from their points.
   constructor(node, leads) {
     this.node = node;
     this.leads = leads;
@@ -23,9 +25,7 @@ export class Tags {
     unit.textContent = after;
     node.hidden = true;
     this.node.append(node);
-    const line = document.createElementNS(svg, 'line');
-    this.leads.append(line);
-    const tag = {node, number, unit, line, look, place: 0, at: null, size: [0, 0], shown: false};
+    const tag = {node, number, unit, look, lead: this.leads.add(), place: 0, at: null, size: [0, 0], shown: false, put: placing(node)};
     this.list.push(tag);
     return tag;
   }
@@ -70,11 +70,10 @@ export class Tags {
       }
       set.push(box);
       this.#put(tag, 'seen', tag.node.style, 'visibility', '');
-      this.#put(tag, 'moved', tag.node.style, 'transform', `translate(${Math.round(box.left)}px, ${Math.round(box.top)}px)`);
+      tag.put(Math.round(box.left), Math.round(box.top));
       const end = [Math.max(box.left, Math.min(box.right, tag.at[0])), Math.max(box.top, Math.min(box.bottom, tag.at[1]))];
       const far = Math.hypot(end[0] - tag.at[0], end[1] - tag.at[1]) > lead_from_px;
-      this.#lead(tag, far ? 'visible' : 'hidden');
-      if (far) for (const [name, value] of [['x1', tag.at[0]], ['y1', tag.at[1]], ['x2', end[0]], ['y2', end[1]]]) tag.line.setAttribute(name, value.toFixed(1));
+      tag.lead(far ? [...tag.at, ...end] : null);
     }
   }
 
@@ -85,15 +84,9 @@ export class Tags {
     target[name] = value;
   }
 
-  #lead(tag, visibility) {
-    if (tag.led === visibility) return;
-    tag.led = visibility;
-    tag.line.setAttribute('visibility', visibility);
-  }
-
   #hide(tag) {
     if (tag.shown) this.#put(tag, 'seen', tag.node.style, 'visibility', 'hidden');
-    this.#lead(tag, 'hidden');
+    tag.lead(null);
   }
 
   #box(tag, place) {

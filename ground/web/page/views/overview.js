@@ -7,6 +7,7 @@ import {wanted_form} from '../parts/goal_form.js';
 import {Lanes} from '../parts/lanes.js';
 import {LinkRows, links_hint} from '../parts/link_rows.js';
 import {column_of, is_reckoned, of_flight, reckoned} from '../parts/curves.js';
+import {Later} from '../parts/opening.js';
 import {Panel} from '../parts/panel.js';
 import {Legend, TimePlot} from '../parts/plot.js';
 import {Robot} from '../parts/robot.js';
@@ -112,14 +113,14 @@ export function Overview() {
     <${Panel} title="Subsystems" hint=${`${operational()} / ${subsystems.length} Operational`} area="subsystems" href="#/subsystems">
       ${subsystems.map((one) => html`<${SubsystemCard} key=${one.name} name=${one.name} />`)}</${Panel}>
     <${Panel} title="3D" area="robot" bare titleless><${Robot} /></${Panel}>
-    <${Panel} title="Telecommand" area="command" href="#/commands"><${QuickCommand} /></${Panel}>
-    <${Panel} title="Links" hint=${links_hint()} area="links" href="#/links"><${LinkRows} /></${Panel}>
+    <${Panel} title="Telecommand" area="command" href="#/commands"><${Later}><${QuickCommand} /></${Later}></${Panel}>
+    <${Panel} title="Links" hint=${links_hint()} area="links" href="#/links"><${Later}><${LinkRows} /></${Later}></${Panel}>
     <div class="plots_row">${wanted.map(({names, title, hint, about}) => names.length ? html`<${Panel} key=${title} title=${title} hint=${hint ?? [...new Set(names.map((name) => unit_text(column_of(name)?.unit)))].join(', ')} bare
       href=${`#/plots?p=${names.map(encodeURIComponent).join('+')}`}>
-      <${Legend} names=${names} about=${about} brief /><${TimePlot} names=${names} window_s=${30} about=${{...about, relative: true}} /></${Panel}>` :
+      <${Later}><${Legend} names=${names} about=${about} brief /><${TimePlot} names=${names} window_s=${30} about=${{...about, relative: true}} /></${Later}></${Panel}>` :
       html`<${Panel} title="Plot" href="#/plots"><p class="empty">${none}</p></${Panel}>`)}</div>
     ${stop.value ? html`<${Why} area="events" brief tools=${html`<a class="chip" href="#/events">All events</a>`} />` : html`<${EventsAtAGlance} />`}
-    <${Panel} title="Timeline" area="timeline" href="#/timeline"><${Lanes} window_s=${600} small /></${Panel}>
+    <${Panel} title="Timeline" area="timeline" href="#/timeline"><${Later}><${Lanes} window_s=${600} small /></${Later}></${Panel}>
   </main>`;
 }
 
@@ -130,5 +131,5 @@ function EventsAtAGlance() {
   const shown = events.value.filter((event) => !folded(event));
   const count = events.value.length - shown.length;
   return html`<${Panel} title="Events" area="events" href="#/events" tools=${html`<button class=${`chip ${all ? 'on' : ''}`} aria-pressed=${all} onClick=${() => set_all(!all)}>all</button>`}>
-    <${EventTable} list=${shown} most=${40} />${count ? html`<p class="folded">${count} ${count > 1 ? 'changes of state are' : 'change of state is'} folded</p>` : null}</${Panel}>`;
+    <${Later}><${EventTable} list=${shown} most=${40} /></${Later}>${count ? html`<p class="folded">${count} ${count > 1 ? 'changes of state are' : 'change of state is'} folded</p>` : null}</${Panel}>`;
 }
