@@ -127,7 +127,7 @@ class Record:
         elif what == "sent":
             self.damaged_sent += 1
         elif what == "down":
-            self.down.append((time, *map(int, rest)))
+            self.down.append((time, *(int(word) if word.isdigit() else word for word in rest)))
         elif what == "did":
             self.did.append((time, rest))
         elif what == "called":
