@@ -119,9 +119,14 @@ class SlowReadings final : public supervisor::LogReadings {
     const supervisor::LogQuery query = *std::exchange(query_, std::nullopt);
     if (disk_.fault == DiskFault::Failing) return fail(ErrorCode::SystemFailure, "the disk fails");
     supervisor::LogPage page;
-    for (const LogRecord& record : disk_.records) {
-      if (page.records.size() == query.last) break;  // the oldest: nobody on board asks for others
-      if (supervisor::matches(record, query)) page.records.push_back(record);
+    const auto take = [&](const LogRecord& record) {
+      if (page.records.size() < query.last && supervisor::matches(record, query)) page.records.push_back(record);
+    };
+    if (query.end == supervisor::LogEnd::Oldest) {
+      std::ranges::for_each(disk_.records, take);
+    } else {
+      std::for_each(disk_.records.rbegin(), disk_.records.rend(), take);
+      std::ranges::reverse(page.records);
     }
     return page;
   }

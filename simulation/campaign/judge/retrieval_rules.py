@@ -150,7 +150,7 @@ def i14_it_is_what_the_log_has(flight, victims):
             continue
         if down[4] == RETRIEVED:
             time, destination, number, digest = down[0], *down[5:8]
-            running[destination].append(number)
+            running[destination].append((time, number))
             same = records.get(number)
             if same is None or zlib.crc32(same.packet) != digest or same.kind not in ("telemetry", "event"):
                 yield time, f"what came down as number {number} of the log is not what stands there"
@@ -158,7 +158,8 @@ def i14_it_is_what_the_log_has(flight, victims):
             end = End(down[0], *down[5:])
             came, each = running.pop(end.destination, []), asked.get(end.key)
             if each is not None and each.range is not None and ground_link_works(flight, victims, each.time, end.time):
-                yield from whole(flight, victims, each, end, came)
+                # What came before it was asked for is of one whose end was lost with the ground link.
+                yield from whole(flight, victims, each, end, [number for time, number in came if time >= each.time])
 
 
 def whole(flight, victims, each, end, came):
