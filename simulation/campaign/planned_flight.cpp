@@ -250,9 +250,9 @@ bool PlannedFlight::send_packet(const std::string& origin, Octets packet) {
   if (telecommand) {
     const bool asks_again = telecommand->service() == st129::service_type && telecommand->subtype() == st129::retrieve;
     const Octets data = telecommand->application_data();
-    const std::string what = telecommand->service() == 8       ? name_in(data)
+    const std::string what = telecommand->service() == 8   ? name_in(data)
                              : asks_again && !data.empty() ? hex_of(data)
-                                                               : "-";
+                                                           : "-";
     trace_->say("{} {} {} {} {} {} {} {} {}", sent ? "sent" : "unsent", origin, telecommand->apid(),
                 telecommand->sequence_count(), telecommand->source(), telecommand->ack(), telecommand->service(),
                 telecommand->subtype(), what);

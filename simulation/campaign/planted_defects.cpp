@@ -197,9 +197,9 @@ void i14(PlantedDefect& defect) {
 }
 
 const std::map<std::string_view, MakeDefect>& planted_defects() {
-  static const std::map<std::string_view, MakeDefect> all{{"I1", i1},   {"I2", i2},   {"I3", i3},   {"I4", i4},
-                                                          {"I5", i5},   {"I6", i6},   {"I8", i8},   {"I9", i9},
-                                                          {"I10", i10}, {"I11", i11}, {"I12", i12}, {"I13", i13}, {"I14", i14}};
+  static const std::map<std::string_view, MakeDefect> all{
+      {"I1", i1}, {"I2", i2},   {"I3", i3},   {"I4", i4},   {"I5", i5},   {"I6", i6},  {"I8", i8},
+      {"I9", i9}, {"I10", i10}, {"I11", i11}, {"I12", i12}, {"I13", i13}, {"I14", i14}};
   return all;
 }
 

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """What was said before comes down from the log as ground asks for it (docs/adr/0140): that, in order, each once, and nothing else."""
-import collections, dataclasses, zlib
+import collections, zlib
 
 from packet_rules import PING_US, name_of
-from record import meets
+from record import Asked, End, meets
 from rules import ground_link_works
 
 RETRIEVE, RETRIEVED, END = 11, 12, 13
@@ -17,37 +17,6 @@ LIVE_US = 100_000          # what is said now has come down by then
 DISK_PATIENCE_US = 3_000_000
 REPORT_US = 2_500          # half the rate that they can have, as what is said now goes first
 ASKED_ANEW, NOT_ON_DISK, UNREADABLE = "asked_anew", "what_was_said_last_is_not_on_the_disk_yet", "the_log_cannot_be_read:"
-
-
-@dataclasses.dataclass
-class Asked:
-    sent: object
-    range: tuple | None    # (first ns, last ns, whether with housekeeping); None: it is none
-    verdicts: dict         # subtype of TM[1,x]: failure code, None where only ground has it
-
-    @property
-    def time(self):
-        return self.sent.time
-
-    @property
-    def refused(self):
-        return 2 in self.verdicts or 4 in self.verdicts or 10 in self.verdicts
-
-
-@dataclasses.dataclass
-class End:
-    time: int
-    destination: int
-    request: int
-    reports: int
-    left_out: int
-    missing: int
-    damaged: int
-    why: str
-
-    @property
-    def key(self):
-        return self.destination, self.request
 
 
 def range_of(data):
