@@ -62,7 +62,7 @@ void retrieve(SocketChannel& channel, std::uint16_t count) {
   constexpr OnboardTime ever{std::chrono::hours{24 * 365 * 100}};
   std::array<std::byte, 64> octets{};
   const auto packet = pus::write_telecommand(octets,
-                                             {.apid = supervisor_apid,
+                                             {.apid = pus::supervisor_apid,
                                               .sequence_count = count,
                                               .ack = 0,
                                               .service = pus::st129::service_type,
