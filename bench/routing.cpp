@@ -367,7 +367,8 @@ int run_beside(const std::filesystem::path& repository, int repeats, int per_sec
     retrieved.push_back(with.retrieved_per_second);
     ratios.push_back(with.round_trip_us.p50 / without.round_trip_us.p50);
   }
-  std::printf("Routing: %d pings a second to a subsystem and back, %d of them, median of %d\n", per_second, pings, repeats);
+  std::printf("Routing: %d pings a second to a subsystem and back, %d of them, median of %d\n", per_second, pings,
+              repeats);
   std::printf("%-28s %10.0f pings/s\n", "alone", median(rates));
   std::printf("%-28s %10.0f pings/s, %.0f reports/s come down again\n", "beside a retrieval", median(rates_beside),
               median(retrieved));
