@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pings over both hops, ground link to supervisor to subsystem and back, with permission and log, against a bare forwarder
 // that moves the same packets in batches. Ground and subsystem are processes of their own that do nothing else.
+// With a third argument, so many pings a second: with nothing beside them, and while all that was said before comes down again and again.
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -22,8 +24,10 @@
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
+#include "supervisor/platform/storage/log_readings.hpp"
 #include "supervisor/supervisor.hpp"
 
 namespace hirosco::bench {
@@ -35,29 +39,57 @@ constexpr int outstanding = 64;
 constexpr int pings = 20'000;
 constexpr int warm_up = 2'000;
 
+/// How a round pings.
+struct Pace {
+  int per_second{0};  ///< 0: as fast as they come back
+  bool retrieves{false};  ///< TC[129,11] for all of the log, again where it has ended
+};
+
 /// What a round of pings came to, in memory that the ground shares.
 struct Round {
   double per_second{};
+  double retrieved_per_second{};
   Figures round_trip_us{};
 };
 
-void wait_for(int descriptor) {
+void wait_for(int descriptor, Duration limit = 100ms) {
   pollfd wanted{.fd = descriptor, .events = POLLIN, .revents = 0};
-  ::poll(&wanted, 1, 100);
+  const timespec wait{.tv_sec = 0, .tv_nsec = static_cast<long>(std::max<std::int64_t>(limit.count(), 0))};
+  ::ppoll(&wanted, 1, &wait, nullptr);
+}
+
+void retrieve(SocketChannel& channel, std::uint16_t count) {
+  constexpr OnboardTime ever{std::chrono::hours{24 * 365 * 100}};
+  std::array<std::byte, 64> octets{};
+  const auto packet = pus::write_telecommand(octets,
+                                             {.apid = pus::supervisor_apid,
+                                              .sequence_count = count,
+                                              .ack = 0,
+                                              .service = pus::st129::service_type,
+                                              .subtype = pus::st129::retrieve,
+                                              .source = 7},
+                                             pus::st129::write_retrieve({OnboardTime{}, ever, true}));
+  static_cast<void>(channel.send({.kind = MessageKind::GroundTelecommand, .link = 1, .packet = *packet}));
 }
 
 /// The ground's process: keeps `outstanding` pings under way and takes each answer by its count.
-Round ping(SocketChannel& channel, const Clock& clock) {
+Round ping(SocketChannel& channel, const Clock& clock, const Pace& pace) {
   std::array<TimePoint, 16'384> sent{};
   std::vector<std::int64_t> took;
   took.reserve(pings);
   int begun = 0;
   int ended = 0;
   TimePoint start{};
+  std::uint64_t retrieved = 0;
+  std::uint16_t questions = 0;
+  const TimePoint first = clock.now();
+  const auto due = [&] {  // of the next ping
+    return pace.per_second == 0 ? first : first + std::chrono::nanoseconds{1s} / pace.per_second * begun;
+  };
   MessageBuffer buffer;
   std::array<std::byte, 64> octets{};
   while (ended < warm_up + pings) {
-    while (begun - ended < outstanding && begun < warm_up + pings) {
+    while (begun - ended < outstanding && begun < warm_up + pings && clock.now() >= due()) {
       const auto count = static_cast<std::uint16_t>(begun % 16'384);
       const auto packet = pus::write_telecommand(
           octets, {.apid = echo_apid, .sequence_count = count, .ack = 0, .service = 17, .subtype = 1, .source = 7}, {});
@@ -68,17 +100,22 @@ Round ping(SocketChannel& channel, const Clock& clock) {
     const auto found = channel.receive(buffer);
     if (!found) std::_Exit(1);
     if (found->flow == Flow::None) {
-      wait_for(channel.wait_descriptor());
+      wait_for(channel.wait_descriptor(), pace.per_second == 0 ? 100ms : std::min<Duration>(due() - clock.now(), 10ms));
       continue;
     }
     const auto report = pus::TelemetryView::parse(found->message.packet);
+    const bool again = report && report->service() == pus::st129::service_type;
+    if (again && report->subtype() == pus::st129::retrieved && ended >= warm_up) ++retrieved;
+    if (again && report->subtype() == pus::st129::retrieval_end) retrieve(channel, questions++);
     if (!report || report->service() != 17 || report->apid() != echo_apid) continue;  // housekeeping, copies
     const TimePoint now = clock.now();
     if (ended == warm_up) start = now;
+    if (ended == warm_up / 2 && pace.retrieves) retrieve(channel, questions++);
     if (ended >= warm_up) took.push_back((now - sent[report->sequence_count()]).count());
     ++ended;
   }
-  return {pings / seconds(clock.now() - start), figures_of(took, 1e-3)};
+  const double took_s = seconds(clock.now() - start);
+  return {pings / took_s, static_cast<double>(retrieved) / took_s, figures_of(took, 1e-3)};
 }
 
 /// The subsystem's process: answers each ping with its count.
@@ -180,7 +217,7 @@ struct Silent final : supervisor::Observer {
 }
 
 /// The product: the supervisor between ground and subsystem.
-Round routed(const std::filesystem::path& repository, const SystemClock& clock) {
+Round routed(const std::filesystem::path& repository, const SystemClock& clock, const Pace& pace) {
   SealedMemory memory;
   SystemFlowFactory flows;
   const MemoryHandle figures = memory.create("figures", sizeof(Round)).value();
@@ -190,7 +227,7 @@ Round routed(const std::filesystem::path& repository, const SystemClock& clock) 
   Prepared launcher{memory};
   children.start([&] {
     SocketChannel channel{std::move(ground.pair.second)};
-    ::new (shared.octets.data()) Round{ping(channel, clock)};
+    ::new (shared.octets.data()) Round{ping(channel, clock, pace)};
   });
   children.start([&] {
     SocketChannel channel{std::move(echoing.pair.second)};
@@ -212,6 +249,7 @@ Round routed(const std::filesystem::path& repository, const SystemClock& clock) 
     supervisor::ThreadedPacketLog log{
         clock, supervisor::open_database(supervisor::DatabaseStrategy::Sqlite, folder / "log.db").value(),
         std::move(log_options)};
+    supervisor::ThreadedLogReadings log_readings{supervisor::reader_of(folder / "log.db", "")};
     supervisor::Guard guard{{.clock = clock, .flows = flows, .first_epoch = 1, .on_finding = {}}};
     supervisor::Supervisor craft{
         {.mission = mission,
@@ -220,7 +258,8 @@ Round routed(const std::filesystem::path& repository, const SystemClock& clock) 
          .guard = guard,
          .log = log,
          .open_database = [](supervisor::DatabaseStrategy) -> std::unique_ptr<supervisor::Database> { return nullptr; },
-         .observer = silent}};
+         .observer = silent,
+         .log_readings = &log_readings}};
     craft.start();
     TimePoint guard_wakes{};  // in a flight it has a thread of its own
     while (!children.first_ended()) {
@@ -270,7 +309,7 @@ Round forwarded(const SystemClock& clock) {
   Children children;
   children.start([&] {
     SocketChannel channel{std::move(ground.pair.second)};
-    ::new (shared.octets.data()) Round{ping(channel, clock)};
+    ::new (shared.octets.data()) Round{ping(channel, clock, {})};
   });
   children.start([&] {
     SocketChannel channel{std::move(echoing.pair.second)};
@@ -294,7 +333,7 @@ int run(const std::filesystem::path& repository, int repeats) {
   Series bare{"forwarder", {}};
   std::vector<double> our_rates, bare_rates, ratios;
   for (int i = 0; i < repeats; ++i) {
-    const Round mine = routed(repository, clock);
+    const Round mine = routed(repository, clock, {});
     const Round other = forwarded(clock);
     if (mine.per_second <= 0 || other.per_second <= 0) return 1;
     ours.repeats.push_back(mine.round_trip_us);
@@ -312,9 +351,39 @@ int run(const std::filesystem::path& repository, int repeats) {
   return 0;
 }
 
+/// The live stream beside what comes down again (docs/adr/0140), in turns.
+int run_beside(const std::filesystem::path& repository, int repeats, int per_second) {
+  const SystemClock clock;
+  Series alone{"alone", {}}, beside{"beside", {}};
+  std::vector<double> rates, rates_beside, retrieved, ratios;
+  for (int i = 0; i < repeats; ++i) {
+    const Round without = routed(repository, clock, {.per_second = per_second});
+    const Round with = routed(repository, clock, {.per_second = per_second, .retrieves = true});
+    if (without.per_second <= 0 || with.retrieved_per_second <= 0) return 1;
+    alone.repeats.push_back(without.round_trip_us);
+    beside.repeats.push_back(with.round_trip_us);
+    rates.push_back(without.per_second);
+    rates_beside.push_back(with.per_second);
+    retrieved.push_back(with.retrieved_per_second);
+    ratios.push_back(with.round_trip_us.p50 / without.round_trip_us.p50);
+  }
+  std::printf("Routing: %d pings a second to a subsystem and back, %d of them, median of %d\n", per_second, pings,
+              repeats);
+  std::printf("%-28s %10.0f pings/s\n", "alone", median(rates));
+  std::printf("%-28s %10.0f pings/s, %.0f reports/s come down again\n", "beside a retrieval", median(rates_beside),
+              median(retrieved));
+  std::printf("%-28s %10.2f of the medians there and back\n", "beside / alone", median(ratios));
+  alone.print("us there and back");
+  beside.print("us there and back");
+  return 0;
+}
+
 }  // namespace
 }  // namespace hirosco::bench
 
 int main(int argc, char** argv) {
-  return hirosco::bench::run(argc > 1 ? argv[1] : ".", argc > 2 ? std::atoi(argv[2]) : 5);
+  const std::filesystem::path repository = argc > 1 ? argv[1] : ".";
+  const int repeats = argc > 2 ? std::atoi(argv[2]) : 5;
+  if (argc > 3) return hirosco::bench::run_beside(repository, repeats, std::max(1, std::atoi(argv[3])));
+  return hirosco::bench::run(repository, repeats);
 }

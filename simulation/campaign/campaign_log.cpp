@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
+#include <utility>
 
 namespace hirosco::campaign {
 namespace {
@@ -101,12 +103,51 @@ class SlowLog final : public supervisor::PacketLog {
   mutable std::deque<Waiting> waiting_;
 };
 
+class SlowReadings final : public supervisor::LogReadings {
+ public:
+  SlowReadings(const Disk& disk, const Clock& clock) : disk_{disk}, clock_{clock} {}
+
+  Result<> begin(const supervisor::LogQuery& query) override {
+    if (query_) return fail(ErrorCode::Unavailable, "another page of the log is being read");
+    query_ = query;
+    begun_ = clock_.now();
+    return ok();
+  }
+  std::optional<Result<supervisor::LogPage>> outcome() override {
+    const bool stands_still = disk_.delay == Duration::max();
+    if (!query_ || stands_still || clock_.now() < begun_ + disk_.delay) return std::nullopt;
+    const supervisor::LogQuery query = *std::exchange(query_, std::nullopt);
+    if (disk_.fault == DiskFault::Failing) return fail(ErrorCode::SystemFailure, "the disk fails");
+    supervisor::LogPage page;
+    const auto take = [&](const LogRecord& record) {
+      if (page.records.size() < query.last && supervisor::matches(record, query)) page.records.push_back(record);
+    };
+    if (query.end == supervisor::LogEnd::Oldest) {
+      std::ranges::for_each(disk_.records, take);
+    } else {
+      std::for_each(disk_.records.rbegin(), disk_.records.rend(), take);
+      std::ranges::reverse(page.records);
+    }
+    return page;
+  }
+
+ private:
+  const Disk& disk_;
+  const Clock& clock_;
+  std::optional<supervisor::LogQuery> query_;
+  TimePoint begun_{};
+};
+
 }  // namespace
 
 std::unique_ptr<supervisor::Database> database_on(Disk& disk) { return std::make_unique<FaultyDatabase>(disk); }
 
 std::unique_ptr<supervisor::PacketLog> log_on(Disk& disk, const Clock& clock) {
   return std::make_unique<SlowLog>(disk, clock);
+}
+
+std::unique_ptr<supervisor::LogReadings> readings_on(const Disk& disk, const Clock& clock) {
+  return std::make_unique<SlowReadings>(disk, clock);
 }
 
 }  // namespace hirosco::campaign

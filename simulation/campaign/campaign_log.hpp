@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "supervisor/platform/storage/log_readings.hpp"
 #include "supervisor/platform/storage/packet_log.hpp"
 
 /// The supervisor's log with the faults that a disk has.
@@ -29,5 +30,8 @@ struct Disk {
 
 /// Stores in order of arrival, durable after the disk's delay.
 [[nodiscard]] std::unique_ptr<supervisor::PacketLog> log_on(Disk& disk, const Clock& clock);
+
+/// Reads a page after the disk's delay, from what stands there then; a failing disk gives none.
+[[nodiscard]] std::unique_ptr<supervisor::LogReadings> readings_on(const Disk& disk, const Clock& clock);
 
 }  // namespace hirosco::campaign

@@ -3,7 +3,8 @@
 """Draws the plan of a flight from a seed: who is told what, and what breaks, at random instants."""
 import functools, importlib.util, pathlib, random, struct, sys, types
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "judge"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent / "judge"), str(pathlib.Path(__file__).resolve().parent)]
+import retrieval  # noqa: E402
 from descriptors import ERROR, OFFLINE, OPERATIONAL, POST, PRE, SAFE, STATES, TYPES  # noqa: E402
 
 FINALE_S = 26.0
@@ -11,6 +12,7 @@ BEGIN_S = 0.1           # commissioned by then
 FULL_POWER = b"SET_POWER_BUDGET" + bytes([1, 1]) + struct.pack(">f", 120)
 COMMON = ["3.1", "3.3", "3.5", "3.6", "3.9", "3.27", "3.29", "3.31", "3.33", "5.5", "5.6", "5.7", "17.1", "20.1", "20.3",
           "128.1", "128.2", "128.3", "128.4", "129.1", "3.77", "99.1", "SET_STATE", "CONFIGURE", "unknown"]
+RETRIEVAL = "129.11"    # what was said before comes down again (docs/adr/0140); the supervisor's alone to answer
 DEVICE_FAULTS = ["unplug", "silent", "stall", "freeze", "corrupt", "delay"]
 MEMBER_FAULTS = ["kill", "stop", "spin", "stick", "strain"]
 LOG_FAULTS = ["slow", "failing", "full", "deleted", "frozen"]
@@ -42,7 +44,7 @@ def commands_of(mission):
         for origin in origins:
             for kind in COMMON + [f for m in mission.members for f in m.functions]:
                 yield f"{STATES[state]}|{kind}|{origin}"
-    for kind in mission.supervisor.functions:
+    for kind in [*mission.supervisor.functions, RETRIEVAL]:
         for origin in origins:
             yield f"Operational|{kind}|{origin}"
 
@@ -181,6 +183,8 @@ class Draw:
                 return service, subtype, self.parameter_write(subsystem)
             if service == 128:
                 return service, subtype, r.randbytes(r.choice([1, 4, 20]))
+            if kind == RETRIEVAL:
+                return service, subtype, retrieval.data(r)
             return service, subtype, b""
         if kind == "SET_STATE":
             return 8, 1, b"SET_STATE".ljust(16, b"\0") + bytes([1, 1, r.choice([*range(10), OPERATIONAL, OFFLINE, PRE, 255])])
@@ -346,7 +350,7 @@ class Draw:
             if kind == "SHUTDOWN" and origin == "ground":
                 continue
             owner = next((s for s in [mission.supervisor, *mission.members] if kind in s.functions), r.choice(self.acting))
-            self.telecommand(time, origin, owner, kind)
+            self.telecommand(time, origin, mission.supervisor if kind == RETRIEVAL else owner, kind)
             time += r.choice([0.0, 0.001, 0.004])
             if kind in ("SET_STATE", "CONFIGURE"):
                 time = drive(time + 0.01, STATES.index(state))
@@ -424,11 +428,18 @@ class Draw:
         for event in [*victim.events, *FRAMEWORK_EVENTS]:
             self.add(time, f"tc ground {victim.apid} 5 6 15 01{event:04x}  # {victim.name} no report of {event}")
 
+    def ask_again(self):
+        """Some flights ask for what was said before. By a dice of its own: whatever else is drawn stays as it is."""
+        dice = random.Random(f"retrieval of {self.flight_seed}")
+        for time, origin, words in retrieval.asked(dice, self.mission, BEGIN_S, FINALE_S):
+            self.add(time, f"{words}  # {origin} asks again")
+
     # --- all of it ---------------------------------------------------------------------------------------------------
     def text(self):
         aimed = self.aim() if self.wanted_commands or self.wanted_faults else 0.3
         self.roam(self.random.choice([0.3, aimed, aimed]))
         self.strike_in_use()
+        self.ask_again()
         if self.index % SILENCED_EVERY == SILENCED_AT:
             self.strike_silenced()
         self.lines.sort(key=lambda line: line[0])

@@ -7,10 +7,14 @@
 #include <sstream>
 
 #include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/utilities/crc32.hpp"
 #include "hirosco/utilities/octets.hpp"
 
 namespace hirosco::campaign {
 namespace {
+
+namespace st129 = pus::st129;
 
 constexpr Duration ping_every = 250ms;
 const std::string ground = "ground";
@@ -24,6 +28,22 @@ const std::string ground = "ground";
     name += letter > ' ' && letter <= '~' ? letter : '?';
   }
   return name.empty() ? "?" : name;
+}
+
+/// What came down again, for who judges it: destination, number in the log and CRC-32 of the report inside; of the end of it destination, request,
+/// reports, left out, missing, damaged and why it ended early, with '_' for each space ('-': it did not). Else nothing.
+[[nodiscard]] std::string retrieved_in(const pus::TelemetryView& report) {
+  if (report.service() != st129::service_type) return {};
+  if (st129::is_retrieved(report)) {
+    const auto again = st129::read_retrieved(report.source_data());
+    return again ? fmt::format(" {} {} {}", report.destination(), again->number, crc32(again->packet)) : std::string{};
+  }
+  const auto end = st129::read_retrieval_end(report.source_data());
+  if (report.subtype() != st129::retrieval_end || !end) return {};
+  std::string why = end->why.empty() ? "-" : end->why;
+  std::ranges::replace(why, ' ', '_');
+  return fmt::format(" {} {} {} {} {} {} {}", report.destination(), end->request, end->reports, end->left_out,
+                     end->missing, end->damaged, why);
 }
 
 }  // namespace
@@ -52,6 +72,7 @@ PlannedFlight::PlannedFlight(const descriptor::Mission& mission, simulation::Mod
       .observer = observer_,
       .seed = plan_.seed,
       .make_log = [this](const Clock& clock) { return log_on(disk_, clock); },
+      .make_log_readings = [this](const Clock& clock) { return readings_on(disk_, clock); },
       .open_database = [this](supervisor::DatabaseStrategy) { return database_on(disk_); },
       .wrap_channel = defect_->wrap_channel});
   defect_->craft = craft_.get();
@@ -227,10 +248,14 @@ bool PlannedFlight::send_packet(const std::string& origin, Octets packet) {
   }
   const auto telecommand = pus::TelecommandView::parse(packet);
   if (telecommand) {
-    const bool function = telecommand->service() == 8;
+    const bool asks_again = telecommand->service() == st129::service_type && telecommand->subtype() == st129::retrieve;
+    const Octets data = telecommand->application_data();
+    const std::string what = telecommand->service() == 8   ? name_in(data)
+                             : asks_again && !data.empty() ? hex_of(data)
+                                                           : "-";
     trace_->say("{} {} {} {} {} {} {} {} {}", sent ? "sent" : "unsent", origin, telecommand->apid(),
                 telecommand->sequence_count(), telecommand->source(), telecommand->ack(), telecommand->service(),
-                telecommand->subtype(), function ? name_in(telecommand->application_data()) : "-");
+                telecommand->subtype(), what);
   } else {
     trace_->say("{} {} damaged", sent ? "sent" : "unsent", origin);
   }
@@ -241,7 +266,8 @@ void PlannedFlight::received_on_ground(Octets packet) {
   const auto report = pus::TelemetryView::parse(packet);
   if (!report) return;
   if (report->service() != 1) {
-    trace_->say("down {} {} {} {}", report->apid(), report->sequence_count(), report->service(), report->subtype());
+    trace_->say("down {} {} {} {}{}", report->apid(), report->sequence_count(), report->service(), report->subtype(),
+                retrieved_in(*report));
     return;
   }
   OctetReader reader{report->source_data()};

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "hirosco/utilities/crc16.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "simulation/campaign/plan.hpp"
@@ -187,10 +188,18 @@ void i13(PlantedDefect& defect) {
   };
 }
 
+/// Every fortieth report that comes down again is lost between supervisor and ground link.
+void i14(PlantedDefect& defect) {
+  on_channel(defect, Whose::GroundLink, {.sends = [seen = 0](const Message& message) mutable {
+               const auto report = pus::TelemetryView::parse(message.packet);
+               return !report || !pus::st129::is_retrieved(*report) || ++seen % 40 != 0;
+             }});
+}
+
 const std::map<std::string_view, MakeDefect>& planted_defects() {
-  static const std::map<std::string_view, MakeDefect> all{{"I1", i1},   {"I2", i2},   {"I3", i3},   {"I4", i4},
-                                                          {"I5", i5},   {"I6", i6},   {"I8", i8},   {"I9", i9},
-                                                          {"I10", i10}, {"I11", i11}, {"I12", i12}, {"I13", i13}};
+  static const std::map<std::string_view, MakeDefect> all{
+      {"I1", i1}, {"I2", i2},   {"I3", i3},   {"I4", i4},   {"I5", i5},   {"I6", i6},  {"I8", i8},
+      {"I9", i9}, {"I10", i10}, {"I11", i11}, {"I12", i12}, {"I13", i13}, {"I14", i14}};
   return all;
 }
 

@@ -41,8 +41,10 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
   log_ = parts.make_log
              ? parts.make_log(clock_)
              : std::make_unique<supervisor::DirectPacketLog>(clock_, std::make_unique<BorrowedDatabase>(parts.log));
-  if (!parts.make_log)
-    log_readings_.emplace([&log = parts.log](const supervisor::LogQuery& query) { return log.read(query); });
+  if (parts.make_log_readings) log_readings_ = parts.make_log_readings(clock_);
+  else if (!parts.make_log)
+    log_readings_ = std::make_unique<supervisor::DirectLogReadings>(
+        [&log = parts.log](const supervisor::LogQuery& query) { return log.read(query); });
   for (const auto& described : parts.mission.devices) {
     const auto make = parts.devices.find(described.executable);
     if (make == parts.devices.end()) continue;
@@ -117,7 +119,7 @@ void Spacecraft::make_supervisor(std::uint32_t first_epoch) {
       .first_sequence_count = first_count(parts.seed + kept_->starts.load() - 1),
       .journal = journal_ ? &*journal_ : nullptr,
       .values = parts.values != nullptr ? parts.values : &own_values_,
-      .log_readings = log_readings_ ? &*log_readings_ : nullptr,
+      .log_readings = log_readings_.get(),
       .readings = &readings_});
   supervisor_wake_ = clock_.now();
 }

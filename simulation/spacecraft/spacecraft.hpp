@@ -56,6 +56,8 @@ class Spacecraft final : private supervisor::ProcessLauncher {
     bool realtime{true};  ///< which set of limits holds
     /// A log of the caller's in place of one that stores at once in `log`, for faults of it.
     std::function<std::unique_ptr<supervisor::PacketLog>(const Clock&)> make_log{};
+    /// Who reads that log while it flies (docs/adr/0140); empty: nobody, and nothing of it comes down again.
+    std::function<std::unique_ptr<supervisor::LogReadings>(const Clock&)> make_log_readings{};
     supervisor::DatabaseOpener open_database{};  ///< for SET_DATABASE; empty: one in memory
     /// What stands between the supervisor and a member's channel, for faults of that; empty: nothing.
     std::function<std::unique_ptr<Channel>(std::string_view member, std::unique_ptr<Channel>)> wrap_channel{};
@@ -153,7 +155,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   supervisor::MemoryValueDisk forgotten_;
   supervisor::DirectValueStore own_values_{forgotten_, "values"};
   supervisor::DirectReadings readings_{parts_.files};
-  std::optional<supervisor::DirectLogReadings> log_readings_;  ///< none: its log is not read
+  std::unique_ptr<supervisor::LogReadings> log_readings_;  ///< null: its log is not read
   // What the keeper holds.
   std::unique_ptr<supervisor::KeeperPage> kept_{std::make_unique<supervisor::KeeperPage>()};
   std::vector<std::byte> journal_memory_;

@@ -8,7 +8,7 @@ GATE = "hirosco/subsystem/cycle/actuator_gate.cpp"
 GUARD, MANIPULATOR = "supervisor/guard/guard.cpp", "subsystems/manipulator/manipulator.cpp"
 PERMISSION, LINK_ENDS = f"{SUPERVISION}/data_handling/permission.cpp", "hirosco/subsystem/service_loop/link_ends.cpp"
 RECEPTION, GROUND_LINK = f"{SUPERVISION}/data_handling/reception.cpp", "subsystems/communication/ground_link.cpp"
-TELECOMMANDS = f"{SUPERVISION}/data_handling/telecommands.cpp"
+TELECOMMANDS, RETRIEVAL = f"{SUPERVISION}/data_handling/telecommands.cpp", f"{SUPERVISION}/data_handling/retrieval.cpp"
 DEVICE, LOG_STORE = "simulation/devices/simulated_device.cpp", "supervisor/platform/storage/log_store.cpp"
 STANDARD_ERROR, MANIPULATOR_TEST = "supervisor/platform/launch/standard_error.cpp", "manipulator_subsystem_test"
 
@@ -34,6 +34,14 @@ class Defect:
 
 
 DEFECTS = [
+    # --- what comes down again (docs/adr/0140), both found by the campaign -------------------------------------------------
+    # What went with a deleted log was not missing to who asked for times after its first record.
+    Defect("gap before the times", RETRIEVAL, "query.stored_from = OnboardTime::min();", "if (!PLANTED) query.stored_from = OnboardTime::min();",
+           "supervisor_test", "RetrievalTest.WhatWentWithADeletedLogIsMissingWhereverItBegan"),
+    # Asked anew twice, the page of the first question was taken for one of the last.
+    Defect("page of another question", RETRIEVAL, "abandoned_ = abandoned_ || running_->reads;",
+           "abandoned_ = (abandoned_ && !PLANTED) || running_->reads;",
+           "supervisor_test", "SlowRetrievalTest.AskedAnewTwiceWhileADiskStandsStillTheLateOneIsStillNobodys"),
     # --- the guard -------------------------------------------------------------------------------------------------------
     # All who share a processor with a cycle that loops for ever were told as hung, the first of them as the culprit.
     Defect("SF2 culprit", GUARD, "GuardedMember& culprit = spinner(member);",

@@ -5,7 +5,8 @@
 stop of everything by three ways; then the craft must be whole again by one bring-up.
 
 Judged from outside: only the victim dies (I1), the supervisor answers throughout (I6), what was taken is given back (I7),
-the robot in the world puts out nothing after a stop, everybody else cycles on (hazards SF2, SF14, SF15, SF18).
+the robot in the world puts out nothing after a stop, everybody else cycles on (hazards SF2, SF14, SF15, SF18). Each other flight asks at its end for
+all that was said, which comes as the log has it (I14).
 
     real_campaign.py [--flights N] [--seed S] [--only K] [--keep FILE]    FILE: how far it is; goes on from there
     real_campaign.py --hundreds [N]      each of spinning, stopped, unplugged, killed (each subsystem) N times (100), and what it took
@@ -20,6 +21,7 @@ import time
 import flight
 import pages
 import punctual
+import said_again
 
 SPINNABLE = {"hirosco-joystick": "hirosco-spinnable-joystick", "hirosco-manipulator": "hirosco-spinnable-manipulator"}
 RESTARTS = {"60": "1"}              # three deaths in a minute are many for a mission, few for a campaign
@@ -74,6 +76,8 @@ class Trial:
             step()
             self.bring_up()
             self.done += 1
+        if self.number % 2 == 0:
+            self.what_was_said_comes_again()
         held = self.taken()
         expect(held <= self.baseline + 2, f"I7: {held} descriptors where {self.baseline} were")
         expect(craft.end() in (0, 1, 5), f"exit code, {craft.errors}")
@@ -211,6 +215,22 @@ class Trial:
         took = time.monotonic() - begin
         expect(code == 0, f"I6: ping was answered {reports}")
         expect(took < ANSWER_S + TOOL_S, f"I6: ping took {took:.2f} s")
+
+    def what_was_said_comes_again(self):
+        """All reports of this flight but housekeeping, as its log has them: in order, each once, and its end says so."""
+        begun = time.monotonic()
+        try:
+            came, end = said_again.all_again(20.0)
+        except (AssertionError, OSError) as problem:
+            raise Violation(f"I14: {problem}") from problem
+        self.took("what was said comes again", time.monotonic() - begun)
+        numbers = [number for number, _ in came]
+        expect(numbers == sorted(set(numbers)), "I14: what was said did not come in order, each once")
+        expect(end == (len(came), 0, 0, 0, ""), f"I14: {len(came)} reports came, its end tells of {end}")
+        stored = [record["number"] for record in self.craft.log() if record["kind"] in ("telemetry", "event") and "TM[3,25]" not in record["text"]]
+        expect(numbers, "I14: nothing of what was said came")
+        lacking = set(number for number in stored if number <= numbers[-1]) ^ set(numbers)
+        expect(not lacking, f"I14: {len(lacking)} reports stand in the log or came, and not both, the first {min(lacking, default=0)}")
 
     def only_died(self, *victims):
         words = [line.told.split() for line in self.craft.told(self.begin)]

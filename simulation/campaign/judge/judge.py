@@ -8,6 +8,7 @@ import collections, json, sys
 from descriptors import STATES, read_mission
 from packet_rules import PACKETS
 from record import Record
+from retrieval_rules import RETRIEVALS
 from rules import WORLD
 
 MOST_TOLD = 5  # of one invariant in one flight
@@ -57,7 +58,7 @@ def judge(mission, folder):
     flight = Record(mission, folder)
     victims = flight.victims()
     violations = []
-    for name, rules in sorted({**WORLD, **PACKETS}.items()):
+    for name, rules in sorted({**WORLD, **PACKETS, **RETRIEVALS}.items()):
         for rule in rules:
             for place, (time, text) in enumerate(rule(flight, victims)):
                 if place == MOST_TOLD:

@@ -74,6 +74,39 @@ class Sent:
         return (self.source, (0x1800 | self.apid) << 16 | 0xC000 | self.count)
 
 
+@dataclasses.dataclass
+class Asked:
+    """A TC[129,11], and what was said of it."""
+    sent: object
+    range: tuple | None    # (first ns, last ns, whether with housekeeping); None: it is none
+    verdicts: dict         # subtype of TM[1,x]: failure code, None where only ground has it
+
+    @property
+    def time(self):
+        return self.sent.time
+
+    @property
+    def refused(self):
+        return 2 in self.verdicts or 4 in self.verdicts or 10 in self.verdicts
+
+
+@dataclasses.dataclass
+class End:
+    """TM[129,13] as ground has it."""
+    time: int
+    destination: int
+    request: int
+    reports: int
+    left_out: int
+    missing: int
+    damaged: int
+    why: str
+
+    @property
+    def key(self):
+        return self.destination, self.request
+
+
 class Record:
     def __init__(self, mission, folder):
         self.mission = mission
@@ -127,7 +160,7 @@ class Record:
         elif what == "sent":
             self.damaged_sent += 1
         elif what == "down":
-            self.down.append((time, *map(int, rest)))
+            self.down.append((time, *(int(word) if word.isdigit() else word for word in rest)))
         elif what == "did":
             self.did.append((time, rest))
         elif what == "called":

@@ -98,10 +98,20 @@ std::string describe(const LogRecord& record) {
   return line;
 }
 
+std::uint64_t last_lost(const LogRecord& gap) noexcept {
+  constexpr std::string_view before = "up to number ";
+  const std::string_view note = gap.note.view();
+  std::uint64_t last = 0;
+  if (const std::size_t at = note.rfind(before); at != std::string_view::npos)
+    std::from_chars(note.data() + at + before.size(), note.data() + note.size(), last);
+  return std::max(last, gap.number + std::max(gap.lost, 1U) - 1);
+}
+
 bool matches(const LogRecord& record, const LogQuery& query) {
   if (record.number < query.since) return false;
   if (query.run && record.run != *query.run) return false;
   if (record.stored < query.stored_from || record.stored > query.stored_to) return false;
+  if (query.kind && record.kind != *query.kind) return false;
   const PacketLabel label = label_of(record.packet);
   if (query.apid && record.source != *query.apid && record.peer != *query.apid &&
       (record.packet.empty() || label.apid != *query.apid))

@@ -83,12 +83,16 @@ struct PacketLabel {
 [[nodiscard]] std::string time_text(OnboardTime time);
 [[nodiscard]] Result<OnboardTime> time_from_text(std::string_view text);
 
+/// The last number that a Gap may have lost: as its note says, else as if they stood side by side. Its `number` and its times are those of the first.
+[[nodiscard]] std::uint64_t last_lost(const LogRecord& gap) noexcept;
+
 enum class LogEnd : std::uint8_t { Newest, Oldest };
 
 /// All conditions hold together; of what remains `last` records at one end are answered, in order of storage.
 struct LogQuery {
   std::optional<std::uint16_t> apid{};  ///< source, peer or the packet's own APID
   std::optional<std::uint8_t> service{};
+  std::optional<LogKind> kind{};
   bool housekeeping{true};  ///< false: without TM[3,25]
   std::string text{};  ///< part of `words`, whatever the case of its letters
   std::function<std::string(const LogRecord&)> words{};  ///< of a record; empty = `describe`

@@ -84,6 +84,26 @@ class Databases : public ::testing::TestWithParam<DatabaseStrategy> {
 /// What every strategy must do that outlives its process.
 class DatabasesOnDisk : public Databases {};
 
+TEST_P(Databases, GiveOneKindAlone) {
+  auto database = open();
+  std::vector<LogRecord> batch{record(1, LogKind::TelecommandReceived), record(2, LogKind::Gap),
+                               record(3, LogKind::Telemetry), record(4, LogKind::Gap)};
+  for (LogRecord& each : batch) each.lost = each.kind == LogKind::Gap ? 1 : 0;
+  ASSERT_TRUE(database->append(batch));
+  const auto page = database->read({.kind = LogKind::Gap});
+  ASSERT_TRUE(page);
+  EXPECT_TRUE(page->records == (std::vector{batch[1], batch[3]}));
+}
+
+TEST(Gap, ReachesAsFarAsItsNoteSaysElseAsManyAsItHasLost) {
+  LogRecord gap{.number = 11, .kind = LogKind::Gap, .lost = 100};
+  EXPECT_EQ(last_lost(gap), 110U);
+  gap.note = "no room before the database, up to number 300";
+  EXPECT_EQ(last_lost(gap), 300U);
+  gap.note = "up to number 7, which is before it";
+  EXPECT_EQ(last_lost(gap), 110U);
+}
+
 TEST_P(Databases, GiveBackExactlyWhatWasStored) {
   auto database = open();
   std::vector<LogRecord> batch{record(1, LogKind::TelecommandReceived), record(2, LogKind::Gap)};

@@ -113,7 +113,8 @@ constexpr const char* select_records =
     "number >= $2::bigint AND stored BETWEEN $6::bigint AND $7::bigint AND ($3 = '' OR run = nullif($3, '')::bigint) "
     "AND ($4 = '' OR source = nullif($4, '')::int "
     "OR peer "
-    "= nullif($4, '')::int OR apid = nullif($4, '')::int) AND ($5 = '' OR service = nullif($5, '')::int)";
+    "= nullif($4, '')::int OR apid = nullif($4, '')::int) AND ($5 = '' OR service = nullif($5, '')::int) AND ($8 = '' "
+    "OR kind = $8)";
 
 std::optional<LogRecord> record_of_row(std::span<const char* const> row) {
   const auto kind = from_text<LogKind>(row[4]);
@@ -325,7 +326,8 @@ Result<LogPage> PostgresqlDatabase::do_read(const LogQuery& query) {
                                         query.apid ? std::to_string(*query.apid) : std::string{},
                                         query.service ? std::to_string(*query.service) : std::string{},
                                         time_in_ns(query.stored_from),
-                                        time_in_ns(query.stored_to)};
+                                        time_in_ns(query.stored_to),
+                                        query.kind ? std::string{to_text(*query.kind)} : std::string{}};
   LogPage page;
   const auto read = reader.session_->ask(statement, values, record_columns, [&](auto row) {
     auto record = record_of_row(row);

@@ -195,6 +195,7 @@ Result<LogPage> SqliteDatabase::do_read(const LogQuery& query) {
   if (query.run) sql += " AND run = ?2";
   if (query.apid) sql += " AND (source = ?3 OR peer = ?3 OR apid = ?3)";
   if (query.service) sql += " AND service = ?4";
+  if (query.kind) sql += " AND kind = ?7";
   sql += " AND stored BETWEEN ?5 AND ?6";
   try {
     SQLite::Statement row{connection_, sql + order_of(query)};
@@ -204,6 +205,7 @@ Result<LogPage> SqliteDatabase::do_read(const LogQuery& query) {
     if (query.service) row.bind(4, *query.service);
     row.bind(5, nanoseconds(query.stored_from));
     row.bind(6, nanoseconds(query.stored_to));
+    if (query.kind) row.bind(7, std::string{to_text(*query.kind)});
 
     LogPage page;
     while (page.records.size() < query.last && row.executeStep()) {

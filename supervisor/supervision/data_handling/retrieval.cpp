@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/data_handling/retrieval.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -43,18 +44,62 @@ void Retrieval::watch(TimePoint now) {
     const bool wanted = !std::exchange(abandoned_, false) && running_;
     if (wanted) running_->reads = false;
     if (wanted && !*page) return finish("the log cannot be read: " + std::string{page->error().text});
-    if (wanted) {
-      running_->read_all = (*page)->records.size() < page_records;
-      running_->end.damaged += static_cast<std::uint32_t>((*page)->damaged);
-      for (LogRecord& record : (*page)->records) running_->page.push_back(std::move(record));
-      if (!running_->page.empty()) running_->next = running_->page.back().number + 1;
-    }
+    if (wanted) take(*running_, **page);
   }
   if (!running_) return;
   send(*running_);
   if (!running_->page.empty()) return;
-  if (running_->read_all || running_->next > running_->through) return finish({});
+  if (running_->what == Reads::Nothing) return finish({});
   read_on(*running_, now);
+}
+
+void Retrieval::take(Running& running, LogPage& page) {
+  pus::st129::RetrievalEnd& end = running.end;
+  if (running.what == Reads::Reports) {
+    end.damaged += static_cast<std::uint32_t>(page.damaged);
+    const bool all = page.records.size() < page_records;
+    for (LogRecord& record : page.records) running.page.push_back(std::move(record));
+    if (!running.page.empty()) running.next = running.page.back().number + 1;
+    if (all || running.next > running.through) running.what = Reads::Gaps;
+  } else if (running.what == Reads::Gaps) {
+    for (LogRecord& gap : page.records) {
+      if (gap.number > running.through) continue;
+      if (gap.stored < running.wanted.from) running.early.push_back(std::move(gap));
+      else end.missing += gap.lost;
+    }
+    running.what = running.early.empty() ? Reads::Nothing : Reads::Before;
+  } else {
+    std::uint64_t before = page.records.empty() ? 0 : page.records.back().number;
+    if (before != 0 && page.records.back().kind == LogKind::Gap) --before;  // how far that one reaches it alone says
+    for (const LogRecord& gap : running.early)
+      if (const std::uint64_t last = last_lost(gap); last > before)
+        end.missing += static_cast<std::uint32_t>(std::min<std::uint64_t>(gap.lost, last - before));
+    running.what = Reads::Nothing;
+  }
+}
+
+LogQuery Retrieval::query_of(const Running& running) const {
+  LogQuery query{.run = parts_.craft.log.run(),
+                 .stored_from = running.wanted.from,
+                 .stored_to = running.wanted.to + cut_off,
+                 .last = page_records,
+                 .end = LogEnd::Oldest};
+  if (running.what == Reads::Reports) {
+    query.housekeeping = running.wanted.housekeeping;
+    query.since = running.next;
+    return query;
+  }
+  // The times of a gap are those of its first record, and a log that is deleted meanwhile begins with one.
+  query.stored_from = OnboardTime::min();
+  query.end = LogEnd::Newest;
+  query.last = 1;
+  if (running.what == Reads::Before) {
+    query.stored_to = running.wanted.from - 1ns;
+  } else {
+    query.kind = LogKind::Gap;
+    query.last = most_gaps;
+  }
+  return query;
 }
 
 void Retrieval::read_on(Running& running, TimePoint now) {
@@ -64,13 +109,7 @@ void Retrieval::read_on(Running& running, TimePoint now) {
     if (now - running.begun >= disk_patience) finish("what was said last is not on the disk yet");
     return;
   }
-  const auto begun = parts_.readings->begin({.housekeeping = running.wanted.housekeeping,
-                                             .since = running.next,
-                                             .run = log.run(),
-                                             .stored_from = running.wanted.from,
-                                             .stored_to = running.wanted.to + cut_off,
-                                             .last = page_records,
-                                             .end = LogEnd::Oldest});
+  const auto begun = parts_.readings->begin(query_of(running));
   if (begun) running.reads = true;
   else finish(begun.error().text);
 }
@@ -83,7 +122,6 @@ void Retrieval::send(Running& running) {
     const LogRecord record = std::move(running.page.front());
     running.page.pop_front();
     if (record.number > running.through) continue;
-    if (record.kind == LogKind::Gap) running.end.missing += record.lost;
     if (record.kind != LogKind::Telemetry && record.kind != LogKind::Event) continue;
     const Octets data = st129::write_retrieved(buffer, {record.number, record.packet});
     if (data.empty()) {
@@ -100,7 +138,7 @@ void Retrieval::finish(std::string why) {
   running_->end.why = std::move(why);
   parts_.own.telemetry().report(st129::service_type, st129::retrieval_end, running_->destination,
                                 st129::write_retrieval_end(running_->end));
-  abandoned_ = running_->reads;
+  abandoned_ = abandoned_ || running_->reads;  // asked anew twice: the page of the first may be under way still
   running_.reset();
 }
 

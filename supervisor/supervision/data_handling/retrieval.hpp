@@ -6,6 +6,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "supervisor/platform/storage/log_readings.hpp"
@@ -29,6 +30,8 @@ class Retrieval final : public Watch {
   };
   /// Records read at once, and reports sent in one watch period.
   static constexpr std::size_t page_records = 400, most_at_once = 8;
+  /// Gaps of one log that are looked at, the newest.
+  static constexpr std::size_t most_gaps = 10'000;
   /// What was said just before is waited for so long to be on the disk.
   static constexpr Duration disk_patience{3s};
 
@@ -39,6 +42,9 @@ class Retrieval final : public Watch {
   void watch(TimePoint now) override;
 
  private:
+  /// What is read: the reports, page by page; then, as its end counts it, what the log lacks of them; and where that began before the times
+  /// asked for, what stands just before these.
+  enum class Reads : std::uint8_t { Reports, Gaps, Before, Nothing };
   struct Running {
     pus::st129::Retrieve wanted;
     std::uint16_t destination{};
@@ -46,10 +52,13 @@ class Retrieval final : public Watch {
     std::uint64_t through{0};  ///< and of the last one
     TimePoint begun{};
     bool reads{false};  ///< a page is under way
-    bool read_all{false};  ///< no page follows
+    Reads what{Reads::Reports};
+    std::vector<LogRecord> early{};  ///< gaps whose first record is older than what is asked for
     std::deque<LogRecord> page{};
     pus::st129::RetrievalEnd end{};
   };
+  static void take(Running& running, LogPage& page);
+  [[nodiscard]] LogQuery query_of(const Running& running) const;
   void read_on(Running& running, TimePoint now);
   void send(Running& running);
   void finish(std::string why);

@@ -233,6 +233,24 @@ TEST_F(RetrievalTest, WhatFindsNoRoomInAReportIsLeftOutAndCounted) {
   EXPECT_EQ(down.ends[0].left_out, 1U);
 }
 
+TEST_F(RetrievalTest, WhatWentWithADeletedLogIsMissingWhereverItBegan) {
+  wait(10s);
+  const OnboardTime from = clock.onboard();
+  say_unheard(3);
+  const std::vector<LogRecord> all = logged();
+  LogRecord gap = all.front();
+  gap.kind = LogKind::Gap;
+  gap.packet.clear();
+  gap.lost = static_cast<std::uint32_t>(all.size() - gap.number + 1);
+  ASSERT_LT(gap.stored, from);
+  auto anew = std::make_unique<MemoryDatabase>();
+  ASSERT_TRUE(anew->append(std::span{&gap, 1}));
+  store = anew.get();
+  log.switch_to(std::move(anew));
+  ask({from, always_after, true});
+  EXPECT_EQ(go_on().ends.at(0).missing, gap.lost);
+}
+
 TEST_F(RetrievalTest, WhatIsNoRangeOfTimesIsRefused) {
   const auto field = std::to_string(static_cast<int>(pus::FailureCode::IllegalField));
   ask({clock.onboard(), clock.onboard() - 1s, true});
@@ -249,12 +267,14 @@ TEST_F(RetrievalTest, NoSubsystemFillsTheDownlink) {
 
 /// A disk that does what the test says.
 struct PlayedLog final : LogReadings {
-  Result<> begin(const LogQuery&) override {
+  Result<> begin(const LogQuery& query) override {
     ++begun;
+    asked = query;
     return ok();
   }
   std::optional<Result<LogPage>> outcome() override { return std::exchange(next, std::nullopt); }
   int begun{0};
+  LogQuery asked;  ///< last
   std::optional<Result<LogPage>> next;
 };
 
@@ -289,9 +309,24 @@ TEST_F(SlowRetrievalTest, AskedAnewWhileADiskStandsStillItReadsNothingBesideAndD
   EXPECT_THAT(step().packets, SizeIs(1));
 }
 
+TEST_F(SlowRetrievalTest, AskedAnewTwiceWhileADiskStandsStillTheLateOneIsStillNobodys) {
+  begin();
+  static_cast<void>(step());
+  begin();
+  begin();
+  LogPage late;
+  late.records = {{.run = log.run(), .number = 1, .kind = LogKind::Telemetry, .packet = {std::byte{1}}}};
+  disk.next = late;
+  EXPECT_THAT(step().packets, IsEmpty()) << "it is the page of the first question";
+  EXPECT_EQ(disk.begun, 2) << "and the last one is read";
+}
+
 TEST_F(SlowRetrievalTest, WhatTheLogLacksAndWhatIsDamagedIsCounted) {
   begin();
   static_cast<void>(step());
+  disk.next = LogPage{.records = {}, .damaged = 3};
+  static_cast<void>(step());
+  EXPECT_EQ(disk.asked.kind, LogKind::Gap);
   LogPage page;
   page.records = {{.run = log.run(), .number = 1, .kind = LogKind::Gap, .lost = 12}};
   page.damaged = 3;
@@ -299,6 +334,65 @@ TEST_F(SlowRetrievalTest, WhatTheLogLacksAndWhatIsDamagedIsCounted) {
   const Down down = step();
   EXPECT_THAT(down.ends, ElementsAre(st129::RetrievalEnd{.request = 1, .missing = 12, .damaged = 3}));
   EXPECT_FALSE(down.ends.at(0).whole());
+}
+
+/// Numbers 11 to 110 went with the log, from 100 s on; asked is for what came from 200 s on.
+struct GapBeforeTest : SlowRetrievalTest {
+  static constexpr OnboardTime first_lost{100s}, from{200s};
+  LogRecord gap{.run = log.run(), .number = 11, .stored = first_lost, .kind = LogKind::Gap, .lost = 100};
+  LogRecord report{.run = log.run(), .stored = from - 1s, .kind = LogKind::Telemetry, .packet = {std::byte{1}}};
+
+  void SetUp() override {
+    SlowRetrievalTest::SetUp();
+    constexpr int beyond_the_gap = 200;
+    for (int i = 0; i < beyond_the_gap; ++i) static_cast<void>(log.append({.kind = LogKind::Action, .note = "said"}));
+  }
+  st129::RetrievalEnd end_where(const LogRecord& stands_before) {
+    retrieval.begin({.id = 1, .source = ground, .ack = 0}, st129::write_retrieve({from, always_after, true}));
+    static_cast<void>(step());
+    disk.next = LogPage{};
+    static_cast<void>(step());
+    EXPECT_EQ(disk.asked.stored_from, OnboardTime::min()) << "a gap has the times of its first record";
+    disk.next = LogPage{.records = {gap}};
+    EXPECT_THAT(step().ends, IsEmpty());
+    EXPECT_EQ(disk.asked.stored_to, from - 1ns);
+    EXPECT_EQ(disk.asked.last, 1U);
+    disk.next = LogPage{.records = {stands_before}};
+    const Down down = step();
+    EXPECT_THAT(down.ends, SizeIs(1));
+    return down.ends.empty() ? st129::RetrievalEnd{} : down.ends[0];
+  }
+};
+
+TEST_F(GapBeforeTest, WhatIsLostFromItOnIsMissing) {
+  report.number = 80;
+  EXPECT_EQ(end_where(report).missing, 30U);
+}
+
+TEST_F(GapBeforeTest, AllOfItMayBeMissingWhereItStandsJustBefore) { EXPECT_EQ(end_where(gap).missing, 100U); }
+
+TEST_F(GapBeforeTest, WhatIsOverBeforeIsNotAskedFor) {
+  report.number = 111;
+  EXPECT_TRUE(end_where(report).whole());
+}
+
+TEST_F(GapBeforeTest, OneWithOthersInBetweenReachesAsFarAsItSays) {
+  gap.lost = 20;
+  gap.note = "no room before the database, up to number 90";
+  report.number = 80;
+  EXPECT_EQ(end_where(report).missing, 10U);
+  report.number = 50;
+  EXPECT_EQ(end_where(report).missing, 20U) << "no more than are lost";
+}
+
+TEST_F(SlowRetrievalTest, AGapThatBeginsAfterTheQuestionIsNoneOfIt) {
+  begin();
+  static_cast<void>(step());
+  disk.next = LogPage{};
+  static_cast<void>(step());
+  disk.next = LogPage{
+      .records = {{.run = log.run(), .number = 1'000'000, .stored = clock.onboard(), .kind = LogKind::Gap, .lost = 5}}};
+  EXPECT_TRUE(step().ends.at(0).whole());
 }
 
 /// Takes nothing, and says so.
