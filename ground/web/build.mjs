@@ -28,10 +28,15 @@ const three = {name: 'three', setup(bundler) {
   bundler.onResolve({filter: /^three$/}, ({importer}) => ({path: join(here, 'node_modules/three/build', basename(importer) === 'card.js' ? 'three.module.js' : 'three.core.js'), sideEffects: false}));
 }};
 
+/// Indents within templates are octets that no minifier may take; htm leaves out what is blank around a line's end.
+const indents = {name: 'indents', setup(bundler) {
+  bundler.onLoad({filter: /\/page\/.*\.js$/}, ({path}) => ({contents: readFileSync(path, 'utf8').replace(/\n +/g, '\n'), loader: 'js'}));
+}};
+
 const common = {absWorkingDir: sources, nodePaths: [join(here, 'node_modules')], outdir: out, bundle: true, format: 'esm', target: 'es2022', minify: true,
   legalComments: 'linked', logLevel: 'warning'};
 const {metafile} = await build({...common, entryPoints: {main: 'page/main.js', style: 'page/style.css'}, entryNames: '[name]-[hash]',
-  assetNames: '[name]-[hash]', splitting: true, plugins: [fonts, three], metafile: true});
+  assetNames: '[name]-[hash]', splitting: true, plugins: [fonts, three, indents], metafile: true});
 await build({...common, entryPoints: {feed_worker: 'page/feed_worker.js'}});
 
 const outputs = Object.entries(metafile.outputs).map(([path, {entryPoint, imports}]) => ({name: basename(path), entry: entryPoint,

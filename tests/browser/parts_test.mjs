@@ -22,7 +22,7 @@ const {cube_as_seen, cube_px, direction_of, turned_by, words_of: seen_from} = aw
 const {risings} = await of_page('parts/risings.js');
 const {joint_above, plots_of_angle, plots_of_link} = await of_page('parts/joint_plots.js');
 const {extent_of, moved, remembered, template_of} = await of_page('parts/splits_reckoned.js');
-const {height_of, late_count, place_of, quantile_ns} = await of_page('parts/latency.js');
+const {height_of, is_kept, late_count, place_of, quantile_ns} = await of_page('parts/latency.js');
 const {parse, reckon} = await of_page('parts/expression.js');
 const {most_lines, with_newest} = await of_page('parts/log_lines.js');
 const {thinned} = await of_page('parts/thinned.js');
@@ -187,6 +187,7 @@ describe('latencies of a link, counted in nine bins', () => {
     const told = of(1, 1, 1, 1, 1, 1, 10, 100, 1000);
     assert.equal(late_count(told, period_ns), 1100);
     assert.equal(late_count(told, 2 * period_ns), 1000);
+    assert.deepEqual([[3, 4, 2], [4, 4, 2], [3, NaN, 2], [1.5, 1.8, 2], [NaN, 4, 2]].map((one) => is_kept(...one)), [true, false, false, false, false]);
     assert.equal(late_count(told, 1.5 * period_ns), 1000, 'what the budget cuts is not called late');
     assert.equal(late_count(told, 4 * period_ns), 0);
   });

@@ -240,7 +240,7 @@ export function CommandForm({subsystem, action, given = {}, focus = false, recen
     ${in_its_way ? html`<p class="permission mind" data-test="goal-in-the-way"><b>Mind the goal:</b> ${in_its_way}. The arm would be stopped on its way.</p>` : null}
     <${Authority} action=${action} />
     ${operator.value ? html`<button class=${`primary ${asked ? 'sure' : refused ? 'refused' : ''}`} type="submit" disabled=${wrong > 0 || !may_send(action)} data-test="send" title=${refused ? `the supervisor would refuse it: ${answer.reason ?? `code ${answer.code}`}` : undefined}>
-      ${refused && !asked ? html`<${Lock} />` : null}${wrong && refused ? `${action.name} is not permitted now` : mistyped >= 0 ? `${list[mistyped].name}: ${results[mistyped].error}` : wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : refused && !asked ? `Send ${action.name} all the same` : asked ? `Really ${action.name}? Once more` : `Send ${action.name}`}</button>` : null}
+      ${refused && !asked ? html`<${Lock} />` : null}${mistyped >= 0 ? `${list[mistyped].name}: ${results[mistyped].error}` : wrong ? `${wrong} field${wrong > 1 ? 's' : ''} to fill in` : refused && !asked ? `Send ${action.name} all the same` : asked ? `Really ${action.name}? Once more` : `Send ${action.name}`}</button>` : null}
     ${problem ? html`<p class="permission no">${problem}</p>` : null}
     ${mine ? html`<div class=${`verdict ${outcome_of(mine).stage}`} data-test="verdict">
       <small>${clock_text(mine.t, 3)}</small><${VerdictChain} command=${mine} /></div>` : null}</div>

@@ -25,3 +25,6 @@ export const height_of = (count, most) => count > 0 ? 0.08 + 0.92 * Math.log10(1
 export function late_count({counts, period_ns}, budget_ns) {
   return counts.reduce((sum, count, i) => sum + (i > 0 && bounds[i - 1] * period_ns >= budget_ns ? count : 0), 0);
 }
+
+/// Whether the longest of them is no reason to worry though it came late: there is a limit beyond `budget_ns`, and it was kept.
+export const is_kept = (max_ns, limit_ns, budget_ns) => limit_ns > budget_ns && max_ns < limit_ns;

@@ -86,7 +86,7 @@ function options_of(names, size, on_zoom, about) {
     {scale, stroke: 'transparent', points: {show: false}}, {scale, stroke: 'transparent', points: {show: false}});
     bands.push({series: [3 * i + 3, 3 * i + 2], fill: () => `${stroke()}33`});
   });
-  return {...size, series, bands, legend: {show: false}, padding: [about.range ? 18 : 8, about.range ? 48 : units.length > 1 ? 0 : 30, 0, 0],
+  return {...size, series, bands, legend: {show: false}, padding: [about.range || about.relative ? 18 : 8, about.range ? 48 : units.length > 1 ? 0 : 30, 0, 0],
     scales: {x: {time: false}, ...zoomable(scales_of(units, about))}, plugins: [gap_shade, limit_bands(names), event_marks, stop_mark, pinned_cursors, bare, ...(about.range ? [gauge(about.range, names[0])] : [])],
     axes: [axis_of_time(about.relative), ...units.map((unit, i) => axis_of(unit, i, about.relative))],
     // Where the mouse is, all plots know; what it drags, and a double click, are of the page.

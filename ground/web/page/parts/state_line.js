@@ -23,7 +23,7 @@ function Well() {
   const head = mode.commission?.length ? `${mode.name} is up${since}` : `Mode ${mode.name}`;
   return html`<b data-test="state-head">${head}</b><span>${up} of ${list.length} Operational${links.length ? `, ${links.filter((one) => one.up).length} of ${counted(links.length, 'link')} up` : ''}</span>
     ${missing.length ? html`<a href="#/links" data-test="state-missed" title="What stops a subsystem is too many in a row, not their number: see the links.">cycles missed in the last minute: ${
-      missing.map((one) => `${one.name} ${share_text(one)}`).join(', ')}</a>` : html`<span data-test="state-missed">no cycle missed in the last minute</span>`}
+      missing.map((one) => `${one.name} ${share_text(one)}`).join(', ')}, too few in a row to stop anybody</a>` : html`<span data-test="state-missed">no cycle missed in the last minute</span>`}
     ${high + medium ? html`<a href="#/events">${counted(high + medium, 'alarm')} nobody has acknowledged</a>` : null}`;
 }
 

@@ -35,7 +35,7 @@ export function StopBanner() {
     <button class="out" onClick=${replay_it} data-test="stop-replay">Replay 5 s before</button>
     <a class="out" href=${plots.length ? `#/plots?p=${plots.map(encodeURIComponent).join('+')}` : '#/plots'} data-test="stop-plot">Plot</a>
     ${operator.value ? html`<button class=${up_again && !rising.value ? 'way_out' : 'out'} onClick=${() => acknowledge()} data-test="stop-acknowledge">Acknowledge</button>` : null}
-    ${operator.value && mode && (!up_again || rising.value) ? html`<button class="way_out" data-test="stop-bring-up" disabled=${rising.value?.running || link.value.state !== 'up'}
+    ${operator.value && mode && (!up_again || rising.value) ? html`<button class="way_out" data-test="stop-bring-up" title="tells at its steps whether what was lost is back" disabled=${rising.value?.running || link.value.state !== 'up'}
       onClick=${bring_up_again}>Bring ${mode} up</button>` : null}
   </section>`;
 }
