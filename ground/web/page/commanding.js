@@ -38,8 +38,13 @@ export async function send(subsystem, function_name, values = {}, confirmed = fa
   return answer.id;
 }
 
-export const preview = (subsystem, function_name, values) =>
-  post('/api/commands/preview', {subsystem, function: function_name, arguments: values});
+/// How long the spacecraft took to answer this page last, with both ways there and back, in ms; NaN before.
+export const answered_ms = signal(NaN);
+export async function preview(subsystem, function_name, values) {
+  const asked_ms = performance.now(), answer = await post('/api/commands/preview', {subsystem, function: function_name, arguments: values});
+  if ('permitted' in answer) answered_ms.value = performance.now() - asked_ms;
+  return answer;
+}
 
 /// Sends and says the outcome in a toast.
 export async function send_and_say(subsystem, function_name, values = {}) {

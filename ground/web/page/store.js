@@ -285,7 +285,7 @@ const rows = (answer, name) => Array.isArray(answer) ? answer : answer?.[name] ?
 const refused = 'The gateway refuses this page: open the URL that `hirosco run` printed last, with its token.';
 
 /// When the flight began that flew at `t`; undefined where nobody knows.
-const began_before = (t) => flights.value.find((one) => one.from <= t)?.from;
+export const began_before = (t) => flights.value.find((one) => one.from <= t)?.from;
 
 /// What happened in this flight, or in the one that is replayed, before the page came, so that it opens with a past.
 async function fetch_past(until) {

@@ -44,7 +44,8 @@ void GroundRoute::flush(Channel& link, TimePoint now) {
     const std::size_t sent = link.send_all(std::span{messages}.first(ready));
     if (sent != 0) moved_ = now;
     drop_sent(sent);
-    if (sent < ready) return;
+    behind_ = sent < ready;
+    if (behind_) return;
   }
 }
 
@@ -75,6 +76,7 @@ void GroundRoute::clear() noexcept {
   housekeeping_.clear();
   reports_.clear();
   reports_octets_ = 0;
+  behind_ = false;
 }
 
 }  // namespace hirosco::supervisor

@@ -55,6 +55,8 @@ class GroundRoute {
   void clear() noexcept;
 
   [[nodiscard]] bool waiting() const noexcept { return !reports_.empty() || !housekeeping_.empty(); }
+  /// Whether the link did not take all that it was given last: what waits now is more than a step has said.
+  [[nodiscard]] bool behind() const noexcept { return behind_; }
   /// Whether a telecommand of the ground may be read now.
   [[nodiscard]] bool takes_telecommands(TimePoint now) const noexcept {
     return reports_.size() < limits_.busy || now - moved_ >= limits_.patience || now == breath_;
@@ -79,6 +81,7 @@ class GroundRoute {
   std::optional<TimePoint> breath_;  ///< the step that reads telecommands although many wait
   TimePoint next_breath_{};
   TimePoint moved_{};  ///< when the link took something last, or had nothing to take
+  bool behind_{false};
   Lost lost_{};
 };
 

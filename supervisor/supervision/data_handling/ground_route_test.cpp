@@ -51,6 +51,17 @@ TEST_F(GroundRouteTest, KeepsTheOrderOfReportsAndHousekeepingWhileTheLinkIsBehin
   EXPECT_EQ(route_.lost(), GroundRoute::Lost{});
 }
 
+TEST_F(GroundRouteTest, IsBehindOnceTheLinkDidNotTakeAllThatItWasGiven) {
+  send(1, Sent::Report);
+  flush();
+  EXPECT_FALSE(route_.behind());
+  for (int i = 2; i <= 4; ++i) send(i, Sent::Report);
+  flush();
+  EXPECT_TRUE(route_.behind());
+  while (!read().empty()) flush();
+  EXPECT_FALSE(route_.behind());
+}
+
 TEST_F(GroundRouteTest, DropsTheOldestHousekeepingAndNoReport) {
   send(1, Sent::Report);
   send(2, Sent::Report);   // the channel is full

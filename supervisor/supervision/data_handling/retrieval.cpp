@@ -117,8 +117,9 @@ void Retrieval::read_on(Running& running, TimePoint now) {
 void Retrieval::send(Running& running) {
   std::array<std::byte, st129::max_retrieved_octets + sizeof(std::uint64_t)> buffer;
   for (std::size_t sent = 0; sent < most_at_once && !running.page.empty();) {
-    // What is said now goes first, and a link that takes nothing is not filled.
-    if (parts_.telemetry.ground().waiting()) return;
+    // What this step has said is ahead of it; a link that does not take all is not filled. (What this step has said is no reason to wait:
+    // of a stream that says something in each, it would be for ever.)
+    if (parts_.telemetry.ground().behind()) return;
     const LogRecord record = std::move(running.page.front());
     running.page.pop_front();
     if (record.number > running.through) continue;

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 import {useRef, useState} from 'preact/hooks';
-import {say, send_and_say} from '../commanding.js';
+import {answered_ms, say, send_and_say} from '../commanding.js';
 import {age_text, clock_text, date_text, iso_text} from '../format.js';
 import {html} from '../html.js';
-import {calling, link, mission, now_s, operator, replay, slow, subsystem_of} from '../store.js';
+import {began_before, calling, flight, link, mission, now_s, operator, replay, slow, subsystem_of} from '../store.js';
 import {Commander} from './commander.js';
 import {Severity} from './icons.js';
 import {Mode} from './mode_menu.js';
 
-const hold_ms = 800, longest_age_s = 1e8;
+const hold_ms = 800, longest_age_s = 1e8, slow_answer_ms = 200;
 
 const link_words = {
   up: 'Link up', silent: 'Link silent', down: 'No spacecraft', gateway: 'No gateway', waiting: 'Waiting',
@@ -21,20 +21,25 @@ function LinkState() {
   const unkept = archive_failures > 0;
   const look = replaying ? 'amber' : state === 'up' && !unkept ? 'good' : 'bad';
   const words = replaying ? 'Archive' : state === 'up' && unkept ? 'Not archived' : link_words[state];
-  const title = rx === undefined ? words : `${rx} packets received, ${lost} lost, ${damaged} damaged, ${tx} sent${
+  const title = rx === undefined ? words : `${rx} packets received, ${lost} lost, ${damaged} damaged, ${tx} sent${answered_ms.value >= 0 ? `; last answer after ${answered_ms.value.toFixed(0)} ms` : ''}${
       unkept ? `; the archive failed ${archive_failures} times: is the disk full or the file damaged?` : ''}`;
   return html`<span class=${`pill link ${look}`} title=${title} data-test="link"><i class="lamp" />${words}<small>${replaying ? 'not live' :
-      state === 'gateway' || state === 'silent' ? `for ${age_text(age_s)}` : age_s < longest_age_s ? `${age_text(age_s)} ago` : ''}</small></span>`;
+      state === 'gateway' || state === 'silent' ? `for ${age_text(age_s)}` : age_s < longest_age_s ? `${age_text(age_s)} ago${answered_ms.value > slow_answer_ms ? `, answers after ${age_text(answered_ms.value / 1000)}` : ''}` : ''}</small></span>`;
 }
 
+/// Of the flight: hours, minutes, seconds since it began.
+const since_text = (s) => s >= 0 ? `${String(Math.floor(s / 3600)).padStart(2, '0')}${new Date(1000 * s).toISOString().slice(13, 21)}` : '--:--:--';
+const clocks = {TAI: (t) => clock_text(t), UTC: (t) => iso_text(t).slice(11, 21), 'T+': (t) => since_text(t - (replay.value ? began_before(t) : flight.value?.from))};
+const scales = Object.keys(clocks);
+
+/// On-board time; a click has it as UTC and as time since the flight began.
 function Clock() {
   slow.value;
-  const t = now_s();
-  const known = link.value.state === 'up' || replay.value !== null;
-  const utc = iso_text(t).slice(11, 19);
-  const title = `${known ? 'On-board time' : 'On-board time as it would be: nothing comes'}${utc ? `. It is TAI, which counts no leap seconds: ${utc} UTC` : ''}`;
-  return html`<span class=${`obt ${known ? '' : 'stale'}`} title=${title}><small>${date_text(t)}</small>
-    <b>${clock_text(t)}</b><small class="scale">TAI</small><small>on board</small></span>`;
+  const [at, set_at] = useState(0);
+  const t = now_s(), scale = scales[at], known = link.value.state === 'up' || replay.value !== null;
+  const title = `On-board time${known ? '' : ' as it would be: nothing comes'}. ${scales.map((one) => `${one} ${clocks[one](t)}`).join(', ')}: a click changes it`;
+  return html`<button class=${`obt ${known ? '' : 'stale'}`} title=${title} data-test="clock" onClick=${() => set_at((at + 1) % scales.length)}><small>${date_text(t)}</small>
+    <b>${clocks[scale](t)}</b><small class="scale">${scale}</small></button>`;
 }
 
 /// Pressed for 0.8 s, so that neither a slip nor a held Enter of another field stops the spacecraft.
