@@ -13,6 +13,10 @@ namespace st129 = pus::st129;
 namespace {
 /// 7 octets say 2^-24 s.
 constexpr Duration cut_off = 60ns;
+
+void add(std::uint32_t& sum, std::uint64_t count) {
+  sum = static_cast<std::uint32_t>(std::min<std::uint64_t>(sum + count, UINT32_MAX));
+}
 }  // namespace
 
 void Retrieval::begin(const pus::Request& asked, Octets data) {
@@ -53,29 +57,52 @@ void Retrieval::watch(TimePoint now) {
   read_on(*running_, now);
 }
 
-void Retrieval::take(Running& running, LogPage& page) {
+void Retrieval::take(Running& running, LogPage& page) const {
   pus::st129::RetrievalEnd& end = running.end;
   if (running.what == Reads::Reports) {
     end.damaged += static_cast<std::uint32_t>(page.damaged);
     const bool all = page.records.size() < page_records;
-    for (LogRecord& record : page.records) running.page.push_back(std::move(record));
+    for (LogRecord& record : page.records) {
+      look_for_skipped(running, record);
+      running.page.push_back(std::move(record));
+    }
     if (!running.page.empty()) running.next = running.page.back().number + 1;
     if (all || running.next > running.through) running.what = Reads::Gaps;
   } else if (running.what == Reads::Gaps) {
     for (LogRecord& gap : page.records) {
       if (gap.number > running.through) continue;
       if (gap.stored < running.wanted.from) running.early.push_back(std::move(gap));
-      else end.missing += gap.lost;
+      else add(end.missing, gap.lost);
     }
-    running.what = running.early.empty() ? Reads::Nothing : Reads::Before;
-  } else {
+    running.what = running.early.empty() ? Reads::First : Reads::Before;
+  } else if (running.what == Reads::Before) {
     std::uint64_t before = page.records.empty() ? 0 : page.records.back().number;
     if (before != 0 && page.records.back().kind == LogKind::Gap) --before;  // how far that one reaches it alone says
     for (const LogRecord& gap : running.early)
       if (const std::uint64_t last = last_lost(gap); last > before)
-        end.missing += static_cast<std::uint32_t>(std::min<std::uint64_t>(gap.lost, last - before));
+        add(end.missing, std::min<std::uint64_t>(gap.lost, last - before));
+    running.what = Reads::First;
+  } else {
+    miss_what_was_before(running, page);
     running.what = Reads::Nothing;
   }
+}
+
+/// Where all records of a time are read each number stands there: what is in between is gone, whether a gap tells of it or not.
+void Retrieval::look_for_skipped(Running& running, const LogRecord& record) {
+  if (!running.wanted.housekeeping || record.number <= running.seen || record.number > running.through) return;
+  if (running.seen != 0) running.skipped += record.number - running.seen - 1;
+  if (record.kind == LogKind::Gap) ++running.skipped;  // which stands under one of them
+  running.seen = record.number;
+}
+
+/// The numbers of a flight begin with 1: those before the first that is there were removed, nobody knows of which times.
+void Retrieval::miss_what_was_before(Running& running, const LogPage& first) const {
+  add(running.end.missing, running.skipped - std::min<std::uint64_t>(running.skipped, running.end.missing));
+  const bool none = first.records.empty();
+  if (running.wanted.to + cut_off < parts_.craft.log.run()) return;
+  if (!none && first.records.front().stored < running.wanted.from) return;
+  add(running.end.missing, (none ? running.through + 1 : first.records.front().number) - 1);
 }
 
 LogQuery Retrieval::query_of(const Running& running) const {
@@ -89,6 +116,7 @@ LogQuery Retrieval::query_of(const Running& running) const {
     query.since = running.next;
     return query;
   }
+  if (running.what == Reads::First) return {.run = query.run, .last = 1, .end = LogEnd::Oldest};
   // The times of a gap are those of its first record, and a log that is deleted meanwhile begins with one.
   query.stored_from = OnboardTime::min();
   query.end = LogEnd::Newest;

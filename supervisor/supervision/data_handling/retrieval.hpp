@@ -42,9 +42,9 @@ class Retrieval final : public Watch {
   void watch(TimePoint now) override;
 
  private:
-  /// What is read: the reports, page by page; then, as its end counts it, what the log lacks of them; and where that began before the times
-  /// asked for, what stands just before these.
-  enum class Reads : std::uint8_t { Reports, Gaps, Before, Nothing };
+  /// What is read: the reports, page by page; then, as its end counts it, what the log lacks of them: its gaps; where one began before the times
+  /// asked for, what stands just before these; and the first record that it still has, as what it does not keep leaves no gap.
+  enum class Reads : std::uint8_t { Reports, Gaps, Before, First, Nothing };
   struct Running {
     pus::st129::Retrieve wanted;
     std::uint16_t destination{};
@@ -53,11 +53,15 @@ class Retrieval final : public Watch {
     TimePoint begun{};
     bool reads{false};  ///< a page is under way
     Reads what{Reads::Reports};
+    std::uint64_t seen{0};  ///< number of the newest record that was read, where all of them are
+    std::uint64_t skipped{0};  ///< numbers between the records that were read
     std::vector<LogRecord> early{};  ///< gaps whose first record is older than what is asked for
     std::deque<LogRecord> page{};
     pus::st129::RetrievalEnd end{};
   };
-  static void take(Running& running, LogPage& page);
+  void take(Running& running, LogPage& page) const;
+  static void look_for_skipped(Running& running, const LogRecord& record);
+  void miss_what_was_before(Running& running, const LogPage& first) const;
   [[nodiscard]] LogQuery query_of(const Running& running) const;
   void read_on(Running& running, TimePoint now);
   void send(Running& running);
