@@ -6,13 +6,14 @@ import assert from 'node:assert/strict';
 import {after, before, describe, it} from 'node:test';
 import {bring_up, coupled, go, holds, is_coupled, open_browser, open_page} from './browser.mjs';
 import {far_from} from './far.mjs';
-import {fly} from './flight.mjs';
+import {fly, free_port, ground} from './flight.mjs';
 
 describe('an operator who is far away', () => {
-  let flight, far, browser, page, faults;
+  let flight, station, far, browser, page, faults;
   before(async () => {
-    flight = await fly();
-    far = await far_from(flight.url, {delay_ms: 300, loss: 0.02});
+    flight = await fly({more: ['--no-ground'], wait_for: /./});
+    station = await ground(flight.folder, 'rokviss', await free_port());
+    far = await far_from(station.url, {delay_ms: 300, loss: 0.02});
     browser = await open_browser();
     ({page, faults} = await open_page(browser.context, far.url, {width: 1440, height: 900}));
     await coupled(page);
@@ -20,6 +21,7 @@ describe('an operator who is far away', () => {
   after(async () => {
     await browser?.close();
     far?.close();
+    await station?.end();
     await flight?.end();
   });
 
@@ -44,7 +46,7 @@ describe('an operator who is far away', () => {
     await page.click('[data-test=mode-go]:enabled');
     await holds(page, () => document.querySelector('[data-test=mode] b').textContent === 'standalone' && !document.querySelector('[data-test=mode-progress]'));
     await go(page, 'commands/MANIPULATOR/MOVE_TO');
-    for (const [field, value] of [['Q1', '-0.7'], ['Q2', '1.4'], ['DURATION', '2']]) await page.fill(`[data-test=field-${field}]`, value);
+    for (const [field, value] of [['Q1', '-1.5'], ['Q2', '1.4'], ['DURATION', '3']]) await page.fill(`[data-test=field-${field}]`, value);
     await page.waitForSelector('[data-test=permission].yes');
     await page.click('[data-test=send]');
     await page.waitForSelector('[data-test=verdict].completed');
