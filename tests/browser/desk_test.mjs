@@ -26,6 +26,29 @@ after(async () => {
   await browser.close();
 });
 
+describe('the header', () => {
+  it('has the time on board as TAI, as UTC and since the flight began, and tells how late answers come', async () => {
+    const {page, faults} = await open_page(browser.context, at_view(served.url, 'commands/MANIPULATOR/MOVE_TO'), small);
+    const clock = () => page.evaluate(() => [document.querySelector('[data-test=clock] b').textContent, document.querySelector('[data-test=clock] .scale').textContent]);
+    const seconds = (text) => text.split(':').reduce((sum, part) => 60 * sum + Number(part), 0);
+    await holds(page, () => /, T\+ \d/.test(document.querySelector('[data-test=clock]').title));
+    const told = {};
+    for (let i = 0; i < 3; ++i) {
+      const [text, scale] = await clock();
+      told[scale] = seconds(text);
+      await page.click('[data-test=clock]');
+    }
+    assert.deepEqual(Object.keys(told), ['TAI', 'UTC', 'T+']);
+    const day_s = 86400, apart_s = (told.TAI - told.UTC + day_s) % day_s;
+    assert.ok(apart_s > 34 && apart_s < 38, `UTC is ${apart_s} s behind`);
+    assert.ok(told['T+'] > 0 && told['T+'] < 3600, `${told['T+']} s since the flight began`);
+    assert.equal((await clock())[1], 'TAI');
+    await holds(page, () => /last answer after \d+ ms/.test(document.querySelector('[data-test=link]').title));
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+});
+
 describe('links', () => {
   it('show how long samples take beside their cycle, and how many came late', async () => {
     const {page, faults} = await open_page(browser.context, at_view(served.url, 'links'), small);

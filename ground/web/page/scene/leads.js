@@ -9,8 +9,10 @@ const space = 'http://www.w3.org/2000/svg';
 export const leads_above = (svg) => ({add() {
   const line = document.createElementNS(space, 'line');
   svg.append(line);
+  let seen = '';
   return (ends) => {
-    line.setAttribute('visibility', ends ? 'visible' : 'hidden');
+    const wanted = ends ? 'visible' : 'hidden';
+    if (seen !== wanted) line.setAttribute('visibility', seen = wanted);
     ends?.forEach((value, i) => line.setAttribute(['x1', 'y1', 'x2', 'y2'][i], value.toFixed(1)));
   };
 }});
