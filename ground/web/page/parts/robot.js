@@ -136,7 +136,7 @@ export function Robot() {
   useEffect(() => typed.subscribe(() => view.current?.draw_soon()), []);
   useEffect(() => commands.subscribe(() => view.current?.draw_soon()), []);
   const stopped = (description?.robots ?? []).map((one) => one.subsystem).filter((name) => fallen.value.some((one) => one.subsystem === name) || status_of(name)?.inhibited?.length);
-  const old = Boolean(description?.robots.length) && freshness(Object.values(description.robots[0]?.joints ?? {})[0]).stale;
+  const {age_s, stale} = freshness(Object.values(description?.robots[0]?.joints ?? {})[0]), old = Boolean(description?.robots.length) && stale;
   useEffect(() => {
     if (!view.current) return;
     view.current.show = show;
@@ -153,7 +153,7 @@ export function Robot() {
   const from = description?.camera, movable = description?.robots.find((one) => one.goal);
   const goal_typed = Boolean(typed.value?.numbers) && description?.robots.some((one) => one.goal?.function === typed.value.action && one.subsystem === typed.value.subsystem);
   const goal_sent = commands.value.some((one) => description?.robots.some((robot) => robot.goal?.function === one.function && robot.subsystem === one.subsystem) && !['completed', 'failed'].includes(outcome_of(one).stage));
-  return html`<div class=${`robot ${old && !stopped.length ? 'old' : ''}`}>
+  return html`<div class=${`robot ${old && age_s < Infinity && !stopped.length ? 'old' : ''}`}>
     <div class="home" ref=${home} />
     ${description ? html`<div class="tools">
       ${description.robots.length ? toggles.filter(([name]) => name !== 'force' || feels(description)).map(([name, title]) => html`<button class=${`chip ${show[name] ? 'on' : ''}`} aria-pressed=${show[name]} onClick=${() => set_show({...show, [name]: !show[name]})}>${title}</button>`) : null}

@@ -65,7 +65,7 @@ export function SubsystemCard({name, chosen}) {
     ${inhibited ? html`<div class="notice bad">actuators inhibited: ${inhibited}</div>` : null}
     ${waits ? html`<div class="notice amber">waits for ${waits}</div>` : null}
     ${quiet ? null : is_switched_off(name) ? html`<div class="notice">switched off</div>` : html`<div class="facts" title=${all}>
-      <span>${(configuration?.name ?? '').slice(0, 12)}</span><span>run</span><span>late ≤</span><span class="end">missed</span>
+      <span>${configuration?.name.replaceAll('_', '_\u200b')}</span><span>run</span><span>late ≤</span><span class="end">missed</span>
       <b><${Quantity} text=${configuration?.sampling_hz ? rate_text(configuration.sampling_hz) : '–'} /></b>
       <b><${Quantity} text=${now.execution_mean_ns ? duration_text(now.execution_mean_ns) : '–'} /></b>
       <b><${Quantity} text=${now.latency_max_ns ? duration_text(now.latency_max_ns) : '–'} /></b>
