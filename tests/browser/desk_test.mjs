@@ -44,6 +44,13 @@ describe('the header', () => {
     assert.ok(told['T+'] > 0 && told['T+'] < 3600, `${told['T+']} s since the flight began`);
     assert.equal((await clock())[1], 'TAI');
     await holds(page, () => /last answer after \d+ ms/.test(document.querySelector('[data-test=link]').title));
+    // Without a link the station answers by itself: that is no answer of the spacecraft.
+    const alone = await browser.context.newPage();
+    await alone.route('**/api/commands/preview', (route) => route.fulfill({json: {octets: '', permitted: null, code: null, reason: 'no link to the spacecraft'}}));
+    await alone.goto(at_view(served.url, 'commands/MANIPULATOR/HOLD'));
+    await holds(alone, () => /no link to the spacecraft/.test(document.body.textContent));
+    assert.doesNotMatch(await alone.getAttribute('[data-test=link]', 'title'), /last answer/);
+    await alone.close();
     assert.deepEqual(faults, []);
     await page.close();
   });

@@ -29,7 +29,7 @@ function LinkState() {
 
 /// Of the flight: hours, minutes, seconds since it began.
 const since_text = (s) => s >= 0 ? `${String(Math.floor(s / 3600)).padStart(2, '0')}${new Date(1000 * s).toISOString().slice(13, 21)}` : '--:--:--';
-const clocks = {TAI: (t) => clock_text(t), UTC: (t) => iso_text(t).slice(11, 21), 'T+': (t) => since_text(t - (replay.value ? began_before(t) : flight.value?.from))};
+const clocks = {TAI: (t) => clock_text(t), UTC: (t) => iso_text(t).slice(11, 21) || '--:--:--', 'T+': (t) => since_text(t - (replay.value ? began_before(t) : flight.value?.from))};
 const scales = Object.keys(clocks);
 
 /// On-board time; a click has it as UTC and as time since the flight began.
