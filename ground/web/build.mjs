@@ -30,7 +30,7 @@ const three = {name: 'three', setup(bundler) {
 
 /// Indents within templates are octets that no minifier may take; htm leaves out what is blank around a line's end.
 const indents = {name: 'indents', setup(bundler) {
-  bundler.onLoad({filter: /\/page\/.*\.js$/}, ({path}) => ({contents: readFileSync(path, 'utf8').replace(/\n +/g, '\n'), loader: 'js'}));
+  bundler.onLoad({filter: /\/page\/.*\.js$/}, ({path}) => ({contents: readFileSync(path, 'utf8').replace(/>\n +</g, '><').replace(/\n +/g, '\n'), loader: 'js'}));
 }};
 
 const common = {absWorkingDir: sources, nodePaths: [join(here, 'node_modules')], outdir: out, bundle: true, format: 'esm', target: 'es2022', minify: true,

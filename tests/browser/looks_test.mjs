@@ -51,7 +51,7 @@ after(() => browser.close());
 for (const state of ['synthetic:well', 'synthetic:stopped']) {
   describe(`the page of a flight that is ${state === 'synthetic:well' ? 'well' : 'stopped'}`, () => {
     let served;
-    const found = {cut: [], overlapping: [], faint: [], strangers: new Set(), loud: [], tops: new Set()};
+    const found = {cut: [], overlapping: [], faint: [], colourless: [], strangers: new Set(), loud: [], tops: new Set()};
     // One way through all views for all that is judged: entering one costs most where the processor draws, another size of it little.
     before(async () => {
       served = await serve(state);
@@ -64,6 +64,8 @@ for (const state of ['synthetic:well', 'synthetic:stopped']) {
         found.cut.push(...(await page.evaluate(cut_texts)).map((one) => `${where}: ${one}`));
         found.overlapping.push(...(await page.evaluate(overlapping_texts)).map((one) => `${where}: ${one}`));
       };
+      /// A colour that no token has by its name is empty, and what is drawn with it is not there.
+      const judge_colours = async (where) => found.colourless.push(...await page.evaluate((at) => [...document.querySelectorAll('main [stroke=""], main [fill=""]')].map((one) => `${at}: ${one.closest('[title]')?.title ?? one.tagName}`), where));
       const judge_contrast = async (where) => found.faint.push(...(await page.evaluate(faint_texts)).map((one) => `${where}: ${one}`));
       for (const view of views) {
         await go(page, view);
@@ -78,10 +80,12 @@ for (const state of ['synthetic:well', 'synthetic:stopped']) {
         }
         // Colours and letters are the same at every size.
         await judge_contrast(view);
+        await judge_colours(view);
         for (const [name, {letters, own}] of await typefaces(page)) if (!own) found.strangers.add(`${letters} letters of ${name}`);
         await page.click('[data-test=theme]');
         await settled();
         await judge_contrast(`light: ${view}`);
+        await judge_colours(`light: ${view}`);
         await page.click('[data-test=theme]');
         if (view === 'overview') found.loud = await page.evaluate(loud_texts);
       }
@@ -104,6 +108,7 @@ for (const state of ['synthetic:well', 'synthetic:stopped']) {
     it('cuts no text', () => assert.deepEqual(found.cut, []));
     it('has no text on another', () => assert.deepEqual(found.overlapping, []));
     it('has no word with a contrast below 4.5, dark or light', () => assert.deepEqual(found.faint, []));
+    it('draws nothing in a colour that no token has', () => assert.deepEqual(found.colourless, []));
     it('draws every letter with its own typefaces', () => assert.deepEqual([...found.strangers], []));
     if (state === 'synthetic:well') it('is grey where all is well', () => assert.deepEqual(found.loud, []));
   });
