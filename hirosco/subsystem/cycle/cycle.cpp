@@ -175,6 +175,9 @@ void CycleLoop::enter(State state) noexcept {
     check_permit();
   }
   report(ReportKind::StateEntered, static_cast<std::uint16_t>(state), {});
+  // Before anything moves, and whether or not the service loop goes on to say so: an arm that acts stands beside no page of another
+  // state. After the report, so that who reads the page is not refused for a state that the service loop has not heard of.
+  parts_.vital.state.store(static_cast<std::uint32_t>(state), std::memory_order_release);
 }
 
 void CycleLoop::run_node(TimePoint planned) noexcept {

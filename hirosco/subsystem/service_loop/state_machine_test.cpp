@@ -71,6 +71,27 @@ TEST_F(Commissioning, AChangeWaitsForTheCycleUntilItsTimeIsOver) {
   EXPECT_THAT(rig.outcome(to_safe), StartsWith("1 3 8:0202"));
 }
 
+TEST_F(Commissioning, APageSaysTheStateThatTheCycleActsInWhileItsServiceLoopStandsStill) {
+  rig.bring_to(State::SafeOperational);
+  const auto up = rig.set_state(State::Operational);
+  rig.service();
+  EXPECT_EQ(rig.vital.state.load(), static_cast<std::uint32_t>(State::SafeOperational));
+  rig.cycle();
+  EXPECT_EQ(rig.vital.state.load(), static_cast<std::uint32_t>(State::Operational));
+  EXPECT_EQ(rig.outcome(up), "1 3");
+  const auto goal = rig.call("SET_GOAL", {0.5});
+  rig.settle();
+  EXPECT_EQ(rig.outcome(up), "1 3 7");
+  EXPECT_EQ(rig.outcome(goal), "1 3 7");
+  const auto down = rig.set_state(State::SafeOperational);
+  rig.service();
+  EXPECT_EQ(rig.vital.state.load(), static_cast<std::uint32_t>(State::Operational));
+  rig.cycle();
+  EXPECT_EQ(rig.vital.state.load(), static_cast<std::uint32_t>(State::SafeOperational));
+  rig.settle();
+  EXPECT_EQ(rig.outcome(down), "1 3 7");
+}
+
 TEST_F(Commissioning, ASoftwareInitThatTakesItsTimeIsCalledAgainUntilItIsDone) {
   probe.nodes[State::SoftwareInit].again = 3;
   const auto up = rig.set_state(State::PreOperational);
