@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+// bench_missed_cycles [CYCLES [LOAD]]: how many of 10^7 cycles of a 500 us loop are missed, and the latest of all: ours (with one link written and
+// read in each cycle) beside cyclictest, at the same time on two processors that they swap in each slice. LOAD: so many processes of ordinary
+// scheduling work on memory meanwhile.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "hirosco/data_transfer/link/latest_link.hpp"
+#include "hirosco/data_transfer/memory/heap_memory.hpp"
+#include "hirosco/subsystem/process/cycle_rest.hpp"
+#include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/thread.hpp"
+
+namespace hirosco::bench {
+namespace {
+
+constexpr Duration period = 500us;
+constexpr std::int64_t period_us = 500;
+constexpr int priority = 80;
+constexpr std::uint32_t payload_octets = 256;
+constexpr int slice_cycles = 100'000;
+constexpr std::size_t told_us = 20'000;  ///< later than this is counted as so late, and told by its maximum
+
+/// How late how many cycles were, in whole microseconds.
+struct Lateness {
+  std::vector<std::uint64_t> counts = std::vector<std::uint64_t>(told_us + 1);
+  std::int64_t max_us{0};
+  std::uint64_t missed{0};  ///< cycles that were over before the loop woke up for one before them
+
+  void add(std::int64_t late_us, std::uint64_t times = 1) {
+    counts[static_cast<std::size_t>(std::clamp<std::int64_t>(late_us, 0, told_us))] += times;
+    max_us = std::max(max_us, late_us);
+    missed += static_cast<std::uint64_t>(std::max<std::int64_t>(late_us, 0) / period_us) * times;
+  }
+  [[nodiscard]] std::uint64_t cycles() const { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); }
+  [[nodiscard]] std::size_t at(double share) const {
+    auto left = static_cast<std::uint64_t>(share * static_cast<double>(cycles()));
+    for (std::size_t us = 0; us < counts.size(); ++us) {
+      if (counts[us] > left) return us;
+      left -= counts[us];
+    }
+    return told_us;
+  }
+  void print(const char* name) const {
+    std::printf("%-12s %llu cycles  missed %llu  p50 %zu  p99 %zu  p99.9 %zu  p99.99 %zu  p99.999 %zu  max %lld us\n",
+                name, static_cast<unsigned long long>(cycles()), static_cast<unsigned long long>(missed), at(0.5),
+                at(0.99), at(0.999), at(0.9999), at(0.99999), static_cast<long long>(max_us));
+  }
+};
+
+/// What a subsystem's cycle rests by, its clock and a link.
+void run_ours(const Clock& clock, int cycles, Lateness& lateness) {
+  HeapMemory provider;
+  const LinkLayout layout{1, payload_octets, 1, period};
+  const Mapping memory =
+      provider.map(provider.create("link", link_memory_octets(payload_octets)).value(), Access::ReadWrite).value();
+  LatestWriter writer = LatestWriter::make(memory.octets, layout).value();
+  LatestReader reader = LatestReader::make(memory.octets, layout).value();
+  std::array<std::byte, payload_octets> payload{};
+  TimePoint wake = clock.now() + period;
+  for (int i = 0; i < cycles; ++i) {
+    static_cast<void>(rest_until(wake, {}, clock));
+    const TimePoint now = clock.now();
+    lateness.add(std::chrono::duration_cast<std::chrono::microseconds>(now - wake).count());
+    writer.write(payload, now, LinkStatus::Valid);
+    (void)reader.read(payload);
+    do wake += period;
+    while (wake <= now);  // a missed cycle is not made up for
+  }
+}
+
+/// cyclictest as it begins; `read_cyclictest` takes its histogram when it has ended.
+std::FILE* begin_cyclictest(int cycles, int processor, bool realtime) {
+  std::string command = "cyclictest -q -t1 -i" + std::to_string(period_us) + " -h" + std::to_string(told_us) + " -l" +
+                        std::to_string(cycles) + " -a" + std::to_string(processor);
+  command += realtime ? " -m -p" + std::to_string(priority) : " --policy=other";
+  return ::popen((command + " 2>/dev/null").c_str(), "r");
+}
+
+bool read_cyclictest(std::FILE* output, Lateness& lateness) {
+  std::array<char, 256> row{};
+  long long overflows = 0;
+  long long max_us = 0;
+  bool any = false;
+  while (std::fgets(row.data(), static_cast<int>(row.size()), output) != nullptr) {
+    long long at = 0;
+    long long count = 0;
+    if (std::sscanf(row.data(), "%lld %lld", &at, &count) == 2) {
+      if (count > 0) lateness.add(at, static_cast<std::uint64_t>(count));
+      any = true;
+    } else if (std::sscanf(row.data(), "# Histogram Overflows: %lld", &count) == 1) {
+      overflows = count;
+    } else if (std::sscanf(row.data(), "# Max Latencies: %lld", &at) == 1) {
+      max_us = at;
+    }
+  }
+  if (overflows > 0) lateness.add(max_us, static_cast<std::uint64_t>(overflows));
+  lateness.max_us = std::max<std::int64_t>(lateness.max_us, max_us);
+  return ::pclose(output) == 0 && any;
+}
+
+/// Somebody who works on more memory than a cache holds, until whoever started it ends.
+pid_t begin_load() {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  static_cast<void>(::prctl(PR_SET_PDEATHSIG, SIGKILL));
+  std::vector<std::uint64_t> words(std::size_t{8} << 20);
+  for (std::uint64_t round = 1;; ++round)
+    for (std::size_t i = 0; i < words.size(); ++i) words[i] = words[words.size() - 1 - i] * round + i;
+}
+
+int run(std::uint64_t cycles, int load) {
+  std::vector<pid_t> loads;
+  for (int i = 0; i < load; ++i) loads.push_back(begin_load());
+  const SystemClock clock;
+  // As cyclictest does: no deep sleep of the processor while we measure.
+  const FileDescriptor latency{::open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC)};
+  const std::int32_t none = 0;
+  const bool awake = latency && ::write(latency.get(), &none, sizeof none) == sizeof none;
+  (void)lock_memory();
+  const bool realtime = realtime_permitted();
+  const bool apart = std::thread::hardware_concurrency() > 1;
+  Lateness ours;
+  Lateness cyclictest;
+  bool beside = true;
+  for (std::uint64_t done = 0, slice = 0; done < cycles; ++slice) {
+    const int now = static_cast<int>(std::min<std::uint64_t>(cycles - done, slice_cycles));
+    const int mine = apart ? static_cast<int>(slice % 2) : 0;
+    std::FILE* const other = beside ? begin_cyclictest(now, apart ? 1 - mine : 0, realtime) : nullptr;
+    if (!apart && other != nullptr) beside = read_cyclictest(other, cyclictest);
+    // Its start is no part of what is compared.
+    if (apart) static_cast<void>(rest_until(clock.now() + 200ms, {}, clock));
+    (void)pin_to_cpu(mine);
+    if (realtime) (void)set_fifo_priority(priority);
+    run_ours(clock, now, ours);
+    (void)set_ordinary_scheduling();
+    if (apart && other != nullptr) beside = read_cyclictest(other, cyclictest);
+    done += static_cast<std::uint64_t>(now);
+    if (slice % 10 == 9) {
+      std::fprintf(stderr, "%llu cycles: missed %llu, cyclictest %llu\n", static_cast<unsigned long long>(done),
+                   static_cast<unsigned long long>(ours.missed), static_cast<unsigned long long>(cyclictest.missed));
+    }
+  }
+  for (const pid_t one : loads) {
+    ::kill(one, SIGKILL);
+    ::waitpid(one, nullptr, 0);
+  }
+  std::printf("Lateness of a 500 us loop, %s%s, %d at work beside it\n",
+              realtime ? "SCHED_FIFO" : "ordinary scheduling (no real-time rights)", awake ? ", no deep idle" : "",
+              load);
+  ours.print("ours");
+  if (!beside) {
+    std::puts("cyclictest (rt-tests) is not installed");
+    return EXIT_SUCCESS;
+  }
+  cyclictest.print("cyclictest");
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+}  // namespace hirosco::bench
+
+int main(int argc, char** argv) {
+  const std::uint64_t cycles = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 10'000'000;
+  return hirosco::bench::run(cycles, argc > 2 ? std::atoi(argv[2]) : 0);
+}
