@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <linux/falloc.h>
 #include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/ptrace.h>
@@ -118,6 +119,27 @@ void attack_mapping(const Report& report, const Region& region) {
   if (writable) static_cast<void>(::mprotect(region.at, region.octets, PROT_READ));
 }
 
+/// Who guards it is scheduled as it was, and runs before it (docs/adr/0146).
+void attack_scheduling(const Report& report) {
+  constexpr int keepers_priority = 91;
+  const pid_t supervisor = ::getppid();
+  sched_param as{};
+  static_cast<void>(::sched_getparam(supervisor, &as));
+  cpu_set_t anywhere;
+  static_cast<void>(::sched_getaffinity(supervisor, sizeof anywhere, &anywhere));
+  rlimit limit{};
+  ::getrlimit(RLIMIT_CORE, &limit);
+  rlimit priority{};
+  ::getrlimit(RLIMIT_RTPRIO, &priority);
+  report.tried("others: scheduling", ::sched_setscheduler(supervisor, SCHED_OTHER, &as) == 0);
+  report.tried("others: affinity", ::sched_setaffinity(supervisor, sizeof anywhere, &anywhere) == 0);
+  report.tried("others: nice", ::setpriority(PRIO_PROCESS, static_cast<id_t>(supervisor), 19) == 0);
+  report.tried("others: limits", ::prlimit(supervisor, RLIMIT_CORE, &limit, nullptr) == 0);
+  report.tried("others: a limit of priority", ::setrlimit(RLIMIT_RTPRIO, &priority) == 0);
+  as.sched_priority = keepers_priority;
+  report.tried("others: before the keeper", ::sched_setscheduler(0, SCHED_FIFO, &as) == 0);
+}
+
 /// What its sandbox is to refuse (docs/adr/0081).
 void attack_others(const Report& report) {
   const std::string supervisor = "/proc/" + std::to_string(::getppid());
@@ -145,6 +167,7 @@ void attack_others(const Report& report) {
   ::getrlimit(RLIMIT_NOFILE, &more);
   more.rlim_cur = ++more.rlim_max;
   report.tried("others: more descriptors", ::setrlimit(RLIMIT_NOFILE, &more) == 0);
+  attack_scheduling(report);
 }
 
 /// A page that permits under its present epoch for ever, in place of the true one from one access to the next.

@@ -30,6 +30,9 @@ struct ExitStatus {
 struct ProcessLimits {
   std::optional<std::uint64_t> memory_octets{};  ///< that it may write and shares with nobody
   std::optional<std::uint64_t> descriptors{};
+  /// The highest of real time that its threads may take; less where we have less ourselves. Root's right to all of them ends in a sandbox
+  /// only.
+  std::optional<std::uint64_t> realtime_priority{};
 };
 
 /// What to start.

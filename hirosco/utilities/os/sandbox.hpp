@@ -25,8 +25,8 @@ struct Sandbox {
 [[nodiscard]] bool sandbox_is_off() noexcept;
 
 /// A sandbox made ready, to be entered between fork and exec. No way leads out of it, for nothing that is started in it either: no new
-/// rights, of root's rights those only that real time needs, files as Sandbox says, signals and memory of nobody outside, and
-/// no system calls that no subsystem needs, among them those that start a process.
+/// rights, of root's rights those only that real time needs, files as Sandbox says, signals, memory, scheduling and limits of nobody outside,
+/// and no system calls that no subsystem needs, among them those that start a process.
 class PreparedSandbox {
  public:
   /// Touches no file: a disk that stands still holds up who enters, and nobody else.

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -63,11 +64,14 @@ class LinuxGrip final : public ProcessGrip {
         ::open(("/proc/" + std::to_string(process_.pid()) + "/task").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   }
   void take_realtime() noexcept override {
+    // Before they are taken: none of its threads takes it again meanwhile.
+    let_have_realtime(false);
     // Or the others would not have the processor until its grace is over.
     if (!take(Cycle::LosesToo)) kill();
   }
   void take_loops_realtime() noexcept override { static_cast<void>(take(Cycle::Keeps)); }
   void give_realtime() noexcept override {
+    let_have_realtime(true);
     for (std::size_t i = 0; i < taken_count_; ++i) {
       const Thread& thread = taken_[i];
       const int now = ::sched_getscheduler(thread.id);
@@ -141,6 +145,15 @@ class LinuxGrip final : public ProcessGrip {
     const auto status = read_status({text.data(), static_cast<std::size_t>(octets)});
     if (!status) return std::nullopt;
     return Status{status->name == cycle_name, status->runs, status->realtime, status->had};
+  }
+
+  /// What a process may have stays its upper limit, which who is not privileged could not raise again; its sandbox keeps it from going there
+  /// by itself (docs/adr/0146).
+  void let_have_realtime(bool it) noexcept {
+    rlimit limit{};
+    if (!runs() || ::prlimit(process_.pid(), RLIMIT_RTPRIO, nullptr, &limit) != 0) return;
+    limit.rlim_cur = it ? limit.rlim_max : 0;
+    static_cast<void>(::prlimit(process_.pid(), RLIMIT_RTPRIO, &limit, nullptr));
   }
 
   /// False: the system refused it.

@@ -201,6 +201,8 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     start.inherited.push_back({SealedMemory::descriptor(text), text_number});
   }
   start.limits = limits_of(subsystem.subsystem.resources);
+  // Below those of devices, guard and keeper, whatever it asks for.
+  start.limits.realtime_priority = descriptor::greatest_cycle_priority;
   std::optional<PreparedSandbox> sandbox;
   if (image != nullptr) start.image = image->descriptor();
   if (image != nullptr && script) start.inherited.push_back({image->descriptor(), script_number});

@@ -113,6 +113,17 @@ void set_limit(const Plan& plan, int resource, const std::optional<std::uint64_t
   if (::setrlimit(static_cast<__rlimit_resource_t>(resource), &limit) != 0) give_up(plan.report, errno);
 }
 
+/// Who may not raise a limit lets it have what there is.
+void set_priority_limit(const Plan& plan) noexcept {
+  if (!plan.limits.realtime_priority) return;
+  rlimit limit{.rlim_cur = *plan.limits.realtime_priority, .rlim_max = *plan.limits.realtime_priority};
+  if (::setrlimit(RLIMIT_RTPRIO, &limit) == 0) return;
+  rlimit ours{};
+  if (::getrlimit(RLIMIT_RTPRIO, &ours) != 0) give_up(plan.report, errno);
+  limit.rlim_cur = limit.rlim_max = std::min<rlim_t>(ours.rlim_max, limit.rlim_max);
+  if (::setrlimit(RLIMIT_RTPRIO, &limit) != 0) give_up(plan.report, errno);
+}
+
 [[noreturn]] void run_child(Plan& plan) noexcept {
   (void)::setpgid(0, 0);
   place_descriptors(plan);
@@ -120,6 +131,7 @@ void set_limit(const Plan& plan, int resource, const std::optional<std::uint64_t
   (void)::sched_setscheduler(0, SCHED_OTHER, &ordinary);
   if (plan.directory != nullptr && ::chdir(plan.directory) != 0) give_up(plan.report, errno);
   reset_signals(plan.blocked);
+  set_priority_limit(plan);  // by it a sandbox knows what it has to keep
   if (plan.sandbox != nullptr)
     if (const int error = plan.sandbox->enter(); error != 0) give_up(plan.report, error);
   // Last: until then all of ours are still open, and a sandbox opens two more.

@@ -11,6 +11,7 @@
 #include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -156,29 +157,53 @@ constexpr std::array refused_calls{
     Call{SYS_syslog, "syslog"},
     Call{SYS_acct, "acct"},
     Call{SYS_quotactl, "quotactl"},
+    Call{SYS_ioprio_set, "ioprio_set"},
+    Call{SYS_migrate_pages, "migrate_pages"},
+    Call{SYS_move_pages, "move_pages"},
 #if defined(__x86_64__)
     Call{SYS_fork, "fork"},
     Call{SYS_vfork, "vfork"},
     Call{SYS_iopl, "iopl"},
     Call{SYS_ioperm, "ioperm"},
+    Call{SYS_setrlimit, "setrlimit"},
 #endif
+};
+/// How a thread is scheduled is its own matter, and asked for with 0 in place of its number. With one user's rights, or root's, another's
+/// priority could be taken, the supervisor's among them (docs/adr/0146).
+constexpr std::array own_calls{
+    Call{SYS_sched_setscheduler, "sched_setscheduler of another thread"},
+    Call{SYS_sched_setparam, "sched_setparam of another thread"},
+    Call{SYS_sched_setattr, "sched_setattr of another thread"},
+    Call{SYS_sched_setaffinity, "sched_setaffinity of another thread"},
 };
 
 [[nodiscard]] const char* name_of_call(std::uint32_t number) noexcept {
   for (const Call& call : refused_calls)
     if (call.number == number) return call.name;
-  return number == SYS_clone ? "clone of a process" : number == SYS_socket ? "socket of this kind" : "";
+  for (const Call& call : own_calls)
+    if (call.number == number) return call.name;
+  switch (number) {
+    case SYS_clone: return "clone of a process";
+    case SYS_socket: return "socket of this kind";
+    case SYS_prlimit64: return "prlimit64 of another process, or of its priority";
+    case SYS_setpriority: return "setpriority of others";
+    default: return "";
+  }
 }
 
 constexpr std::uint16_t bpf_load = BPF_LD | BPF_W | BPF_ABS, bpf_equal = BPF_JMP | BPF_JEQ | BPF_K,
                         bpf_any_of = BPF_JMP | BPF_JSET | BPF_K, bpf_at_least = BPF_JMP | BPF_JGE | BPF_K,
                         bpf_answer = BPF_RET | BPF_K;
-constexpr std::uint32_t number_at = offsetof(seccomp_data, nr), machine_at = offsetof(seccomp_data, arch),
-                        first_argument_at = offsetof(seccomp_data, args);
-constexpr std::size_t fixed_instructions = 24;
+constexpr std::uint32_t number_at = offsetof(seccomp_data, nr), machine_at = offsetof(seccomp_data, arch);
+/// The lower half of an argument, which is all of a number of 32 bits; the upper one stands behind it.
+constexpr std::uint32_t argument_at(std::size_t which) noexcept {
+  return static_cast<std::uint32_t>(offsetof(seccomp_data, args) + which * sizeof(std::uint64_t));
+}
+constexpr std::uint32_t half_octets = sizeof(std::uint32_t);
+constexpr std::size_t fixed_instructions = 48;
 
 struct Filter {
-  std::array<sock_filter, 2 * refused_calls.size() + fixed_instructions> code{};
+  std::array<sock_filter, 2 * refused_calls.size() + 5 * own_calls.size() + fixed_instructions> code{};
   std::uint16_t length{0};
   constexpr void add(std::uint16_t what, std::uint32_t value, std::uint8_t yes = 0, std::uint8_t no = 0) noexcept {
     code[length++] = sock_filter{what, yes, no, value};
@@ -200,15 +225,41 @@ struct Filter {
     made.add(bpf_equal, call.number, 0, 1);
     made.add(bpf_answer, refused);
   }
+  for (const Call& call : own_calls) {
+    made.add(bpf_equal, call.number, 0, 4);
+    made.add(bpf_load, argument_at(0));
+    made.add(bpf_equal, 0, 1, 0);
+    made.add(bpf_answer, refused);
+    made.add(bpf_answer, SECCOMP_RET_ALLOW);
+  }
+  // Limits of its own, but for the priority that it may take: the guard takes that away.
+  made.add(bpf_equal, SYS_prlimit64, 0, 10);
+  made.add(bpf_load, argument_at(0));
+  made.add(bpf_equal, 0, 0, 6);
+  made.add(bpf_load, argument_at(1));
+  made.add(bpf_equal, RLIMIT_RTPRIO, 0, 5);
+  made.add(bpf_load, argument_at(2));  // whether it changes anything
+  made.add(bpf_equal, 0, 0, 2);
+  made.add(bpf_load, argument_at(2) + half_octets);
+  made.add(bpf_equal, 0, 1, 0);
+  made.add(bpf_answer, refused);
+  made.add(bpf_answer, SECCOMP_RET_ALLOW);
+  made.add(bpf_equal, SYS_setpriority, 0, 6);
+  made.add(bpf_load, argument_at(0));
+  made.add(bpf_equal, PRIO_PROCESS, 0, 2);
+  made.add(bpf_load, argument_at(1));
+  made.add(bpf_equal, 0, 1, 0);
+  made.add(bpf_answer, refused);
+  made.add(bpf_answer, SECCOMP_RET_ALLOW);
   // Its flags lie in memory, where no filter looks: the C library takes clone() instead.
   made.add(bpf_equal, SYS_clone3, 0, 1);
   made.add(bpf_answer, SECCOMP_RET_ERRNO | ENOSYS);
   made.add(bpf_equal, SYS_clone, 0, 3);
-  made.add(bpf_load, first_argument_at);
+  made.add(bpf_load, argument_at(0));
   made.add(bpf_any_of, CLONE_THREAD, 7, 0);
   made.add(bpf_answer, refused);
   made.add(bpf_equal, SYS_socket, 0, 5);
-  made.add(bpf_load, first_argument_at);
+  made.add(bpf_load, argument_at(0));
   made.add(bpf_equal, AF_UNIX, 3, 0);
   made.add(bpf_equal, AF_INET, 2, 0);
   made.add(bpf_equal, AF_INET6, 1, 0);
@@ -217,11 +268,26 @@ struct Filter {
   return made;
 }
 
-/// Root's rights that stay: real-time priority and memory that is never taken to disk.
+/// Whether a limit says which priorities of real time there are for it: then root's right to all of them is given up.
+[[nodiscard]] bool priority_is_limited() noexcept {
+  rlimit limit{};
+  return ::getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur > 0;
+}
+
+/// Root's right that stays: memory that is never taken to disk.
 void give_up_rights() noexcept {
   constexpr int highest = 63;
+  const bool limited = priority_is_limited();
   for (int right = 0; right <= highest; ++right)
-    if (right != CAP_SYS_NICE && right != CAP_IPC_LOCK) static_cast<void>(::prctl(PR_CAPBSET_DROP, right, 0, 0, 0));
+    if (right != CAP_IPC_LOCK && (limited || right != CAP_SYS_NICE))
+      static_cast<void>(::prctl(PR_CAPBSET_DROP, right, 0, 0, 0));
+}
+
+/// Root without this right cannot give who it starts a limit that it has not itself.
+[[nodiscard]] bool may_raise_limits() noexcept {
+  __user_cap_header_struct about{_LINUX_CAPABILITY_VERSION_3, 0};
+  std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> has{};
+  return ::syscall(SYS_capget, &about, has.data()) == 0 && (has[0].effective & (1U << CAP_SYS_RESOURCE)) != 0;
 }
 
 // --- naming ------------------------------------------------------------------------------------------------------------
@@ -282,6 +348,8 @@ std::vector<std::string> isolation_lacks() {
   const std::uint32_t trap = SECCOMP_RET_TRAP;
   if (::syscall(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &trap) != 0)
     lacks.emplace_back("every system call is open (no seccomp filters)");
+  if (::geteuid() == 0 && !priority_is_limited() && !may_raise_limits())
+    lacks.emplace_back("every real-time priority is open (root without CAP_SYS_RESOURCE)");
   return lacks;
 }
 

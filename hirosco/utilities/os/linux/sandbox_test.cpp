@@ -9,6 +9,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/ptrace.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
 #include <sys/wait.h>
@@ -28,6 +29,8 @@ namespace hirosco {
 namespace {
 
 constexpr int could_not_enter = 99;
+/// Of root in a container that was not given it, and of nobody else.
+constexpr const char* priorities_open = "every real-time priority is open (root without CAP_SYS_RESOURCE)";
 
 /// What a process in a sandbox returns; 128 and more: the signal that ended it.
 int inside(const Sandbox& sandbox, const std::function<int()>& work) {
@@ -45,8 +48,8 @@ int inside(const Sandbox& sandbox, const std::function<int()>& work) {
 struct SandboxTest : testing::Test {
   std::filesystem::path folder = std::filesystem::temp_directory_path() / ("sandbox." + std::to_string(::getpid()));
   void SetUp() override {
-    const auto lacks = isolation_lacks();  // where it may lack anything, `testing/with_sandbox` does not come here
-    ASSERT_TRUE(lacks.empty()) << lacks.front();
+    // Where it may lack anything else, `testing/with_sandbox` does not come here.
+    for (const std::string& lack : isolation_lacks()) ASSERT_EQ(lack, priorities_open);
     std::filesystem::create_directories(folder / "own");
     for (const char* name : {"secret", "own/data"}) {
       const FileDescriptor file{::open((folder / name).c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0600)};
@@ -96,6 +99,48 @@ TEST_F(SandboxTest, ReachesNoOtherProcessAndStartsNone) {
     return errno == EACCES ? 0 : 8;
   });
   EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(SandboxTest, SchedulesItsOwnThreadsAndLimitsItselfButNobodyElse) {
+  const int wrong = inside({}, [] {
+    name_refused_calls("test");
+    const pid_t other = ::getppid();
+    const sched_param ordinary{};
+    cpu_set_t all;
+    CPU_ZERO(&all);
+    CPU_SET(0, &all);
+    rlimit limit{};
+    if (::sched_setscheduler(0, SCHED_OTHER, &ordinary) != 0 || ::sched_setaffinity(0, sizeof all, &all) != 0) return 1;
+    if (::getrlimit(RLIMIT_CORE, &limit) != 0 || ::setrlimit(RLIMIT_CORE, &limit) != 0) return 2;
+    if (::setpriority(PRIO_PROCESS, 0, ::getpriority(PRIO_PROCESS, 0)) != 0) return 3;
+    if (::sched_setscheduler(other, SCHED_OTHER, &ordinary) == 0 || errno != EPERM) return 4;
+    if (::sched_setparam(other, &ordinary) == 0 || ::sched_setaffinity(other, sizeof all, &all) == 0) return 5;
+    if (::prlimit(other, RLIMIT_CORE, &limit, nullptr) == 0 || ::prlimit(other, RLIMIT_CORE, nullptr, &limit) == 0)
+      return 6;
+    if (::setpriority(PRIO_PROCESS, static_cast<id_t>(other), 19) == 0 || ::setpriority(PRIO_USER, 0, 19) == 0)
+      return 7;
+    if (::getrlimit(RLIMIT_RTPRIO, &limit) != 0) return 8;
+    return ::setrlimit(RLIMIT_RTPRIO, &limit) == 0 ? 9 : 0;
+  });
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(SandboxTest, AStartedProcessTakesNoPriorityAboveItsLimitOrItIsToldThatThereIsNone) {
+  const PreparedSandbox prepared{
+      {.readable = {"/etc"}, .executable = {"/bin", "/usr", "/lib", "/lib64"}, .writable = {"/dev/null"}}};
+  const auto takes = [&](std::uint64_t limit, const char* priority) {
+    ProcessStart start{.executable = "/usr/bin/chrt", .arguments = {"-f", priority, "/bin/true"}};
+    start.limits.realtime_priority = limit;
+    start.sandbox = &prepared;
+    auto process = Process::spawn(start);
+    int status = -1;
+    if (process) ::waitpid(process->pid(), &status, 0);
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  };
+  const bool open = !isolation_lacks().empty();
+  EXPECT_EQ(takes(5, "5"), realtime_permitted());
+  EXPECT_EQ(takes(5, "6"), open);
+  EXPECT_EQ(takes(5, "91"), open);
 }
 
 TEST_F(SandboxTest, ARefusedCallEndsWhoDoesNotNameIt) {

@@ -103,8 +103,7 @@ Result<> pin_to_cpu(unsigned cpu) noexcept {
   cpu_set_t set;
   CPU_ZERO(&set);
   CPU_SET(cpu, &set);
-  if (const int error = pthread_setaffinity_np(pthread_self(), sizeof set, &set); error != 0)
-    return fail(ErrorCode::SystemFailure, "processor affinity", error);
+  if (::sched_setaffinity(0, sizeof set, &set) != 0) return fail(ErrorCode::SystemFailure, "processor affinity", errno);
   return ok();
 }
 
