@@ -264,7 +264,9 @@ TEST(InterfacePages, CodesAndWords) {
                                  {of(descriptor::DeviceLoss::WrongSize), "WrongSize"},
                                  {of(descriptor::DeviceLoss::Repeated), "Repeated"},
                                  {of(descriptor::DeviceLoss::LetGo), "LetGo"},
-                                 {of(descriptor::DeviceLoss::NotOpened), "NotOpened"}});
+                                 {of(descriptor::DeviceLoss::NotOpened), "NotOpened"},
+                                 {of(descriptor::DeviceLoss::OldEpoch), "OldEpoch"},
+                                 {of(descriptor::DeviceLoss::NeverHeard), "NeverHeard"}});
   descriptor::Subsystem bare;
   bare.devices.emplace_back().name = "NAME";
   descriptor::Configuration& used = bare.configurations.emplace_back();

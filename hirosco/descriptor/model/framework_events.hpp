@@ -55,6 +55,8 @@ enum class DeviceLoss : std::uint8_t {
   Repeated = 5,   ///< the same frame came again and again: it answers no newer command
   LetGo = 6,      ///< its watchdog has tripped although it is commanded
   NotOpened = 7,  ///< its data flow could not be opened
+  OldEpoch = 8,   ///< it refuses ours: it obeys a higher epoch, of another flight
+  NeverHeard = 9, ///< nothing good has come since its data flow was opened
 };
 
 /// Names of the sets that any configuration requires, each once, in the order of the descriptor.
@@ -75,6 +77,8 @@ struct EnumTexts<descriptor::DeviceLoss> {
                                                                     {WrongSize, "wrong size"},
                                                                     {Repeated, "repeated frames"},
                                                                     {LetGo, "watchdog let go"},
-                                                                    {NotOpened, "not opened"}});
+                                                                    {NotOpened, "not opened"},
+                                                                    {OldEpoch, "old epoch refused"},
+                                                                    {NeverHeard, "never heard"}});
 };
 }  // namespace hirosco

@@ -49,7 +49,7 @@ LinkStatus CycleLoop::link_status() const noexcept {
   return inhibited_ != 0 ? LinkStatus::Degraded : LinkStatus::Valid;
 }
 
-void CycleLoop::write_outputs(TimePoint planned) noexcept {
+void CycleLoop::write_devices() noexcept {
   const bool active = state_ == State::Operational && inhibited_ == 0;
   // Inhibited means the declared safe output; only Error-Operational brings the device to a controlled stop (decision 22).
   const bool stopping = state_ == State::ErrorOperational;
@@ -59,6 +59,10 @@ void CycleLoop::write_outputs(TimePoint planned) noexcept {
     device.write(permitted_epoch_, active, stopping);
     device.tell(telling);
   }
+}
+
+void CycleLoop::write_outputs(TimePoint planned) noexcept {
+  write_devices();
   // Old data is not sent as new: nobody else's actuator moves on it either, once it is older than its consumer takes.
   const LinkStatus status = link_status();
   if (awaits_device_ && status != LinkStatus::Fault) return;

@@ -54,6 +54,7 @@ void CycleLoop::prepare(CyclePlan plan) {
   inhibited_ = 0;
   awaits_device_ = false;
   awaits_first_answer_.store(!plan_.devices.empty(), std::memory_order_relaxed);
+  never_answered_.store(0, std::memory_order_relaxed);
   taken_over_ = nullptr;
   heartbeat_ = permit().heartbeat.load(std::memory_order_acquire);
   silent_cycles_ = 0;
@@ -167,15 +168,18 @@ void CycleLoop::enter(State state) noexcept {
                   std::as_bytes(std::span{&reason, 1}));
   }
   end_self_test(self_test_.leave(state));
+  const bool lets_go = state_ == State::Operational && state != State::Operational;
   state_ = state;
   first_ = true;
+  // Before anybody is told of it, and before the author's node, which may hang: the first thing on the way down is to let go.
+  if (lets_go) write_devices();
   if (state == State::Operational) {
     entered_epoch_ = permit().epoch.load(std::memory_order_acquire);
     inhibited_ = 0;
     check_permit();
   }
   report(ReportKind::StateEntered, static_cast<std::uint16_t>(state), {});
-  // Before anything moves, and whether or not the service loop goes on to say so: an arm that acts stands beside no page of another
+  // Before anything moves, as what moved was told to let go, and whether or not the service loop goes on to say so: an arm that acts stands beside no page of another
   // state. After the report, so that who reads the page is not refused for a state that the service loop has not heard of.
   parts_.vital.state.store(static_cast<std::uint32_t>(state), std::memory_order_release);
 }

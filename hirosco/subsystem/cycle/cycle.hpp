@@ -96,8 +96,15 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   }
   /// Whether a device of the configuration has not answered since it was opened, and is not late yet.  Realtime: wait-free. Thread: any.
   [[nodiscard]] bool awaits_first_answer() const noexcept {
-    return awaits_first_answer_.load(std::memory_order_relaxed);
+    return awaits_first_answer_.load(std::memory_order_acquire);
   }
+  /// The first device that was lost before anybody had heard of it, and why.
+  struct NeverAnswered {
+    std::uint16_t device{0};
+    descriptor::DeviceLoss reason{};
+  };
+  /// Since the configuration was applied.  Realtime: wait-free. Thread: any.
+  [[nodiscard]] std::optional<NeverAnswered> never_answered() const noexcept;
   [[nodiscard]] std::vector<BoundFunction>& functions() noexcept { return functions_; }
   /// Whether the author's self test has passed in this configuration, and nothing has voided it.  Realtime: wait-free. Thread: any.
   [[nodiscard]] bool self_test_passed() const noexcept { return self_test_.passed(); }
@@ -164,6 +171,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   void check_permit() noexcept;
   void listen_to_supervisor(bool counts) noexcept;
   void write_outputs(TimePoint planned) noexcept;
+  void write_devices() noexcept;
   [[nodiscard]] LinkStatus link_status() const noexcept;
   // lost_inputs.cpp
   void read_inputs(TimePoint started, bool counts) noexcept;
@@ -222,6 +230,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
   bool first_{true};
   std::uint32_t inhibited_{0};
   std::atomic<bool> awaits_first_answer_{false};
+  std::atomic<std::uint32_t> never_answered_{0};  ///< device + 1, reason above it; 0: none
   bool awaits_device_{false};  ///< what a device said last is of before
   std::uint64_t count_{0};
   std::uint32_t entered_epoch_{0};

@@ -16,8 +16,6 @@ namespace {
 
 static_assert(descriptor::max_device_octets == max_device_payload_octets);
 
-/// Cycles without news are counted up to here, so that a counter never wraps back to "fresh".
-constexpr std::uint32_t longest_silence = 1'000'000'000;
 /// How long a device may follow an epoch before the commanded one, in silence limits: the guard names it every 5 ms.
 constexpr std::uint32_t longest_introduction = 40;
 
@@ -86,6 +84,13 @@ DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::Devic
 
 void DeviceSlot::follow(Duration sampling) noexcept {
   if (!device_->actuator) return;
+  // What was counted in cycles of before is as long in those of now, or longer.
+  const auto in_new_cycles = [&](std::uint32_t cycles) { return cycles * sampling_ / sampling; };
+  if (sampling_ > Duration{}) {
+    left_obeys_cycles_ = static_cast<std::uint32_t>(in_new_cycles(left_obeys_cycles_) + (left_obeys_cycles_ > 0 ? 1 : 0));
+    since_active_ = static_cast<std::uint32_t>(std::min<std::int64_t>(in_new_cycles(since_active_), never));
+  }
+  sampling_ = sampling;
   left_obeys_ = static_cast<std::uint32_t>(std::chrono::microseconds{watchdog_us_} / sampling) + 1;
 }
 
@@ -104,6 +109,7 @@ void DeviceSlot::read(bool count_silence, bool counts) noexcept {
     hung_up_ = false;
   }
   if (left_obeys_cycles_ > 0 && counts_) --left_obeys_cycles_;
+  if (counts_) count(since_active_);
   const auto received = ways_[way_].flow->receive(frame_);
   // A frame that no frame is as long as is damage, too: somebody is there.
   const bool too_long = !received && received.error().code == ErrorCode::Malformed;
@@ -114,7 +120,7 @@ void DeviceSlot::read(bool count_silence, bool counts) noexcept {
   if (received && received->flow == Flow::New) take_frame(Octets{frame_}.first(received->octets));
   if (port_->fresh_) {
     since_good_ = {};
-    heard_ = true;
+    heard_ = ever_heard_ = true;
     awaits_ = false;
     port_->alive_ = true;
     return;
@@ -141,7 +147,10 @@ void DeviceSlot::fall_back() noexcept {
   awaits_ = true;
   heard_ = false;
   asked_ = sequence_ + 1;
-  left_obeys_cycles_ = sent_mode_ == DeviceMode::Active ? left_obeys_ : 0;
+  // Since it was told Active last: what it was told later it may not have heard, nor what one that was left before it heard.
+  const std::uint32_t passed = since_active_ > 0 ? since_active_ - 1 : 0;
+  left_obeys_cycles_ = std::max(left_obeys_cycles_, left_obeys_ > passed ? left_obeys_ - passed : 0);
+  since_active_ = never;
   since_sent_ = every_;
   port_->alive_ = false;
   port_->endnode_ = taken();
@@ -158,8 +167,10 @@ void DeviceSlot::take_frame(Octets frame) noexcept {
   decode(input_layout_, status->payload, port_->input_, order_);
   // A frame that answers no newer command is a repetition: a frozen device must not look alive.
   const bool answers = heard_ || port_->fall_backs_ == 0 || static_cast<std::int32_t>(status->sequence - asked_) >= 0;
-  port_->fresh_ = answers && (status->sequence != echoed_ || !heard_);
-  if (!port_->fresh_) count(since_good_.repeated);
+  // One that obeys a higher epoch than ours, another flight's, has heard nobody but that.
+  const bool refuses = (status->flags & device_flag::old_epoch_refused) != 0 && status->epoch > epoch_;
+  port_->fresh_ = answers && (heard_ ? status->sequence != echoed_ : !refuses);
+  if (!port_->fresh_) count(refuses ? since_good_.refused : since_good_.repeated);
   echoed_ = status->sequence;
   port_->flags_ = status->flags;
   // Its watchdog has let go although it is commanded: it moves nothing any more, whatever its sensors say. Of an epoch
@@ -171,7 +182,8 @@ void DeviceSlot::take_frame(Octets frame) noexcept {
   port_->fresh_ = false;
 }
 
-void DeviceSlot::count(std::uint32_t& cycles) noexcept { cycles = std::min(cycles + 1, longest_silence); }
+/// Up to a bound, so that a counter never wraps back to "fresh".
+void DeviceSlot::count(std::uint32_t& cycles) noexcept { cycles = std::min(cycles + 1, never); }
 
 DeviceSlot::Loss DeviceSlot::loss() const noexcept {
   Loss loss = since_good_;
@@ -186,6 +198,8 @@ DeviceSlot::Loss DeviceSlot::loss() const noexcept {
   blame(loss.wrong_size, WrongSize);
   blame(loss.let_go, LetGo);
   blame(loss.repeated, Repeated);
+  blame(loss.refused, OldEpoch);
+  if (loss.reason == Silent && !ever_heard_) loss.reason = NeverHeard;
   if (hung_up_) loss.reason = HungUp;
   return loss;
 }
@@ -264,6 +278,7 @@ void DeviceSlot::send(DeviceMode mode, Octets payload) noexcept {
       frame_,
       DeviceCommand{
           .mode = mode, .epoch = epoch_, .sequence = ++sequence_, .watchdog_us = watchdog_us_, .payload = payload});
+  if (mode == DeviceMode::Active) since_active_ = 0;
   // A device that does not listen is found by its silence, one cycle later: nothing to do here.
   if (frame) static_cast<void>(ways_[way_].flow->send(*frame));
 }

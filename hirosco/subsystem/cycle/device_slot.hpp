@@ -52,8 +52,11 @@ class DeviceSlot {
     std::uint32_t wrong_size{0};
     std::uint32_t repeated{0};
     std::uint32_t let_go{0};
+    std::uint32_t refused{0};
   };
   [[nodiscard]] Loss loss() const noexcept;
+  /// No good frame has come since the slot was made.
+  [[nodiscard]] bool never_heard() const noexcept { return !ever_heard_; }
   /// True in the one cycle in which it went over to a fall-back; loss() tells why until the next read().
   [[nodiscard]] bool just_fell_back() const noexcept { return just_fell_back_; }
   /// No actuator of the subsystem may move: what it would move on is old, or what was left may still obey.
@@ -85,6 +88,7 @@ class DeviceSlot {
   [[nodiscard]] bool would_jump(const descriptor::Subsystem& subsystem, const descriptor::Bumpless& terms) noexcept;
 
  private:
+  static constexpr std::uint32_t never = 1'000'000'000;
   void take_frame(Octets frame) noexcept;
   void fall_back() noexcept;
   [[nodiscard]] bool due(DeviceMode mode, std::uint32_t epoch_before) noexcept;
@@ -105,6 +109,8 @@ class DeviceSlot {
   DeviceMode sent_mode_{DeviceMode::Off};
   std::uint32_t left_obeys_{0};  ///< cycles in which the watchdog of a way that was left runs out; 0: no actuator
   std::uint32_t left_obeys_cycles_{0};  ///< of them still to come
+  std::uint32_t since_active_{never};  ///< cycles since Active was sent by the way in use
+  Duration sampling_{};
   std::uint32_t watchdog_us_;
   std::vector<LayoutField> input_layout_;
   std::vector<LayoutField> output_layout_;
@@ -121,6 +127,7 @@ class DeviceSlot {
   std::uint32_t epoch_{0};  ///< of the newest command
   std::uint32_t active_cycles_{0};  ///< in a row in which outputs were to reach the actuators
   bool heard_{false};
+  bool ever_heard_{false};
   bool counts_{true};  ///< of this cycle
   bool just_lost_{false};
   bool just_fell_back_{false};

@@ -248,7 +248,32 @@ TEST_F(MotorSlot, ADeviceThatHungUpBeforeItSaidAnythingIsLostByItsSilence) {
   }
   made.read(true);
   EXPECT_TRUE(made.just_lost());
-  EXPECT_EQ(made.loss().reason, descriptor::DeviceLoss::Silent);
+  EXPECT_TRUE(made.never_heard());
+  EXPECT_EQ(made.loss().reason, descriptor::DeviceLoss::NeverHeard);
+}
+
+TEST_F(MotorSlot, ADeviceThatObeysAHigherEpochOfAnotherFlightHasHeardNobodyAndIsLostForThatReason) {
+  DeviceSlot made = slot();
+  for (int i = 0; i < 3; ++i) {
+    say(70, device_flag::old_epoch_refused);
+    made.read(true);
+    EXPECT_FALSE(made.alive());
+  }
+  EXPECT_TRUE(made.just_lost());
+  EXPECT_TRUE(made.never_heard());
+  EXPECT_EQ(made.loss().reason, descriptor::DeviceLoss::OldEpoch);
+  say(1);
+  made.read(true);
+  EXPECT_TRUE(made.alive()) << "it obeys us by now";
+}
+
+TEST_F(MotorSlot, ThatItHasRefusedSomebodyElseIsNoReasonToLoseADeviceThatObeysUs) {
+  DeviceSlot made = slot();
+  for (std::uint32_t sequence = 1; sequence < 10; ++sequence) {
+    say(sequence, sequence > 1 ? device_flag::old_epoch_refused : std::uint16_t{0});
+    made.read(true);
+    EXPECT_TRUE(made.alive());
+  }
 }
 
 TEST_F(MotorSlot, AWatchdogThatHasLetGoThoughItIsCommandedCountsAsSilence) {

@@ -47,6 +47,7 @@ struct FallBack : ::testing::Test {
     make();
   }
   void make() {
+    slot.reset();
     std::vector<DeviceSlot::Way> ways;
     for (const char* address : {"a", "b", "c"})
       ways.push_back({flows.open({Transfer::SharedMemory, address}, FlowSide::Subsystem).value(),
@@ -175,6 +176,63 @@ TEST_F(FallBack, WhatWasLeftIsToldToLetGoAndHoldsBackUntilItsWatchdogHasRunOut) 
   EXPECT_FALSE(heard(0)) << "nothing more goes out there";
   slot->write(1, true, false);
   EXPECT_EQ(heard(1)->mode, DeviceMode::Active) << "and it moves again";
+}
+
+TEST_F(FallBack, TheFirstThatWasLeftHoldsBackThroughASecondFallToo) {
+  use.watchdog_us = 20'000;
+  make();
+  run(10, {0});
+  ASSERT_EQ(slot->taken(), 0);
+  int since_active = 0;  // that the first has heard
+  while (slot->taken() < 2 && since_active < 100) {
+    slot->read(true);
+    slot->write(1, !slot->holds_back(), false);
+    ++since_active;
+  }
+  ASSERT_EQ(slot->taken(), 2) << "the second said nothing either";
+  while (slot->holds_back() && since_active < 100) {
+    if (const auto command = heard(2)) say(2, command->sequence);
+    slot->read(true);
+    slot->write(1, false, false);
+    ++since_active;
+  }
+  EXPECT_TRUE(slot->alive());
+  EXPECT_GE(since_active, 20) << "its watchdog";
+  EXPECT_LE(since_active, 20 + 2 * static_cast<int>(limit)) << "and the cycles in which its line was dead already";
+}
+
+TEST_F(FallBack, WhatItWasToldBehindItsLastActiveHoldsBackAllTheSameAsItMayNotHaveHeardIt) {
+  use.watchdog_us = 20'000;
+  make();
+  run(10, {0});
+  for (int cycle = 0; cycle < 2; ++cycle) {
+    slot->read(true);
+    slot->write(1, false, false);  // inhibited for another reason; its line is dead already
+  }
+  ASSERT_GT(until_it_goes_over(), 0);
+  int held_back = 2 + 3;
+  while (slot->holds_back() && held_back < 100) {
+    slot->write(1, false, false);
+    if (const auto command = heard(1)) say(1, command->sequence);
+    slot->read(true);
+    ++held_back;
+  }
+  EXPECT_GE(held_back, 20);
+}
+
+TEST_F(FallBack, AnotherPeriodMakesWhatIsLeftOfAWatchdogNoShorter) {
+  use.watchdog_us = 20'000;
+  make();
+  run(10, {0});
+  ASSERT_GT(until_it_goes_over(), 0);
+  slot->follow(250us);
+  int cycles = 0;
+  for (; slot->holds_back() && cycles < 1'000; ++cycles) {
+    slot->write(1, false, false);
+    if (const auto command = heard(1)) say(1, command->sequence);
+    slot->read(true);
+  }
+  EXPECT_GE(cycles, 4 * 16);
 }
 
 TEST_F(FallBack, WhatWasNotActiveHoldsNothingBackBehindTheFirstAnswer) {

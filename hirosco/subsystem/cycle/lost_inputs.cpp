@@ -12,6 +12,15 @@
 /// finds the plan of the mission or, without one, that of the severity, and `procedures/steps/` act: `shut_down_network` for
 /// high, `set_state` to Safe-Operational for medium. Of a link that the mission gives `on_loss`, `link_losses.cpp` decides instead.
 namespace hirosco {
+namespace {
+constexpr unsigned reason_shift = 16;
+}
+
+std::optional<CycleLoop::NeverAnswered> CycleLoop::never_answered() const noexcept {
+  const std::uint32_t told = never_answered_.load(std::memory_order_relaxed);
+  if (told == 0) return std::nullopt;
+  return NeverAnswered{static_cast<std::uint16_t>(told - 1), static_cast<descriptor::DeviceLoss>(told >> reason_shift)};
+}
 
 void CycleLoop::read_inputs(TimePoint started, bool counts) noexcept {
   // Passes by itself: with the first answer of a device or of its fall-back, or the first good sample of a slower producer, which are
@@ -50,11 +59,15 @@ void CycleLoop::read_inputs(TimePoint started, bool counts) noexcept {
     if (!device.just_lost()) continue;
     end_self_test(self_test_.lose_device(static_cast<std::int64_t>(i)));
     const DeviceSlot::Loss loss = device.loss();
+    if (device.never_heard() && never_answered_.load(std::memory_order_relaxed) == 0) {
+      const auto index = static_cast<std::uint32_t>(&device.device() - parts_.descriptor.devices.data());
+      never_answered_.store((index + 1) | (static_cast<std::uint32_t>(loss.reason) << reason_shift), std::memory_order_relaxed);
+    }
     const std::array arguments{static_cast<double>(loss.reason), static_cast<double>(loss.silent_cycles),
                                static_cast<double>(loss.damaged), static_cast<double>(loss.wrong_size)};
     raise(plan_.device_lost_events[i], arguments);
   }
-  awaits_first_answer_.store(awaits_first, std::memory_order_relaxed);
+  awaits_first_answer_.store(awaits_first, std::memory_order_release);
 }
 
 }  // namespace hirosco

@@ -77,8 +77,14 @@ void GenericSubsystem::take_cycle_report(const CycleReport& head, Octets payload
       break;
     case ReportKind::StateEntered:
       if (awaiting_cycle_ && way_ && static_cast<State>(head.index) == way_->states[way_at_]) {
+        // Where a device has not answered yet nobody can say that it was a success (docs/adr/0147).
+        answer_owed_ = state_ == State::PreOperational && way_->states[way_at_] == State::SafeOperational;
+        if (answer_owed_) return look_for_first_answer();
         awaiting_cycle_ = false;
         arrive(way_->states[way_at_]);
+      } else if (!way_ && wanted_.load(std::memory_order_relaxed) && static_cast<State>(head.index) != state_) {
+        // One whose time was over, and who comes after all: the cycle is where it says, and what follows begins there.
+        be_in(static_cast<State>(head.index));
       }
       break;
     case ReportKind::EntryRefused:

@@ -119,7 +119,7 @@ TEST_F(DescriptorChanges, HousekeepingIsThatOfTheNextConfigure) {
 TEST_F(DescriptorChanges, AnEndnodeIsThatOfTheNextConfigure) {
   const auto device = rig.flows.open({Transfer::SharedMemory, "other"}, FlowSide::Device).value();
   EXPECT_EQ(reread(edited(R"(address="arm")", R"(address="other")")), "1 3 7");
-  rig.bring_to(State::SafeOperational, 3);
+  rig.bring_to(State::PreOperational, 3);
   rig.cycle(4);
   std::array<std::byte, 256> frame;
   EXPECT_GT(device->receive(frame).value().octets, 0U) << "what it is told comes here";

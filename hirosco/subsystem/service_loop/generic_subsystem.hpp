@@ -242,9 +242,12 @@ class GenericSubsystem final : private pus::TelemetrySink,
   void go(State target, std::optional<pus::Request> request);
   bool run_phase(State next, TimePoint now);
   void arrive(State state);
+  void be_in(State state);
   void arrive_transient(State state);
   void go_down_from(State failed);
   void fail_transition(State state, const Failure& why);
+  void look_for_first_answer();
+  [[nodiscard]] Failure never_answered_failure(const CycleLoop::NeverAnswered& device) const;
   Result<Step> enter_transient(State state);
   Result<Step> initialise_software();
   void remember_persistent();
@@ -350,6 +353,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   std::optional<pus::Request> way_request_;
   bool phase_entered_{false};
   bool awaiting_cycle_{false};
+  bool answer_owed_{false};  ///< the cycle is where it was sent, and waits for the first answer of a device
   bool release_owed_{false};  ///< the cycle still holds the configuration that Post-Operational was to give back
   TimePoint phase_deadline_{};
 

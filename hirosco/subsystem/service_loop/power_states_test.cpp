@@ -14,6 +14,7 @@ namespace hirosco {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 using testing::Probe;
 using testing::probe_descriptor;
 using testing::Rig;
@@ -181,24 +182,46 @@ TEST_F(LinkedDevices, WhoWaitsForADeviceIsTakenDownAllTheSame) {
   EXPECT_EQ(craft.state(), State::ErrorOperational);
 }
 
-TEST_F(LinkedDevices, ADeviceThatNeverAnswersIsToldAsLostWhenItsTimeAndWhatItMayBeSilentAreOver) {
+TEST_F(LinkedDevices, TheWayIntoControlFailsByTheNameOfADeviceThatNeverAnswers) {
   arm_speaks = false;
+  const auto entry = craft.set_state(State::SafeOperational);
+  cycle();
+  craft.advance(first_answer_limit);
+  int cycles = 0;
+  for (; craft.heard(testing::arm_lost) == 0 && cycles < 50; ++cycles) {
+    EXPECT_EQ(craft.outcome(entry), "1 3");
+    cycle();
+  }
+  EXPECT_LT(cycles, 8) << "what it may be silent, and the steps around it";
+  for (int i = 0; i < 4; ++i) cycle();
+  EXPECT_THAT(craft.outcome(entry), StartsWith("1 3 8:"));
+  EXPECT_THAT(craft.explanations.back(), HasSubstr("SafeOperational failed: device ARM: never heard (shared_memory arm)"));
+  EXPECT_EQ(craft.state(), State::ErrorOperational);
+  EXPECT_NE(craft.inhibited() & inhibited_by_device, 0U);
+}
+
+TEST_F(LinkedDevices, AFallBackThatAnswersInPlaceOfADeviceThatNeverDidIsEnoughForTheWayIntoControl) {
+  lamp_speaks = false;
+  spare_speaks = true;
+  const auto entry = craft.set_state(State::SafeOperational);
+  cycle();
+  craft.advance(first_answer_limit);
+  for (int i = 0; i < 40; ++i) cycle();
+  EXPECT_EQ(craft.outcome(entry), "1 3 7");
+  EXPECT_EQ(craft.state(), State::SafeOperational);
+  EXPECT_EQ(craft.heard(fell_back), 1);
+}
+
+TEST_F(LinkedDevices, WhoWaitsInControlForTheFirstAnswerIsTakenDownAllTheSame) {
+  lamp_speaks = false;
   static_cast<void>(craft.set_state(State::SafeOperational));
   cycle();
   craft.advance(first_answer_limit);
-  for (int i = 0; i < 3 && craft.state() != State::SafeOperational; ++i) cycle();
-  ASSERT_EQ(craft.state(), State::SafeOperational);
-  int silent = 0;
-  for (bool told = false; !told && silent < 50; ++silent) {
-    ASSERT_EQ(craft.inhibited(), inhibited_while_awaited);
-    told = cycle();
-  }
-  EXPECT_EQ(craft.inhibited(), inhibited_by_device) << "told with the link, and stays so, whoever answers now";
-  EXPECT_LT(silent, 4);
-  arm_speaks = true;
   for (int i = 0; i < 4; ++i) cycle();
-  EXPECT_EQ(craft.inhibited(), inhibited_by_device);
-  EXPECT_EQ(craft.heard(testing::arm_lost), 1);
+  const auto down = craft.set_state(State::ErrorOperational);
+  for (int i = 0; i < 3; ++i) cycle();
+  EXPECT_EQ(craft.outcome(down), "1 3 7");
+  EXPECT_EQ(craft.state(), State::ErrorOperational);
 }
 
 TEST_F(LinkedDevices, WhileAFallBackHasNotAnsweredNoSampleGoesOutAndTheActuatorsAreInhibited) {

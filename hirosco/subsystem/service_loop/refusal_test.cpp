@@ -176,7 +176,7 @@ TEST(WhatIsNoTelecommandAtAll, IsPassedOverInSilence) {
 TEST(FailedPostOperational, GivesBackConfigurationPlanAndFlowsWhenTheCycleHasComeToRest) {
   Probe probe;
   Rig rig{probe, probe_descriptor};
-  rig.bring_to(State::SafeOperational, 3);
+  rig.bring_to(State::PreOperational, 3);
   const auto down = rig.set_state(State::PostOperational);
   rig.service();  // the cycle is told to rest, and hangs
   rig.advance(11s);

@@ -312,6 +312,22 @@ TEST_F(Devices, ALostDeviceSaysWhetherItWasSilentDamagedOfTheWrongSizeOrRepeated
   }
 }
 
+TEST_F(Devices, TheArmIsToldToLetGoBeforeTheNodeOfTheStateBelowRunsWhichMayHang) {
+  for (const State below : {State::SafeOperational, State::ErrorOperational}) {
+    bring_up(State::Operational);
+    ASSERT_EQ(exchange().mode, DeviceMode::Active);
+    Command in_node;
+    probe.in_node = [&] { in_node = newest<double>(*arm); };
+    rig.set_state(below);
+    rig.service();
+    rig.cycle();
+    probe.in_node = nullptr;
+    EXPECT_EQ(in_node.mode, below == State::ErrorOperational ? DeviceMode::Stop : DeviceMode::Off);
+    EXPECT_EQ(rig.vital.state.load(), static_cast<std::uint32_t>(below));
+    rig.set_state_now(State::Offline);
+  }
+}
+
 /// On the way up from a stop that its watchdog saw: the guard names the new epoch to it some cycles after the entry.
 TEST_F(Devices, WhatLetGoUnderAnEarlierEpochIsLostOnlyOnceItHasHeardOfThisOne) {
   flags = device_flag::watchdog_tripped;

@@ -60,12 +60,31 @@ void GenericSubsystem::go(State target, std::optional<pus::Request> request) {
   way_at_ = 0;
   way_request_ = way_ ? request : std::nullopt;
   phase_entered_ = false;
-  awaiting_cycle_ = false;
+  awaiting_cycle_ = answer_owed_ = false;
+}
+
+/// The cycle controls already. Who has never been heard is lost there within its limit, the last fall-back included.
+void GenericSubsystem::look_for_first_answer() {
+  if (cycle_.awaits_first_answer()) return;
+  awaiting_cycle_ = answer_owed_ = false;
+  if (const auto device = cycle_.never_answered())
+    return fail_transition(State::SafeOperational, never_answered_failure(*device));
+  arrive(State::SafeOperational);
+}
+
+/// "device ARM: never heard (udp 127.0.0.1:5001)".
+Failure GenericSubsystem::never_answered_failure(const CycleLoop::NeverAnswered& device) const {
+  std::string text = "device " + descriptor_.devices[device.device].name + ": " + std::string{to_text(device.reason)};
+  const auto use = std::ranges::find(configuration_->devices, device.device, &descriptor::DeviceUse::device);
+  if (use != configuration_->devices.end())
+    text += " (" + std::string{to_text(use->endnode.transfer)} + " " + use->endnode.address + ")";
+  return {ErrorCode::Unavailable, std::move(text), device.device};
 }
 
 void GenericSubsystem::advance(TimePoint now) {
   // A cycle that hangs confirms nothing: the request ends all the same, and the next command is heard.
   if (reconfiguration_request_ && now > reconfiguration_deadline_) give_up_reconfiguration(pus::FailureCode::Timeout);
+  if (way_ && answer_owed_) look_for_first_answer();
   if (way_ && awaiting_cycle_ && now > phase_deadline_)
     fail_transition(way_->states[way_at_], {ErrorCode::Timeout, "time limit of the cycle"});
   // Several transient states may be done in one step; each round either arrives somewhere or waits.
@@ -249,12 +268,16 @@ void GenericSubsystem::release_late() {
   if (state_ == State::Offline) forget_introduction();
 }
 
-void GenericSubsystem::arrive(State state) {
+void GenericSubsystem::be_in(State state) {
   state_ = state;
   vital_.state.store(static_cast<std::uint32_t>(state), std::memory_order_release);
-  phase_entered_ = false;
   const double entered = static_cast<double>(state);
   raise_in_service(descriptor::framework_event::state_changed, {&entered, 1});
+}
+
+void GenericSubsystem::arrive(State state) {
+  be_in(state);
+  phase_entered_ = false;
   if (++way_at_ < way_->size) return;
   if (way_request_) verification_.completed(*way_request_);
   way_.reset();
@@ -304,7 +327,7 @@ void GenericSubsystem::go_down_from(State failed) {
   way_ = way;
   way_at_ = 0;
   phase_entered_ = false;
-  awaiting_cycle_ = false;
+  awaiting_cycle_ = answer_owed_ = false;
 }
 
 // --- configurations ----------------------------------------------------------------------------------------------------

@@ -315,6 +315,21 @@ TEST_F(Commissioning, AConfigurationIsGivenBackOnTheWayDownWhenItsCycleRestsAtLa
   EXPECT_THAT(rig.outcome(down), StartsWith("1 3 8:"));
 }
 
+TEST_F(Commissioning, ACycleThatEntersErrorOperationalBehindItsTimeIsBelievedAndLedOnFromThere) {
+  rig.bring_to(State::Operational);
+  const auto error = rig.set_state(State::ErrorOperational);
+  rig.service();
+  rig.advance(11s);
+  rig.service();
+  EXPECT_THAT(rig.outcome(error), StartsWith("1 3 8:0202"));
+  rig.cycle();
+  rig.service();
+  EXPECT_EQ(rig.state(), State::ErrorOperational);
+  EXPECT_EQ(rig.vital.state.load(), static_cast<std::uint32_t>(State::ErrorOperational));
+  EXPECT_THAT(rig.set_state_now(State::SafeOperational), StartsWith("1 4:000a"));
+  EXPECT_EQ(rig.set_state_now(State::Offline), "1 3 7");
+}
+
 TEST_F(Commissioning, EachCycleCountsInParametersThatNoDescriptorDeclares) {
   Probe author;
   Rig other{author,

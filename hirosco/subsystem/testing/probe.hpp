@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -103,6 +104,7 @@ class Probe : public Subsystem {
   std::map<State, Node> nodes;
   bool configure_fails{false};
   bool inhibits{false};
+  std::function<void()> in_node;  ///< called first in each node
   bool raises{false};
   Cycle last{};
   std::optional<Call> move;
@@ -157,6 +159,7 @@ class Probe : public Subsystem {
 
   /// In every state the author wants full torque and light: what reaches the device is the framework's business.
   virtual Result<> work(const Cycle& cycle) noexcept {
+    if (in_node) in_node();
     last = cycle;
     arm.output().torque = 5.0;
     lamp.output().lit = 1;
