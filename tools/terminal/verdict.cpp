@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 7> inhibitions{"stopped by SAFE ALL or by
                                                       "its own protection tripped",
                                                       "its cycle failed",
                                                       "the supervisor does not answer",
-                                                      "an endnode of its device went over to a fall-back"};
+                                                      "a device, a fall-back or a slower producer has not answered yet"};
 
 [[nodiscard]] std::string because(std::uint32_t inhibited) {
   const std::string words = inhibition_words(inhibited);

@@ -87,7 +87,8 @@ void DeviceSlot::follow(Duration sampling) noexcept {
   // What was counted in cycles of before is as long in those of now, or longer.
   const auto in_new_cycles = [&](std::uint32_t cycles) { return cycles * sampling_ / sampling; };
   if (sampling_ > Duration{}) {
-    left_obeys_cycles_ = static_cast<std::uint32_t>(in_new_cycles(left_obeys_cycles_) + (left_obeys_cycles_ > 0 ? 1 : 0));
+    left_obeys_cycles_ =
+        static_cast<std::uint32_t>(in_new_cycles(left_obeys_cycles_) + (left_obeys_cycles_ > 0 ? 1 : 0));
     since_active_ = static_cast<std::uint32_t>(std::min<std::int64_t>(in_new_cycles(since_active_), never));
   }
   sampling_ = sampling;

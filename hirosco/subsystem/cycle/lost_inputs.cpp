@@ -61,7 +61,8 @@ void CycleLoop::read_inputs(TimePoint started, bool counts) noexcept {
     const DeviceSlot::Loss loss = device.loss();
     if (device.never_heard() && never_answered_.load(std::memory_order_relaxed) == 0) {
       const auto index = static_cast<std::uint32_t>(&device.device() - parts_.descriptor.devices.data());
-      never_answered_.store((index + 1) | (static_cast<std::uint32_t>(loss.reason) << reason_shift), std::memory_order_relaxed);
+      never_answered_.store((index + 1) | (static_cast<std::uint32_t>(loss.reason) << reason_shift),
+                            std::memory_order_relaxed);
     }
     const std::array arguments{static_cast<double>(loss.reason), static_cast<double>(loss.silent_cycles),
                                static_cast<double>(loss.damaged), static_cast<double>(loss.wrong_size)};

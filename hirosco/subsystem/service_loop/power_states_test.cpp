@@ -14,10 +14,10 @@ namespace hirosco {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 using testing::Probe;
 using testing::probe_descriptor;
 using testing::Rig;
+using ::testing::StartsWith;
 
 std::string lamp_with(const std::string& from, const std::string& to) {
   std::string text = probe_descriptor;
@@ -195,7 +195,8 @@ TEST_F(LinkedDevices, TheWayIntoControlFailsByTheNameOfADeviceThatNeverAnswers) 
   EXPECT_LT(cycles, 8) << "what it may be silent, and the steps around it";
   for (int i = 0; i < 4; ++i) cycle();
   EXPECT_THAT(craft.outcome(entry), StartsWith("1 3 8:"));
-  EXPECT_THAT(craft.explanations.back(), HasSubstr("SafeOperational failed: device ARM: never heard (shared_memory arm)"));
+  EXPECT_THAT(craft.explanations.back(),
+              HasSubstr("SafeOperational failed: device ARM: never heard (shared_memory arm)"));
   EXPECT_EQ(craft.state(), State::ErrorOperational);
   EXPECT_NE(craft.inhibited() & inhibited_by_device, 0U);
 }
