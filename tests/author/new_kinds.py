@@ -96,6 +96,21 @@ class New(outside.Installed, unittest.TestCase):
                 first, second = (self.here(folder, "simulate", "mission.xml", "--for", "2s", "--seed", "3") for _ in range(2))
                 self.assertEqual(first, second)
 
+    def test_pages_and_templates_name_what_is_installed_with_them(self):
+        self.said("python3", "-B", flight.REPOSITORY / "tools/packages/check_pages.py", self.prefix)
+
+    def test_examples_are_whole(self):
+        examples = self.prefix / "share/doc/hirosco/examples"
+        self.assertEqual(sorted(one.name for one in examples.iterdir()), ["device", "hello", "lamp", "python"])
+        # Built in a copy by tools/packages/installed_and_gone; what they include and name is looked for here.
+        for file in (*examples.rglob("*.[ch]pp"), *examples.rglob("CMakeLists.txt")):
+            text = file.read_text()
+            for name in re.findall(r'#include "([^"]+)"|#include <((?:hirosco|simulation|robotics)/[^>]+)>|([\w/-]+\.cpp)\b', text):
+                places = (file.parent, examples / "hello", examples / "device", self.prefix / "include/hirosco")
+                name = "".join(name).removeprefix("tests/devices/")
+                self.assertTrue(any((place / name).exists() for place in places), f"{file}: {name}")
+        self.assertIn("--enable", self.said("python3", "-B", examples / "device/duties_test.py", "--help"))
+
     def test_a_name_that_is_none_and_a_folder_that_is_there_are_refused(self):
         self.assertIn("is no name for it", self.hirosco("new", "subsystem", "2lamps", code=2))
         self.assertIn("is a name of the framework", self.hirosco("new", "subsystem", "Supervisor", code=2))
