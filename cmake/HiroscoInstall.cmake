@@ -68,10 +68,7 @@ function(hirosco_install)
   install(FILES docs/installed/README.md docs/descriptor-errors.md docs/urdf-errors.md docs/failure-codes.md docs/interfaces.md CHANGELOG.md DESTINATION ${doc})
   # What the guide says to copy: each folder is whole.
   install(DIRECTORY tests/author/lamp DESTINATION ${doc}/examples)
-  install(FILES tests/author/hello/CMakeLists.txt DESTINATION ${doc}/examples/hello)
-  install(DIRECTORY subsystems/hello DESTINATION ${doc}/examples/hello/subsystems FILES_MATCHING PATTERN hello* PATTERN module.cpp)
   install(FILES simulation/devices/reference/device.c simulation/devices/reference/device.py tests/devices/duties_test.py tests/devices/own_device.py
     tests/devices/reference.py tests/devices/ways.hpp tests/devices/ways.cpp DESTINATION ${doc}/examples/device)
-  install(FILES missions/rokviss/move_and_plot.py missions/observer/fetch_image.py DESTINATION ${doc}/examples/python)
   install(DIRECTORY LICENSES DESTINATION ${doc})
 endfunction()
