@@ -64,7 +64,7 @@ TEST_F(HelloTest, IsNotAskedForAGoalOutsideOfTheDeclaredRange) {
   rig.bring_to(State::Operational);
   const auto request = rig.call("MOVE_TO", {3.3});
   rig.settle();
-  EXPECT_EQ(rig.outcome(request), "1 4:01050001");
+  EXPECT_EQ(rig.outcome(request), "1 4:01050000000001");
 }
 
 TEST_F(HelloTest, SaysInWordsWhatATestCannotSend) {
