@@ -49,6 +49,9 @@ function(hirosco_install)
     install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION include/hirosco/${folder})
   endforeach()
 
+  # For a device's protocol of its own; no module has it in common with who loads it.
+  install(FILES hirosco/utilities/crc16.hpp DESTINATION include/hirosco/hirosco/utilities)
+
   set(package lib/cmake/hirosco)
   install(EXPORT hirosco-targets NAMESPACE hirosco:: DESTINATION ${package})
   configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/hirosco-config.cmake.in
@@ -69,6 +72,6 @@ function(hirosco_install)
   # What the guide says to copy: each folder is whole.
   install(DIRECTORY tests/author/lamp DESTINATION ${doc}/examples)
   install(FILES simulation/devices/reference/device.c simulation/devices/reference/device.py tests/devices/duties_test.py tests/devices/own_device.py
-    tests/devices/reference.py tests/devices/ways.hpp tests/devices/ways.cpp DESTINATION ${doc}/examples/device)
+    tests/devices/reference.py tests/devices/line_protocol.hpp tests/devices/line_protocol.cpp DESTINATION ${doc}/examples/device)
   install(DIRECTORY LICENSES DESTINATION ${doc})
 endfunction()

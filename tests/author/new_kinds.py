@@ -107,7 +107,7 @@ class New(outside.Installed, unittest.TestCase):
             text = file.read_text()
             for name in re.findall(r'#include "([^"]+)"|#include <((?:hirosco|simulation|robotics)/[^>]+)>|([\w/-]+\.cpp)\b', text):
                 places = (file.parent, examples / "hello", examples / "device", self.prefix / "include/hirosco")
-                name = "".join(name).removeprefix("tests/devices/")
+                name = "".join(name).removeprefix("tests/devices/")  # they lie in one folder
                 self.assertTrue(any((place / name).exists() for place in places), f"{file}: {name}")
         self.assertIn("--enable", self.said("python3", "-B", examples / "device/duties_test.py", "--help"))
 
