@@ -49,6 +49,9 @@ function(hirosco_install)
     install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION include/hirosco/${folder})
   endforeach()
 
+  # For a device's protocol of its own; no module has it in common with who loads it.
+  install(FILES hirosco/utilities/crc16.hpp DESTINATION include/hirosco/hirosco/utilities)
+
   set(package lib/cmake/hirosco)
   install(EXPORT hirosco-targets NAMESPACE hirosco:: DESTINATION ${package})
   configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/hirosco-config.cmake.in
@@ -63,7 +66,12 @@ function(hirosco_install)
   install(DIRECTORY hirosco/descriptor/ DESTINATION ${share}/schemas FILES_MATCHING PATTERN *.xsd PATTERN testdata EXCLUDE)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/${share}/page DESTINATION ${share} OPTIONAL)
   install(DIRECTORY templates DESTINATION ${share})
-  install(DIRECTORY docs/guide DESTINATION share/doc/hirosco)
-  install(FILES docs/descriptor-errors.md docs/urdf-errors.md docs/failure-codes.md docs/interfaces.md CHANGELOG.md DESTINATION share/doc/hirosco)
-  install(DIRECTORY LICENSES DESTINATION share/doc/hirosco)
+  set(doc share/doc/hirosco)
+  install(DIRECTORY docs/guide DESTINATION ${doc})
+  install(FILES docs/installed/README.md docs/descriptor-errors.md docs/urdf-errors.md docs/failure-codes.md docs/interfaces.md CHANGELOG.md DESTINATION ${doc})
+  # What the guide says to copy: each folder is whole.
+  install(DIRECTORY tests/author/lamp DESTINATION ${doc}/examples)
+  install(FILES simulation/devices/reference/device.c simulation/devices/reference/device.py tests/devices/duties_test.py tests/devices/own_device.py
+    tests/devices/reference.py tests/devices/line_protocol.hpp tests/devices/line_protocol.cpp DESTINATION ${doc}/examples/device)
+  install(DIRECTORY LICENSES DESTINATION ${doc})
 endfunction()

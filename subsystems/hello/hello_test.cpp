@@ -59,5 +59,27 @@ TEST_F(HelloTest, RefusesAGoalBeyondItsLimit) {
   EXPECT_TRUE(rig.outcome(request).starts_with("1 4:0105"));
 }
 
+/// Its descriptor says -3.2 to 3.2: it never comes to the handler. Index 0, argument 1.
+TEST_F(HelloTest, IsNotAskedForAGoalOutsideOfTheDeclaredRange) {
+  rig.bring_to(State::Operational);
+  const auto request = rig.call("MOVE_TO", {3.3});
+  rig.settle();
+  EXPECT_EQ(rig.outcome(request), "1 4:01050000000001");
+}
+
+TEST_F(HelloTest, SaysInWordsWhatATestCannotSend) {
+  const auto why_not = [&](std::string_view function, std::initializer_list<double> values) -> std::string {
+    try {
+      rig.call(function, values);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "sent";
+  };
+  EXPECT_EQ(why_not("MOVE", {0.1}), "Rig::call: HELLO has no function 'MOVE'; its descriptor has: MOVE_TO");
+  EXPECT_NE(why_not("MOVE_TO", {}).find("argument missing: no telecommand can carry it; give 1 values"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace hirosco

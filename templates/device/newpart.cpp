@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include "newpart.hpp"
+
 #include <hirosco/subsystem/author/module.hpp>
-#include <hirosco/subsystem/author/subsystem.hpp>
 
 namespace {
 
@@ -41,8 +42,8 @@ class NewPart final : public Subsystem {
   DevicePort<Sensors, Commands> plate_;
 };
 
-std::unique_ptr<Subsystem> make_newpart() { return std::make_unique<NewPart>(); }
-
 }  // namespace
+
+std::unique_ptr<Subsystem> make_newpart() { return std::make_unique<NewPart>(); }
 
 const hirosco::Module* hirosco_module() noexcept { return &hirosco::subsystem_module<make_newpart>; }

@@ -1,48 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include "newpart_device.hpp"
+
 #include <simulation/devices/module.hpp>
-
-namespace {
-
-using namespace hirosco;
-using namespace hirosco::simulation;
-
-/// A plate of 20 J/K that loses 0.5 W for each kelvin above its surroundings.
-class NewPartDevice final : public SimulatedDevice {
- public:
-  static constexpr std::array fault_lines{FaultLine{"heater 0.5", "the heater gives half of what it is told"}};
-
-  NewPartDevice(FlowFactory& flows, const FlowAddress& address, const Settings& settings)
-      : SimulatedDevice{flows, address, settings} {}
-
- private:
-  void advance(Duration cycle) noexcept override {
-    const double power_w = active() ? health_ * commanded_w_ : 0.0;
-    temperature_k_ += (power_w - loss_w_per_k * (temperature_k_ - outside_k)) / heat_j_per_k * seconds(cycle);
-  }
-  Result<> take(OctetReader payload) noexcept override {
-    const auto power_w = payload.get<double>();
-    if (!payload.exhausted()) return fail(ErrorCode::Malformed, "size of the command");
-    commanded_w_ = power_w;
-    return ok();
-  }
-  void write_sensors(OctetWriter& payload) noexcept override { payload.put(temperature_k_); }
-  Result<> do_fault(const Words& words) override {
-    if (words[0] != "heater") return fail(ErrorCode::InvalidArgument, "unknown fault");
-    HIROSCO_TRY(words.expect(2));
-    HIROSCO_TRY_LET(health_, words.number(1, 0, 1));
-    return ok();
-  }
-  std::string do_truth() const override { return "temperature_k=" + std::to_string(temperature_k_); }
-  void do_heal() noexcept override { health_ = 1; }
-
-  static constexpr double outside_k = 290, loss_w_per_k = 0.5, heat_j_per_k = 20;
-  double commanded_w_{0};
-  double temperature_k_{outside_k};
-  double health_{1};
-};
-
-}  // namespace
 
 const hirosco::Module* hirosco_module() noexcept { return &hirosco::simulation::device_module<NewPartDevice>; }

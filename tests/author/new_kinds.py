@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import unittest
 import urllib.request
 
@@ -15,10 +16,12 @@ import outside
 
 KINDS = sorted(path.parent.name for path in (flight.REPOSITORY / "templates").glob("*/mission.xml"))
 # What one types at each of them, and what it shows; the mission's subsystem has housekeeping of this name.
-TYPED = {"subsystem": (("MY_SUBSYSTEM", "GO_TO", 0.5), "MY_SUBSYSTEM.CUR_VALUES.VALUE"),
-         "device": (("MY_DEVICE", "SET:GOAL", 310), "MY_DEVICE.CUR_VALUES.TEMPERATURE"),
+TYPED = {"subsystem": (("HEAT_PIPE", "GO_TO", 0.5), "HEAT_PIPE.CUR_VALUES.VALUE"),
+         "device": (("OVEN", "SET:GOAL", 310), "OVEN.CUR_VALUES.TEMPERATURE"),
          "mission": (("HELLO", "MOVE_TO", 0.1), "HELLO.CUR_VALUES.POSITION"),
-         "robot": (("MY_ROBOT", "MOVE_J", "0.1,0.1,0.1,0.1,0.1,0.1", 1), "MY_ROBOT.CUR_VALUES.POSITION[5]")}
+         "robot": (("LAB_ARM", "MOVE_J", "0.1,0.1,0.1,0.1,0.1,0.1", 1), "LAB_ARM.CUR_VALUES.POSITION[5]")}
+# What each is called: no word of its kind or of its template stands in it, as a test of the folder that looks for one would find it there.
+NAMES = {"subsystem": "HeatPipe", "device": "Oven", "mission": "Survey", "robot": "LabArm"}
 WORLD = "hirosco-sim-mujoco"  # of a robot; a build without MuJoCo has none
 
 
@@ -33,13 +36,13 @@ def tried():
 @functools.cache
 def made(kind):
     """The folder of a new one, built, and what building, testing and simulating it said."""
-    told = outside.Installed.said(outside.installed() / "bin/hirosco", "new", kind, f"My{kind.capitalize()}")
+    told = outside.Installed.said(outside.installed() / "bin/hirosco", "new", kind, NAMES[kind])
     lines = told.partition("\nNow:\n")[2].splitlines()
     assert lines[-1] == "  hirosco run mission.xml", told
     path = f"{outside.installed()}/bin:{os.environ['PATH']}"
-    # ninja, as a computer of ours need not have make.
+    # ninja, which builds with both processors.
     said = outside.Installed.said("bash", "-euc", "\n".join(lines[:-1]), environment={"PATH": path, "CMAKE_GENERATOR": "Ninja"})
-    return outside.place() / f"my_{kind}", said
+    return outside.place() / lines[0].removeprefix("  cd "), said
 
 
 class New(outside.Installed, unittest.TestCase):
@@ -48,6 +51,7 @@ class New(outside.Installed, unittest.TestCase):
         told = self.hirosco("new", "--help")
         for kind in KINDS:
             self.assertIn(f"{kind}:", told)
+            self.assertEqual("--urdf" in self.hirosco("new", kind, "--help"), kind == "robot")
 
     def test_the_lines_that_it_gives_build_test_and_simulate_it(self):
         for kind in tried():
@@ -57,12 +61,55 @@ class New(outside.Installed, unittest.TestCase):
                 self.assertIn("commissioned: mode operation", said)
                 self.assertIn("no problem", self.here(folder, "check", "--fly", "mission.xml"))
 
+    def test_where_nothing_is_compiled_no_compiler_is_needed(self):
+        for kind in [kind for kind in tried() if kind in ("mission", "robot")]:
+            with self.subTest(kind=kind):
+                folder, _ = made(kind)
+                told = self.said("cmake", "-S", folder, "-B", self.folder / f"{kind}-without", f"-DCMAKE_PREFIX_PATH={self.prefix}",
+                                 environment={"CC": "/nowhere/cc", "CXX": "/nowhere/c++"})
+                self.assertIn("Build files have been written", told)
+
+    def test_the_lines_of_the_guide_make_the_mission_of_the_real_arm(self):
+        """Its descriptor and mission as your_robot.md has them typed; its folder's tests pass with them, and without the simulated device."""
+        if "robot" not in tried():
+            return
+        page = (flight.REPOSITORY / "docs/guide/your_robot.md").read_text()
+        block = re.search(r"^## The real arm\n.*?^```\n(sed .*?)^```$", page, re.M | re.S)[1]
+        lines = [line for line in block.splitlines() if not line.startswith("hirosco run")]
+        folder, _ = made("robot")
+        real = self.folder / "real" / folder.name
+        shutil.copytree(folder, real, ignore=shutil.ignore_patterns("build"))
+        path = f"{self.prefix}/bin:{os.environ['PATH']}"
+        told = self.said("bash", "-euc", "\n".join(lines), environment={"PATH": path}, at=real)
+        self.assertIn("no problem", told)
+        descriptor = (real / "lab_arm_real.xml").read_text()
+        self.assertEqual(re.findall(r'transfer="(\w+)" address="[^"]*:(\d+)"', descriptor), [("udp", "5002"), ("udp", "5001")])
+        # Whoever takes the world out of the mission itself has tests that pass, too.
+        (real / "mission.xml").write_text((real / "real.xml").read_text())
+        told = self.said("bash", "-euc", f"cmake -B build -DCMAKE_PREFIX_PATH={self.prefix} && ctest --test-dir build", at=real)
+        self.assertIn("100% tests passed, 0 tests failed out of 1", told)
+
     def test_the_same_seed_simulates_the_same_octets(self):
         for kind in tried():
             with self.subTest(kind=kind):
                 folder, _ = made(kind)
                 first, second = (self.here(folder, "simulate", "mission.xml", "--for", "2s", "--seed", "3") for _ in range(2))
                 self.assertEqual(first, second)
+
+    def test_pages_and_templates_name_what_is_installed_with_them(self):
+        self.said("python3", "-B", flight.REPOSITORY / "tools/packages/check_pages.py", self.prefix)
+
+    def test_examples_are_whole(self):
+        examples = self.prefix / "share/doc/hirosco/examples"
+        self.assertEqual(sorted(one.name for one in examples.iterdir()), ["device", "hello", "lamp", "python"])
+        # Built in a copy by tools/packages/installed_and_gone; what they include and name is looked for here.
+        for file in (*examples.rglob("*.[ch]pp"), *examples.rglob("CMakeLists.txt")):
+            text = file.read_text()
+            for name in re.findall(r'#include "([^"]+)"|#include <((?:hirosco|simulation|robotics)/[^>]+)>|([\w/-]+\.cpp)\b', text):
+                places = (file.parent, examples / "hello", examples / "device", self.prefix / "include/hirosco")
+                name = "".join(name).removeprefix("tests/devices/")  # they lie in one folder
+                self.assertTrue(any((place / name).exists() for place in places), f"{file}: {name}")
+        self.assertIn("--enable", self.said("python3", "-B", examples / "device/duties_test.py", "--help"))
 
     def test_a_name_that_is_none_and_a_folder_that_is_there_are_refused(self):
         self.assertIn("is no name for it", self.hirosco("new", "subsystem", "2lamps", code=2))
@@ -72,6 +119,10 @@ class New(outside.Installed, unittest.TestCase):
         self.assertIn("is there already", self.hirosco("new", "mission", "there", code=3))
         self.assertEqual(list((self.folder / "there").iterdir()), [])
 
+    def test_who_makes_what_there_is_already_is_told_where(self):
+        told = self.hirosco("new", "device", "thermal")
+        self.assertIn(f"comes with HIROSCO: {self.prefix}/share/hirosco/subsystems/thermal", told)
+
     def test_a_robot_that_cannot_be_flown_is_refused_with_its_place_and_leaves_no_folder(self):
         model = self.folder / "weak.urdf"
         house = (self.prefix / "share/hirosco/subsystems/robot_arm/robot_arm.urdf").read_text()
@@ -80,7 +131,7 @@ class New(outside.Installed, unittest.TestCase):
         line = next(i + 1 for i, text in enumerate(model.read_text().splitlines()) if 'effort="0"' in text)
         self.assertIn(f"{model}:{line}:5: error: U0601: joint 'elbow' has no effort above 0", told)
         self.assertIn("from the drive's data sheet", told)
-        self.assertIn("docs/urdf-errors.md", told)
+        self.assertIn(str(self.prefix / "share/doc/hirosco/urdf-errors.md"), told)
         self.assertIn("U0001", self.hirosco("new", "robot", "Weak", "--urdf", "nowhere.urdf", code=1))
         model.write_text(house)
         self.assertIn("U0603", self.hirosco("new", "robot", "Weak", "--urdf", model, "--tip", "hook", code=1))

@@ -2,17 +2,20 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """The reference device keeps the duties of docs/guide/your_device.md, in C by every wire that it has and in Python, octet by octet; and each
-duty is found missing in a copy of it that breaks it."""
+duty is found missing in a copy of it that breaks it. With a wire and an address: a device of your own is tried (own_device.py, --help)."""
 import contextlib
 import os
 import pathlib
 import select
 import socket
+import subprocess
+import sys
 import tempfile
 import time
 import tty
 import unittest
 
+import own_device
 import reference
 from reference import ACTIVE, FOLDER, OFF, OLD_EPOCH, STOP, TRIPPED, command, status, streamed
 
@@ -248,6 +251,16 @@ class WithFolder(unittest.TestCase):
         self.folder = pathlib.Path(place.name)
 
 
+    def tried_own(self, kind, address, **about):
+        end = time.monotonic() + PATIENCE
+        while True:
+            try:
+                return own_device.tried(lambda: own_device.Wire(kind, address), **about)
+            except (AssertionError, ConnectionRefusedError):  # it does not listen yet
+                if time.monotonic() > end:
+                    raise
+
+
 class Kept(WithFolder):
     def judge(self, kind, program, duties=Judge.DUTIES):
         with device(kind, self.folder, program) as (played, wire):
@@ -267,6 +280,22 @@ class Kept(WithFolder):
 
     def test_in_python_by_tcp(self):
         self.judge("python", [reference.PYTHON, "-B", FOLDER / "device.py"])
+
+    def test_as_a_device_of_ones_own(self):
+        for kind, program in (("udp", [reference.built(self.folder), "udp"]), ("tcp", [reference.PYTHON, "-B", FOLDER / "device.py"])):
+            address = f"127.0.0.1:{free_port(socket.SOCK_DGRAM if kind == 'udp' else socket.SOCK_STREAM)}"
+            with self.subTest(kind=kind), reference.Device(*program, address):
+                self.assertEqual(self.tried_own(kind, address, takes=8, gives=16), [])
+
+    @unittest.skipUnless("HIROSCO_BIN" in os.environ, "HIROSCO_BIN names the folder of a simulated arm")
+    def test_as_a_device_with_a_second_inhibit(self):
+        frames, enable = (f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}" for _ in range(2))
+        with subprocess.Popen([pathlib.Path(os.environ["HIROSCO_BIN"]) / "hirosco-sim-robot", "--transfer", "udp", "--address", frames, "--enable-transfer",
+                               "udp", "--enable-address", enable, "--stop", "controlled", "--stop-within-ms", "200"], stdin=subprocess.PIPE) as arm:
+            self.addCleanup(arm.kill)
+            second = own_device.Enable("udp", enable)
+            self.assertEqual(self.tried_own("udp", frames, takes=17, gives=89, enable=second), [])
+            arm.kill()
 
     def test_they_are_as_small_as_they_are_said_to_be(self):
         self.assertLessEqual(len((FOLDER / "device.c").read_text().splitlines()), 200)
@@ -292,6 +321,20 @@ class Broken(WithFolder):
                             break
                 self.assertEqual(found, duty)
 
+    def test_of_ones_own_as_well(self):
+        text = (FOLDER / "device.c").read_text()
+        # The last is of a serial line; whether it stops for mode Stop is seen by a second inhibit alone, which it does not have.
+        for old, new, duty in [each for each in MUTANTS[:-1] if each[2] != "stops_when_it_is_told"]:
+            with self.subTest(duty=duty):
+                source, program = self.folder / "mutant.c", self.folder / "mutant"
+                source.write_text(text.replace(old, new))
+                reference.compiled(source, program)
+                address = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
+                with reference.Device(program, "tcp", address):
+                    self.assertNotEqual(self.tried_own("tcp", address, takes=8, gives=16), [])
+
 
 if __name__ == "__main__":
+    if sys.argv[1:] and sys.argv[1] in ("udp", "tcp", "serial", "--help"):
+        sys.exit(own_device.main(sys.argv[1:]))
     unittest.main(verbosity=2)

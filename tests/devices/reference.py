@@ -11,7 +11,9 @@ import sys
 import threading
 import time
 
-FOLDER = pathlib.Path(__file__).resolve().parents[2] / "simulation/devices/reference"
+HERE = pathlib.Path(__file__).resolve().parent
+# Of the sources; as an example, all lies in one folder.
+FOLDER = HERE if (HERE / "device.c").exists() else HERE.parents[1] / "simulation/devices/reference"
 OFF, ACTIVE, STOP = 0, 1, 2
 TRIPPED, OLD_EPOCH = 1, 2
 

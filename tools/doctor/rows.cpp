@@ -188,9 +188,12 @@ Finding programs(const System& system) {
 }
 
 Finding build_tools(const System& system) {
-  if (system.no_tools.empty()) return ok("compiler, cmake, ninja");
-  return worth_knowing(fmt::format("no {}", fmt::join(system.no_tools, ", no ")),
-                       "sudo apt install g++ cmake ninja-build libgtest-dev libgmock-dev");
+  if (!system.no_tools.empty())
+    return worth_knowing(fmt::format("no {}", fmt::join(system.no_tools, ", no ")),
+                         "sudo apt install g++ cmake make libgtest-dev libgmock-dev");
+  // cmake does not take it by itself.
+  const bool to_be_named = system.builder == "ninja";
+  return ok(fmt::format("compiler, cmake, {}, gtest", to_be_named ? "ninja (cmake -G Ninja)" : system.builder));
 }
 
 constexpr std::array table{

@@ -37,6 +37,7 @@ System good() {
   system.page = {.address = "127.0.0.1:8080", .why_not = {}, .flight = {}};
   system.mission = "lamp/mission.xml";
   system.station = system.page_built = true;
+  system.builder = "make";
   return system;
 }
 
@@ -121,8 +122,8 @@ const std::vector<Case>& cases() {
        "/run/user/7: 1 MiB free, 64 wanted", "du -xh"},
       {"programs", [](System& system) { system.not_ready = {"E0401 no program lamp", "E0401 no program switch"}; },
        Verdict::Missing, "E0401 no program lamp and 1 more", "hirosco check --fly lamp/mission.xml"},
-      {"build tools", [](System& system) { system.no_tools = {"c++", "ninja"}; }, Verdict::WorthKnowing,
-       "no c++, no ninja", "sudo apt install g++"},
+      {"build tools", [](System& system) { system.no_tools = {"c++", "make", "gtest"}; }, Verdict::WorthKnowing,
+       "no c++, no make, no gtest", "sudo apt install g++ cmake make libgtest-dev"},
   };
   return all;
 }
@@ -146,6 +147,14 @@ TEST(Doctor, HasACaseForEachRowThatSaysWhatIsWrong) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name << " is there twice";
     EXPECT_TRUE(wrong.contains(row.name)) << row.name;
   }
+}
+
+TEST(Doctor, TakesNinjaForMakeAndSaysHowItIsNamed) {
+  System system = good();
+  EXPECT_EQ(found("build tools", system).found, "compiler, cmake, make, gtest");
+  system.builder = "ninja";
+  EXPECT_EQ(found("build tools", system).verdict, Verdict::Ok);
+  EXPECT_NE(found("build tools", system).found.find("cmake -G Ninja"), std::string::npos);
 }
 
 TEST(Doctor, TakesAPageElsewhereForNoFault) {

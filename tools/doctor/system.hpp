@@ -63,7 +63,8 @@ struct System {
   std::string mission;
   std::vector<std::string> not_ready;  ///< what the mission names and is not here
   bool station{false}, page_built{false};
-  std::vector<std::string> no_tools;  ///< of those that build a subsystem
+  std::vector<std::string> no_tools;  ///< of those that build a subsystem and its test
+  std::string builder;  ///< what cmake builds with: make, or ninja where there is no make
 };
 
 }  // namespace hirosco::tools::doctor

@@ -143,8 +143,8 @@ class Findings {
     if (errors_ == 0 && warnings_ == 0) fmt::print("{}, no problem\n", files);
     else if (errors_ == 0) fmt::print("{}, no error, {}\n", files, warnings);
     else
-      fmt::print(stderr, "{}, {}, {}; codes are explained in docs/descriptor-errors.md\n", files,
-                 counted(errors_, "error"), warnings);
+      fmt::print(stderr, "{}, {}, {}; codes are explained in {}\n", files, counted(errors_, "error"), warnings,
+                 document("descriptor-errors.md"));
   }
 
  private:

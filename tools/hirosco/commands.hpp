@@ -208,6 +208,8 @@ int make_new(const NewOptions& options);
 [[nodiscard]] std::filesystem::path find_mission(const std::string& name_or_path);
 /// The mission that is meant where none is named and none flies: the word in the file missions/usual, looked for likewise. Empty: none.
 [[nodiscard]] std::string usual_mission();
+/// Where a page of docs/ is for whoever reads it here: installed, or as the sources have it.
+[[nodiscard]] std::string document(const std::string& name);
 /// Reads the mission and prints what is wrong with it to standard error.
 [[nodiscard]] std::optional<descriptor::Mission> load_mission(const std::string& name_or_path);
 [[nodiscard]] std::uint16_t port_of(const std::string& address);

@@ -26,7 +26,8 @@ constexpr std::size_t max_line_octets = 256U * 1024 * 1024;
   for (const auto* list : {&reading.problems, &reading.warnings})
     for (const auto& problem : *list) fmt::print(stderr, "{}", descriptor::render(problem, source, colour));
   if (!reading.value)
-    fmt::print(stderr, "hirosco dynamics: {} is not taken; codes are explained in docs/urdf-errors.md\n", file);
+    fmt::print(stderr, "hirosco dynamics: {} is not taken; codes are explained in {}\n", file,
+               document("urdf-errors.md"));
   return std::move(reading.value);
 }
 

@@ -40,9 +40,9 @@ void explain_python(const ground::Catalogue& catalogue, const std::string& packa
       "    >>> from {} import Spacecraft\n"
       "    >>> craft = Spacecraft()\n"
       "    >>> help(craft)\n\n"
-      "docs/guide/python_client.md says the rest.\n",
+      "{} says the rest.\n",
       catalogue.subsystems().size() == 1 ? "The subsystem" : "The subsystems", catalogue.mission().name, names, to,
-      package);
+      package, document("guide/python_client.md"));
 }
 
 }  // namespace

@@ -199,8 +199,12 @@ System look_at(const descriptor::Mission& mission) {
     system.places.push_back(look_at_place(folder));
   system.station = !find_program("hirosco-ground").empty();
   system.page_built = !find_shipped("page").empty();
-  for (const char* tool : {"c++", "cmake", "ninja"})
+  for (const char* tool : {"c++", "cmake"})
     if (find_program(tool).empty()) system.no_tools.emplace_back(tool);
+  system.builder = !find_program("make").empty() ? "make" : !find_program("ninja").empty() ? "ninja" : "";
+  if (system.builder.empty()) system.no_tools.emplace_back("make");
+  const auto has_header = [](const char* folder) { return fs::exists(fs::path{folder} / "gtest/gtest.h"); };
+  if (!has_header("/usr/include") && !has_header("/usr/local/include")) system.no_tools.emplace_back("gtest");
   return system;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fstream>
 
 #include "hirosco/utilities/version.hpp"
@@ -42,6 +43,23 @@ void add_connection(CLI::App& command, Connection& connection) {
   }
   fmt::print(stderr, "hirosco: no command '{}'{}; there are: {}\n", argv[1], did_you_mean(argv[1], names),
              fmt::join(names, ", "));
+  return true;
+}
+
+/// `hirosco new KIND --help` speaks of this kind alone. False: it is not asked.
+[[nodiscard]] bool tell_kind(CLI::App& command, int argc, char** argv) {
+  if (argc < 4 || argv[1] != command.get_name()) return false;
+  const std::string_view asked{argv[argc - 1]};
+  const auto kinds = new_kinds();
+  const auto kind = std::ranges::find(kinds, std::string_view{argv[2]}, [](const NewKind& one) { return one.name; });
+  if (kind == kinds.end() || (asked != "--help" && asked != "-h")) return false;
+  command.remove_option(command.get_option("kind"));
+  if (!kind->of_urdf)
+    for (const char* option : {"--urdf", "--tip", "--gripper", "--chain", "--packages"})
+      command.remove_option(command.get_option(option));
+  command.description(fmt::format("Make {}. It prints what to type next", kind->makes));
+  command.name(fmt::format("new {}", kind->name));
+  fmt::print("{}", command.help("hirosco"));
   return true;
 }
 
@@ -279,6 +297,7 @@ int read_and_do(int argc, char** argv) {
   tc_command->prefix_command(false);
 
   if (unknown_command(app, argc, argv)) return exit_usage;
+  if (tell_kind(*new_command, argc, argv)) return exit_ok;
   // What it takes is the mission's business.
   if (argc > 2 && argv[1] == std::string_view{"report"} && argv[2][0] != '-')
     return mission_program(argv[1], argv[2], {argv + 3, argv + argc});

@@ -43,6 +43,16 @@ std::vector<std::string> known_missions() {
   return {names.begin(), names.end()};
 }
 
+std::string document(const std::string& name) {
+  std::error_code failed;
+  for (const fs::path& folder : shipped_folders()) {
+    const fs::path installed = folder.parent_path() / "doc/hirosco" / name;
+    if (fs::is_regular_file(installed, failed)) return installed.string();
+    if (fs::is_regular_file(folder / "docs" / name, failed)) return "docs/" + name;
+  }
+  return name + " of the package hirosco-doc";
+}
+
 std::string did_you_mean(std::string_view text, const std::vector<std::string>& names) {
   const std::vector<std::string_view> candidates{names.begin(), names.end()};
   const std::string_view found = nearest(text, candidates);

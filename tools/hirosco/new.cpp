@@ -25,12 +25,18 @@ namespace fs = std::filesystem;
   return fmt::format(" -DCMAKE_PREFIX_PATH={}", prefix.string());
 }
 
+/// cmake takes make by itself, also where there is ninja alone.
+[[nodiscard]] std::string generator() {
+  const bool told = std::getenv("CMAKE_GENERATOR") != nullptr;
+  return !told && find_program("make").empty() && !find_program("ninja").empty() ? " -G Ninja" : "";
+}
+
 void say_what_is_next(const NewKind& kind, const std::string& folder, const std::string& installed) {
   fmt::print("  cd {}\n", folder);
   if (kind.compiles) {
     fmt::print("  cmake -B build -DCMAKE_BUILD_TYPE=Release{} && cmake --build build && ctest --test-dir build\n",
                installed);
-    fmt::print("  export PATH=$PWD/build:$PATH\n");
+    fmt::print("  export PATH=$PWD/build:$PATH    # in each terminal: hirosco finds programs and their faults by it\n");
   } else {
     fmt::print("  cmake -B build{} && ctest --test-dir build\n", installed);
   }
@@ -61,11 +67,20 @@ constexpr const char* world_program = "hirosco-sim-mujoco";
   for (const auto* list : {&judged.problems, &judged.warnings})
     for (const auto& problem : *list) fmt::print(stderr, "{}", descriptor::render(problem, source, colour));
   if (!judged.robot) {
-    fmt::print(stderr, "hirosco new: {} cannot be flown; codes are explained in docs/urdf-errors.md\n", file.string());
+    fmt::print(stderr, "hirosco new: {} cannot be flown; codes are explained in {}\n", file.string(),
+               document("urdf-errors.md"));
     return std::nullopt;
   }
   if (options.urdf.empty()) judged.robot->urdf = without_licence(judged.robot->urdf);
   return parts_of(*judged.robot, name);
+}
+
+/// Whoever makes a subsystem of a name that a ready one has may want that one.
+void say_what_is_ready(const NewName& name) {
+  const fs::path ready = find_shipped("subsystems/" + name.lower);
+  if (ready.empty()) return;
+  fmt::print("\nA ready subsystem of this name comes with HIROSCO: {}\nWhat is made here is another one.\n",
+             ready.string());
 }
 
 /// Its world is none of the parts that everybody has.
@@ -120,8 +135,9 @@ int make_new(const NewOptions& options) {
   fmt::print("{}: {}\n", target.string(), kind->makes);
   for (const fs::path& file : *made) fmt::print("  {}\n", file.lexically_relative(target).string());
   if (kind->of_urdf) say_what_is_missing();
+  else say_what_is_ready(*name);
   fmt::print("\nNow:\n");
-  say_what_is_next(*kind, target.string(), where_installed(from.parent_path()));
+  say_what_is_next(*kind, target.string(), generator() + where_installed(from.parent_path()));
   return exit_ok;
 }
 

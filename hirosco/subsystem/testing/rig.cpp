@@ -151,9 +151,25 @@ Sent Rig::call_with(std::string_view function, const std::vector<std::optional<V
   const auto common = pus::common_functions();
   for (const auto& candidate : common)
     if (candidate.name == function) found = &candidate;
-  if (found == nullptr) throw std::runtime_error{"no function of this name"};
-  const auto data = pus::encode_call(*found, arguments);
-  return send(8, 1, data.value());
+  if (found == nullptr) {
+    std::string names;
+    for (const auto& one : subsystem.descriptor().functions) names += " " + one.name;
+    throw std::runtime_error{"Rig::call: " + subsystem.descriptor().name + " has no function '" +
+                             std::string{function} + "'; its descriptor has:" + names};
+  }
+  // Whoever sends a telecommand may not know the ranges; the subsystem does, and refuses.
+  descriptor::Function unbounded = *found;
+  for (auto& argument : unbounded.arguments) {
+    argument.field.minimum = argument.field.maximum = std::nullopt;
+    argument.texts.clear();
+  }
+  const auto data = pus::encode_call(unbounded, arguments);
+  if (!data)
+    throw std::runtime_error{"Rig::call: " + found->name + " of " + subsystem.descriptor().name + ": " +
+                             data.error().text + ": no telecommand can carry it; give " +
+                             std::to_string(pus::value_count(*found)) +
+                             " values of the types that the descriptor says"};
+  return send(8, 1, *data);
 }
 
 void Rig::answer(std::uint16_t from, std::uint8_t service, std::uint8_t subtype, Octets data,

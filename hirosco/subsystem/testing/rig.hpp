@@ -18,7 +18,8 @@
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 
 /// One subsystem stepped by hand: the test is its supervisor, its clock, its threads and its devices. The parts around it
-/// are the simulated set, no mocks.
+/// are the simulated set, no mocks. A simulated device goes on `flows`, at the address of its endnode, and is stepped with the rig's clock
+/// after each cycle (templates/device/newpart_test.cpp); without Settings::enable, as no supervisor holds its second inhibit here.
 namespace hirosco::testing {
 
 /// A telecommand on its way: its acknowledgements are found by its request id.
@@ -72,6 +73,9 @@ class Rig {
   // --- commanding ---------------------------------------------------------------------------------------------------
   Sent send(std::uint8_t service, std::uint8_t subtype, Octets data, const MemoryHandle& memory = {},
             std::uint32_t mode_epoch = 0);
+  /// A telecommand by the function's name, its numbers in the order of the descriptor. A value outside of its declared range is sent all the
+  /// same: the subsystem refuses it, and outcome() says "1 4:0105..." with index and id of the argument. Throws std::runtime_error where
+  /// nothing can be sent: no such function, too few or too many values, one that its type does not hold.
   Sent call(std::string_view function, std::initializer_list<double> arguments = {});
   /// The same with arguments of any type, arrays element by element.
   Sent call_with(std::string_view function, const std::vector<std::optional<Value>>& arguments);
@@ -108,7 +112,10 @@ class Rig {
   [[nodiscard]] int heard(std::uint16_t id) const {
     return static_cast<int>(std::ranges::count(raised, id, &Raised::id));
   }
+  /// A lost device or link does not change it: its actuators are inhibited, the supervisor hears of that (`raised`) and acts by the mission's
+  /// plans; here that is the test's part. So a test of a loss looks at inhibited().
   [[nodiscard]] State state() const { return subsystem.state(); }
+  /// Why no output reaches an actuator, a bit for each reason (Inhibition of pages.hpp); 0: it does, in Operational.
   [[nodiscard]] std::uint32_t inhibited() const { return vital.inhibited.load(); }
 
   // --- a partner's end of a link ------------------------------------------------------------------------------------
