@@ -105,7 +105,8 @@ std::string_view Guard::take_over(std::uint16_t apid, const AdoptedSubsystem& ad
   PermitPage& page = *member->permit;
   page.epoch.store(member->epoch, std::memory_order_release);
   page.powered.store(adopted.powered, std::memory_order_release);
-  member->guarded_before = member->power_unknown = true;
+  member->guarded_before = true;
+  member->power_unknown = adopted.powered != power_off;
   const std::string_view rests = member->why_it_rests();
   member->service_moved = watched_at(parts_.clock.now());
   page.stop.store(adopted.stopped ? 1 : 0, std::memory_order_release);
