@@ -106,7 +106,10 @@ std::optional<supervisor::AdoptedSubsystem> Spacecraft::adopt(const descriptor::
   adopted.powered = before.powered.load();
   auto handle = memory_.create("permit", sizeof(PermitPage));
   auto page = memory_.map(*handle, Access::ReadWrite);
-  ::new (page->octets.data()) PermitPage;
+  auto& fresh = *::new (page->octets.data()) PermitPage;
+  fresh.epoch = adopted.epoch;
+  fresh.stop = adopted.stopped ? 1 : 0;
+  fresh.powered = adopted.powered;
   static_cast<void>(memory_.seal_writers(*handle));
   member.permits.push_back(*page);
   adopted.permit = std::move(*handle);

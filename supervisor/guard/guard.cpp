@@ -11,8 +11,6 @@
 namespace hirosco::supervisor {
 namespace {
 
-/// From the end of a member to the answer of its devices (hazard SF2).
-constexpr Duration killed_limit = std::chrono::milliseconds{400};
 /// Findings that nobody takes are those of a supervisor that stands still; the first tell the story.
 constexpr std::size_t most_findings = 1024;
 
@@ -34,7 +32,10 @@ Result<> Guard::add(const descriptor::MissionSubsystem& described, bool spared) 
   member.described = &described;
   member.spared = spared;
   member.epoch = parts_.first_epoch;
+  for (const std::string_view name : descriptor::actuators_without_enable(described.subsystem))
+    member.not_asked.emplace_back(name);
   for (const descriptor::Device& device : described.subsystem.devices) {
+    member.rest_within = std::max(member.rest_within, device.stop_within);
     if (!device.enable) continue;
     HIROSCO_TRY_LET(auto flow,
                     parts_.flows.open({device.enable->transfer, device.enable->address}, FlowSide::Subsystem));
@@ -74,6 +75,7 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   member->permit = reinterpret_cast<PermitPage*>(launched.permit.octets.data());
   member->grip = launched.grip;
   member->taken = GuardedMember::Taken::Nothing;
+  member->guarded_before = false;
   // A device may have heard of every epoch of the process before.
   member->permit->epoch.store(++member->epoch, std::memory_order_release);
   member->released = member->seen_operational = false;
@@ -97,10 +99,14 @@ std::string_view Guard::take_over(std::uint16_t apid, const AdoptedSubsystem& ad
   const LockGuard lock{mutex_};
   GuardedMember* member = find(apid);
   if (member == nullptr || member->permit == nullptr) return "it has no pages";
-  member->epoch = adopted.epoch;
+  // An epoch that neither permits nor is the one that it looks at is one that nobody wrote, or damaged: no device would hear of it.
+  const bool counts = adopted.permitted || adopted.epoch == member->vital->seen_epoch.load(std::memory_order_acquire);
+  member->epoch = counts ? adopted.epoch : std::max(adopted.epoch, parts_.first_epoch);
   PermitPage& page = *member->permit;
-  page.epoch.store(adopted.epoch, std::memory_order_release);
+  page.epoch.store(member->epoch, std::memory_order_release);
   page.powered.store(adopted.powered, std::memory_order_release);
+  member->guarded_before = true;
+  member->power_unknown = adopted.powered != power_off;
   const std::string_view rests = member->why_it_rests();
   member->service_moved = watched_at(parts_.clock.now());
   page.stop.store(adopted.stopped ? 1 : 0, std::memory_order_release);
@@ -116,6 +122,11 @@ std::string_view Guard::take_over(std::uint16_t apid, const AdoptedSubsystem& ad
   member->released = member->seen_operational = true;
   member->released_at = watched_at(parts_.clock.now());
   return {};
+}
+
+void Guard::ended_before(std::uint16_t apid) {
+  const LockGuard lock{mutex_};
+  if (GuardedMember* member = find(apid); member != nullptr && member->vital == nullptr) member->power_unknown = true;
 }
 
 bool Guard::has_stopped_by_itself(std::uint16_t apid) const {
@@ -188,50 +199,6 @@ bool Guard::release(std::uint16_t apid, std::uint64_t seen_fences) {
   }
   member->release(watched_at(parts_.clock.now()));
   return true;
-}
-
-std::uint64_t Guard::stop_all(GuardFinding::Kind why) {
-  const std::uint64_t stop = stop_all();
-  const LockGuard lock{mutex_};
-  find_out(why, 0);
-  return stop;
-}
-
-std::uint64_t Guard::stop_all() {
-  const LockGuard lock{mutex_};
-  for (GuardedMember& member : members_) {
-    if (member.spared) continue;
-    if (member.released) {
-      member.stopped.reset();
-      for (WatchedDevice& device : member.devices) device.stopped.reset();
-    }
-    member.fence();
-  }
-  // Stops that overlap end together; their time runs from the first.
-  if (stops_ended_ == stops_) {
-    stop_begun_ = parts_.clock.now();
-    stop_watched_ = watched_at(stop_begun_);
-    for (GuardedMember& member : members_) {
-      member.stop_killed = false;
-      member.stopped.reset();
-      for (WatchedDevice& device : member.devices) device.stopped.reset();
-    }
-  }
-  return ++stops_;
-}
-
-std::optional<std::vector<StopAnswer>> Guard::stop_outcome(std::uint64_t stop) const {
-  const LockGuard lock{mutex_};
-  if (stop > stops_ended_) return std::nullopt;
-  std::vector<StopAnswer> answers;
-  for (const GuardedMember& member : members_) {
-    if (member.spared) continue;
-    const std::string& name = member.described->subsystem.name;
-    for (const WatchedDevice& device : member.devices)
-      answers.push_back({member.apid(), device.name, true, device.stopped, member.stop_killed});
-    if (member.devices.empty()) answers.push_back({member.apid(), name, false, member.stopped, member.stop_killed});
-  }
-  return answers;
 }
 
 std::uint32_t Guard::highest_epoch() const {
@@ -472,29 +439,6 @@ void Guard::judge_doomed(GuardedMember& member, TimePoint now) {
   member.killed = true;
   if (member.grip) member.grip->kill();
   find_out(GuardFinding::Kind::Killed, member.apid());
-}
-
-void Guard::follow_stop(TimePoint now) {
-  // How long a stop took is told in real time; who is given how long goes by what was watched.
-  const Duration since = watched_ - stop_watched_;
-  bool waiting = false;
-  for (GuardedMember& member : members_) {
-    if (member.spared || member.settled == stops_) continue;
-    if (member.has_stopped()) {
-      if (!member.stopped) member.stopped = now - stop_begun_;
-      continue;
-    }
-    member.stopped.reset();
-    if (since >= member.stop_limit() && !member.stop_killed && member.grip && member.to_blame()) {
-      member.stop_killed = true;
-      member.grip->kill();
-      find_out(GuardFinding::Kind::Killed, member.apid());
-    }
-    waiting = waiting || since < member.stop_limit() + (member.stop_killed ? killed_limit : Duration{0});
-  }
-  if (waiting) return;
-  stops_ended_ = stops_;
-  if (parts_.on_finding) parts_.on_finding();
 }
 
 }  // namespace hirosco::supervisor

@@ -24,11 +24,11 @@
 /// `hirosco/subsystem/cycle/actuator_gate.cpp`; in the device its own watchdog (docs/adr/0025). All ways: docs/safety/hazards.csv.
 namespace hirosco::supervisor {
 
-/// How one actuator, or a member without one that can be asked, answered the stop of everything.
+/// How one actuator, or a member without any, answered the stop of everything.
 struct StopAnswer {
   std::uint16_t apid{0};
-  std::string name;  ///< of the device, or of the member where no device of its can be asked
-  bool asked_device{false};  ///< the device said it, on the endnode of its second inhibit
+  std::string name;  ///< of the device, or of the member where it has no actuator
+  bool asked_device{false};  ///< the device said it, on the endnode of its second inhibit; else its member did
   std::optional<Duration> stopped;  ///< after the stop was ordered; empty: it did not
   bool killed{false};  ///< its member was ended, as it had not stopped in time
 };
@@ -73,6 +73,8 @@ class Guard {
   /// \param against Why it may not go on; empty: it may.
   /// \return why it is not permitted; empty: it is.
   std::string_view take_over(std::uint16_t apid, const AdoptedSubsystem& adopted, std::string_view against);
+  /// It was added, and its process had ended already under the guard before: its devices may be coming to rest still.
+  void ended_before(std::uint16_t apid);
   /// It is permitted, and a device of it says that it does not put out what it is told: it stopped while nobody told it that it may.
   [[nodiscard]] bool has_stopped_by_itself(std::uint16_t apid) const;
   /// It has ended: its devices stay inhibited.

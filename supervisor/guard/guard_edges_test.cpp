@@ -113,7 +113,7 @@ TEST_F(GuardTest, OfADeviceWithoutASecondInhibitItsMemberAnswers) {
   static_cast<void>(second.step(clock.now()));
   const auto answers = second.stop_outcome(stop);
   ASSERT_TRUE(answers && answers->size() == 1);
-  EXPECT_EQ(answers->front().name, "ARM");
+  EXPECT_EQ(answers->front().name, "MOTOR");
   EXPECT_FALSE(answers->front().asked_device);
   EXPECT_TRUE(answers->front().stopped) << "there is no process that could move anything";
 }

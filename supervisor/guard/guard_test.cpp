@@ -78,6 +78,20 @@ TEST_F(GuardTest, APermissionThatIsNotUsedLapses) {
   EXPECT_FALSE(may_move(arm));
 }
 
+TEST_F(GuardTest, APermissionWaitsForTheStepsOfASlowCycle) {
+  descriptor::Configuration slow;
+  slow.id = 2;
+  slow.sampling = 3s;
+  mission.subsystems[1].subsystem.configurations = {slow};
+  lives[hand].vital->configuration = 2;
+  cycling(hand, State::SafeOperational);
+  ASSERT_TRUE(guard.release(hand, guard.fences(hand)));
+  run(9s - 10ms);
+  EXPECT_TRUE(may_move(hand)) << "it enters with one of its next steps";
+  run(20ms);
+  EXPECT_FALSE(may_move(hand));
+}
+
 TEST_F(GuardTest, OneThatStandsStillIsFencedToldAndEndedAfterTheGrace) {
   cycling(arm);
   cycling(hand);
@@ -246,6 +260,28 @@ TEST_F(GuardTest, AStopAfterALeaveToGoOnDuringAStopIsOneOfItsOwn) {
   run(600ms, {arm, hand, camera}, DeviceOutput::Holding);
   EXPECT_TRUE(lives[hand].process->killed) << "it does not stop this time";
   EXPECT_TRUE(guard.stop_outcome(again));
+}
+
+TEST_F(GuardTest, WhoWasLetGoAndHasLeftAgainDuringAStopStopsForTheNextOneItself) {
+  for (const std::uint16_t apid : {arm, hand}) {
+    cycling(apid);
+    ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+  }
+  run(50ms, {arm, hand, camera}, DeviceOutput::Active);
+  static_cast<void>(guard.stop_all());
+  run(20ms, {arm, hand, camera}, DeviceOutput::Holding);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm))) << "HAND goes on, and the stop is open";
+  run(20ms, {arm, hand, camera}, DeviceOutput::Active);
+  cycling(arm, State::SafeOperational);
+  run(20ms, {arm, hand, camera}, DeviceOutput::Stopping);
+  const auto again = guard.stop_all();
+  lives[hand].vital->inhibited = inhibited_by_stop;
+  run(50ms, {arm, hand, camera}, DeviceOutput::Stopping);
+  EXPECT_FALSE(guard.stop_outcome(again)) << "its motor comes to rest only now";
+  run(20ms, {arm, hand, camera}, DeviceOutput::Holding);
+  const auto answers = guard.stop_outcome(again);
+  ASSERT_TRUE(answers);
+  EXPECT_TRUE(answers->at(0).stopped);
 }
 
 TEST_F(GuardTest, WhatAMemberSaysOfItselfDoesNotStandForItsDevice) {

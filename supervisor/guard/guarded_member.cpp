@@ -12,7 +12,7 @@ namespace {
 /// From the order to stop until the last answer of a device that has nothing to wind down: its own cycle, an enable
 /// command, and a busy computer.
 constexpr Duration answer_limit = std::chrono::milliseconds{250};
-/// A slow cycle stands still between its steps: so many of its own periods are granted.
+/// A slow cycle stands still between its steps: so many of its own periods are granted to whatever it has to do.
 constexpr int slow_steps = 3;
 
 /// Damage of the page neither lowers an epoch, so that devices would not hear of it, nor uses up those that are left.
@@ -125,8 +125,9 @@ void GuardedMember::fence() noexcept {
 
 void GuardedMember::release(TimePoint now) noexcept {
   // Who may move has the priority that its limits are made for.
-  if (taken != Taken::Nothing) grip->give_realtime();
+  if ((taken != Taken::Nothing || guarded_before) && grip) grip->give_realtime();
   taken = Taken::Nothing;
+  guarded_before = false;
   restore_epoch(*permit, epoch);
   permit->release();
   epoch = permit->epoch.load(std::memory_order_relaxed);
@@ -139,7 +140,8 @@ void GuardedMember::end_permission(TimePoint now) noexcept {
   if (!released) return;
   const bool operational = state() == State::Operational;
   seen_operational = seen_operational || operational;
-  const bool over = seen_operational ? !operational : now - released_at >= permission_entry_limit;
+  const Duration to_enter = std::max(permission_entry_limit, slow_steps * sampling());
+  const bool over = seen_operational ? !operational : now - released_at >= to_enter;
   if (!over) return;
   released = false;
   if (permit != nullptr) permit->go.store(0, std::memory_order_release);
@@ -155,31 +157,36 @@ void GuardedMember::take_realtime(Taken what) noexcept {
 
 void GuardedMember::drive_power(TimePoint now) noexcept {
   if (power.none()) return;
-  power.step(wants_power(now));
+  const bool needed = needs_power();
+  if (needed) not_needed_since.reset();
+  // Told nothing, a switch stays as it is for a while (data_transfer/device/power_frame.hpp): that is long enough for most stops.
+  power_unknown = power_unknown && !needed && may_still_move(now);
+  if (power_unknown) return;
+  power.step(needed || (power.told_on() && may_still_move(now)));
   if (permit != nullptr) permit->powered.store(power.said(), std::memory_order_release);
 }
 
-bool GuardedMember::wants_power(TimePoint now) noexcept {
-  const bool lives = vital != nullptr && !killed;
-  if (lives) {
-    ended.reset();
-    const auto in = state();
-    // A page that says nothing is no reason to take the power from a brake: its member is being ended.
-    return !in || (*in != State::Offline && *in != State::SoftwareInit && *in != State::SoftwareDeinit);
-  }
-  if (!power.told_on()) return false;
-  if (!ended) ended = now;
-  // What moves is brought to rest first: without power no device could carry out the stop that it declares.
-  const bool rests = !devices.empty() && std::ranges::all_of(devices, &WatchedDevice::rests);
-  return !rests && now - *ended < stop_limit();
+bool GuardedMember::needs_power() const noexcept {
+  if (vital == nullptr || killed) return false;
+  const auto in = state();
+  // A page that says nothing is no reason to take the power from a brake: its member is being ended.
+  return !in || (*in != State::Offline && *in != State::SoftwareInit && *in != State::SoftwareDeinit);
+}
+
+/// What moves is brought to rest first: without power no device could carry out the stop that it declares.
+bool GuardedMember::may_still_move(TimePoint now) noexcept {
+  if (!not_needed_since) not_needed_since = now;
+  const bool rests = not_asked.empty() && std::ranges::all_of(devices, &WatchedDevice::rests);
+  return !rests && now - *not_needed_since < rest_within + answer_limit;
 }
 
 // --- a stop ------------------------------------------------------------------------------------------------------------
 
 bool GuardedMember::has_stopped() const noexcept {
-  if (!devices.empty())
-    return std::ranges::all_of(devices, [](const WatchedDevice& device) { return device.stopped.has_value(); });
-  return says_stopped();
+  const bool told =
+      std::ranges::all_of(devices, [](const WatchedDevice& device) { return device.stopped.has_value(); });
+  const bool answers_itself = devices.empty() || !not_asked.empty();
+  return told && (!answers_itself || says_stopped());
 }
 
 bool GuardedMember::says_stopped() const noexcept {

@@ -60,7 +60,7 @@ struct WatchedDevice {
 };
 
 struct GuardedMember {
-  /// What of its real-time priority the guard has taken; it has all of it back with its next release.
+  /// What of its real-time priority this guard has taken; it has all of it back with its next release.
   enum class Taken : std::uint8_t { Nothing, Loops, All };
 
   const descriptor::MissionSubsystem* described{nullptr};
@@ -73,6 +73,7 @@ struct GuardedMember {
   std::uint32_t life{0};  ///< its life word while it is held
   bool life_told{false};  ///< it has ended, or what its word says is no life
   Taken taken{Taken::Nothing};
+  bool guarded_before{false};  ///< by a guard that is gone and may have taken it as well
   std::uint32_t epoch{0};  ///< of the page, kept when a process ends
   std::uint64_t fences{0};
   // permission
@@ -90,14 +91,17 @@ struct GuardedMember {
   std::optional<TimePoint> doomed;  ///< killed then unless it comes back
   GuardFinding::Kind doom{};
   // stop
-  std::optional<Duration> stopped;
+  std::optional<Duration> stopped;  ///< by its own word
   bool killed{false};
   std::uint64_t settled{0};  ///< the stop in which it had stopped and was let go again
   bool stop_killed{false};  ///< by the present stop: nobody is ended twice for one
-  std::vector<WatchedDevice> devices;
+  std::vector<WatchedDevice> devices;  ///< that can be asked
+  std::vector<std::string> not_asked;  ///< its actuators without a second inhibit: it answers for them itself
+  Duration rest_within{};  ///< the longest stop that one of its actuators declares, asked or not
   // power
   PowerSwitches power;
-  std::optional<TimePoint> ended;  ///< its process was gone then, and its devices had power
+  std::optional<TimePoint> not_needed_since;  ///< its devices have power, and nobody wants it any more
+  bool power_unknown{false};  ///< a guard that is gone may have told its switches to be on
 
   [[nodiscard]] std::uint16_t apid() const noexcept { return described->subsystem.id; }
   [[nodiscard]] std::optional<State> state() const noexcept;
@@ -116,10 +120,13 @@ struct GuardedMember {
   void end_permission(TimePoint now) noexcept;
   void take_realtime(Taken what) noexcept;
 
-  /// Its devices have power from Hardware-Init to Hardware-Deinit, and for their declared stop when its process is gone.
+  /// Its devices have power from Hardware-Init to Hardware-Deinit, and then, or when its process is gone, until they rest, but no longer
+  /// than their declared stop may take.
   void drive_power(TimePoint now) noexcept;
-  [[nodiscard]] bool wants_power(TimePoint now) noexcept;
+  [[nodiscard]] bool needs_power() const noexcept;
+  [[nodiscard]] bool may_still_move(TimePoint now) noexcept;
 
+  /// Those that can be asked say so, and for all others it does.
   [[nodiscard]] bool has_stopped() const noexcept;
   /// Its own word: that of its page.
   [[nodiscard]] bool says_stopped() const noexcept;

@@ -144,6 +144,134 @@ TEST_F(PowerTest, WhatHasNoPowerHasStoppedThoughItCannotSaySo) {
   EXPECT_TRUE(answer->stopped);
 }
 
+TEST_F(PowerTest, WhatALivingMemberLeavesMovingHasPowerUntilItRests) {
+  enter(State::Operational);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  EXPECT_EQ(told_in(20ms, DeviceOutput::Active), true);
+  guard.fence(arm);
+  enter(State::SafeOperational);
+  EXPECT_EQ(told_in(10ms, DeviceOutput::Stopping), true);
+  for (const State down : {State::HardwareDeinit, State::SoftwareDeinit, State::Offline}) {
+    enter(down);
+    EXPECT_EQ(told_in(50ms, DeviceOutput::Stopping), true) << to_text(down);
+    EXPECT_EQ(said(), power_on) << "Offline waits for it";
+  }
+  static_cast<void>(told_in(10ms, DeviceOutput::Holding));
+  EXPECT_EQ(told_in(20ms, DeviceOutput::Holding), false);
+  EXPECT_EQ(said(), power_off);
+}
+
+TEST_F(PowerTest, WhatALivingMemberLeavesMovingHasPowerNoLongerThanItsStopMayTake) {
+  for (int time = 0; time < 2; ++time) {
+    enter(State::Operational);
+    ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+    EXPECT_EQ(told_in(20ms, DeviceOutput::Active), true);
+    enter(State::SoftwareDeinit);
+    EXPECT_EQ(told_in(440ms, DeviceOutput::Stopping), true);
+    EXPECT_EQ(told_in(20ms, DeviceOutput::Stopping), std::nullopt) << "it goes off in between";
+    EXPECT_EQ(told_in(500ms, DeviceOutput::Stopping), false) << "and is not switched on again";
+  }
+}
+
+/// Beside its motor, which can be asked, a gripper that cannot.
+struct HalfAsked : PowerTest {
+  HalfAsked() {
+    descriptor::Device gripper;
+    gripper.name = "GRIPPER";
+    gripper.actuator = true;
+    gripper.stop_within = 600ms;
+    mission.subsystems[0].subsystem.devices.push_back(gripper);
+  }
+};
+
+TEST_F(HalfAsked, WhatCannotBeAskedHasPowerForTheStopThatItDeclaresWhateverItsNeighbourSays) {
+  for (const bool dies : {false, true}) {
+    enter(State::Operational);
+    EXPECT_EQ(told_in(20ms, DeviceOutput::Holding), true);
+    if (dies) guard.forget(arm);
+    else enter(State::SoftwareDeinit);
+    EXPECT_EQ(told_in(840ms, DeviceOutput::Holding), true) << dies;
+    EXPECT_EQ(told_in(20ms, DeviceOutput::Holding), std::nullopt) << dies;
+    EXPECT_EQ(told_in(100ms, DeviceOutput::Holding), false) << dies;
+  }
+}
+
+/// A guard that goes on for one that died, with a member that died as well: nothing tells it whether its motor has power.
+struct DiedBefore : PowerTest {
+  void SetUp() override {
+    PowerTest::SetUp();
+    auto described = mission.subsystems[0];
+    described.subsystem.devices[0].enable->address = "next-enable";
+    described.subsystem.power_switches[0].endnode.address = "next-power";
+    motor = flows.open({Transfer::SharedMemory, "next-enable"}, FlowSide::Device).value();
+    power = flows.open({Transfer::SharedMemory, "next-power"}, FlowSide::Device).value();
+    held = std::make_unique<descriptor::MissionSubsystem>(std::move(described));
+    ASSERT_TRUE(next.add(*held, false));
+    next.ended_before(arm);
+  }
+  /// Its guard's steps, answered by the motor; how often the switch was told anything.
+  int told_by_next(Duration span, DeviceOutput output) {
+    int told = 0;
+    for (const TimePoint end = clock.now() + span; clock.now() < end; clock.advance(Guard::period)) {
+      static_cast<void>(next.step(clock.now()));
+      if (const auto command = hear()) {
+        ++told;
+        EXPECT_FALSE(command->on);
+      }
+      std::array<std::byte, enable_frame_octets> frame;
+      const auto received = motor->receive(frame);
+      if (!received || received->flow != Flow::New) continue;
+      const auto command = read_enable_command(frame).value();
+      EXPECT_EQ(command.enabled, 0);
+      static_cast<void>(motor->send(
+          *write_enable_status(frame, {.output = output, .flags = 0, .epoch = 0, .sequence = command.sequence})));
+    }
+    return told;
+  }
+  std::unique_ptr<descriptor::MissionSubsystem> held;
+  Guard next{{.clock = clock, .flows = flows, .first_epoch = 5000, .on_finding = {}}};
+};
+
+TEST_F(DiedBefore, ItsSwitchIsToldNothingWhileItMayComeToRestAndIsTurnedOffThen) {
+  EXPECT_EQ(told_by_next(445ms, DeviceOutput::Stopping), 0);
+  EXPECT_GE(told_by_next(50ms, DeviceOutput::Stopping), 8);
+}
+
+TEST_F(DiedBefore, ItsSwitchIsTurnedOffWithTheWordOfItsDeviceThatItRests) {
+  EXPECT_EQ(told_by_next(100ms, DeviceOutput::Stopping), 0);
+  EXPECT_GE(told_by_next(50ms, DeviceOutput::Holding), 8);
+}
+
+TEST_F(DiedBefore, ItIsAskedInAStop) {
+  told_by_next(20ms, DeviceOutput::Stopping);
+  const auto stop = next.stop_all();
+  told_by_next(100ms, DeviceOutput::Stopping);
+  EXPECT_FALSE(next.stop_outcome(stop)) << "it comes to rest still";
+  told_by_next(20ms, DeviceOutput::Holding);
+  ASSERT_TRUE(next.stop_outcome(stop));
+  ASSERT_EQ(next.stop_outcome(stop)->size(), 1u);
+  EXPECT_TRUE(next.stop_outcome(stop)->front().stopped);
+}
+
+TEST_F(PowerTest, WhereNothingMovesThePowerGoesAtOnce) {
+  mission.subsystems[0].subsystem.devices.clear();
+  Guard second{{.clock = clock, .flows = flows, .on_finding = {}}};
+  auto sensor = mission.subsystems[0];
+  sensor.subsystem.power_switches[0].endnode.address = "sensor-power";
+  power = flows.open({Transfer::SharedMemory, "sensor-power"}, FlowSide::Device).value();
+  ASSERT_TRUE(second.add(sensor, false));
+  LaunchedSubsystem launched;
+  launched.vital = lives[arm].vital_memory;
+  launched.permit = lives[arm].permit_memory;
+  second.adopt(arm, launched);
+  enter(State::Operational);
+  static_cast<void>(second.step(clock.now()));
+  EXPECT_TRUE(hear()->on);
+  enter(State::SoftwareDeinit);
+  static_cast<void>(second.step(clock.now()));
+  EXPECT_FALSE(hear()->on);
+}
+
 TEST_F(PowerTest, ThePageOfAMemberWithoutSwitchesSaysOff) {
   cycling(hand, State::Operational);
   EXPECT_EQ(told_in(20ms), false);

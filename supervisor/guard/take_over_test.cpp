@@ -84,6 +84,38 @@ TEST_F(TakeOver, WhatStandsAgainstItStopsItUnderAHigherEpoch) {
   refuse("it has not seen its permit of now", [&] { lives[hand].vital->seen_epoch = 17; });
 }
 
+TEST_F(TakeOver, OfAPageThatNobodyWroteTheEpochIsNotTakenOver) {
+  operational(hand);
+  const auto seen = lives[hand].permit->epoch.load();
+  // A supervisor between the two died before its guard had written on the page that it had made.
+  lives[hand].permit = new (lives[hand].permit_memory.octets.data()) PermitPage{};
+  EXPECT_EQ(take_over(hand), "it was not permitted");
+  EXPECT_GT(pages[hand]->epoch.load(), seen) << "no device would hear of it";
+  ASSERT_TRUE(next.release(hand, next.fences(hand)));
+  EXPECT_GT(pages[hand]->epoch.load(), 5000u);
+  EXPECT_TRUE(permits(hand));
+}
+
+TEST_F(TakeOver, WhoCyclesUnpermittedKeepsTheEpochThatItLooksAt) {
+  cycling(hand);
+  run(20ms);
+  const auto epoch = lives[hand].permit->epoch.load();
+  ASSERT_EQ(lives[hand].vital->seen_epoch.load(), epoch);
+  EXPECT_EQ(take_over(hand), "it was not permitted");
+  EXPECT_EQ(pages[hand]->epoch.load(), epoch) << "it looks at its old page for a while, and is not ended for that";
+}
+
+TEST_F(TakeOver, WhoMayHaveLostItsRealTimeToTheGuardBeforeIsGivenItBackWithItsFirstRelease) {
+  cycling(hand);
+  take_over(hand);
+  lives[hand].process->realtime = false;
+  ASSERT_TRUE(next.release(hand, next.fences(hand)));
+  EXPECT_TRUE(lives[hand].process->realtime);
+  lives[hand].process->realtime = false;
+  ASSERT_TRUE(next.release(hand, next.fences(hand)));
+  EXPECT_FALSE(lives[hand].process->realtime) << "once: this guard knows what it has taken itself";
+}
+
 TEST_F(TakeOver, AStopOfTheGuardBeforeHolds) {
   operational(hand);
   guard.fence(hand);

@@ -7,17 +7,21 @@
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <limits>
+#include <new>
 #include <optional>
 #include <string>
 
+#include "hirosco/data_transfer/control/socket_channel.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
 
@@ -195,6 +199,52 @@ TEST_F(ManifestStart, OfAnotherFileIsRefused) {
   EXPECT_EQ(launcher.refuse(mission.subsystems[0]).value().why.code, ErrorCode::Mismatch);
   is_now("/bin/true");
   EXPECT_EQ(run(), 0);
+}
+
+/// Of a process that rests, with pages as a supervisor before had kept them.
+std::array<FileDescriptor, kept_roles> kept_of(pid_t process, SealedMemory& memory, const PermitPage& permit) {
+  std::array<FileDescriptor, kept_roles> kept;
+  const auto page = [&](KeptRole role, const auto& content) {
+    const auto handle = memory.create("page", sizeof content).value();
+    std::memcpy(memory.map(handle, Access::ReadWrite).value().octets.data(), static_cast<const void*>(&content),
+                sizeof content);
+    if (role == KeptRole::Permit) static_cast<void>(memory.seal_writers(handle));
+    kept[static_cast<std::size_t>(role)] = FileDescriptor{::dup(SealedMemory::descriptor(handle))};
+  };
+  page(KeptRole::Vital, VitalPage{});
+  page(KeptRole::Permit, permit);
+  kept[static_cast<std::size_t>(KeptRole::Channel)] = std::move(SocketChannel::make_pair().value().first);
+  kept[static_cast<std::size_t>(KeptRole::Process)] =
+      FileDescriptor{static_cast<int>(::syscall(SYS_pidfd_open, process, 0))};
+  return kept;
+}
+
+TEST(SystemLauncherAdoption, ThePageThatItMakesSaysWhatItFoundBeforeAnyGuardHasWrittenOnIt) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    for (;;) ::pause();
+  }
+  descriptor::Mission mission;
+  mission.subsystems.emplace_back().subsystem.name = "ARM";
+  SealedMemory memory;
+  PermitPage before;
+  before.epoch = 4711;
+  before.fence();
+  before.powered = power_on;
+  InheritedParts inherited;
+  inherited.emplace(0, kept_of(child, memory, before));
+  SystemLauncher launcher;
+  ASSERT_TRUE(launcher.keep_with(StoreClient{-1}, mission, std::move(inherited), nullptr));
+  const auto adopted = launcher.adopt(mission.subsystems[0]);
+  ASSERT_TRUE(adopted);
+  const auto& page = *reinterpret_cast<const PermitPage*>(adopted->launched.permit.octets.data());
+  EXPECT_EQ(page.epoch.load(), 4712u);
+  EXPECT_EQ(page.stop.load(), 1u);
+  EXPECT_EQ(page.powered.load(), power_on);
+  EXPECT_FALSE(page.permits(page.epoch.load()));
+  launcher.kill_all();
+  ::waitpid(child, nullptr, 0);
 }
 
 }  // namespace

@@ -30,11 +30,12 @@ void Adoption::note(OctetWriter& writer) const {
   flag(parts_.safe_all.under_way() || (owes_ && stop_asked_));
   writer.put(static_cast<std::uint16_t>(craft_.members.size()));
   for (const Member& member : craft_.members) {
-    const auto found = before_.find(member.apid());
-    const Before before = owes_ && found != before_.end() ? found->second : Before{};
+    const Before owed = owes_ ? before(member) : Before{};
     writer.put(member.apid());
-    flag(member.alive() || before.alive);
-    flag(member.recovery.running() || before.recovering);
+    flag(member.alive() || owed.alive);
+    flag(member.recovery.running() || owed.recovering);
+    flag(member.was_started);
+    flag(craft_.guard.fences(member.apid()) != member.fences_when_free);
   }
 }
 
@@ -51,9 +52,17 @@ void Adoption::recall(OctetReader& reader) {
   stop_asked_ = flag();
   for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
     const auto apid = reader.get<std::uint16_t>();
-    const bool alive = flag();
-    before_[apid] = {alive, flag()};
+    Before& before = before_[apid];
+    before.alive = flag();
+    before.recovering = flag();
+    before.started = flag();
+    before.stopped = flag();
   }
+}
+
+Adoption::Before Adoption::before(const Member& member) const {
+  const auto found = before_.find(member.apid());
+  return found != before_.end() ? found->second : Before{};
 }
 
 void Adoption::begin(bool stop_asked) {
@@ -92,6 +101,10 @@ std::string_view Adoption::against(const Member& member) const {
 }
 
 void Adoption::take_over(Member& member) {
+  const Before known = before(member);
+  // Of whom nothing is known it is not known either that it was free.
+  member.was_started = known.started || (!remembered_ && member.described().starts);
+  if (known.stopped || !remembered_) member.fences_when_free.reset();
   const auto adopted = parts_.processes.adopt(member, against(member));
   if (!adopted) return;
   asked_devices_at_ = craft_.now + devices_answer;
@@ -111,9 +124,7 @@ void Adoption::finish_what_was_begun() {
   parts_.links.end_what_was_begun();
   if (shutting_down_) return parts_.shutdown.request();
   for (Member& member : craft_.members) {
-    const auto before = before_.find(member.apid());
-    const bool lived = before != before_.end() && before->second.alive;
-    if (!member.alive() && lived) parts_.processes.found_dead(member);
+    if (!member.alive() && before(member).alive) parts_.processes.found_dead(member);
   }
   if (commissioning_) {
     craft_.tell("commissioning stopped: the supervisor died", supervisor_apid);
@@ -121,9 +132,7 @@ void Adoption::finish_what_was_begun() {
   }
   parts_.modes.end_change("the supervisor died");
   for (Member& member : craft_.members)
-    if (const auto before = before_.find(member.apid());
-        member.alive() && before != before_.end() && before->second.recovering)
-      parts_.reactions.react(member, "RECOVERY_FAILED", Severity::High);
+    if (member.alive() && before(member).recovering) parts_.reactions.react(member, "RECOVERY_FAILED", Severity::High);
   if (stop_asked_) return parts_.safe_all.again();
   for (Member& member : craft_.members)
     if (member.alive() && !craft_.is_ground_link(member) && member.state() == State::Operational &&

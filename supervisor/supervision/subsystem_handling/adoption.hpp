@@ -68,6 +68,8 @@ class Adoption final : public Watch, public Remembered, public Succession {
   struct Before {
     bool alive{false};
     bool recovering{false};
+    bool started{false};  ///< at some time of the flight
+    bool stopped{false};  ///< and nobody has let it go since
   };
   struct Page {
     MemoryHandle memory;
@@ -75,6 +77,7 @@ class Adoption final : public Watch, public Remembered, public Succession {
     TimePoint again{};
     bool given_up{false};
   };
+  [[nodiscard]] Before before(const Member& member) const;
   void take_over(Member& member);
   void hand_over(Member& member, Page& page);
   /// Why it is not let go on; empty: it is.

@@ -48,8 +48,9 @@ class Member {
   /// Since when its channel is closed. A process that ends closes it a moment before its handle says so; one that
   /// lives on without it can be neither commanded nor heard.
   std::optional<TimePoint> closed_at;
-  /// The guard's count of its fences when it was first started, or let go last: another count, and it was stopped since.
-  std::uint64_t fences_when_free{0};
+  /// The guard's count of its fences when it was first started, or let go last: another count, and it was stopped since. Empty: it was
+  /// stopped under a supervisor before, or may have been.
+  std::optional<std::uint64_t> fences_when_free{0};
   bool was_started{false};
   /// Its process ends for another version of it, or has: nobody else starts it.
   bool exchanged{false};

@@ -89,7 +89,8 @@ Result<> Processes::launch(Member& member) {
   }
   craft_.guard.adopt(member.apid(), *launched);
   member.started(std::move(*launched));
-  if (!std::exchange(member.was_started, true)) member.fences_when_free = craft_.guard.fences(member.apid());
+  if (!std::exchange(member.was_started, true) && member.fences_when_free)
+    member.fences_when_free = craft_.guard.fences(member.apid());
   member.enter_mode(craft_.mode_epoch);
   craft_.tell("started " + name, member.apid());
   return ok();
@@ -98,14 +99,22 @@ Result<> Processes::launch(Member& member) {
 std::optional<MemoryHandle> Processes::adopt(Member& member, std::string_view against) {
   const std::string& name = member.descriptor().name;
   auto adopted = craft_.launcher.adopt(member.described());
-  if (!adopted) return std::nullopt;
+  if (!adopted && !member.was_started) return std::nullopt;
   if (!craft_.guard.holds(member.apid()))
     if (const auto held = craft_.guard.add(member.described(), craft_.is_ground_link(member)); !held) {
-      craft_.tell("cannot hold the second inhibit of " + name + "'s devices: " + held.error().text + "; it is ended",
+      craft_.tell("cannot hold the second inhibit of " + name + "'s devices: " + held.error().text +
+                      (adopted ? "; it is ended" : ""),
                   member.apid());
-      craft_.launcher.kill(adopted->launched.process);
+      if (adopted) craft_.launcher.kill(adopted->launched.process);
       return std::nullopt;
     }
+  if (!adopted) {
+    craft_.guard.ended_before(member.apid());
+    return std::nullopt;
+  }
+  member.was_started = true;
+  // By its page as well as by what was noted: the guard may have stopped it after that.
+  if (adopted->stopped) member.fences_when_free.reset();
   static_cast<void>(parts_.resources.claim(member));  // it has it already
   const std::string_view why = craft_.guard.take_over(member.apid(), *adopted, against);
   member.started(std::move(adopted->launched));

@@ -49,7 +49,8 @@ class Processes final : public Watch {
   void start_all();
   /// One that is down: by the ground, however often it died. Otherwise why it could not be started.
   Result<> start(std::uint16_t apid);
-  /// One that runs since the supervisor before; empty: it does not, or cannot be held.
+  /// One that runs since the supervisor before; empty: it does not, or cannot be held. The guard holds the devices of one that has run and
+  /// does no longer: they may be coming to rest still, and a stop asks them.
   /// \return its new permit page, which it has to be handed.
   [[nodiscard]] std::optional<MemoryHandle> adopt(Member& member, std::string_view against);
   /// It ran when the supervisor before died, and does no longer.

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/subsystem_handling/adoption.hpp"
+
+#include <set>
+
+#include "supervisor/supervision/procedures/steps/hand_over.hpp"
+#include "supervisor/supervision/testing/parts_rig.hpp"
+
+/// What a supervisor that goes on for one that died knows of the stops before it, and of those that died with it.
+namespace hirosco::supervisor {
+namespace {
+
+using namespace testing;
+using enum descriptor::State;
+
+/// A supervisor dies, as often as the test wants; the members live on, but for those that have gone with it.
+struct AdoptionTest : PartsTest {
+  struct Next {
+    Next(AdoptionTest& test, std::uint32_t first_epoch)
+        : guard{{.clock = test.clock, .flows = test.flows, .first_epoch = first_epoch, .on_finding = {}}},
+          parts{{.mission = test.next_mission,
+                 .platform = {test.clock, test.memory, test.flows},
+                 .launcher = test,
+                 .guard = guard,
+                 .log = test.log,
+                 .open_database = [](DatabaseStrategy) { return nullptr; },
+                 .observer = test,
+                 .journal = &test.journal,
+                 .values = &test.values,
+                 .log_readings = &test.log_readings}} {}
+    Guard guard;
+    SupervisorParts parts;
+  };
+  std::vector<std::byte> journal_memory = std::vector<std::byte>(std::size_t{1} << 18);
+  Journal journal{journal_memory};
+  descriptor::Mission next_mission = mission;
+  Memory notes{&journal,
+               {&parts.adoption, &parts.modes, &parts.links, &parts.telecommands, &parts.safe_all, &parts.own,
+                &parts.commanded, &parts.restarts, &parts.power, &parts.replacement}};
+  std::set<std::uint16_t> gone;
+  std::vector<std::unique_ptr<Next>> nexts;
+
+  std::optional<AdoptedSubsystem> adopt(const descriptor::MissionSubsystem& described) override {
+    const std::uint16_t apid = described.subsystem.id;
+    if (gone.contains(apid) || !played.contains(apid)) return std::nullopt;
+    PlayedMember& member = played[apid];
+    AdoptedSubsystem adopted;
+    adopted.epoch = member.permit->epoch;
+    adopted.permitted = member.permit->permits(adopted.epoch);
+    adopted.stopped = member.permit->stop != 0;
+    adopted.permit = memory.create("permit", sizeof(PermitPage)).value();
+    adopted.launched.permit = memory.map(adopted.permit, Access::ReadWrite).value();
+    member.permit = new (adopted.launched.permit.octets.data()) PermitPage{};
+    adopted.launched.vital = {nullptr, {reinterpret_cast<std::byte*>(member.vital), sizeof(VitalPage)}};
+    adopted.launched.process = member.process;
+    adopted.launched.port = std::make_unique<LocalMemberPort>(std::make_unique<PlayedMember::End>(member.channel),
+                                                              adopted.launched.vital, adopted.launched.permit);
+    return adopted;
+  }
+  /// The newest supervisor dies, and another one goes on.
+  SupervisorParts& go_on() {
+    nexts.push_back(std::make_unique<Next>(*this, 5000 + 1000 * static_cast<std::uint32_t>(nexts.size())));
+    SupervisorParts& next = nexts.back()->parts;
+    next.craft.now = clock.now();
+    next.own.start(next.craft.mode_epoch);
+    next.adoption.begin(false);
+    next.own.enter_mode(next.craft.mode_epoch);
+    return next;
+  }
+  /// A stop of everything, to its end; what had acted is safe then.
+  void stop_everything() {
+    parts.safe_all.asked();
+    for (auto& [apid, member] : played) set(apid, SafeOperational);
+    for (const TimePoint end = clock.now() + 1s; clock.now() < end; wait(Guard::period)) {
+      guard.beat();
+      for (auto& [apid, member] : played) {
+        ++member.vital->service_steps;
+        member.vital->seen_epoch = member.permit->epoch.load();
+      }
+      static_cast<void>(guard.step(clock.now()));
+    }
+    parts.safe_all.follow();
+    ASSERT_FALSE(parts.safe_all.under_way());
+  }
+  /// Why ARM's task is not handed over to this one; empty: it would be.
+  static std::string against(SupervisorParts& next, std::uint16_t receiver) {
+    ProcedureStep step;
+    step.subject = arm;
+    step.values = {receiver, 1};
+    return steps::task::against(step, {next.craft, next.own_telecommands, next.graph, next.restarts, next.under_way,
+                                       next.commanded, next.losses, next.waiting});
+  }
+};
+
+constexpr const char* hand_was_stopped = "HAND was stopped, and nobody has let it go since";
+
+TEST_F(AdoptionTest, WhoWasStoppedBeforeTakesOverNothingHoweverManySupervisorsDie) {
+  start_all(SafeOperational);
+  stop_everything();
+  ASSERT_TRUE(notes.note());
+  for (int death = 0; death < 3; ++death) {
+    SupervisorParts& next = go_on();
+    EXPECT_EQ(against(next, hand), hand_was_stopped) << death;
+    EXPECT_EQ(against(next, camera), "") << "the ground link was spared";
+    ASSERT_TRUE(next.memory.note());
+  }
+}
+
+TEST_F(AdoptionTest, WhoHasJustBegunOrWasLetGoIsFreeUnderTheNextSupervisor) {
+  start_all(SafeOperational);
+  ASSERT_TRUE(notes.note());
+  EXPECT_EQ(against(go_on(), hand), "");
+}
+
+TEST_F(AdoptionTest, WhomTheGuardStoppedAfterTheLastNoteWasStopped) {
+  start_all(SafeOperational);
+  ASSERT_TRUE(notes.note());
+  guard.fence(hand);
+  EXPECT_EQ(against(go_on(), hand), hand_was_stopped);
+}
+
+TEST_F(AdoptionTest, OfWhomNothingIsKnownItIsNotKnownThatItWasFree) {
+  start_all(SafeOperational);
+  EXPECT_EQ(against(go_on(), hand), hand_was_stopped);
+}
+
+TEST_F(AdoptionTest, WhoDiedWithTheSupervisorWasStoppedByThatAndIsNotFreeAsANewProcess) {
+  start_all(SafeOperational);
+  ASSERT_TRUE(notes.note());
+  gone = {hand};
+  SupervisorParts& next = go_on();
+  next.processes.found_dead(*next.craft.member(hand));
+  ASSERT_TRUE(next.processes.start(hand));
+  set(hand, Offline);
+  EXPECT_EQ(against(next, hand), hand_was_stopped);
+}
+
+TEST_F(AdoptionTest, TheDevicesOfWhoDiedWithTheSupervisorAreAskedInAStop) {
+  descriptor::Device motor;
+  motor.name = "MOTOR";
+  motor.actuator = true;
+  motor.stop_within = 500ms;
+  motor.enable = descriptor::Endnode{};
+  motor.enable->address = "motor-enable";
+  next_mission.subsystems[0].subsystem.devices = {motor};
+  start_all(Operational);
+  ASSERT_TRUE(notes.note());
+  gone = {arm};
+  go_on();
+  Guard& next = nexts.back()->guard;
+  static_cast<void>(next.step(clock.now()));
+  const auto stop = next.stop_all();
+  static_cast<void>(next.step(clock.now()));
+  EXPECT_FALSE(next.stop_outcome(stop)) << "it may be in the middle of its stop";
+  wait(2s);
+  for (int step = 0; step < 400 && !next.stop_outcome(stop); ++step, wait(Guard::period))
+    static_cast<void>(next.step(clock.now()));
+  const auto answers = next.stop_outcome(stop);
+  ASSERT_TRUE(answers);
+  const auto answer = std::ranges::find(*answers, arm, &StopAnswer::apid);
+  ASSERT_NE(answer, answers->end());
+  EXPECT_EQ(answer->name, "MOTOR");
+  EXPECT_FALSE(answer->stopped) << "it was not heard";
+}
+
+TEST_F(AdoptionTest, WhoWasNeverStartedIsNotHeld) {
+  craft.mission.subsystems[1].starts = false;
+  next_mission.subsystems[1].starts = false;
+  start_all(SafeOperational);
+  ASSERT_FALSE(played.contains(hand));
+  ASSERT_TRUE(notes.note());
+  go_on();
+  EXPECT_FALSE(nexts.back()->guard.holds(hand));
+}
+
+}  // namespace
+}  // namespace hirosco::supervisor
