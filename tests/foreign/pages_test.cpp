@@ -270,6 +270,7 @@ TEST(InterfacePages, CodesAndWords) {
   used.requires_.emplace_back().name = "NAME";
   used.devices.emplace_back().fall_backs.emplace_back();
   bare.parameters.emplace_back().from = "OTHER.VALUE";
+  bare.service_loops.emplace_back();
   descriptor::add_framework_events(bare);
   std::map<std::uint64_t, std::string> events, severities;
   for (const descriptor::Event& event : bare.events) {
