@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A code block that follows `<!-- quote: PATH -->` in a Markdown file must be PATH or a contiguous part of it; and what
 the documents name in backquotes as a file or folder of the project must exist; in a README also what it names by a part of its
-path. Everywhere in the repository each decision, page of docs/adr and hazard that is cited must exist. Each page of docs/adr has
+path. Where a link of a document leads, there must be a file or folder. Everywhere in the repository each decision, page of docs/adr and hazard that is cited must exist. Each page of docs/adr has
 a status; one that says "Changes NNNN" is named there by "changed by" of that page, and the other way round."""
 import pathlib
 import posixpath
@@ -16,6 +16,8 @@ named = re.compile(r"`((?:bench|cmake|docs|ground|hirosco|missions|simulation|su
 part = re.compile(r"`((?![A-Z]+_)[\w./-]*\w\.(?:hpp|cpp|py|m?js|xml|csv))`")
 cited = re.compile(r"\b(adr[ /]|decisions? |SF|findings? |LW(?=\d))(\d+)", re.I)
 mark = re.compile(r"^<!-- quote:", re.M)
+code = re.compile(r"^(```+)[^\n]*\n.*?^\1|`[^`\n]*`", re.M | re.S)
+link = re.compile(r"\]\(<?([^)\s>]+)|^\[[^\]]+\]: +(\S+)", re.M)
 
 
 def wrong(text, read, exists):
@@ -32,6 +34,14 @@ def wrong(text, read, exists):
     for path in named.findall(text):
         if "..." not in path and not re.search("/[A-Z]+(/|$)", path) and not exists(path):
             yield f"names {path}, which does not exist"
+
+
+def dead(folder, text, exists):
+    """Yields the links to nothing of a Markdown text in `folder`; those to other places, or within the page, are not looked at."""
+    for inline, reference in link.findall(code.sub("", text)):
+        to = (inline or reference).partition("#")[0]
+        if to and not re.match(r"[a-z][a-z0-9+.-]*:|/", to) and not exists(posixpath.normpath(f"{folder}/{to}")):
+            yield f"links to {to}, which does not exist"
 
 
 def lost(folder, text, files):
@@ -78,7 +88,11 @@ def self_test():
     assert all(list(wrong(fence.format(*case), read, exists)) for case in bad)
     assert list(wrong("<!-- quote: a.cpp -->\nno block\n", read, exists))
     assert list(wrong("see `tools/b.cpp`", read, exists)) and not list(wrong("`tools/a.cpp` `tools/`", read, exists))
-
+    there = {"docs/a.md", "tools", "a.md"}.__contains__
+    assert not list(dead("docs", "[a](a.md) [a](a.md#of-it) [b](#b) [t](../tools/) ![a](<../a.md>) [w](https://b.md)\n[r]: a.md\n", there))
+    assert not list(dead("docs", "`[a](b.md)`\n```\nf[0](b)\n```\n", there)) and not list(dead(".", "[a](a.md 'A')", there))
+    for fault in ("[a](b.md)", "[a](b.md#a)", "[a](a.md)[b](../docs/b.md)", "![a](tools/a.png)", "[r]: b.md\n"):
+        assert list(dead("docs", fault, there)), fault
     assert list(lost("ground", "`model/b.hpp`", {"ground/model/a.hpp"})) and list(lost("ground", "`b.hpp`", {"ground/ab.hpp"}))
     assert not list(lost("ground", "`model/a.hpp` `a.hpp` `NAME_test.py` `STDERR`", {"ground/model/a.hpp"}))
     known = {"adr": {7}, "decision": {3}, "sf": {1}}
@@ -122,6 +136,8 @@ found += [f"docs/adr: {what}" for what in statuses(
     {pathlib.Path(name).name[:4]: read(name) for name in files if re.match(r"docs/adr/\d{4}-", name) and exists(name)})]
 found += [f"{file.relative_to(root)}: {what}" for file in documents if file.is_file()
           for what in wrong(file.read_text(), read, exists)]
+found += [f"{file.relative_to(root)}: {what}" for file in documents if file.is_file()
+          for what in dead(file.relative_to(root).parent, file.read_text(), lambda path: (root / path).exists())]
 for name in sorted(files):
     if name.endswith("README.md") and name != "docs/adr/README.md":
         found += [f"{name}: {what}" for what in lost(str(pathlib.Path(name).parent), read(name) or "", files)]

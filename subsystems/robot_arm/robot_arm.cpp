@@ -39,7 +39,10 @@ Result<> RobotArm::pre_operational(const Cycle& cycle) noexcept {
 /// The law runs on the present position: what would be put out is visible, nothing moves.
 Result<> RobotArm::safe_operational(const Cycle& cycle) noexcept {
   measure(cycle);
-  if (cycle.first) drop_calls(watch_.tripped().has_value());
+  if (cycle.first) {
+    drop_calls(watch_.tripped().has_value());
+    clearance_->set_limit(clearance_limit_m_.load());  // it may have been written since CONFIGURE
+  }
   engage();
   control();
   watch(false);

@@ -121,7 +121,6 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   laws_.emplace(*model_, tip_, cycle_s_);
   observer_.emplace(joints, cycle_s_, observer_gain_per_s);
   setpoints_.emplace(*model_, tip_, bounds_, cycle_s_);
-  clearance_->set_limit(clearance_limit_m_.load());
   static_cast<void>(keep_out(keep_out_.load()));
   const auto place = tool_place_m_.load();
   setpoints_->set_tool({robotics::Matrix3::Identity(), {place[0], place[1], place[2]}});

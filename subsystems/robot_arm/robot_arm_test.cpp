@@ -286,6 +286,39 @@ TEST_F(RobotArmTest, StopsBeforeWhatItIsToKeepOutOfAndMayGoAwayFromIt) {
   EXPECT_EQ(flown.rig.outcome(away), "1 3 5:0001 7");
 }
 
+/// With what it was configured with, the goal is free.
+TEST_F(RobotArmTest, KeepsAsFarFromThingsAsWasWrittenAfterItWasConfigured) {
+  for (const double limit_m : {0.02, 0.2}) {
+    Flown other{6, std::string{folder} + "robot_arm.urdf"};
+    other.plant.place(start);
+    other.rig.bring_to(State::PreOperational, 1);
+    other.cycle(5);
+    other.write("CLEARANCE_LIMIT", limit_m);
+    other.command(State::SafeOperational);
+    // Beside the tool at the goal: nearer than 0.2 m, and not on the way there.
+    robotics::Dynamics dynamics{other.model, robotics::Base::Fixed};
+    robotics::State state;
+    state.q = goal;
+    state.qd = JointVector::Zero(6);
+    dynamics.update(state);
+    robotics::Vector3 beside = dynamics.frame_pose(other.model.find_frame("tool").value()).position;
+    beside *= 1 + 0.15 / beside.norm();
+    std::vector<std::optional<Value>> numbers;
+    for (const double number : {beside.x(), beside.y(), beside.z(), beside.x(), beside.y(), beside.z(), 0.01})
+      numbers.emplace_back(number);
+    numbers.resize(28, Value{0.0});
+    const auto set = other.rig.call_with("KEEP_OUT", numbers);
+    other.cycle(5);
+    ASSERT_EQ(other.rig.outcome(set), "1 3 7");
+    other.command(State::Operational);
+    const auto motion = other.move_j(goal);
+    other.finish(motion);
+    const std::string outcome = other.rig.outcome(motion);
+    EXPECT_EQ(outcome.starts_with("1 4:800a"), limit_m > 0.1) << outcome;
+    EXPECT_EQ(outcome == "1 3 5:0001 7", limit_m < 0.1) << outcome;
+  }
+}
+
 TEST_F(RobotArmTest, PassesItsSelfTest) {
   flown.rig.bring_to(State::PreOperational, 1);
   flown.cycle(5);

@@ -46,6 +46,7 @@ Result<> RobotGripper::safe_operational(const Cycle& cycle) noexcept {
   measure(cycle);
   if (cycle.first) {
     drop_calls(watch_.tripped());
+    HIROSCO_TRY(take_values());
     recognise();
   }
   watch_held();

@@ -57,6 +57,7 @@ class RobotGripper final : public robotics::MovingSubsystem {
   [[nodiscard]] Result<> find_fingers(std::vector<std::string> wanted);
   [[nodiscard]] std::unexpected<Error> refuse(ErrorCode code, std::string why);
   [[nodiscard]] Result<robot_gripper::Fingers> fingers_now();
+  [[nodiscard]] Result<> take_values() noexcept;
   [[nodiscard]] Result<> check_lengths() noexcept;
   [[nodiscard]] Result<> check_sensors() noexcept;
   [[nodiscard]] Result<> check_law(double side) noexcept;
@@ -99,6 +100,7 @@ class RobotGripper final : public robotics::MovingSubsystem {
   bool closed_is_upper_{false};
   robotics::urdf::NotRead not_read_;  ///< of its file or settings, for whoever reads the refusal
   robot_gripper::Fingers fingers_;
+  robot_gripper::Joints links_moved_;  ///< by each finger joint, without its rotor
   robot_gripper::Opening opening_;
   robot_gripper::Grip grip_;
   robot_gripper::Held held_;

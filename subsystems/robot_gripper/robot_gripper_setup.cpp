@@ -117,6 +117,7 @@ Result<Fingers> RobotGripper::fingers_now() {
   robotics::MassMatrix mass;
   dynamics.mass_matrix(mass);
   const auto rotor = rotor_inertia_.load();
+  links_moved_ = Joints::zeros(finger_joints_.size());
   std::vector<Finger> fingers;
   double travel_m = 0;
   for (std::size_t i = 0; i < finger_joints_.size(); ++i) {
@@ -133,6 +134,7 @@ Result<Fingers> RobotGripper::fingers_now() {
     if (!(fingers.back().moved > 0))
       return refuse(ErrorCode::InvalidArgument,
                     fmt::format("finger joint '{}' moves nothing that has mass: ROTOR_INERTIA", its.name));
+    links_moved_[i] = mass(row, row);
     if (its.kind != robotics::JointKind::Prismatic) travel_m = HUGE_VAL;
     for (const auto& body : model_->bodies())
       if (&body != &model_->bodies().front() && body.coordinate == static_cast<int>(joint))
@@ -148,6 +150,25 @@ Result<> RobotGripper::configure(const descriptor::Configuration& configuration)
   HIROSCO_TRY(check_lengths());
   cycle_s_ = seconds(configuration.sampling);
   HIROSCO_TRY_LET(fingers_, fingers_now());
+  HIROSCO_TRY(take_values());
+  held_ = {};
+  watch_.arm();
+  forget_motion();
+  return ok();
+}
+
+/// Those that may be written in Pre-Operational after CONFIGURE as well as before.
+Result<> RobotGripper::take_values() noexcept {
+  const auto rotor = rotor_inertia_.load();
+  std::array<Finger, robot_gripper::max_fingers> fingers;
+  for (std::size_t i = 0; i < fingers_.count(); ++i) {
+    fingers[i] = fingers_[i];
+    fingers[i].moved = links_moved_[i] + rotor[i];
+    if (!(fingers[i].moved > 0))
+      return fail(ErrorCode::InvalidArgument, "moves nothing that has mass: ROTOR_INERTIA of finger joint",
+                  static_cast<std::int64_t>(i + 1));
+  }
+  fingers_ = {std::span{fingers}.first(fingers_.count()), fingers_.full_width_m()};
   opening_ = {acceleration_.load(), jerk_.load(), cycle_s_};
   grip_ = {fingers_,
            {.bandwidth_rad_s = bandwidth_rad_s_.load(),
@@ -155,9 +176,6 @@ Result<> RobotGripper::configure(const descriptor::Configuration& configuration)
             .acceleration_m_s2 = acceleration_.load(),
             .cycle_s = cycle_s_}};
   grip_.set_tolerance(force_tolerance_.load());
-  held_ = {};
-  watch_.arm();
-  forget_motion();
   return ok();
 }
 

@@ -237,6 +237,60 @@ TEST_P(RobotGripperWatch, IsInhibitedInTheCycleByTooMuchForceAndByWhatIsNoNumber
 }
 INSTANTIATE_TEST_SUITE_P(Torques, RobotGripperWatch, ::testing::Values(-78.0, 78.0, std::nan("")));
 
+/// One value is written in Pre-Operational after CONFIGURE; of what is told of the torque each other cycle is `shake` above and below.
+struct RobotGripperWritten : RobotGripperTest {
+  double hardest_n{0}, shake{0};
+  std::vector<double> play(std::span<const double> forces) override {
+    hardest_n = std::max(hardest_n, std::abs(forces[0]));
+    std::vector<double> numbers = RobotGripperTest::play(forces);
+    numbers[2] *= 1 + shake;
+    shake = -shake;
+    return numbers;
+  }
+  void operate_with(const char* name, double value) {
+    rig.bring_to(State::PreOperational, 1);
+    cycle(5);
+    write(name, value);
+    command(State::SafeOperational);
+    command(State::Operational);
+    hardest_n = 0;
+  }
+  /// What drives it in the first 20 ms, in which a jerk of 10 m/s3 comes to 0.2 m/s2.
+  double begins_with_n() {
+    rig.call("MOVE_TO", {0.03, 0.1});
+    cycle(20);
+    return hardest_n;
+  }
+  int holds_shaken() {
+    plant.object_m = 0.06;
+    shake = 0.1;
+    rig.call("GRIP", {20, 0.05});
+    cycle(5000);
+    return rig.events(object_held);
+  }
+};
+TEST_F(RobotGripperWritten, ALightRotorIsMovedByLittle) {
+  operate_with("ROTOR_INERTIA", 2);
+  EXPECT_LT(begins_with_n(), 3);
+}
+TEST_F(RobotGripperWritten, AHeavyRotorIsMovedByMuch) {
+  operate_with("ROTOR_INERTIA", 100);
+  EXPECT_GT(begins_with_n(), 6);
+}
+TEST_F(RobotGripperWritten, ItAcceleratesNoMoreThanItIsTo) {
+  operate_with("ACCELERATION", 0.01);
+  EXPECT_GT(finish(rig.call("MOVE_TO", {0.03, 0.1})), 4000)
+      << "2 sqrt(0.07 m / 0.01 m/s2) is 5.3 s, and 1 s as it is configured";
+}
+TEST_F(RobotGripperWritten, AWideToleranceHoldsWhatShakesAsMuch) {
+  operate_with("FORCE_TOLERANCE", 0.2);
+  EXPECT_EQ(holds_shaken(), 1);
+}
+TEST_F(RobotGripperWritten, ANarrowToleranceDoesNot) {
+  operate_with("FORCE_TOLERANCE", 0.05);
+  EXPECT_EQ(holds_shaken(), 0);
+}
+
 TEST_F(RobotGripperTest, PassesItsSelfTestAlsoWithSomethingBetweenItsFingers) {
   hold_a_box();
   command(State::SafeOperational);

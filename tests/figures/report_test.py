@@ -84,6 +84,18 @@ class Report(unittest.TestCase):
             self.assertEqual(code, 2)
             self.assertIn(word, errors)
 
+    def test_what_it_would_leave_out_is_refused(self):
+        for arguments in (("--real", "--plant", "mass=1.01"), ("--real", "--seed", "2"), ("--real", "--only", "RO8"),
+                          ("--real", "--corners"), ("--corners", "--out", "nowhere"), ("--corners", "--only", "RO8"),
+                          ("--corners", "--faults", "1"), ("--corners", "--convergence"),
+                          ("--faults", "1", "--only", "RO8")):
+            code, _, errors = report(*arguments)
+            self.assertEqual(code, 2, arguments)
+            self.assertIn("excludes", errors)
+        code, _, errors = report("--for", "1s")
+        self.assertEqual(code, 2)
+        self.assertIn("--real", errors)
+
     def test_an_unreadable_table_is_named_with_its_line(self):
         with tempfile.TemporaryDirectory() as folder:
             mission = pathlib.Path(MISSION, "mission.xml").read_text(encoding="utf-8")

@@ -19,6 +19,9 @@ constexpr std::int64_t max_cycles = 1'000'000;
 constexpr std::size_t max_arguments = 255;
 constexpr std::int64_t max_self_test_ms = 600'000;  // ten minutes
 constexpr std::size_t max_structures = 256;
+// What ST[03] has room for in flight (hirosco/pus/st03_housekeeping; a test there holds them together).
+constexpr std::size_t most_flown_structures = 32;
+constexpr std::size_t most_listed_values = 255;  // a count in TM[3,10] is one octet
 constexpr std::size_t max_sets = 32;
 
 /// Words of a list that no mechanism has.
@@ -35,6 +38,14 @@ void expect_built_in(Attributes& attributes, Problems& problems, std::string_vie
 }
 
 constexpr std::size_t max_set_fields = 64;
+
+/// Of the definition of a structure in TM[3,10]: id, enabled,
+/// interval, two counts, and of each set its repetitions and a count.
+[[nodiscard]] std::size_t definition_octets_of(const HousekeepingStructure& structure) noexcept {
+  std::size_t octets = 2 + 1 + 4 + 1 + 4 * structure.sampled_once.size() + 1;
+  for (const auto& set : structure.sampled_repeatedly) octets += 2 + 1 + 4 * set.parameters.size();
+  return octets;
+}
 
 }  // namespace
 
@@ -278,12 +289,38 @@ void SubsystemReader::read_housekeeping(const xml::Element& element, Services& s
   if (octets > max_housekeeping_octets)
     problems_.add(element, "E0215", fmt::format("{} takes {} octets in one report", user, octets),
                   fmt::format("at most {}", max_housekeeping_octets));
+  expect_room(element, structure, services);
   if (element.children.empty())
     problems_.add(element, "E0106", "<HKService> needs <SampledOnce> or <SampledNREPTimes>");
   if (structure.id != 0)
     services.structure_ids.add(std::to_string(structure.id), place(element.find("id")->value_at), problems_,
                                element.find("id")->value.size());
   services.housekeeping.push_back(std::move(structure));
+}
+
+/// What CONFIGURE would fail on. A configuration's structures come on top of the subsystem's.
+void SubsystemReader::expect_room(const xml::Element& element, const HousekeepingStructure& structure,
+                                  const Services& services) {
+  const bool of_configuration = &services.housekeeping != &subsystem_.housekeeping;
+  const std::size_t before = services.housekeeping.size() + (of_configuration ? subsystem_.housekeeping.size() : 0);
+  if (before == most_flown_structures)  // once, not for each that follows
+    problems_.add(element, "E0257", fmt::format("more than {} housekeeping structures", most_flown_structures),
+                  of_configuration ? "those of the subsystem and of a configuration together; values of one interval "
+                                     "find room in one structure"
+                                   : "values of one interval find room in one structure");
+  const auto too_many = [](const auto& list) { return list.size() > most_listed_values; };
+  if (too_many(structure.sampled_once) || too_many(structure.sampled_repeatedly) ||
+      std::ranges::any_of(structure.sampled_repeatedly, too_many, &HousekeepingStructure::SampledSet::parameters))
+    problems_.add(element, "E0257",
+                  fmt::format("HKService {} has a list of more than {}", structure.id, most_listed_values),
+                  fmt::format("at most {} <ParamRef> sampled once, {} <SampledNREPTimes>, and {} <ParamRef> in each: "
+                              "an array or a structure is one",
+                              most_listed_values, most_listed_values, most_listed_values));
+  constexpr std::size_t most_octets = max_housekeeping_octets + 2;  // no structure id stands before it
+  if (const std::size_t octets = definition_octets_of(structure); octets > most_octets)
+    problems_.add(element, "E0257", fmt::format("the definition of HKService {} takes {} octets", structure.id, octets),
+                  fmt::format("at most {} fit into TM[3,10]: 9, 3 for each <SampledNREPTimes>, 4 for each <ParamRef>",
+                              most_octets));
 }
 
 void SubsystemReader::read_sampled(const xml::Element& element, std::vector<ParameterRef>& into,

@@ -403,6 +403,29 @@ TEST(SubsystemErrors, AllAreReportedAtOnceInFileOrder) {
   EXPECT_EQ(codes, "E0112 E0204 E0112 E0104 E0102 ");
 }
 
+/// Structures of an octet each, those of the subsystem from id 1 on and those of its configuration behind them.
+std::string structures(int of_subsystem, int of_configuration) {
+  std::string text =
+      "<Subsystem name=\"S\" id=\"1\"><Parameters><ParamRef name=\"X\" id=\"1\" type=\"INT8\"/></Parameters>";
+  for (int i = 1; i <= of_subsystem + of_configuration; ++i) {
+    if (i == of_subsystem + 1) text += "<Configuration name=\"C\" id=\"1\" sampling_us=\"100\">";
+    text += "\n<HKService id=\"" + std::to_string(i) +
+            "\" interval=\"1\"><SampledOnce><ParamRef name=\"X\"/></SampledOnce></HKService>";
+  }
+  return text + (of_configuration > 0 ? "</Configuration></Subsystem>" : "</Subsystem>");
+}
+
+TEST(SubsystemErrors, MoreStructuresThanFlyAreToldOnceAtTheFirstTooMany) {
+  EXPECT_TRUE(read_text(structures(32, 0)).value);
+  EXPECT_TRUE(read_text(structures(30, 2)).value);
+  for (const int of_subsystem : {40, 32, 30, 0}) {
+    const auto problems = read_text(structures(of_subsystem, 40 - of_subsystem)).problems;
+    ASSERT_EQ(problems.size(), 1U) << of_subsystem;
+    EXPECT_EQ(problems[0].code, "E0257");
+    EXPECT_EQ(problems[0].at.line, 34U) << "the 33rd structure";
+  }
+}
+
 TEST(SubsystemErrors, AFileThatCannotBeReadIsAProblem) {
   const auto reading = read_subsystem("none.xml", [](const auto&) { return fail(ErrorCode::NotFound, "is gone"); });
   ASSERT_EQ(reading.problems.size(), 1U);

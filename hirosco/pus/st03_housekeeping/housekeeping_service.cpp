@@ -192,9 +192,10 @@ HousekeepingService::Notice HousekeepingService::extend(HousekeepingLayout& layo
 
 HousekeepingService::Notice HousekeepingService::check_capacity(const HousekeepingLayout& layout) const {
   constexpr std::size_t count_limit = 255;
+  const auto counted = [](const auto& list) { return list.size() <= count_limit; };
   const bool fits = layout.report_octets() <= max_housekeeping_octets &&
-                    definition_octets(layout) <= max_housekeeping_octets && layout.once.size() <= count_limit &&
-                    layout.sets.size() <= count_limit;
+                    definition_octets(layout) <= max_housekeeping_octets && counted(layout.once) &&
+                    counted(layout.sets) && std::ranges::all_of(layout.sets, counted, &HousekeepingLayout::Set::values);
   if (!fits || sampler_.find_free_slot() < 0) return failure(FailureCode::CapacityExceeded, 0);
   if (sampler_.free_commands() < 2) return FailureNotice{FailureCode::Busy};
   return std::nullopt;

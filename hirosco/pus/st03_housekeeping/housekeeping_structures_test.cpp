@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/pus/testing/housekeeping_rig.hpp"
 
 namespace hirosco::pus {
@@ -213,6 +214,54 @@ TEST_F(Housekeeping, WithAnIntervalThatDoesNotFitIsNotLoaded) {
   EXPECT_EQ(service.load(std::span{&uneven, 1}).error().code, ErrorCode::OutOfRange);
   const HousekeepingStructure huge = listing_2(1, 1000, 1000);
   EXPECT_EQ(service.load(std::span{&huge, 1}).error().code, ErrorCode::ResourceExhausted);
+}
+
+/// As many structures of as many sets (none: sampled once) of as many values, an octet each.
+struct Many {
+  int structures, sets, values;
+  bool fits;
+};
+
+[[nodiscard]] std::string text_of(const Many& many) {
+  std::string list, structure, text = R"(<Subsystem name="S" id="2"><ParamRef name="X" id="1" type="INT8"/>)";
+  for (int i = 0; i < many.values; ++i) list += R"(<ParamRef name="X"/>)";
+  for (int i = 0; i < many.sets; ++i) structure += R"(<SampledNREPTimes nrep="1">)" + list + "</SampledNREPTimes>";
+  if (many.sets == 0) structure = "<SampledOnce>" + list + "</SampledOnce>";
+  for (int i = 1; i <= many.structures; ++i)
+    text += "<HKService id=\"" + std::to_string(i) + "\" interval=\"1\">" + structure + "</HKService>";
+  return text + "</Subsystem>";
+}
+
+[[nodiscard]] Result<> load_many(const Many& many) {
+  descriptor::Subsystem subsystem;
+  subsystem.id = 2;
+  subsystem.parameters.emplace_back().field = named("X", Type::Int8);
+  const std::vector<ParameterRef> list(static_cast<std::size_t>(many.values), {"X", 0, {}, {}});
+  HousekeepingStructure structure;
+  structure.interval_cycles = 1;
+  if (many.sets == 0) structure.sampled_once = list;
+  structure.sampled_repeatedly.assign(static_cast<std::size_t>(many.sets), {1, list});
+  std::vector<HousekeepingStructure> all;
+  for (int i = 1; i <= many.structures; ++i) all.emplace_back(structure).id = static_cast<std::uint16_t>(i);
+  HousekeepingSampler sampler;
+  RecordingSink sink;
+  Verification verification{sink};
+  return HousekeepingService{subsystem, sampler, verification, sink}.load(all);
+}
+
+/// What the reader refuses is what would not fly, and no less (docs/adr/0032).
+TEST(HousekeepingOfADescriptor, IsTakenWhenReadExactlyWhenItCanBeLoaded) {
+  const Many all[] = {{32, 0, 1, true},  {33, 0, 1, false},  {1, 0, 255, true}, {1, 0, 256, false},
+                      {1, 1, 255, true}, {1, 1, 256, false}, {1, 255, 1, true}, {1, 256, 1, false},
+                      {1, 4, 253, true}, {1, 4, 254, false}};
+  for (const Many& many : all) {
+    SCOPED_TRACE(std::to_string(many.structures) + " of " + std::to_string(many.sets) + " sets of " +
+                 std::to_string(many.values));
+    const auto reading = descriptor::read_subsystem("test.xml", [&](const auto&) { return text_of(many); });
+    EXPECT_EQ(reading.value.has_value(), many.fits);
+    EXPECT_TRUE(many.fits || reading.problems.at(0).code == "E0257") << reading.problems.at(0).code;
+    EXPECT_EQ(load_many(many).has_value(), many.fits);
+  }
 }
 
 TEST_F(Housekeeping, CountsReportsThatFindNoRoomAndGoesOn) {

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -71,6 +73,19 @@ struct Driven {
     command(State::Operational);
     ASSERT_EQ(rig.inhibited(), 0u);
     ASSERT_EQ(mode, DeviceMode::Active);
+  }
+  /// Sets all numbers (DOUBLE) of a parameter by TC[20,3].
+  void write(std::string_view name, double value) {
+    const descriptor::Subsystem& descriptor = rig.subsystem.descriptor();
+    const auto its = std::ranges::find(descriptor.parameters, name, [](const auto& each) { return each.field.name; });
+    ASSERT_NE(its, descriptor.parameters.end()) << name;
+    std::vector<std::byte> data(1 + 4 + its->field.octets());
+    OctetWriter writer{data};
+    writer.put(std::uint8_t{1}).put(ParameterId{descriptor.id, its->field.type, its->id}.wire());
+    for (std::uint32_t i = 0; i < its->field.values(); ++i) writer.put(value);
+    const auto request = rig.send(20, 3, data);
+    cycle(3);
+    ASSERT_EQ(rig.outcome(request), "1 3 7") << name;
   }
   /// Cycles until a request has ended.
   int finish(Sent request, int most = 30'000) {

@@ -20,19 +20,26 @@ int read_and_do(int argc, char** argv) {
   int faults = 0;
   auto* report = app.add_subcommand("report", "Fly the runs that the mission is judged by and compare their figures");
   report->add_option("mission", options.mission, "The mission's file")->required();
-  report->add_option("--out", options.out, "Folder for index.html and its plots");
-  report->add_option("--seed", seed, "Seed of everything random")->capture_default_str();
-  report->add_option("--only", options.only, "Only these runs (RO1,RO8)")->delimiter(',');
-  report->add_option("--faults", faults, "Only the fault cases, each so many times")->check(CLI::Range(1, 100000));
-  report->add_option(
-      "--plant", options.plant,
-      "Error of the model that must show: stiffness=1.01, rail=, mass=, force_scale=, hand_clock=, delay_ms=2");
-  report->add_flag("--convergence", options.convergence,
-                   "Each run a second time with sub-steps half as long: how far its figures move");
-  report->add_flag("--corners", options.corners,
-                   "Instead every corner of the declared ranges: largest force, torque, speed and the promise");
-  report->add_flag("--real", options.real, "On real processes: cycle times and links of a flight");
-  report->add_option("--for", real_for, "Length of the real flight")->capture_default_str();
+  auto* const out = report->add_option("--out", options.out, "Folder for index.html and its plots");
+  auto* const seeded = report->add_option("--seed", seed, "Seed of everything random")->capture_default_str();
+  auto* const only = report->add_option("--only", options.only, "Only these runs (RO1,RO8)")->delimiter(',');
+  auto* const counted = report->add_option("--faults", faults, "Only the fault cases, each so many times")
+                            ->check(CLI::Range(1, 100000))
+                            ->excludes(only);
+  auto* const plant = report->add_option("--plant", options.plant,
+                                         "Error of the model that must show: stiffness=1.01, rail=, mass=, "
+                                         "force_scale=, hand_clock=, delay_ms=2; of --corners limits=N_M");
+  auto* const convergence =
+      report->add_flag("--convergence", options.convergence,
+                       "Each run a second time with sub-steps half as long: how far its figures move");
+  auto* const corners =
+      report->add_flag("--corners", options.corners,
+                       "Instead every corner of the declared ranges: largest force, torque, speed and the promise");
+  auto* const real = report->add_flag("--real", options.real, "On real processes: cycle times and links of a flight");
+  report->add_option("--for", real_for, "Length of the real flight")->capture_default_str()->needs(real);
+  // What would be left out without a word.
+  for (auto* const unused : {out, only, counted, convergence}) corners->excludes(unused);
+  for (auto* const unused : {seeded, only, counted, plant, convergence, corners}) real->excludes(unused);
   try {
     app.parse(argc, argv);
     options.seed = tools::seed_of(seed);

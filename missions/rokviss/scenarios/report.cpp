@@ -87,10 +87,10 @@ using tools::exit_usage;
 }
 
 [[nodiscard]] std::string subtitle_of(const ReportOptions& options, const std::string& name) {
+  if (options.real) return fmt::format("Flown by hirosco report {} --real; every figure from real processes.", name);
   std::string text = fmt::format("Flown by hirosco report {} --seed {}", name, options.seed);
   for (const std::string& planted : options.plant) text += " --plant " + planted;
-  return text + (options.real ? " --real; every figure from real processes."
-                              : "; every figure from the whole spacecraft on virtual time.");
+  return text + "; every figure from the whole spacecraft on virtual time.";
 }
 
 [[nodiscard]] int verdict(const std::vector<Chapter>& chapters) {

@@ -175,6 +175,7 @@ class SubsystemReader {
   void read_argument(const xml::Element& element, Function& function, Unique& names);
   void read_test_service(const xml::Element& element, Services& services);
   void read_housekeeping(const xml::Element& element, Services& services);
+  void expect_room(const xml::Element& element, const HousekeepingStructure& structure, const Services& services);
   void read_sampled(const xml::Element& element, std::vector<ParameterRef>& into, std::string_view user);
   void read_provides(const xml::Element& element, Services& services);
   void read_requires(const xml::Element& element, Services& services);
