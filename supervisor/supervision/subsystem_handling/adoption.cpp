@@ -109,7 +109,7 @@ void Adoption::hand_over(Member& member, Page& page) {
 void Adoption::finish_what_was_begun() {
   parts_.telecommands.end_what_was_begun();
   parts_.links.end_what_was_begun();
-  if (shutting_down_) return parts_.shutdown.request();
+  if (shutting_down_) return parts_.shutdown.request("the supervisor before this one");
   for (Member& member : craft_.members) {
     const auto before = before_.find(member.apid());
     const bool lived = before != before_.end() && before->second.alive;
