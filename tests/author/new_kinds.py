@@ -61,7 +61,7 @@ class New(outside.Installed, unittest.TestCase):
         for kind in tried():
             with self.subTest(kind=kind):
                 folder, _ = made(kind)
-                first, second = (self.here(folder, "simulate", "mission.xml", "--for", "2s", "--seed", "3") for _ in range(2))
+                first, second = (self.here(folder, "simulate", "mission.xml", "--for", "2s", "--seed", "3", "--octets") for _ in range(2))
                 self.assertEqual(first, second)
 
     def test_a_name_that_is_none_and_a_folder_that_is_there_are_refused(self):
