@@ -198,7 +198,8 @@ int read_and_do(int argc, char** argv) {
   StatusOptions status_options;
   auto* status_command =
       app.add_subcommand("status", "Is it well? One line and what deviates; ends with 1 when it is not");
-  status_command->add_option("subsystem", status_options.of, "The newest housekeeping of this subsystem, and the verdict in one line");
+  status_command->add_option("subsystem", status_options.of,
+                             "The newest housekeeping of this subsystem, and the verdict in one line");
   status_command->add_flag("--all", status_options.all, "The newest housekeeping of every subsystem besides");
   add_connection(*status_command, status_options.connection);
 
