@@ -94,24 +94,27 @@ struct Options {
                                               .keep_octets = use.keep_mb * mega});
 }
 
-/// Those reactions that no injection into a simulated device had caused: each device writes the monotonic time of what it
-/// was told beside its control socket.
-[[nodiscard]] std::vector<TimePoint> unprovoked_reactions(std::vector<TimePoint> reactions,
-                                                          const std::filesystem::path& runtime) {
-  std::error_code failed;
-  for (const auto& file : std::filesystem::directory_iterator{runtime, failed}) {
-    if (reactions.empty()) break;
-    if (file.path().extension() != ".injected") continue;
-    std::ifstream lines{file.path()};
+/// What was injected into simulated devices: each writes the monotonic time of what it was told beside its control socket.
+[[nodiscard]] std::vector<DeviceInjection> injections_of(const descriptor::Mission& mission,
+                                                         const std::filesystem::path& runtime) {
+  std::vector<DeviceInjection> injections;
+  for (const auto& device : mission.devices) {
+    std::ifstream lines{(runtime / device.name).string() + ".injected"};
     // Its time, then what it was.
     for (std::string line; std::getline(lines, line);) {
-      const std::int64_t at_ns = std::strtoll(line.c_str(), nullptr, 10);
-      const TimePoint injected{Duration{at_ns}};
-      std::erase_if(reactions,
-                    [&](TimePoint at) { return at >= injected && at - injected <= UnprovokedReactions::limit; });
+      char* behind = nullptr;
+      const Duration at{std::strtoll(line.c_str(), &behind, 10)};
+      injections.push_back({TimePoint{at}, device.name, *behind == ' ' ? behind + 1 : behind});
     }
   }
-  return reactions;
+  return injections;
+}
+
+/// Who asks the keeper for an end, as it notes that; 0 is nobody.
+[[nodiscard]] std::string end_words(std::uint32_t number) {
+  if (number == KeeperPage::end_of_time) return "--for, whose time is over";
+  const char* const name = ::sigabbrev_np(static_cast<int>(number));
+  return name != nullptr ? fmt::format("SIG{} (signal {})", name, number) : fmt::format("signal {}", number);
 }
 
 /// Descriptors that may wake the supervisor; follows the set of living members.
@@ -367,7 +370,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
       if (reserve.used() && !std::exchange(ends_as_a_whole, true)) {
         if (kept && page.alone.load() == 0 && !asked_to_end) leave_to_another();
         console.told(clock.onboard(), "no memory left: the flight ends in order");
-        supervisor.request_shutdown();
+        supervisor.request_shutdown("the supervisor, which has no memory left");
       }
       if (supervisor.commissioned()) page.commissioned.store(1, std::memory_order_relaxed);
       const bool still = kept && keeper_progress.stands_still(page.keeper.load(std::memory_order_relaxed), clock.now());
@@ -380,17 +383,19 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
         if (ready.descriptor == log_progress->descriptor()) log_progress->clear();
         if (ready.descriptor == guard_found->descriptor()) guard_found->clear();
         if (ready.descriptor == signal_descriptor.get()) {
-          signalfd_siginfo info;
+          signalfd_siginfo info{};
           static_cast<void>(!::read(signal_descriptor.get(), &info, sizeof info));
-        }
-        if (ready.descriptor == signal_descriptor.get() || keeper_gone) {
-          supervisor.request_shutdown();
+          const std::uint32_t to_keeper = page.end_asked.load();
+          supervisor.request_shutdown(end_words(to_keeper != 0 ? to_keeper : info.ssi_signo));
+          asked_to_end = true;
+        } else if (keeper_gone) {
+          supervisor.request_shutdown("the end of the process that had started the flight");
           asked_to_end = true;
         }
       }
       if (const auto why = launcher.must_end(clock.now()); why && !std::exchange(ends_as_a_whole, true)) {
         console.told(clock.onboard(), *why);
-        supervisor.request_shutdown();
+        supervisor.request_shutdown("the supervisor: " + std::string{*why});
       }
       epochs.keep_above(guard.highest_epoch());
       if (clock.now() < next_status) continue;
@@ -417,13 +422,13 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
     std::fflush(nullptr);
     std::_Exit(exit_internal);
   }
-  const auto unprovoked = unprovoked_reactions(causes.uncommanded(), options.runtime);
-  if (!unprovoked.empty()) {
+  const auto without_cause = unprovoked(causes.uncommanded(), injections_of(mission, options.runtime), mission);
+  if (!without_cause.empty()) {
     fmt::print(
         stderr,
         "hirosco: {} reaction{} of high severity that no fault, telecommand or scenario of this flight had caused, "
         "the first {:.3f} s after the start: hirosco log --text plan\n",
-        unprovoked.size(), unprovoked.size() == 1 ? "" : "s", seconds(unprovoked.front() - started));
+        without_cause.size(), without_cause.size() == 1 ? "" : "s", seconds(without_cause.front().at - started));
     return exit_unprovoked;
   }
   return supervisor.succeeded() ? 0 : exit_finding;

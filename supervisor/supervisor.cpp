@@ -26,7 +26,7 @@ void Supervisor::start() {
   craft.guard.beat();
   parts_->stored.begin();
   parts_->processes.start_all();
-  parts_->commissioning.start([this] { request_shutdown(); });
+  parts_->commissioning.start([this] { request_shutdown("commissioning, which failed"); });
 }
 
 void Supervisor::adopt(bool stop_asked) {
@@ -70,7 +70,7 @@ TimePoint Supervisor::step(TimePoint now) {
   return std::min(wake, next_watch_);
 }
 
-void Supervisor::request_shutdown() { parts_->shutdown.request(); }
+void Supervisor::request_shutdown(std::string_view by) { parts_->shutdown.request(by); }
 
 void Supervisor::keeper_stands_still() {
   parts_->craft.tell("the keeper stands still: nobody would end the devices and subsystems if this supervisor died",

@@ -52,8 +52,8 @@ class Supervisor final {
   void adopt(bool stop_asked);
   /// One step; returns when the next is due at the latest. Messages should wake it earlier.
   TimePoint step(TimePoint now);
-  /// Orderly shutdown: every subsystem back to Offline, then this one.
-  void request_shutdown();
+  /// Orderly shutdown: every subsystem back to Offline, then this one. `by`: who asks, as the log is to say it.
+  void request_shutdown(std::string_view by = {});
   /// Whoever started it is alive and does not move: nobody would end what is left after this one.
   void keeper_stands_still();
   [[nodiscard]] bool finished() const noexcept;

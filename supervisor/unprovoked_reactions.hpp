@@ -7,10 +7,30 @@
 #include <string_view>
 #include <vector>
 
+#include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/pus/st129_supervision/supervision.hpp"
 #include "supervisor/supervisor.hpp"
 
 namespace hirosco::supervisor {
+
+/// A reaction of high severity, and the event that it answers.
+struct ToldReaction {
+  TimePoint at{};
+  std::string subsystem;
+  std::string event;  ///< PROCESS_DIED and HANG where its process is told to have died or to hang
+};
+/// What somebody injected into a simulated device of the mission.
+struct DeviceInjection {
+  TimePoint at{};
+  std::string device;  ///< as the mission names the simulated one
+  std::string line;
+};
+/// Those that nothing of `injections`, oldest first, had caused. Cause of a reaction is what was injected up to UnprovokedReactions::limit
+/// before it, but of a death not what makes well again (`heal`, `plug`); and of the loss of a device besides what is still in force there,
+/// however long ago it was injected (`unplug` until `plug`, `silent` and `delay` until `heal`, `stall` and `freeze` for their time).
+[[nodiscard]] std::vector<ToldReaction> unprovoked(std::vector<ToldReaction> reactions,
+                                                   const std::vector<DeviceInjection>& injections,
+                                                   const descriptor::Mission& mission);
 
 /// Hears what is told and routed, keeps the moments of reactions of high severity before which no telecommand had come from
 /// ground for some time, and passes everything on. What was injected into simulated devices is asked for by the shell.
@@ -21,7 +41,7 @@ class UnprovokedReactions final : public Observer {
   static constexpr Duration limit{std::chrono::seconds{2}};
   UnprovokedReactions(const Clock& clock, Observer& next) : clock_{clock}, next_{next} {}
 
-  [[nodiscard]] const std::vector<TimePoint>& uncommanded() const noexcept { return uncommanded_; }
+  [[nodiscard]] const std::vector<ToldReaction>& uncommanded() const noexcept { return uncommanded_; }
 
   void told(OnboardTime when, std::string_view line) override {
     hear(line);
@@ -44,11 +64,16 @@ class UnprovokedReactions final : public Observer {
     constexpr std::string_view because = " because of ";
     if (line.starts_with(stop_asked)) commanded_ = clock_.now();
     if (!line.starts_with("plan ")) {
+      const auto place = line.find(' ');
+      const auto behind = place != std::string_view::npos ? line.substr(place) : std::string_view{};
+      // "SUBSYSTEM died: ...": that is told before its event is.
+      if (behind.starts_with(" died: ")) newest_ = {{}, std::string{line.substr(0, place)}, "PROCESS_DIED"};
+      if (behind.starts_with(" hangs: ")) newest_ = {{}, std::string{line.substr(0, place)}, "HANG"};
       // "SUBSYSTEM high EVENT ...": what its reaction will name.
-      const auto place = line.find(high);
-      if (place == std::string_view::npos || line.find(' ') != place || high_.size() >= most_kept) return;
-      const auto name = line.substr(place + high.size());
-      high_.emplace(name.substr(0, name.find(' ')));
+      if (!behind.starts_with(high)) return;
+      const auto name = behind.substr(high.size());
+      newest_ = {{}, std::string{line.substr(0, place)}, std::string{name.substr(0, name.find(' '))}};
+      if (high_.size() < most_kept) high_.emplace(newest_.event);
       return;
     }
     const auto reason = line.find(because);
@@ -57,14 +82,16 @@ class UnprovokedReactions final : public Observer {
         reason != std::string_view::npos && high_.contains(std::string{line.substr(reason + because.size())});
     if ((!network && !of_high) || uncommanded_.size() >= most_kept) return;
     const TimePoint now = clock_.now();
-    if (commanded_ == TimePoint{} || now - commanded_ > limit) uncommanded_.push_back(now);
+    if (commanded_ == TimePoint{} || now - commanded_ > limit)
+      uncommanded_.push_back({now, newest_.subsystem, newest_.event});
   }
 
   const Clock& clock_;
   Observer& next_;
   TimePoint commanded_{};
   std::set<std::string> high_;
-  std::vector<TimePoint> uncommanded_;
+  ToldReaction newest_;  ///< what a reaction that is told next answers
+  std::vector<ToldReaction> uncommanded_;
 };
 
 }  // namespace hirosco::supervisor

@@ -43,5 +43,81 @@ TEST_F(ReactionCauses, AreFoundInAStopBySomebodyForAsLongAsThatMayHaveEffects) {
   EXPECT_EQ(causes.uncommanded().size(), 1U);
 }
 
+TEST_F(ReactionCauses, NameTheEventThatTheReactionAnswers) {
+  tell("ARM high ARM_LOST REASON=silent");
+  tell("plan down: network {ARM}");
+  tell("HAND died: signal 9");
+  tell("plan died: network {HAND}");
+  tell("HAND hangs: its cycle stands still");
+  tell("plan down: network {HAND}");
+  ASSERT_EQ(causes.uncommanded().size(), 3U);
+  EXPECT_EQ(causes.uncommanded()[0].subsystem, "ARM");
+  EXPECT_EQ(causes.uncommanded()[0].event, "ARM_LOST");
+  EXPECT_EQ(causes.uncommanded()[1].event, "PROCESS_DIED");
+  EXPECT_EQ(causes.uncommanded()[2].event, "HANG");
+}
+
+class InjectionAsCause : public ::testing::Test {
+ protected:
+  InjectionAsCause() {
+    mission.devices.push_back({.name = "robot", .subsystem = "ARM", .device = "ARM-BUS"});
+    mission.devices.push_back({.name = "stick", .subsystem = "HAND", .device = "HAND"});
+  }
+  [[nodiscard]] static TimePoint at(double second) {
+    return TimePoint{std::chrono::duration_cast<Duration>(std::chrono::duration<double>(second))};
+  }
+  void inject(double second, const char* device, const char* line) { injections.push_back({at(second), device, line}); }
+  [[nodiscard]] bool caused(double second, const char* subsystem, const char* event) const {
+    return unprovoked({{at(second), subsystem, event}}, injections, mission).empty();
+  }
+  descriptor::Mission mission;
+  std::vector<DeviceInjection> injections;
+};
+
+TEST_F(InjectionAsCause, IsWhatWasInjectedUpToTwoSecondsBefore) {
+  inject(10, "robot", "corrupt 5");
+  EXPECT_FALSE(caused(9.9, "ARM", "HOT"));
+  EXPECT_TRUE(caused(12, "ARM", "HOT"));
+  EXPECT_TRUE(caused(12, "ARM", "PROCESS_DIED"));
+  EXPECT_FALSE(caused(12.1, "ARM", "HOT"));
+}
+
+TEST_F(InjectionAsCause, IsAnUnplugOfTheLossOfThatDeviceUntilItIsPluggedIn) {
+  inject(10, "robot", "unplug");
+  EXPECT_TRUE(caused(500, "ARM", "ARM_BUS_LOST"));
+  EXPECT_FALSE(caused(500, "HAND", "HAND_LOST")) << "another device";
+  EXPECT_FALSE(caused(500, "ARM", "ARM_LOST")) << "another device of the same subsystem";
+  EXPECT_FALSE(caused(500, "ARM", "HOT"));
+  EXPECT_FALSE(caused(500, "ARM", "PROCESS_DIED"));
+  inject(600, "robot", "heal");
+  EXPECT_TRUE(caused(700, "ARM", "ARM_BUS_LOST")) << "that plugs nothing in";
+  inject(800, "robot", "plug");
+  EXPECT_TRUE(caused(802, "ARM", "ARM_BUS_LOST"));
+  EXPECT_FALSE(caused(802.1, "ARM", "ARM_BUS_LOST"));
+  EXPECT_TRUE(caused(500, "ARM", "ARM_BUS_LOST")) << "what comes after has caused nothing before";
+}
+
+TEST_F(InjectionAsCause, IsSilenceUntilItIsHealedAndAStallForItsTime) {
+  inject(10, "stick", "silent");
+  EXPECT_TRUE(caused(100, "HAND", "HAND_LOST"));
+  inject(200, "stick", "heal");
+  EXPECT_FALSE(caused(300, "HAND", "HAND_LOST"));
+  inject(400, "stick", "stall 30000");
+  EXPECT_TRUE(caused(431, "HAND", "HAND_LOST"));
+  EXPECT_FALSE(caused(433, "HAND", "HAND_LOST"));
+  inject(500, "stick", "delay 20");
+  EXPECT_TRUE(caused(600, "HAND", "HAND_LOST"));
+  inject(700, "stick", "delay 0");
+  EXPECT_FALSE(caused(800, "HAND", "HAND_LOST"));
+}
+
+TEST_F(InjectionAsCause, IsNoHealAndNoPlugOfADeath) {
+  inject(10, "robot", "heal");
+  inject(10, "stick", "plug");
+  EXPECT_FALSE(caused(10.5, "ARM", "PROCESS_DIED"));
+  EXPECT_FALSE(caused(10.5, "HAND", "HANG"));
+  EXPECT_TRUE(caused(10.5, "ARM", "HOT")) << "a value that jumps back may trip a limit";
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

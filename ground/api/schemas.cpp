@@ -343,6 +343,8 @@ void add_story(const Basic& is, json& into) {
        {"mode", described(is.text, "in which it happened"), May::BeAbsent},
        {"severity", described(is.severity, "of the cause"), May::BeAbsent},
        {"stopped", is.texts, May::BeAbsent},
+       {"down", described(is.texts, "who is to be up in this mode and does not run: SET_STATE Offline starts it again"),
+        May::BeAbsent},
        {"causes", described(list_of(cause), "empty, and nothing else, when nothing stopped")}});
 }
 

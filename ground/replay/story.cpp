@@ -8,11 +8,14 @@
 #include <cctype>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <vector>
 
 #include "ground/model/json.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
+#include "hirosco/descriptor/model/supervisor_events.hpp"
+#include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 
 namespace hirosco::ground {
@@ -74,6 +77,49 @@ struct Line {
   return *first;
 }
 
+/// A stop of everything that somebody asked for.
+struct Asked {
+  OnboardTime t{};
+  std::string by;    ///< in a sentence: "By telecommand of NAME."
+  std::string text;  ///< in the chain of causes
+};
+
+/// The newest one that was carried out, by telecommand or on the computer of the flight.
+[[nodiscard]] std::optional<Asked> newest_asked(Archive& archive, const std::vector<StoredEvent>& weighty,
+                                                OnboardTime to) {
+  std::optional<Asked> newest;
+  for (const auto& command : archive.commands({.span = {{}, to}, .text = "SAFE_ALL", .limit = 20})) {
+    // Who does not confirm its stop makes it fail, and everybody was stopped all the same.
+    const bool carried_out =
+        command.stage != "failed" || command.code == static_cast<int>(pus::FailureCode::DeviceError);
+    if (command.function != "SAFE_ALL" || !carried_out) continue;
+    newest = {command.t, "By telecommand of " + command.sender + ".",
+              "SAFE ALL by " + command.sender + ", " + command.stage};
+    break;
+  }
+  const auto local = std::ranges::find(weighty, descriptor::event_of_local_stop, &StoredEvent::name);
+  if (local == weighty.end() || (newest && newest->t > local->t)) return newest;
+  return Asked{local->t, "On the computer of the flight: `hirosco safe`, a key or a signal.",
+               "SAFE ALL on the computer of the flight"};
+}
+
+/// Who is to be up in this mode, and whose process does not run at the end of what is known until `to`.
+[[nodiscard]] std::vector<std::string> down_at_the_end(const Catalogue& catalogue, Archive& archive,
+                                                       const std::string& mode, OnboardTime to) {
+  const OnboardTime end = std::min(to, archive.extent().value_or(Span{}).to);
+  std::map<std::string, bool> runs;
+  for (const auto& change : archive.changes({end, end}))
+    if (change.kind == "state") runs[change.name] = !change.value.empty();
+  std::vector<std::string> down;
+  const auto& modes = catalogue.mission().modes;
+  const auto found = std::ranges::find(modes, mode, &descriptor::Mode::name);
+  if (found == modes.end()) return down;
+  for (const auto& step : found->commission)
+    if (const auto known = runs.find(step.subsystem); known != runs.end() && !known->second)
+      down.push_back(step.subsystem);
+  return down;
+}
+
 /// An event has '_' where the name of a device, or of an endnode of one, has what an event may not.
 [[nodiscard]] bool names(std::string_view in_event, std::string_view device) {
   return std::ranges::equal(in_event, device, [](char said, char meant) {
@@ -117,11 +163,12 @@ class Teller {
   Teller(const Catalogue& catalogue, Archive& archive) : catalogue_{catalogue}, archive_{archive} {}
 
   [[nodiscard]] json tell(OnboardTime to) {
-    const auto severe =
+    auto severe =
         archive_.events({.span = {{}, to}, .severity = static_cast<int>(Severity::Medium), .text = {}, .limit = 1000});
-    const auto safe_all = newest_safe_all(to);
-    if (severe.empty() && !safe_all) return {{"causes", json::array()}};
-    if (safe_all && (severe.empty() || severe.front().t < safe_all->t)) return told_by_hand(*safe_all);
+    const auto asked = newest_asked(archive_, severe, to);
+    std::erase_if(severe, [](const StoredEvent& event) { return event.name == descriptor::event_of_local_stop; });
+    if (severe.empty() && !asked) return {{"causes", json::array()}};
+    if (asked && belongs_to(*asked, severe)) return told_by_hand(*asked, severe, to);
     cause_ = first_of(severe);
     begin_ = cause_.t;
     // Who notices a loss by its effect may report in the very cycle of who has lost: the gravest of one instant is the cause.
@@ -135,29 +182,32 @@ class Teller {
   }
 
  private:
-  [[nodiscard]] std::optional<StoredCommand> newest_safe_all(OnboardTime to) {
-    for (const auto& command : archive_.commands({.span = {{}, to}, .text = "SAFE_ALL", .limit = 20}))
-      if (command.function == "SAFE_ALL" && command.stage != "failed") return command;
-    return std::nullopt;
+  /// Nothing else stopped after it: what came within the time of one story is what it brought about.
+  [[nodiscard]] static bool belongs_to(const Asked& asked, const std::vector<StoredEvent>& severe) {
+    const std::vector<StoredEvent> after{
+        severe.begin(), std::ranges::find_if(severe, [&](const StoredEvent& event) { return event.t < asked.t; })};
+    return after.empty() || first_of(after).t - asked.t <= same_story;
   }
 
-  [[nodiscard]] json told_by_hand(const StoredCommand& command) {
-    begin_ = command.t;
+  [[nodiscard]] json told_by_hand(const Asked& asked, const std::vector<StoredEvent>& severe, OnboardTime to) {
+    begin_ = asked.t;
     mode_ = mode_at(begin_);
-    const std::string title = "SAFE ALL: the actuators of all subsystems are inhibited.";
-    const json cause{{"t", json_time(begin_)},
-                     {"after_ms", 0.0},
-                     {"severity", "high"},
-                     {"text", "SAFE ALL by " + command.sender + ", " + command.stage}};
-    return {{"t", json_time(begin_)},
-            {"title", title},
-            {"detail", "By telecommand of " + command.sender + "."},
-            {"advice", "Bring " + mode_ + " up again when all is clear."},
-            {"plan", nullptr},
-            {"mode", mode_},
-            {"severity", "high"},
-            {"stopped", json::array({"all"})},
-            {"causes", json::array({cause})}};
+    lines_.push_back({begin_, Severity::High, "cause", {}, asked.text});
+    // Who stops everything may do so because of something.
+    for (const StoredEvent& event : severe | std::views::reverse)
+      if (event.t < begin_ && begin_ - event.t <= same_story)
+        lines_.push_back({std::nullopt,
+                          static_cast<Severity>(event.severity),
+                          "event",
+                          {},
+                          sentence(event, json::parse(event.values, nullptr, false))});
+    tell_events(to);
+    const std::string mode = mode_.empty() ? catalogue_.mission().start_mode : mode_;
+    return {{"t", json_time(begin_)}, {"title", "SAFE ALL: the actuators of all subsystems are inhibited."},
+            {"detail", asked.by},     {"advice", "Bring " + mode + " up again when all is clear."},
+            {"plan", nullptr},        {"mode", mode},
+            {"severity", "high"},     {"stopped", json::array({"all"})},
+            {"causes", causes_json()}};
   }
 
   [[nodiscard]] std::string mode_at(OnboardTime t) {
@@ -197,6 +247,7 @@ class Teller {
     for (const auto& event :
          archive_.events({.span = {begin_, end}, .text = {}, .limit = 1000, .newest_first = false})) {
       if (event.t - last > same_story) break;
+      if (event.name == descriptor::event_of_local_stop) continue;  // told as the cause
       const auto severity = static_cast<Severity>(event.severity);
       const auto values = json::parse(event.values, nullptr, false);
       if (event.name == "STATE_CHANGED") {
@@ -403,7 +454,9 @@ class Teller {
 }  // namespace
 
 json newest_story(const Catalogue& catalogue, Archive& archive, OnboardTime to) {
-  return Teller{catalogue, archive}.tell(to);
+  json story = Teller{catalogue, archive}.tell(to);
+  if (!story["causes"].empty()) story["down"] = down_at_the_end(catalogue, archive, story["mode"], to);
+  return story;
 }
 
 }  // namespace hirosco::ground

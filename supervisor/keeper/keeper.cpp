@@ -270,6 +270,7 @@ class Flight {
     const bool overdue = asked_ && now - asked_at_ > supervisor_grace;
     const bool same_wish = asked_ && interrupted && now - asked_at_ < one_wish;
     if (same_wish || (!interrupted && !over && !overdue)) return;
+    if (!asked_) page_.end_asked.store(interrupted ? static_cast<std::uint32_t>(number) : KeeperPage::end_of_time);
     // The first wish is for an orderly end, the second for an end; so is one that is not fulfilled in time.
     static_cast<void>(supervisor_->send_signal(asked_ ? SIGKILL : SIGTERM));
     if (!asked_) asked_at_ = now;

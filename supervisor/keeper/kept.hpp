@@ -86,6 +86,8 @@ struct KeeperPage {
   std::atomic<std::int64_t> log_run{0};  ///< of the records of this flight's log, as on-board time in ns; 0: none yet
   std::atomic<std::uint64_t> log_number{0};  ///< of the newest record
   std::atomic<std::uint64_t> log_durable{0};  ///< up to here they are on the disk
+  std::atomic<std::uint32_t> end_asked{0};  ///< number of the signal that asked for an end; 0: none did
+  static constexpr std::uint32_t end_of_time = 0xFFFF;  ///< in its place: the time of the flight is over
   std::atomic<std::uint64_t> stops_asked{0};  ///< SIGUSR1 that came to the keeper
   std::atomic<std::uint64_t> stops_taken{0};  ///< those that a guard has carried out
   std::array<KeptInhibit, most_inhibits> inhibits;  ///< in the order of kept_endnodes()

@@ -77,7 +77,7 @@ class Built(Outside, unittest.TestCase):
                 self.assertEqual([name.split()[0] for name in names if name], ["hirosco_module"])
 
     def test_the_same_seed_simulates_the_same_octets(self):
-        first, second = (self.hirosco("simulate", self.mission, "--for", "3s", "--seed", "5") for _ in range(2))
+        first, second = (self.hirosco("simulate", self.mission, "--for", "3s", "--seed", "5", "--octets") for _ in range(2))
         self.assertEqual(first, second)
         self.assertIn("commissioned", first)
         told = self.hirosco("simulate", self.mission, "--for", "3s", "--at", "2 lamp old 0.5", "--summary")

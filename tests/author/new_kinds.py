@@ -93,7 +93,7 @@ class New(outside.Installed, unittest.TestCase):
         for kind in tried():
             with self.subTest(kind=kind):
                 folder, _ = made(kind)
-                first, second = (self.here(folder, "simulate", "mission.xml", "--for", "2s", "--seed", "3") for _ in range(2))
+                first, second = (self.here(folder, "simulate", "mission.xml", "--for", "2s", "--seed", "3", "--octets") for _ in range(2))
                 self.assertEqual(first, second)
 
     def test_pages_and_templates_name_what_is_installed_with_them(self):

@@ -29,19 +29,45 @@ class AskedWrongly(unittest.TestCase):
         self.refused(["run", "rokvis"], "no mission 'rokvis'", "did you mean 'rokviss'?", "there are: ", "hello", code=1)
 
     def test_subsystems_and_functions(self):
-        self.refused(["tc"], "of which subsystem? the mission has SUPERVISOR, ", "MANIPULATOR")
-        self.refused(["tc", "manipulater", "ping"], "no subsystem 'manipulater'; did you mean 'MANIPULATOR'?")
-        self.refused(["tc", "manipulator"], "which function? MANIPULATOR has", "MOVE_TO Q1")
-        self.refused(["tc", "manipulator", "moveto"], "no function 'moveto'; did you mean 'MOVE_TO'?", "SET_STATE")
+        self.refused(["tc", "--mission", "rokviss"], "of which subsystem? the mission has SUPERVISOR, ", "MANIPULATOR")
+        self.refused(["tc", "manipulater", "ping", "--mission", "rokviss"], "no subsystem 'manipulater'; did you mean 'MANIPULATOR'?; mission ROKVISS has SUPERVISOR, ")
+        self.refused(["tc", "manipulator", "--mission", "rokviss"], "which function? MANIPULATOR has", "MOVE_TO Q1")
+        self.refused(["tc", "manipulator", "moveto", "--mission", "rokviss"], "no function 'moveto'; did you mean 'MOVE_TO'?", "SET_STATE")
 
     def test_devices_and_faults(self):
-        done = self.hirosco("fault")
+        done = self.hirosco("fault", "--mission", "rokviss")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("joystick takes:", done.stdout)
         self.assertIn("robot takes:", done.stdout)
         self.assertIn("unplug", done.stdout)
-        self.assertIn("hand wander", self.hirosco("fault", "joystick").stdout)
-        self.refused(["fault", "joistick", "unplug"], "no simulated device 'joistick'; did you mean 'joystick'?", "there are: ", "robot")
+        self.assertIn("hand wander", self.hirosco("fault", "joystick", "--mission", "rokviss").stdout)
+        self.refused(["fault", "joistick", "unplug", "--mission", "rokviss"], "no simulated device 'joistick'; did you mean 'joystick'?", "there are: ", "robot")
+
+    def test_where_nothing_flies_nobody_is_taken_for_another_mission(self):
+        for words in (["tc", "manipulator", "ping"], ["fault"], ["status"], ["mode"], ["log"], ["why"], ["ground"]):
+            self.refused(words, f"hirosco {words[0]}: nothing flies here", "--mission NAME or FILE", code=3)
+        self.refused(["fault", "robot", "unplug", "--mission", "rokviss"], "ROKVISS does not fly here", code=3)
+
+    def test_in_the_folder_of_a_mission_or_of_its_only_log_that_one_is_meant(self):
+        with tempfile.TemporaryDirectory(prefix="hirosco-own-") as folder:
+            here = pathlib.Path(folder)
+
+            def told(*words, where=folder):
+                done = subprocess.run([HIROSCO, *words], cwd=where, capture_output=True, text=True, check=False,
+                                      env={**os.environ, "NO_COLOR": "1", "XDG_RUNTIME_DIR": folder})
+                return done.returncode, done.stdout + done.stderr
+
+            (here / "log").mkdir()
+            (here / "log/hello.db").touch()
+            self.assertIn("no archive log/hello-ground.db", told("why")[1])
+            self.assertIn("mission HELLO has SUPERVISOR", told("tc", "arm", "ping")[1])
+            (here / "log/rokviss.db").touch()
+            self.assertIn("nothing flies here", told("tc", "arm", "ping")[1], "of two nobody knows which")
+            self.assertIn("mission OBSERVER has SUPERVISOR", told("tc", "arm", "ping", where=REPOSITORY / "missions/observer")[1])
+            for words in (("why",), ("why", "hello"), ("why", "--mission", "hello"), ("log",), ("log", "hello")):
+                self.assertEqual(told(*words)[0], 3, words)
+            self.assertEqual(sorted(path.name for path in (here / "log").iterdir()), ["hello.db", "rokviss.db"],
+                             "who asks why makes no file")
 
     def test_status_of_nobody_is_no_answer(self):
         done = self.hirosco("status", "--port", "9")

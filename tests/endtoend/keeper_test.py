@@ -32,7 +32,7 @@ class Keeper(unittest.TestCase):
             rokviss.process.send_signal(signal.SIGINT)
             code = rokviss.end(signal.SIGINT)
             self.assertEqual(code, 0, rokviss.errors)
-            self.assertIn("shutdown", [line.told for line in rokviss.told()])
+            self.assertIn("shutdown, asked for by SIGINT (signal 2)", [line.told for line in rokviss.told()])
             self.assertEqual(rokviss.wait_until_gone(2.0), {})
 
     def test_a_service_manager_hears_that_the_mission_is_commissioned_and_that_it_ends(self):

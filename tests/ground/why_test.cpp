@@ -118,7 +118,66 @@ TEST_F(GroundStation, WhyTellsOfASafeAllToo) {
   EXPECT_EQ(station.command("SUPERVISOR", "SAFE_ALL")["stage"], "completed");
   const json why = station.get("/api/why");
   EXPECT_THAT(why["title"].get<std::string>(), ::testing::StartsWith("SAFE ALL"));
-  EXPECT_EQ(why["causes"].size(), 1U);
+  EXPECT_EQ(why["detail"], "By telecommand of operator.");
+  ASSERT_GE(why["causes"].size(), 1U);
+  EXPECT_EQ(why["causes"][0]["text"], "SAFE ALL by operator, completed");
+}
+
+TEST_F(GroundStation, WhyTellsAStopOnTheComputerOfTheFlightAndNotTheOneBeforeIt) {
+  commission();
+  ASSERT_TRUE(station.inject("joystick", "unplug"));
+  station.run(2s);
+  EXPECT_THAT(station.get("/api/why")["title"].get<std::string>(), ::testing::StartsWith("JOYSTICK lost its device"));
+  station.run(5s);
+  flight.craft().guard().stop_all(supervisor::GuardFinding::Kind::StopAsked);
+  station.run(1s);
+  const json why = station.get("/api/why");
+  EXPECT_THAT(why["title"].get<std::string>(), ::testing::StartsWith("SAFE ALL"));
+  EXPECT_THAT(why["detail"].get<std::string>(), ::testing::HasSubstr("hirosco safe"));
+  ASSERT_EQ(why["causes"].size(), 1U) << why.dump(1);
+  EXPECT_EQ(why["causes"][0]["text"], "SAFE ALL on the computer of the flight");
+  EXPECT_EQ(why["stopped"], json::array({"all"}));
+}
+
+TEST_F(GroundStation, WhyTellsWhatASafeAllBroughtAboutAndWhatWasBeforeItAsItsStory) {
+  commission();
+  ASSERT_TRUE(station.inject("joystick", "unplug"));
+  station.run(1s);
+  EXPECT_EQ(station.command("SUPERVISOR", "SAFE_ALL")["stage"], "failed") << "who is unplugged confirms no stop";
+  const std::vector<std::byte> data = [] {
+    std::vector<std::byte> event(40);
+    const auto stale = descriptor::framework_event::set_stale(0);
+    event[0] = static_cast<std::byte>(stale >> 8), event[1] = static_cast<std::byte>(stale & 0xFF);
+    return event;
+  }();
+  const auto now = OnboardTime{} + std::chrono::duration_cast<Duration>(
+                                       std::chrono::duration<double>(station.get("/api/why")["t"].get<double>() + 0.1));
+  ASSERT_TRUE(station.session().receive(telemetry(10, 5, 3, now, data)));
+  const json why = station.get("/api/why");
+  EXPECT_THAT(why["title"].get<std::string>(), ::testing::StartsWith("SAFE ALL"));
+  EXPECT_THAT(why["causes"][0]["text"].get<std::string>(), ::testing::StartsWith("JOYSTICK lost its device"));
+  EXPECT_TRUE(why["causes"][0]["after_ms"].is_null());
+  EXPECT_EQ(why["causes"].back()["text"], "MANIPULATOR misses samples of JOYSTICK_STATE") << why.dump(1);
+}
+
+TEST(GroundStationWhereNobodyIsRestarted, WhyNamesWhoHasToBeStartedAgainBeforeTheMode) {
+  simulation::Plan plan = rokviss();
+  plan.edit = [edit = plan.edit](auto& mission) {
+    edit(mission);
+    std::erase_if(mission.plans, [](const descriptor::Plan& each) { return each.event == "PROCESS_DIED"; });
+  };
+  simulation::Flight flight{plan};
+  Station station{flight};
+  ASSERT_TRUE(station.run_until([&] { return flight.craft().supervisor().commissioned(); }));
+  station.run(1s);
+  flight.craft().kill("JOYSTICK");
+  station.run(2s);
+  const json why = station.get("/api/why");
+  EXPECT_EQ(why["title"], "The process of JOYSTICK died. MANIPULATOR was stopped.") << why.dump(1);
+  EXPECT_EQ(why["down"], json::array({"JOYSTICK"}));
+  EXPECT_EQ(station.command("JOYSTICK", "SET_STATE", {{"STATE", 0}})["stage"], "completed");
+  station.run(2s);
+  EXPECT_EQ(station.get("/api/why")["down"], json::array());
 }
 
 }  // namespace

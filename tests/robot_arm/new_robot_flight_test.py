@@ -136,7 +136,7 @@ class Made(unittest.TestCase):
 
     def test_it_is_checked_and_simulates_the_same_octets_twice(self):
         self.hirosco("check", self.mission)
-        first, second = (self.hirosco("simulate", self.mission, "--for", "3s") for _ in range(2))
+        first, second = (self.hirosco("simulate", self.mission, "--for", "3s", "--octets") for _ in range(2))
         self.assertIn("commissioned: mode operation", first)
         self.assertEqual(first, second)
 

@@ -188,8 +188,15 @@ int main(int argc, char** argv) {
   if (!mission) return tools::exit_finding;
   const fs::path path = option(options, "--archive", archive_of(*mission).string());
   std::error_code failed;
-  if (path.has_parent_path()) fs::create_directories(path.parent_path(), failed);
   const bool serves = !options.contains("--why");
+  if (!serves && !fs::exists(path, failed)) {
+    fmt::print(stderr,
+               "hirosco why: {} has no archive {}: a ground station makes it while the mission flies (hirosco run, "
+               "hirosco ground)\n",
+               mission->name, path.string());
+    return tools::exit_environment;
+  }
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), failed);
   const FileDescriptor lock = serves ? take_lock(path) : FileDescriptor{};
   if (serves && !lock) {
     fmt::print(stderr,

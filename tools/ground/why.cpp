@@ -75,6 +75,11 @@ using nlohmann::json;
                         words(cause, "text"));
   }
   text += fmt::format("\nWhat to do now: {}\n", words(story, "advice"));
+  if (const auto down = story.find("down"); down != story.end() && down->is_array())
+    for (const json& one : *down)
+      if (one.is_string())
+        text += fmt::format("  {:<33} starts its process again, before the next\n",
+                            "hirosco tc " + printable_words(one.get<std::string>()) + " SET_STATE 0");
   if (const auto mode = words(story, "mode"); !mode.empty())
     text += fmt::format("  hirosco mode {:<20} brings it up again (--preview: says what is against it)\n", mode);
   return text + fmt::format("  {:<33} is the story in the log\n", "hirosco log --last 60");

@@ -51,6 +51,14 @@ TEST(WhyTest, TellsWhenWhatAndWhatToDoInLines) {
             "  hirosco log --last 60             is the story in the log\n");
 }
 
+TEST(WhyTest, SaysBeforeTheModeWhoHasToBeStartedAgain) {
+  auto dead = story();
+  dead["down"] = {"HAND"};
+  EXPECT_THAT(why_text(dead, "PAIR", "a", WhyStyle::Lines),
+              HasSubstr("  hirosco tc HAND SET_STATE 0       starts its process again, before the next\n"
+                        "  hirosco mode coupled              brings it up again"));
+}
+
 TEST(WhyTest, IsAReportWithPlanAndTables) {
   const std::string text = why_text(story(), "PAIR", "log/pair-ground.db", WhyStyle::Markdown);
   EXPECT_THAT(text, HasSubstr("# Why PAIR stopped\n\n**HAND lost its device: silent. ARM and HAND were stopped.**"));

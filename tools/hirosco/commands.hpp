@@ -75,6 +75,7 @@ struct SimulateOptions {
   std::string trace;                 ///< CSV at cycle rate; empty = none
   std::vector<std::string> at;       ///< "SECONDS DEVICE LINE": injections
   bool summary{false};               ///< counts only, not the log
+  bool octets{false};                ///< those of each packet behind its words
   std::string values;                ///< folder of persistent values; empty: from no flight before, for none after
 };
 int simulate(const SimulateOptions& options);
@@ -83,7 +84,7 @@ int simulate(const SimulateOptions& options);
 /// COMMAND, the mission's file and the rest of the line. Returns only where there is none.
 int mission_program(const std::string& command, const std::string& mission, const std::vector<std::string>& rest);
 
-/// How clients reach the spacecraft. What is empty is that of the one that flies, else as the usual mission says.
+/// How clients reach the spacecraft. What is empty is that of the one that flies, else as the mission that is meant here says.
 struct Connection {
   std::string mission;
   std::string instance;
@@ -102,6 +103,7 @@ int telecommand(const TelecommandOptions& options);
 struct StatusOptions {
   Connection connection;
   bool all{false};  ///< the newest housekeeping of every subsystem besides
+  std::string of;  ///< that of this subsystem and of no other; empty: of none alone
 };
 /// Is it well? 0: yes, 1: no, 3: nobody answers.
 int status(const StatusOptions& options);
@@ -132,7 +134,7 @@ struct LogOptions {
   std::optional<std::uint8_t> service;
   std::string text;
   std::size_t last{40};
-  bool housekeeping{false};  ///< with TM[3,25], which is left out where nobody asks for it
+  bool housekeeping{false};  ///< with TM[3,25] and its values, which are left out where nobody asks for them
   bool json{false};
 };
 int log(const LogOptions& options);
@@ -206,7 +208,10 @@ int make_new(const NewOptions& options);
 /// A name or a path: the mission file; a name is looked for in missions/NAME/mission.xml from the working directory and
 /// from this program upwards. Empty: nowhere.
 [[nodiscard]] std::filesystem::path find_mission(const std::string& name_or_path);
-/// The mission that is meant where none is named and none flies: the word in the file missions/usual, looked for likewise. Empty: none.
+/// The mission that is meant where none is named and none flies: the one of the working directory (mission.xml), else the only one that has
+/// a log in its folder log/. Empty: there is none, or several.
+[[nodiscard]] std::string meant_mission();
+/// The mission that a newcomer is shown: the word in the file missions/usual, looked for likewise. Empty: none.
 [[nodiscard]] std::string usual_mission();
 /// Where a page of docs/ is for whoever reads it here: installed, or as the sources have it.
 [[nodiscard]] std::string document(const std::string& name);

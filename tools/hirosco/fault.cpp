@@ -108,8 +108,12 @@ int fault(const FaultOptions& options) {
   const auto answer =
       ask((found->flight ? found->flight->folder : runtime_folder(mission.name)) / options.device, line);
   if (!answer) {
-    fmt::print(stderr, "hirosco fault: simulated device '{}' does not answer; does {} run?\n", options.device,
-               found->flight ? found->flight->instance : mission.name);
+    if (found->flight)
+      fmt::print(stderr, "hirosco fault: simulated device '{}' does not answer; does {} run?\n", options.device,
+                 found->flight->instance);
+    else
+      fmt::print(stderr, "hirosco fault: {} does not fly here (hirosco run {}): nobody plays '{}'\n", mission.name,
+                 options.mission.empty() ? meant_mission() : options.mission, options.device);
     return exit_environment;
   }
   if (answer->empty()) {

@@ -38,7 +38,8 @@ namespace {
 int ground(const GroundOptions& options) {
   // Who says where the spacecraft is gets exactly that, whatever flies on this computer.
   const bool said = !options.telemetry.empty() && options.instance.empty();
-  auto found = said ? only_mission(options.mission) : find_flight("ground", options.mission, options.instance);
+  auto found =
+      said ? only_mission("ground", options.mission) : find_flight("ground", options.mission, options.instance);
   if (!found) return found.error();
   const descriptor::Mission& mission = found->mission;
   std::vector<std::string> arguments;
@@ -64,7 +65,7 @@ int why(const GroundOptions& options) {
   if (options.json) arguments.emplace_back("--json");
   if (options.markdown) arguments.emplace_back("--md");
   if (!options.archive.empty()) {
-    const auto found = only_mission(options.mission);
+    const auto found = only_mission("why", options.mission);
     if (!found) return found.error();
     arguments.insert(arguments.end(), {"--archive", options.archive});
     return become_station(std::move(arguments), found->mission.file, options);

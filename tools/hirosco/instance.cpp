@@ -65,6 +65,15 @@ struct Address {
   return found;
 }
 
+/// What to do where nothing flies and nobody says which mission is meant.
+[[nodiscard]] std::string nothing_flies(std::string_view command) {
+  std::string text =
+      "nothing flies here (hirosco run MISSION), and no mission is meant: name one by --mission NAME or FILE";
+  if (command == "log") text += ", or a log by --path FILE";
+  if (command == "why") text += ", or an archive by --archive FILE";
+  return text + "; in a folder with a mission.xml that is the one";
+}
+
 [[nodiscard]] std::string list_of(const std::vector<FlightEntry>& flights) {
   std::string text;
   for (const auto& flight : flights)
@@ -153,13 +162,26 @@ std::expected<FoundFlight, int> find_flight(const char* command, const std::stri
     fmt::print(stderr, "hirosco {}: {}\n", command, chosen.error());
     return std::unexpected{exit_usage};
   }
-  if (!loaded) loaded = load_mission(*chosen ? (*chosen)->file.string() : usual_mission());
+  if (!loaded) {
+    const std::string name = *chosen ? (*chosen)->file.string() : meant_mission();
+    if (name.empty()) {
+      fmt::print(stderr, "hirosco {}: {}\n", command, nothing_flies(command));
+      return std::unexpected{exit_environment};
+    }
+    loaded = load_mission(name);
+  }
   if (!loaded) return std::unexpected{exit_finding};
   return FoundFlight{std::move(*loaded), std::move(*chosen)};
 }
 
-std::expected<FoundFlight, int> only_mission(const std::string& mission) {
-  auto loaded = load_mission(mission.empty() ? usual_mission() : mission);
+std::expected<FoundFlight, int> only_mission(const char* command, const std::string& mission) {
+  std::string name = mission.empty() ? meant_mission() : mission;
+  if (name.empty()) {
+    name = usual_mission();
+    fmt::print(stderr, "hirosco {}: no mission is named: taken is {} (another one: --mission NAME or FILE)\n", command,
+               name);
+  }
+  auto loaded = load_mission(name);
   if (!loaded) return std::unexpected{exit_finding};
   return FoundFlight{std::move(*loaded), std::nullopt};
 }
@@ -168,7 +190,7 @@ std::expected<FoundLog, int> find_log(const char* command, const std::string& mi
   const auto flights = FlightRegistry{}.flights();
   const bool flies = std::ranges::find(flights, instance, &FlightEntry::instance) != flights.end();
   if (good_instance(instance) && !flies) {
-    auto flown = only_mission(mission);
+    auto flown = only_mission(command, mission);
     if (!flown) return std::unexpected{flown.error()};
     auto path = instance_log(flown->mission, instance);
     if (!supervisor::pieces_of(path).empty()) return FoundLog{std::move(flown->mission), std::move(path)};
@@ -183,7 +205,7 @@ std::expected<GroundLinkPlace, int> find_ground_link(const char* command, const 
   // Who says where it is gets exactly that, whatever flies on this computer.
   const bool said = !connection.host.empty() || connection.port != 0;
   if (said && connection.instance.empty()) {
-    auto named = only_mission(connection.mission);
+    auto named = only_mission(command, connection.mission);
     if (!named) return std::unexpected{named.error()};
     const Address usual = address_of(in_numbers(named->mission.ground.telemetry));
     return GroundLinkPlace{std::move(named->mission), connection.host.empty() ? usual.host : connection.host,

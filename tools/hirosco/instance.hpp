@@ -86,13 +86,13 @@ struct FoundFlight {
   descriptor::Mission mission;
   std::optional<FlightEntry> flight;
 };
-/// Looks for it; without one, and where no mission is named, it is about the usual one. Else the exit code, and the reason was
-/// printed.
+/// Looks for it; without one, and where no mission is named, it is about the one that is meant here (`meant_mission()`). Else the exit code,
+/// and the reason was printed.
 [[nodiscard]] std::expected<FoundFlight, int> find_flight(const char* command, const std::string& mission,
                                                           const std::string& instance);
 
-/// The mission that is named, else the usual one, whatever flies.
-[[nodiscard]] std::expected<FoundFlight, int> only_mission(const std::string& mission);
+/// The mission that is named, else the one that is meant here, else the usual one, which is said; whatever flies.
+[[nodiscard]] std::expected<FoundFlight, int> only_mission(const char* command, const std::string& mission);
 
 /// The log of a mission: of the flight that is in the air, else of the one that has flown from this folder.
 struct FoundLog {

@@ -1,14 +1,68 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <map>
+
+#include "hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp"
 #include "hirosco/pus/words/describe.hpp"
+#include "hirosco/utilities/os/clock.hpp"
 #include "supervisor/platform/storage/log_pieces.hpp"
 #include "supervisor/platform/storage/postgresql_database.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
 
 namespace hirosco::tools {
+namespace {
+
+/// As people write it down, and as `hirosco why` does; the records themselves are in TAI.
+[[nodiscard]] std::string utc_words(OnboardTime stored) {
+  return supervisor::time_text(stored - SystemClock::default_tai_minus_utc) + "Z";
+}
+
+/// What housekeeping says, by the names of the descriptors.
+class LogValues {
+ public:
+  explicit LogValues(const descriptor::Mission& mission) {
+    decoders_.emplace(mission.supervisor.id, pus::HousekeepingDecoder{mission.supervisor});
+    for (const auto& member : mission.subsystems)
+      decoders_.emplace(member.subsystem.id, pus::HousekeepingDecoder{member.subsystem});
+  }
+  /// Empty: it is no housekeeping, or not of this mission.
+  [[nodiscard]] std::vector<pus::HousekeepingValue> of(Octets packet) const {
+    const auto report = pus::TelemetryView::parse(packet);
+    if (!report || report->service() != 3 || report->subtype() != 25) return {};
+    const auto decoder = decoders_.find(report->apid());
+    if (decoder == decoders_.end()) return {};
+    auto values = decoder->second.decode(report->source_data());
+    return values ? std::move(*values) : std::vector<pus::HousekeepingValue>{};
+  }
+
+ private:
+  std::map<std::uint16_t, pus::HousekeepingDecoder> decoders_;
+};
+
+/// " NAME=1,2 m NAME=on"
+[[nodiscard]] std::string values_words(const std::vector<pus::HousekeepingValue>& values) {
+  std::string text;
+  for (const auto& value : values)
+    text +=
+        fmt::format(" {}={}{}{}", value.name, fmt::join(value.texts(), ","), value.unit.empty() ? "" : " ", value.unit);
+  return text;
+}
+
+/// ",\"values\":{...}"
+[[nodiscard]] std::string values_json(const std::vector<pus::HousekeepingValue>& values) {
+  if (values.empty()) return {};
+  std::string text;
+  for (const auto& value : values)
+    text += fmt::format("{}\"{}\":{}", text.empty() ? "" : ",", json_text(value.name), value.json());
+  return ",\"values\":{" + text + "}";
+}
+
+}  // namespace
+
 int log(const LogOptions& options) {
   std::filesystem::path path = options.path;
   std::optional<descriptor::Mission> mission;
@@ -17,9 +71,12 @@ int log(const LogOptions& options) {
     if (!found) return found.error();
     path = std::move(found->path);
     mission = std::move(found->mission);
-  } else if (const std::string name = options.mission.empty() ? usual_mission() : options.mission;
-             !find_mission(name).empty()) {
-    mission = load_mission(name);
+  } else {
+    std::string name = options.mission.empty() ? meant_mission() : options.mission;
+    // Pieces of one log are NAME.db, NAME.2.db and so on.
+    if (name.empty()) name = path.filename().string().substr(0, path.filename().string().find('.'));
+    if (!find_mission(name).empty()) mission = load_mission(name);
+    else fmt::print(stderr, "hirosco log: of no known mission, so without its names (--mission NAME or FILE)\n");
   }
   // What the log has in a server; a server that it never was in has no table.
   std::unique_ptr<supervisor::Database> server;
@@ -33,10 +90,23 @@ int log(const LogOptions& options) {
   }
   const std::vector<supervisor::Database*> beside(server ? 1 : 0, server.get());
   const auto describer = mission ? std::optional<pus::PacketDescriber>{*mission} : std::nullopt;
+  const auto values = mission ? std::optional<LogValues>{*mission} : std::nullopt;
+  const bool wants_values = options.housekeeping || options.service;
+  const auto values_of = [&](const supervisor::LogRecord& record) {
+    return values && wants_values ? values->of(record.packet) : std::vector<pus::HousekeepingValue>{};
+  };
   const auto text_of = [&](const supervisor::LogRecord& record) {
-    if (!describer || record.packet.empty()) return supervisor::describe(record);
-    std::string text = fmt::format("{} {} {} {}", record.number, supervisor::time_text(record.stored),
-                                   to_text(record.kind), describer->describe(record.packet));
+    std::string text;
+    if (!describer || record.packet.empty()) {
+      text = supervisor::describe(record);
+      const std::string tai = supervisor::time_text(record.stored);
+      if (const auto at = text.find(tai); at != std::string::npos)
+        text.replace(at, tai.size(), utc_words(record.stored));
+      return text;
+    }
+    text = fmt::format("{} {} {} {}", record.number, utc_words(record.stored), to_text(record.kind),
+                       describer->describe(record.packet));
+    if (!options.json) text += values_words(values_of(record));
     if (!record.note.view().empty()) text += fmt::format(" \"{}\"", record.note.view());
     return text;
   };
@@ -53,11 +123,14 @@ int log(const LogOptions& options) {
     fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), page.error().text);
     return exit_environment;
   }
+  // Not among the lines that others read.
+  if (!options.json && !page->records.empty())
+    fmt::print(stderr, "{}: number, time in UTC (Z), kind, what\n", path.string());
   for (const auto& record : page->records) {
     if (options.json)
-      fmt::print("{{\"number\":{},\"stored\":\"{}\",\"kind\":\"{}\",\"source\":{},\"peer\":{},\"text\":\"{}\"}}\n",
-                 record.number, supervisor::time_text(record.stored), to_text(record.kind), record.source, record.peer,
-                 json_text(text_of(record)));
+      fmt::print("{{\"number\":{},\"stored\":\"{}\",\"kind\":\"{}\",\"source\":{},\"peer\":{},\"text\":\"{}\"{}}}\n",
+                 record.number, utc_words(record.stored), to_text(record.kind), record.source, record.peer,
+                 json_text(text_of(record)), values_json(values_of(record)));
     else fmt::print("{}\n", text_of(record));
   }
   if (page->damaged != 0) fmt::print(stderr, "hirosco log: {} damaged records left out\n", page->damaged);

@@ -25,8 +25,9 @@ void add_instance(CLI::App& command, std::string& instance) {
 }
 
 void add_connection(CLI::App& command, Connection& connection) {
-  command.add_option("--mission", connection.mission,
-                     "Mission whose descriptors decode the packets; by default the one that flies, else the usual one");
+  command.add_option(
+      "--mission", connection.mission,
+      "Mission whose descriptors decode the packets; by default the one that flies, else that of this folder");
   add_instance(command, connection.instance);
   command.add_option("--host", connection.host, "Address of the ground link; by default the flight's");
   command.add_option("--port", connection.port, "Port of the ground link; by default the flight's");
@@ -153,6 +154,7 @@ int read_and_do(int argc, char** argv) {
       "--values", simulate_options.values,
       "Folder of persistent parameters' values, read and written; by default there are none before");
   simulate_command->add_flag("--summary", simulate_options.summary, "Print counts instead of the log");
+  simulate_command->add_flag("--octets", simulate_options.octets, "Print each packet's octets behind its words");
 
   std::string judged_mission;
   auto* report_command = app.add_subcommand(
@@ -214,21 +216,27 @@ int read_and_do(int argc, char** argv) {
   StatusOptions status_options;
   auto* status_command =
       app.add_subcommand("status", "Is it well? One line and what deviates; ends with 1 when it is not");
+  status_command->add_option("subsystem", status_options.of,
+                             "The newest housekeeping of this subsystem, and the verdict in one line");
   status_command->add_flag("--all", status_options.all, "The newest housekeeping of every subsystem besides");
   add_connection(*status_command, status_options.connection);
 
   LogOptions log_options;
-  auto* log_command = app.add_subcommand("log", "Read the supervisor's log");
-  log_command->add_option("--mission", log_options.mission,
-                          "Mission whose log is read; by default the one that flies, else the usual one");
+  auto* log_command = app.add_subcommand("log", "Read the supervisor's log; its times are UTC");
+  const std::string whose_log =
+      "Mission whose log is read; by default the one that flies, else that of this folder: of its mission.xml, or its "
+      "only log";
+  log_command->add_option("mission", log_options.mission, whose_log);
+  log_command->add_option("--mission", log_options.mission, whose_log);
   log_command->add_option("--instance", log_options.instance, "Whose log, of those that fly or have flown from here");
   log_command->add_option("--path", log_options.path, "Another log store");
   log_command->add_option("--apid", log_options.apid, "Only this subsystem");
   log_command->add_option("--service", log_options.service, "Only this service");
   log_command->add_option("--text", log_options.text, "Only lines with this text");
   log_command->add_option("--last", log_options.last, "So many of the newest")->capture_default_str();
-  log_command->add_flag("--housekeeping", log_options.housekeeping,
-                        "Housekeeping, too, which is left out by itself (--service 3 and --json have it)");
+  log_command->add_flag(
+      "--housekeeping", log_options.housekeeping,
+      "Housekeeping with its values, too, which is left out by itself (--service 3 has it; --json without values)");
   log_command->add_flag("--json", log_options.json, "One JSON object a line");
 
   FaultOptions fault_options;
@@ -240,7 +248,8 @@ int read_and_do(int argc, char** argv) {
       ->add_option("line", fault_options.words,
                    "unplug, plug, freeze MS, corrupt N, hand wander, ...; without one, they are listed")
       ->allow_extra_args();
-  fault_command->add_option("--mission", fault_options.mission, "Mission that runs; by default the one that flies");
+  fault_command->add_option("--mission", fault_options.mission,
+                            "Mission that runs; by default the one that flies, else that of this folder");
   add_instance(*fault_command, fault_options.instance);
   SafeOptions safe_options;
   auto* safe_command =
@@ -250,8 +259,9 @@ int read_and_do(int argc, char** argv) {
 
   GroundOptions ground_options;
   auto* ground_command = app.add_subcommand("ground", "Serve the ground station's page and API for a flying mission");
-  ground_command->add_option("mission", ground_options.mission,
-                             "Name or path of the mission; by default the one that flies, else the usual one");
+  const std::string whose = "Name or path of the mission; by default the one that flies, else that of this folder";
+  ground_command->add_option("mission", ground_options.mission, whose);
+  ground_command->add_option("--mission", ground_options.mission, whose);
   add_instance(*ground_command, ground_options.instance);
   ground_command->add_option("--port", ground_options.port,
                              "Port on the loopback address; by default the first free one from 8080 on");
@@ -264,8 +274,8 @@ int read_and_do(int argc, char** argv) {
   ground_command->add_option("--page", ground_options.page, "Folder with another page");
   ground_command->add_flag("--json", ground_options.json, "The URL as JSON");
   auto* why_command = app.add_subcommand("why", "The chain of causes of the last stop");
-  why_command->add_option("mission", ground_options.mission,
-                          "Name or path of the mission; by default the one that flies, else the usual one");
+  why_command->add_option("mission", ground_options.mission, whose);
+  why_command->add_option("--mission", ground_options.mission, whose);
   why_command->add_option("--instance", ground_options.instance,
                           "Which one, of those that fly or have flown from here");
   why_command->add_option("--archive", ground_options.archive, "File of the ground station's archive");

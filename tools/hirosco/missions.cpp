@@ -81,6 +81,18 @@ std::string usual_mission() {
   return {};
 }
 
+std::string meant_mission() {
+  std::error_code failed;
+  if (fs::is_regular_file("mission.xml", failed)) return "mission.xml";
+  std::set<std::string> flown;
+  for (const auto& entry : fs::directory_iterator{"log", failed}) {
+    const fs::path& path = entry.path();
+    const bool is_log = path.extension() == ".db" || path.extension() == ".log";
+    if (is_log && !find_mission(path.stem().string()).empty()) flown.insert(path.stem().string());
+  }
+  return flown.size() == 1 ? *flown.begin() : std::string{};
+}
+
 std::optional<descriptor::Mission> load_mission(const std::string& name_or_path) {
   const fs::path file = find_mission(name_or_path);
   if (file.empty()) {

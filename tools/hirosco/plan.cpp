@@ -31,7 +31,7 @@ struct Asked {
   std::vector<const descriptor::Event*> events;
   const bool own = &subsystem == &mission.supervisor;
   for (const descriptor::Event& event : subsystem.events)
-    if (!own || (!descriptor::is_about_subsystem(event.name) && !descriptor::is_of_plans(event.name)))
+    if (!own || (!descriptor::is_about_subsystem(event.name) && !descriptor::is_unplanned(event.name)))
       events.push_back(&event);
   if (own) return events;
   for (const descriptor::Event& event : mission.supervisor.events)

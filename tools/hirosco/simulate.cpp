@@ -44,15 +44,16 @@ struct Injection {
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-/// One line for one record: time, kind, ways, words, octets.
-void print_record(const supervisor::LogRecord& record, const pus::PacketDescriber& describer) {
+/// One line for one record: time, kind, ways, words, and the octets where they are wanted.
+void print_record(const supervisor::LogRecord& record, const pus::PacketDescriber& describer, bool octets) {
   fmt::print("{:12.6f} {:<21} {} -> {}", seconds(record.monotonic - TimePoint{1s}), to_text(record.kind),
              record.source == 0 ? "ground" : describer.name_of(record.source),
              record.peer == 0 ? "ground" : describer.name_of(record.peer));
   if (!record.packet.empty()) fmt::print(" {}", describer.describe(record.packet));
   if (!record.note.view().empty()) fmt::print(" \"{}\"", record.note.view());
-  if (!record.packet.empty()) fmt::print(" ");
-  for (const std::byte octet : record.packet) fmt::print("{:02x}", std::to_integer<unsigned>(octet));
+  if (octets && !record.packet.empty()) fmt::print(" ");
+  if (octets)
+    for (const std::byte octet : record.packet) fmt::print("{:02x}", std::to_integer<unsigned>(octet));
   fmt::print("\n");
 }
 
@@ -115,7 +116,7 @@ int simulate(const SimulateOptions& options) {
                                                         &descriptor::SimulatedDevice::name) == mission->devices.end()) {
       fmt::print(stderr, "hirosco simulate: no device '{}'; the mission has", injection.device);
       for (const auto& device : mission->devices) fmt::print(stderr, " {}", device.name);
-      fmt::print(stderr, "\n");
+      fmt::print(stderr, "{}\n", mission->devices.empty() ? " no simulated device" : "");
       return exit_usage;
     }
     if (injection.device == "kill" && mission->find_subsystem(injection.line) == nullptr) {
@@ -162,7 +163,7 @@ int simulate(const SimulateOptions& options) {
   const pus::PacketDescriber describer{*mission};
   for (const auto& record : page->records) {
     if (!record.packet.empty()) ++packets;
-    if (!options.summary) print_record(record, describer);
+    if (!options.summary) print_record(record, describer, options.octets);
   }
   if (options.summary)
     fmt::print("{} s simulated, {} log records, {} packets, mode {}, {} of {} links up\n", seconds(options.run_for),

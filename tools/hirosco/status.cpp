@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -8,6 +9,7 @@
 #include <map>
 
 #include "hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp"
+#include "hirosco/utilities/lower_case.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 #include "tools/hirosco/instance.hpp"
@@ -89,16 +91,34 @@ void print_line(std::string_view text, std::string_view look) {
   return severity == descriptor::Severity::Medium ? "\x1b[33m" : "";
 }
 
-void print_verdict(const supervisor::Overview& overview, const terminal::Judgement& judged) {
+void print_verdict(const descriptor::Mission& mission, const supervisor::Overview& overview,
+                   const terminal::Judgement& judged) {
   const bool unwell = judged.verdict != terminal::Verdict::Well;
   print_line(judged.line, unwell ? look_of(descriptor::Severity::High) : "");
   for (const auto& finding : judged.findings)
     print_line(fmt::format("  {:<6} {}", to_text(finding.severity), finding.text), look_of(finding.severity));
   if (!unwell) return;
-  const std::string mode = overview.mode == overview.initial_mode ? overview.usual_mode : overview.mode;
-  print_line("What stopped it: hirosco why" +
-                 (mode.empty() ? std::string{} : fmt::format(". Up again: hirosco mode {}", mode)),
+  const auto way_up = terminal::way_up(overview, mission);
+  print_line(fmt::format("What stopped it: hirosco why{}", way_up.empty()       ? ""
+                                                           : way_up.size() == 1 ? ". Up again: " + way_up.front()
+                                                                                : ". Up again:"),
              "");
+  if (way_up.size() > 1)
+    for (const std::string& command : way_up) fmt::print("  {}\n", command);
+}
+
+/// Null: there is none of this name, and those that there are were printed.
+[[nodiscard]] const descriptor::Subsystem* find_named(const descriptor::Mission& mission, const std::string& name) {
+  std::vector<const descriptor::Subsystem*> all{&mission.supervisor};
+  for (const auto& member : mission.subsystems) all.push_back(&member.subsystem);
+  std::vector<std::string> names;
+  for (const auto* each : all) {
+    if (lower_case(each->name) == lower_case(name)) return each;
+    names.push_back(each->name);
+  }
+  fmt::print(stderr, "hirosco status: no subsystem '{}'{}; mission {} has {}\n", name, did_you_mean(name, names),
+             mission.name, fmt::join(names, ", "));
+  return nullptr;
 }
 
 }  // namespace
@@ -108,13 +128,15 @@ int status(const StatusOptions& options) {
   const auto place = find_ground_link("status", connection);
   if (!place) return place.error();
   const descriptor::Mission& mission = place->mission;
+  const descriptor::Subsystem* only = nullptr;
+  if (!options.of.empty() && (only = find_named(mission, options.of)) == nullptr) return exit_usage;
   auto link = GroundConnection::open(place->host, place->port);
   if (!link) {
     fmt::print(stderr, "hirosco status: {}:{}: {}\n", place->host, place->port, link.error().text);
     return exit_environment;
   }
   Listened listened;
-  const bool everything = options.all || connection.json;
+  const bool everything = options.all || connection.json || only != nullptr;
   const auto known = [&] { return terminal::heard_overview(mission, listened.values[mission.supervisor.id]); };
   if (!listen(mission, *link, listened, [&] { return !everything && known(); })) {
     fmt::print(stderr, "hirosco status: the ground link was closed\n");
@@ -122,8 +144,9 @@ int status(const StatusOptions& options) {
   }
   if (everything) {
     const auto print = connection.json ? print_newest_json : print_newest_text;
-    print(mission.supervisor, listened);
-    for (const auto& member : mission.subsystems) print(member.subsystem, listened);
+    if (only == nullptr || only == &mission.supervisor) print(mission.supervisor, listened);
+    for (const auto& member : mission.subsystems)
+      if (only == nullptr || only == &member.subsystem) print(member.subsystem, listened);
   }
   const auto overview = known();
   if (!overview) {
@@ -134,7 +157,8 @@ int status(const StatusOptions& options) {
     return exit_finding;
   }
   const terminal::Judgement judged = terminal::judge(*overview);
-  if (!connection.json) print_verdict(*overview, judged);
+  if (only != nullptr && !connection.json) print_line(judged.line, "");
+  else if (!connection.json) print_verdict(mission, *overview, judged);
   return judged.verdict == terminal::Verdict::Well ? exit_ok : exit_finding;
 }
 

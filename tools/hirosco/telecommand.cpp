@@ -50,9 +50,11 @@ namespace {
     if (lower_case(member.subsystem.name) == wanted) return &member.subsystem;
   std::vector<std::string> names{mission.supervisor.name};
   for (const auto& member : mission.subsystems) names.push_back(member.subsystem.name);
-  if (name.empty()) fmt::print(stderr, "hirosco tc: of which subsystem?");
-  else fmt::print(stderr, "hirosco tc: no subsystem '{}'{}", name, did_you_mean(name, names));
-  fmt::print(stderr, " the mission has {}\n", fmt::join(names, ", "));
+  if (name.empty()) fmt::print(stderr, "hirosco tc: of which subsystem? the mission has");
+  else
+    fmt::print(stderr, "hirosco tc: no subsystem '{}'{}; mission {} has", name, did_you_mean(name, names),
+               mission.name);
+  fmt::print(stderr, " {}\n", fmt::join(names, ", "));
   return nullptr;
 }
 
@@ -100,21 +102,38 @@ struct Encoded {
   return reason.number == 0 ? text : fmt::format("{} {}", text, reason.number);
 }
 
+/// As docs/failure-codes.md has them: the first in decimal, all others in hexadecimal numbers.
+[[nodiscard]] std::string code_text(std::uint16_t code) {
+  return code < 0x0100 ? fmt::format("code {}", code) : fmt::format("code 0x{:04X}", code);
+}
+
+/// By its name, the author's own by the one that the subsystem's descriptor gives it.
+[[nodiscard]] std::string failure_text(std::uint16_t code, const descriptor::Subsystem& subsystem) {
+  if (code < pus::first_own_failure_code)
+    return fmt::format("{} ({})", to_text(static_cast<pus::FailureCode>(code)), code_text(code));
+  const auto own = std::ranges::find(subsystem.failures, code, &descriptor::FailureName::code);
+  return own != subsystem.failures.end() ? fmt::format("{} ({})", own->name, code_text(code)) : code_text(code);
+}
+
 /// Where a request that was refused by mode or state would be permitted; empty: refused for another reason.
 [[nodiscard]] std::string way_out(const pus::TelemetryView& report, const descriptor::Mission& mission,
                                   const descriptor::Subsystem& subsystem, const Encoded& encoded) {
   OctetReader reader{report.source_data()};
   static_cast<void>(reader.get<std::uint32_t>());
   const auto code = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
-  if (report.subtype() != 2 || (code != pus::FailureCode::WrongMode && code != pus::FailureCode::WrongState)) return {};
   std::string request = encoded.request.name;
+  if (code == pus::FailureCode::NotPermittedNow && request.starts_with(pus::setting_prefix))
+    return terminal::while_in(encoded.request.states);
+  if (report.subtype() != 2 || (code != pus::FailureCode::WrongMode && code != pus::FailureCode::WrongState)) return {};
   if (request == "SET_STATE" && !encoded.data.empty())
     request += fmt::format(" {}", to_text(static_cast<descriptor::State>(encoded.data.back())));
-  return terminal::permitted_where(mission, subsystem, request);
+  const std::string where = terminal::permitted_where(mission, subsystem, request);
+  return where.empty() ? where : "in " + where;
 }
 
 /// Prints one verification report; true when it was the last of the request.
-[[nodiscard]] bool print_report(const pus::TelemetryView& report, double after_ms, bool json, bool& success) {
+[[nodiscard]] bool print_report(const pus::TelemetryView& report, const descriptor::Subsystem& subsystem,
+                                double after_ms, bool json, bool& success) {
   OctetReader reader{report.source_data()};
   static_cast<void>(reader.get<std::uint32_t>());
   constexpr std::array names{"",          "accepted", "refused", "started",   "start failed", "step", "step failed",
@@ -125,8 +144,7 @@ struct Encoded {
   std::string detail;
   if (subtype == 5 || subtype == 6) detail = fmt::format(" {}", reader.get<std::uint16_t>());
   if (failure) {
-    const auto code = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
-    detail += fmt::format(": {} (code {})", to_text(code), static_cast<unsigned>(code));
+    detail += ": " + failure_text(reader.get<std::uint16_t>(), subsystem);
     if (const auto reason = pus::reason_in(reader.rest())) detail += ": " + words_of(*reason);
   }
   if (json)
@@ -149,6 +167,19 @@ void print_problem(const pus::TelemetryView& report, bool json) {
   if (!json) return fmt::print("{}\n", text);
   std::ranges::replace_if(text, [](char c) { return c == '"' || c == '\\'; }, '\'');
   fmt::print("{{\"report\":\"129,10\",\"text\":\"{}\",\"from\":{}}}\n", text, report.apid());
+}
+
+/// What is against a change of mode that is refused, as `hirosco mode --preview` would say it.
+void print_against(const pus::TelemetryView& report, bool json) {
+  if (report.subtype() != pus::st129::mode_preview) return;
+  const auto preview = pus::st129::read_mode_preview(report.source_data());
+  if (!preview) return;
+  for (const std::string& each : preview->against) {
+    const std::string text = pus::text_of(std::as_bytes(std::span{each}));
+    if (json)
+      fmt::print("{{\"report\":\"129,5\",\"text\":\"impossible: {}\",\"from\":{}}}\n", json_text(text), report.apid());
+    else fmt::print("              impossible: {}\n", text);
+  }
 }
 
 }  // namespace
@@ -199,14 +230,17 @@ int telecommand(const TelecommandOptions& options) {
     }
     const auto report = pus::TelemetryView::parse(**received);
     if (!report || report->destination() != source) continue;
-    if (report->service() == pus::st129::service_type) print_problem(*report, options.connection.json);
+    if (report->service() == pus::st129::service_type) {
+      print_problem(*report, options.connection.json);
+      print_against(*report, options.connection.json);
+    }
     if (report->service() != 1) continue;
     if (OctetReader{report->source_data()}.get<std::uint32_t>() != id) continue;
     const double after_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     bool success = false;
-    if (!print_report(*report, after_ms, options.connection.json, success)) continue;
+    if (!print_report(*report, *subsystem, after_ms, options.connection.json, success)) continue;
     if (const auto where = way_out(*report, mission, *subsystem, *encoded); !where.empty() && !options.connection.json)
-      fmt::print("              permitted in {}\n", where);
+      fmt::print("              permitted {}\n", where);
     return success ? exit_ok : exit_finding;
   }
 }

@@ -15,7 +15,9 @@ namespace {
 
 constexpr std::uint16_t in_all_states = 0x03FF;
 
-[[nodiscard]] std::string while_in(std::uint16_t states) {
+}  // namespace
+
+std::string while_in(std::uint16_t states) {
   if (states == in_all_states) return "in any state";
   std::vector<std::string> names;
   for (const auto& row : EnumTexts<descriptor::State>::table)
@@ -25,8 +27,6 @@ constexpr std::uint16_t in_all_states = 0x03FF;
     text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
   return "while it is " + text;
 }
-
-}  // namespace
 
 std::string permitted_where(const descriptor::Mission& mission, const descriptor::Subsystem& addressee,
                             std::string_view request) {

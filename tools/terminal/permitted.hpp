@@ -14,4 +14,7 @@ namespace hirosco::terminal {
 [[nodiscard]] std::string permitted_where(const descriptor::Mission& mission, const descriptor::Subsystem& addressee,
                                           std::string_view request);
 
+/// "while it is Safe-Operational or Operational", "in any state": bit n set is State n.
+[[nodiscard]] std::string while_in(std::uint16_t states);
+
 }  // namespace hirosco::terminal

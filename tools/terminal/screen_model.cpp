@@ -135,7 +135,7 @@ void ScreenModel::take(std::string_view line) {
   }
   if (told.contains("told")) {
     const std::string text = text_in(told, "told");
-    if (text == "shutdown") ends_ = true;  // whoever asked for it
+    if (text == "shutdown" || text.starts_with("shutdown, ")) ends_ = true;  // whoever asked for it
     return add({.at_s = number_in<double>(told, "at_s"), .severity = severity_of(text), .text = text});
   }
   if (told.contains("held")) return add({.at_s = {}, .severity = Severity::Info, .text = text_in(told, "held")});

@@ -133,7 +133,7 @@ TEST(ScreenModelTest, ReadsKeysOneByOneAndPassesOverThoseThatAreNotItsOwn) {
 TEST(ScreenModelTest, HowItWasIsWhatItWasBeforeTheEndBegan) {
   ScreenModel model;
   model.take(supervisor::json_of(supervisor::testing::pair(), 5, {}));
-  model.take(told(5.5, "shutdown"));
+  model.take(told(5.5, "shutdown, asked for by SIGINT (signal 2)"));
   Overview down = supervisor::testing::pair();
   for (auto& member : down.members) member.state = "Offline";
   model.take(supervisor::json_of(down, 6, {}));

@@ -73,6 +73,20 @@ std::string inhibition_words(std::uint32_t inhibited) {
   return words;
 }
 
+std::vector<std::string> way_up(const Overview& overview, const descriptor::Mission& mission) {
+  const std::string name = overview.mode == overview.initial_mode ? overview.usual_mode : overview.mode;
+  const auto mode = std::ranges::find(mission.modes, name, &descriptor::Mode::name);
+  std::vector<std::string> commands;
+  if (mode == mission.modes.end()) return commands;
+  for (const auto& step : mode->commission) {
+    const auto member = std::ranges::find(overview.members, step.subsystem, &Overview::Member::name);
+    if (member != overview.members.end() && !member->runs)
+      commands.push_back(fmt::format("hirosco tc {} SET_STATE 0", member->name));
+  }
+  commands.push_back("hirosco mode " + name);
+  return commands;
+}
+
 Judgement judge(const Overview& overview) {
   Judgement judged;
   std::size_t wanted = 0, astray = 0, links = 0, down = 0;

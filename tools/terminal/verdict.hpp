@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/descriptor/model/subsystem.hpp"
+#include "hirosco/descriptor/model/mission.hpp"
 #include "supervisor/overview.hpp"
 
 /// Is it well? The same answer for `hirosco status` and for the screen of `hirosco run`.
@@ -34,6 +34,9 @@ struct Judgement {
   std::vector<Finding> findings{};  ///< the gravest first
 };
 [[nodiscard]] Judgement judge(const Overview& overview);
+
+/// The commands that bring up again what is down, in turn: who does not run is started before the mode comes up. Empty: there is no such mode.
+[[nodiscard]] std::vector<std::string> way_up(const Overview& overview, const descriptor::Mission& mission);
 
 /// Why actuators are inhibited, in the words of the page; empty when they are not.
 [[nodiscard]] std::string inhibition_words(std::uint32_t inhibited);

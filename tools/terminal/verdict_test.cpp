@@ -81,6 +81,23 @@ TEST(VerdictTest, WhoDoesNotRunALinkThatIsDownAndWhoStaysInTheInitialModeAreUnwe
   EXPECT_EQ(judge(initial).verdict, Verdict::Well);
 }
 
+TEST(VerdictTest, TheWayUpStartsFirstWhoDoesNotRun) {
+  descriptor::Mission mission;
+  descriptor::Mode coupled;
+  coupled.name = "coupled";
+  coupled.commission = {{.subsystem = "ARM"}, {.subsystem = "HAND"}};
+  mission.modes = {coupled};
+  Overview craft = supervisor::testing::pair();
+  EXPECT_THAT(way_up(craft, mission), ElementsAre("hirosco mode coupled"));
+  craft.members[1] = {.name = "HAND", .wanted = "Operational"};
+  EXPECT_THAT(way_up(craft, mission), ElementsAre("hirosco tc HAND SET_STATE 0", "hirosco mode coupled"));
+  craft.mode = craft.initial_mode = "commissioning";
+  EXPECT_THAT(way_up(craft, mission), ElementsAre("hirosco tc HAND SET_STATE 0", "hirosco mode coupled"))
+      << "the usual one";
+  craft.usual_mode.clear();
+  EXPECT_THAT(way_up(craft, mission), IsEmpty());
+}
+
 TEST(VerdictTest, WhatTheModeDoesNotWantIsNoFault) {
   Overview craft = supervisor::testing::pair();
   craft.members.push_back({.name = "LAMP"});

@@ -15,10 +15,13 @@ inline constexpr std::array<std::string_view, 5> events_about_subsystems{"PROCES
 [[nodiscard]] constexpr bool is_about_subsystem(std::string_view event) noexcept {
   return std::ranges::find(events_about_subsystems, event) != events_about_subsystems.end();
 }
-/// They tell of plans themselves: nothing can be planned for that.
-inline constexpr std::array<std::string_view, 3> events_of_plans{"RECOVERY_STEP", "PLAN_PREEMPTED", "PLAN_REFUSED"};
-[[nodiscard]] constexpr bool is_of_plans(std::string_view event) noexcept {
-  return std::ranges::find(events_of_plans, event) != events_of_plans.end();
+/// A stop of everything that no telecommand asked for. It is carried out when it is told.
+inline constexpr std::string_view event_of_local_stop = "LOCAL_STOP";
+/// Nothing can be planned for what tells of plans themselves, nor for what stops everything already.
+inline constexpr std::array<std::string_view, 4> unplanned_events{"RECOVERY_STEP", "PLAN_PREEMPTED", "PLAN_REFUSED",
+                                                                  event_of_local_stop};
+[[nodiscard]] constexpr bool is_unplanned(std::string_view event) noexcept {
+  return std::ranges::find(unplanned_events, event) != unplanned_events.end();
 }
 /// Enumeration of a supervisor's descriptor that a mission's plans are added to: their numbers, from 1, and names.
 inline constexpr std::string_view plans_enumeration = "PLANS";

@@ -101,7 +101,11 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
     problems_.add(*element.find("severity"), "E0325",
                   fmt::format("the plan never begins: event {} has another severity", in_quotes(plan.event)),
                   "leave severity out, or name the event's");
-  else if (is_of_plans(plan.event))
+  else if (plan.event == event_of_local_stop)
+    problems_.add(*event, "E0325",
+                  fmt::format("the plan never begins: {} tells of a stop that is carried out", plan.event),
+                  "everything stops by it; leave the plan out");
+  else if (is_unplanned(plan.event))
     problems_.add(*event, "E0325", fmt::format("the plan never begins: {} tells of other plans", plan.event),
                   "name the event that the other plan answers");
 }

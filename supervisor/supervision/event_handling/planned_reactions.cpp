@@ -66,7 +66,7 @@ void add(const descriptor::Mission& mission, RaisedEvent event, std::vector<Plan
 template <class Visit>
 void each_event(const descriptor::Mission& mission, Visit&& visit) {
   for (const descriptor::Event& event : mission.supervisor.events)
-    if (!descriptor::is_about_subsystem(event.name) && !descriptor::is_of_plans(event.name))
+    if (!descriptor::is_about_subsystem(event.name) && !descriptor::is_unplanned(event.name))
       visit(RaisedEvent{mission.supervisor.name, event.name, event.severity, {}, {}, RaisedEvent::Origin::Supervisor});
   for (const descriptor::MissionSubsystem& member : mission.subsystems) {
     const descriptor::Subsystem& subsystem = member.subsystem;

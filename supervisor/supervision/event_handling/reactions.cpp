@@ -146,7 +146,7 @@ Reaction Reactions::reaction_to_own(std::string_view event, Severity severity) c
 }
 
 void Reactions::react_to_own(std::string_view event, Severity severity) {
-  if (descriptor::is_about_subsystem(event) || descriptor::is_of_plans(event)) return;
+  if (descriptor::is_about_subsystem(event) || descriptor::is_unplanned(event)) return;
   const Reaction reaction = reaction_to_own(event, severity);
   const auto acts = [](const descriptor::PlanStep& planned) { return find_step_kind(planned.kind)->run != nullptr; };
   if (craft_.shutting_down || std::ranges::none_of(reaction.steps, acts)) return;
@@ -203,7 +203,7 @@ const descriptor::Event* Reactions::find_event(std::uint16_t apid, std::uint16_t
   if (origin != nullptr)
     if (const auto* own = find_in(origin->descriptor())) return own;
   const auto* ours = find_in(craft_.mission.supervisor);
-  if (ours == nullptr || descriptor::is_of_plans(ours->name)) return nullptr;
+  if (ours == nullptr || descriptor::is_unplanned(ours->name)) return nullptr;
   const bool fits = descriptor::is_about_subsystem(ours->name) ? origin != nullptr : apid == supervisor_apid;
   return fits ? ours : nullptr;
 }

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/event_handling/safe_all.hpp"
 
+#include <algorithm>
 #include <string>
+
+#include "hirosco/descriptor/model/supervisor_events.hpp"
 
 namespace hirosco::supervisor {
 
@@ -20,11 +23,14 @@ void SafeAll::carry_out(const pus::Request& request) {
 
 void SafeAll::asked() {
   pending_.push_back({craft_.guard.stop_all(), std::nullopt});
+  own_.announce(descriptor::event_of_local_stop);
   after_stop("stop by signal or local socket");
 }
 
 void SafeAll::again() {
   if (before_.empty()) before_.emplace_back();
+  if (std::ranges::any_of(before_, [](const auto& asked) { return !asked; }))
+    own_.announce(descriptor::event_of_local_stop);
   for (const auto& request : std::exchange(before_, {})) pending_.push_back({craft_.guard.stop_all(), request});
   after_stop("a stop that the supervisor before had not ended");
 }

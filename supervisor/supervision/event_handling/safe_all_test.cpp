@@ -37,6 +37,23 @@ TEST_F(SafeAllTest, TheStatesFollowOfWhoActsButNotOfTheGroundLink) {
   EXPECT_TRUE(was_told("stop by signal or local socket: every actuator inhibited"));
 }
 
+TEST_F(SafeAllTest, OneThatNoTelecommandAskedForIsToldToGroundAndNoPlanAnswersIt) {
+  mission.plans = {{.name = "all",
+                    .severities = {descriptor::Severity::Medium},
+                    .steps = {{.kind = "set_state", .values = {static_cast<std::int64_t>(SafeOperational)}}}}};
+  start_supervisor();
+  start_all(SafeOperational);
+  parts.safe_all.asked();
+  for (int step = 0; step < 10; ++step) own_step();
+  EXPECT_TRUE(was_told("SUPERVISOR medium LOCAL_STOP"));
+  EXPECT_FALSE(was_told("because of LOCAL_STOP"));
+  story.clear();
+  const auto safe_all = telecommand(supervisor_apid, 8, 1, call_data("SAFE_ALL"));
+  parts.telecommands.take({.packet = safe_all, .origin = Origin::ground()});
+  for (int step = 0; step < 10; ++step) own_step();
+  EXPECT_FALSE(was_told("LOCAL_STOP"));
+}
+
 TEST_F(SafeAllTest, TheGuardHasStoppedEverythingBeforeAnythingIsSent) {
   start_all(Operational);
   ASSERT_TRUE(guard.release(arm, guard.fences(arm)));

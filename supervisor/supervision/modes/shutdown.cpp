@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/modes/shutdown.hpp"
 
+#include <string>
 #include <utility>
 
 #include "supervisor/supervision/data_handling/reception.hpp"
@@ -22,16 +23,18 @@ void Shutdown::provide() {
 void Shutdown::command(const pus::Request& asked) {
   parts_.own.verification().accepted(asked);
   parts_.own.verification().started(asked);
-  request();
+  const bool of_a_member = craft_.member(asked.source) != nullptr;
+  request(of_a_member ? "telecommand of " + craft_.name_of(asked.source)
+                      : "telecommand from ground, source id " + std::to_string(asked.source));
   parts_.own.verification().completed(asked);
 }
 
-void Shutdown::request() {
+void Shutdown::request(std::string_view by) {
   if (craft_.shutting_down) return;
   craft_.shutting_down = true;
   craft_.remember();
   deadline_ = craft_.now + limit;
-  craft_.tell("shutdown");
+  craft_.tell(by.empty() ? "shutdown" : "shutdown, asked for by " + std::string{by});
   parts_.under_way.drop();
   // Nobody moves on until its service loop has obeyed, and nothing that waited for the disk begins to.
   for (const Member& member : craft_.members)

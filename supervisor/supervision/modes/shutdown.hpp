@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string_view>
+
 #include <optional>
 
 #include "supervisor/supervision/craft.hpp"
@@ -29,7 +31,8 @@ class Shutdown final {
   void provide();
   /// SHUTDOWN, carried out where it is received.
   void command(const pus::Request& asked);
-  void request();
+  /// `by`: who asks, as the log is to say it.
+  void request(std::string_view by = {});
   /// Ends what is left when the time has run out. The flight is over one step after the last member: what is said of that
   /// is in the log.
   void enforce(TimePoint now);

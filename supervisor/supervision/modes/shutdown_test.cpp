@@ -52,6 +52,15 @@ TEST_F(ShutdownTest, TheFlightIsOverOneStepAfterTheLastMemberSoThatWhatIsSaidOfT
   EXPECT_TRUE(was_told("shutdown"));
 }
 
+TEST_F(ShutdownTest, WhoAskedForItIsTold) {
+  start_all(Offline);
+  parts.telecommands.take(
+      {.packet = telecommand(supervisor_apid, 8, 1, call_data("SHUTDOWN")), .origin = Origin::ground()});
+  EXPECT_TRUE(was_told("shutdown, asked for by telecommand from ground, source id "));
+  parts.shutdown.request("SIGTERM (signal 15)");
+  EXPECT_FALSE(was_told("SIGTERM")) << "the first has asked";
+}
+
 TEST_F(ShutdownTest, WhoDoesNotAnswerIsEndedAfterFiveSecondsAndTheFlightIsNotOrderly) {
   start_all(SafeOperational);
   parts.shutdown.request();

@@ -122,7 +122,7 @@ void Adoption::hand_over(Member& member, Page& page) {
 void Adoption::finish_what_was_begun() {
   parts_.telecommands.end_what_was_begun();
   parts_.links.end_what_was_begun();
-  if (shutting_down_) return parts_.shutdown.request();
+  if (shutting_down_) return parts_.shutdown.request("the supervisor before this one");
   for (Member& member : craft_.members) {
     if (!member.alive() && before(member).alive) parts_.processes.found_dead(member);
   }
