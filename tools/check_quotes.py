@@ -136,8 +136,9 @@ found += [f"docs/adr: {what}" for what in statuses(
     {pathlib.Path(name).name[:4]: read(name) for name in files if re.match(r"docs/adr/\d{4}-", name) and exists(name)})]
 found += [f"{file.relative_to(root)}: {what}" for file in documents if file.is_file()
           for what in wrong(file.read_text(), read, exists)]
+# Of the packages the pages of docs/ stand in one folder with docs/installed/README.md.
 found += [f"{file.relative_to(root)}: {what}" for file in documents if file.is_file()
-          for what in dead(file.relative_to(root).parent, file.read_text(), lambda path: (root / path).exists())]
+          for what in dead(str(file.relative_to(root).parent).replace("docs/installed", "docs"), file.read_text(), lambda path: (root / path).exists())]
 for name in sorted(files):
     if name.endswith("README.md") and name != "docs/adr/README.md":
         found += [f"{name}: {what}" for what in lost(str(pathlib.Path(name).parent), read(name) or "", files)]

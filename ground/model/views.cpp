@@ -51,8 +51,7 @@ json mark_json(const StoredMark& mark) {
 }
 
 json status_json(const Catalogue& catalogue, const Model& model, OnboardTime now) {
-  constexpr std::array<const char*, 7> reasons{"stop",    "link",       "device",   "author",
-                                               "failure", "supervisor", "awaited"};
+  constexpr std::array<const char*, 7> reasons{"stop", "link", "device", "author", "failure", "supervisor", "awaited"};
   json subsystems = json::array();
   for (std::size_t i = 0; i < catalogue.subsystems().size(); ++i) {
     const auto& descriptor = *catalogue.subsystems()[i];
