@@ -60,8 +60,14 @@ TEST_F(ReactionCauses, NameTheEventThatTheReactionAnswers) {
 class InjectionAsCause : public ::testing::Test {
  protected:
   InjectionAsCause() {
-    mission.devices.push_back({.name = "robot", .subsystem = "ARM", .device = "ARM-BUS"});
-    mission.devices.push_back({.name = "stick", .subsystem = "HAND", .device = "HAND"});
+    play("robot", "ARM", "ARM-BUS");
+    play("stick", "HAND", "HAND");
+  }
+  void play(const char* name, const char* subsystem, const char* device) {
+    descriptor::SimulatedDevice& played = mission.devices.emplace_back();
+    played.name = name;
+    played.subsystem = subsystem;
+    played.device = device;
   }
   [[nodiscard]] static TimePoint at(double second) {
     return TimePoint{std::chrono::duration_cast<Duration>(std::chrono::duration<double>(second))};

@@ -85,7 +85,9 @@ TEST(VerdictTest, TheWayUpStartsFirstWhoDoesNotRun) {
   descriptor::Mission mission;
   descriptor::Mode coupled;
   coupled.name = "coupled";
-  coupled.commission = {{.subsystem = "ARM"}, {.subsystem = "HAND"}};
+  coupled.commission.resize(2);
+  coupled.commission[0].subsystem = "ARM";
+  coupled.commission[1].subsystem = "HAND";
   mission.modes = {coupled};
   Overview craft = supervisor::testing::pair();
   EXPECT_THAT(way_up(craft, mission), ElementsAre("hirosco mode coupled"));

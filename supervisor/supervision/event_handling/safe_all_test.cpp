@@ -38,9 +38,11 @@ TEST_F(SafeAllTest, TheStatesFollowOfWhoActsButNotOfTheGroundLink) {
 }
 
 TEST_F(SafeAllTest, OneThatNoTelecommandAskedForIsToldToGroundAndNoPlanAnswersIt) {
-  mission.plans = {{.name = "all",
-                    .severities = {descriptor::Severity::Medium},
-                    .steps = {{.kind = "set_state", .values = {static_cast<std::int64_t>(SafeOperational)}}}}};
+  descriptor::Plan plan;
+  plan.name = "all";
+  plan.severities = {descriptor::Severity::Medium};
+  plan.steps = {{.kind = "set_state", .values = {static_cast<std::int64_t>(SafeOperational)}}};
+  mission.plans = {plan};
   start_supervisor();
   start_all(SafeOperational);
   parts.safe_all.asked();
