@@ -60,7 +60,7 @@ TEST_F(ReactionCauses, NameTheEventThatTheReactionAnswers) {
 class InjectionAsCause : public ::testing::Test {
  protected:
   InjectionAsCause() {
-    play("robot", "ARM", "ARM-BUS");
+    play("motor", "ARM", "ARM-BUS");
     play("stick", "HAND", "HAND");
   }
   void play(const char* name, const char* subsystem, const char* device) {
@@ -81,7 +81,7 @@ class InjectionAsCause : public ::testing::Test {
 };
 
 TEST_F(InjectionAsCause, IsWhatWasInjectedUpToTwoSecondsBefore) {
-  inject(10, "robot", "corrupt 5");
+  inject(10, "motor", "corrupt 5");
   EXPECT_FALSE(caused(9.9, "ARM", "HOT"));
   EXPECT_TRUE(caused(12, "ARM", "HOT"));
   EXPECT_TRUE(caused(12, "ARM", "PROCESS_DIED"));
@@ -89,15 +89,15 @@ TEST_F(InjectionAsCause, IsWhatWasInjectedUpToTwoSecondsBefore) {
 }
 
 TEST_F(InjectionAsCause, IsAnUnplugOfTheLossOfThatDeviceUntilItIsPluggedIn) {
-  inject(10, "robot", "unplug");
+  inject(10, "motor", "unplug");
   EXPECT_TRUE(caused(500, "ARM", "ARM_BUS_LOST"));
   EXPECT_FALSE(caused(500, "HAND", "HAND_LOST")) << "another device";
   EXPECT_FALSE(caused(500, "ARM", "ARM_LOST")) << "another device of the same subsystem";
   EXPECT_FALSE(caused(500, "ARM", "HOT"));
   EXPECT_FALSE(caused(500, "ARM", "PROCESS_DIED"));
-  inject(600, "robot", "heal");
+  inject(600, "motor", "heal");
   EXPECT_TRUE(caused(700, "ARM", "ARM_BUS_LOST")) << "that plugs nothing in";
-  inject(800, "robot", "plug");
+  inject(800, "motor", "plug");
   EXPECT_TRUE(caused(802, "ARM", "ARM_BUS_LOST"));
   EXPECT_FALSE(caused(802.1, "ARM", "ARM_BUS_LOST"));
   EXPECT_TRUE(caused(500, "ARM", "ARM_BUS_LOST")) << "what comes after has caused nothing before";
@@ -118,7 +118,7 @@ TEST_F(InjectionAsCause, IsSilenceUntilItIsHealedAndAStallForItsTime) {
 }
 
 TEST_F(InjectionAsCause, IsNoHealAndNoPlugOfADeath) {
-  inject(10, "robot", "heal");
+  inject(10, "motor", "heal");
   inject(10, "stick", "plug");
   EXPECT_FALSE(caused(10.5, "ARM", "PROCESS_DIED"));
   EXPECT_FALSE(caused(10.5, "HAND", "HANG"));

@@ -123,8 +123,8 @@ DEFECTS = [
            "supervisor_test", "ConsoleTest.ShowsOneSpeakersLinesUpToALimitAndCountsTheOthersExactly"),
     # A flight that a reaction of high severity had ended was told as a good one.
     Defect("reaction without a cause", "supervisor/unprovoked_reactions.hpp",
-           "if (commanded_ == TimePoint{} || now - commanded_ > limit) uncommanded_",
-           "if (!PLANTED && (commanded_ == TimePoint{} || now - commanded_ > limit)) uncommanded_",
+           "    if (commanded_ == TimePoint{} || now - commanded_ > limit)\n",
+           "    if (!PLANTED && (commanded_ == TimePoint{} || now - commanded_ > limit))\n",
            "supervisor_test", "ReactionCauses.*"),
     # A budget below what is drawn took nothing from anybody.
     Defect("lowered power budget", f"{SUPERVISION}/resource_management/power_handling.cpp",

@@ -11,14 +11,13 @@ namespace hirosco::terminal {
 namespace {
 
 /// By bit of Inhibition; the page has the same words (ground/web/page/stop_story.js).
-constexpr std::array<std::string_view, 7> inhibitions{
-    "stopped by SAFE ALL or by the supervisor",
-    "a link that it requires is missing",
-    "its device is lost",
-    "its own protection tripped",
-    "its cycle failed",
-    "the supervisor does not answer",
-    "a device, a fall-back or a slower producer has not answered yet"};
+constexpr std::array<std::string_view, 7> inhibitions{"stopped by SAFE ALL or by the supervisor",
+                                                      "a link that it requires is missing",
+                                                      "its device is lost",
+                                                      "its own protection tripped",
+                                                      "its cycle failed",
+                                                      "the supervisor does not answer",
+                                                      "a device or producer has not answered yet"};
 
 [[nodiscard]] std::string because(std::uint32_t inhibited) {
   const std::string words = inhibition_words(inhibited);

@@ -73,7 +73,7 @@ effect(() => {
 const reasons = {
   stop: 'stopped by SAFE ALL or by the supervisor', link: 'a link that it requires is missing', device: 'its device is lost',
   author: 'its own protection tripped', failure: 'its cycle failed', supervisor: 'the supervisor does not answer',
-  awaited: 'a device has not answered yet',
+  awaited: 'a device or producer has not answered yet',
 };
 /// Why the actuators of a subsystem are inhibited, in words; empty when they are not.
 export function inhibited_text(now) {
