@@ -67,7 +67,7 @@ class Rokviss(unittest.TestCase):
 
     def it_went_down_in_order(self, rokviss):
         after = [line.told for line in rokviss.told()]
-        after = after[after.index("shutdown"):]
+        after = after[next(at for at, text in enumerate(after) if text.startswith("shutdown")):]
         self.assertFalse([text for text in after if "no answer" in text or "time limit" in text], after)
         for name in ("MANIPULATOR", "JOYSTICK", "COMMUNICATION"):
             places = [after.index(f"{name} info STATE_CHANGED STATE={state}")

@@ -99,7 +99,8 @@ class Instances(unittest.TestCase):
                 done = subprocess.run([str(flight.BINARIES / "hirosco"), "log", "--instance", "two", "--last", "1"],
                                       cwd=elsewhere, env={**one.environment, "XDG_RUNTIME_DIR": elsewhere},
                                       stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=20, check=False)
-                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertRegex(done.stderr, r"^\S*log/two/rokviss.db: number, time in UTC \(Z\), kind, what\n$")
                 self.assertTrue(done.stdout)
             self.assertEqual(two.end(), 0, two.errors)
             self.assertEqual(one.hirosco("tc", "manipulator", "ping").returncode, 0, "the only one that is left is meant")
