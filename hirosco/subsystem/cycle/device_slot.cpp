@@ -89,7 +89,9 @@ void DeviceSlot::follow(Duration sampling) noexcept {
   if (sampling_ > Duration{}) {
     left_obeys_cycles_ =
         static_cast<std::uint32_t>(in_new_cycles(left_obeys_cycles_) + (left_obeys_cycles_ > 0 ? 1 : 0));
-    since_active_ = static_cast<std::uint32_t>(std::min<std::int64_t>(in_new_cycles(since_active_), never));
+    // Never is never, in cycles of an hour too: no product of it is formed.
+    if (since_active_ < never)
+      since_active_ = static_cast<std::uint32_t>(std::min<std::int64_t>(in_new_cycles(since_active_), never));
   }
   sampling_ = sampling;
   left_obeys_ = static_cast<std::uint32_t>(std::chrono::microseconds{watchdog_us_} / sampling) + 1;

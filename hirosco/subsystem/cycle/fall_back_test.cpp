@@ -235,6 +235,20 @@ TEST_F(FallBack, AnotherPeriodMakesWhatIsLeftOfAWatchdogNoShorter) {
   EXPECT_GE(cycles, 4 * 16);
 }
 
+TEST_F(FallBack, WhoWasNeverActiveHoldsNothingBackWhateverThePeriodsAre) {
+  use.watchdog_us = 20'000;
+  make();
+  for (const Duration period : {Duration{1h}, Duration{500us}, Duration{1ms}}) slot->follow(period);
+  slot->read(false);
+  slot->write(1, false, false);
+  for (int cycles = 0; !slot->just_fell_back() && cycles < 100; ++cycles) slot->read(true);
+  ASSERT_TRUE(slot->just_fell_back());
+  slot->write(1, false, false);
+  say(1, heard(1)->sequence);
+  slot->read(true);
+  EXPECT_FALSE(slot->holds_back());
+}
+
 TEST_F(FallBack, WhatWasNotActiveHoldsNothingBackBehindTheFirstAnswer) {
   slot->read(false);
   slot->write(1, false, false);
