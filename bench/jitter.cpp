@@ -13,9 +13,7 @@
 #include <vector>
 
 #include "bench/figures.hpp"
-#include "hirosco/data_transfer/link/latest_link.hpp"
-#include "hirosco/data_transfer/memory/heap_memory.hpp"
-#include "hirosco/subsystem/process/cycle_rest.hpp"
+#include "bench/loop.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/thread.hpp"
@@ -25,32 +23,14 @@ namespace {
 
 constexpr Duration period = 500us;
 constexpr int priority = 80;
-constexpr std::uint32_t payload_octets = 256;
 
 /// Of a precise cycle: more than wake-ups take but for one in a thousand, less than half of the period.
 constexpr Duration spin = 200us;
 
-/// Ours: what a subsystem's cycle rests by, its clock and a link.
 Figures measure_ours(const Clock& clock, int cycles, const CycleWait& wait) {
-  HeapMemory provider;
-  const LinkLayout layout{1, payload_octets, 1, period};
-  const Mapping memory =
-      provider.map(provider.create("link", link_memory_octets(payload_octets)).value(), Access::ReadWrite).value();
-  LatestWriter writer = LatestWriter::make(memory.octets, layout).value();
-  LatestReader reader = LatestReader::make(memory.octets, layout).value();
-  std::array<std::byte, payload_octets> payload{};
   std::vector<std::int64_t> late;
   late.reserve(static_cast<std::size_t>(cycles));
-  TimePoint wake = clock.now() + period;
-  for (int i = 0; i < cycles; ++i) {
-    static_cast<void>(rest_until(wake, wait, clock));
-    const TimePoint now = clock.now();
-    late.push_back((now - wake).count());
-    writer.write(payload, now, LinkStatus::Valid);
-    (void)reader.read(payload);
-    do wake += period;
-    while (wake <= now);  // a missed cycle is not made up for
-  }
+  run_loop(clock, period, cycles, wait, [&](Duration by) { late.push_back(by.count()); });
   return figures_of(late, 1e-3);
 }
 

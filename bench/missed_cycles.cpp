@@ -19,9 +19,7 @@
 #include <thread>
 #include <vector>
 
-#include "hirosco/data_transfer/link/latest_link.hpp"
-#include "hirosco/data_transfer/memory/heap_memory.hpp"
-#include "hirosco/subsystem/process/cycle_rest.hpp"
+#include "bench/loop.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/thread.hpp"
@@ -32,7 +30,6 @@ namespace {
 constexpr Duration period = 500us;
 constexpr std::int64_t period_us = 500;
 constexpr int priority = 80;
-constexpr std::uint32_t payload_octets = 256;
 constexpr int slice_cycles = 100'000;
 constexpr std::size_t told_us = 20'000;  ///< later than this is counted as so late, and told by its maximum
 
@@ -62,27 +59,6 @@ struct Lateness {
                 at(0.99), at(0.999), at(0.9999), at(0.99999), static_cast<long long>(max_us));
   }
 };
-
-/// What a subsystem's cycle rests by, its clock and a link.
-void run_ours(const Clock& clock, int cycles, Lateness& lateness) {
-  HeapMemory provider;
-  const LinkLayout layout{1, payload_octets, 1, period};
-  const Mapping memory =
-      provider.map(provider.create("link", link_memory_octets(payload_octets)).value(), Access::ReadWrite).value();
-  LatestWriter writer = LatestWriter::make(memory.octets, layout).value();
-  LatestReader reader = LatestReader::make(memory.octets, layout).value();
-  std::array<std::byte, payload_octets> payload{};
-  TimePoint wake = clock.now() + period;
-  for (int i = 0; i < cycles; ++i) {
-    static_cast<void>(rest_until(wake, {}, clock));
-    const TimePoint now = clock.now();
-    lateness.add(std::chrono::duration_cast<std::chrono::microseconds>(now - wake).count());
-    writer.write(payload, now, LinkStatus::Valid);
-    (void)reader.read(payload);
-    do wake += period;
-    while (wake <= now);  // a missed cycle is not made up for
-  }
-}
 
 /// cyclictest as it begins; `read_cyclictest` takes its histogram when it has ended.
 std::FILE* begin_cyclictest(int cycles, int processor, bool realtime) {
@@ -147,7 +123,9 @@ int run(std::uint64_t cycles, int load) {
     if (apart) static_cast<void>(rest_until(clock.now() + 200ms, {}, clock));
     (void)pin_to_cpu(mine);
     if (realtime) (void)set_fifo_priority(priority);
-    run_ours(clock, now, ours);
+    run_loop(clock, period, now, {}, [&](Duration by) {
+      ours.add(std::chrono::duration_cast<std::chrono::microseconds>(by).count());
+    });
     (void)set_ordinary_scheduling();
     if (apart && other != nullptr) beside = read_cyclictest(other, cyclictest);
     done += static_cast<std::uint64_t>(now);
