@@ -123,9 +123,8 @@ int run(std::uint64_t cycles, int load) {
     if (apart) static_cast<void>(rest_until(clock.now() + 200ms, {}, clock));
     (void)pin_to_cpu(mine);
     if (realtime) (void)set_fifo_priority(priority);
-    run_loop(clock, period, now, {}, [&](Duration by) {
-      ours.add(std::chrono::duration_cast<std::chrono::microseconds>(by).count());
-    });
+    run_loop(clock, period, now, {},
+             [&](Duration by) { ours.add(std::chrono::duration_cast<std::chrono::microseconds>(by).count()); });
     (void)set_ordinary_scheduling();
     if (apart && other != nullptr) beside = read_cyclictest(other, cyclictest);
     done += static_cast<std::uint64_t>(now);
