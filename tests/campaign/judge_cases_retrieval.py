@@ -418,6 +418,25 @@ def what_is_said_now_waits_in_a_flood(w):
     many(w, 40, 1300 * MS)
 
 
+def told_lost(w, housekeeping, reports, time):
+    w.report(time, SUPERVISOR, 5, 2, struct.pack(">HII", 111, housekeeping, reports))
+
+
+@case(FIRST)
+def what_is_told_as_lost_need_not_come(w):
+    says(w, 1050 * MS)
+    told_lost(w, 0, 1, 2 * S)
+    many(w, 40, 1300 * MS)
+
+
+@case(FIRST, found="a report of MANIPULATOR did not come down within 100 ms")
+def more_is_lost_than_is_told(w):
+    says(w, 1050 * MS)
+    says(w, 1060 * MS)
+    told_lost(w, 7, 1, 2 * S)
+    many(w, 40, 1300 * MS)
+
+
 @case(FIRST)
 def what_is_said_at_the_end_need_not_come(w):
     w.action(1200 * MS, "shutdown asked for")

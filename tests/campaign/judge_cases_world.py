@@ -71,6 +71,18 @@ def acts_on_old_samples_while_it_is_stopped_itself(w):
     stands_still(w, 1020 * MS)
 
 
+@case(STALE_RULE)
+def acts_until_its_watchdog_while_its_own_subsystem_stands_still(w):
+    w.at(1001 * MS, f"still MANIPULATOR since={1 * S}").at(1040 * MS, "moves MANIPULATOR 1")
+    stands_still(w, 1012 * MS)
+
+
+@case(STALE_RULE, found="robot acts on samples of JOYSTICK")
+def acts_longer_than_its_watchdog_while_its_own_subsystem_stands_still(w):
+    w.at(1001 * MS, f"still MANIPULATOR since={1 * S}").at(1040 * MS, "moves MANIPULATOR 1")
+    stands_still(w, 1020 * MS)
+
+
 def holding():
     """The mission with a robot that goes on without its joystick."""
     mission = copy.deepcopy(MISSION)
@@ -329,6 +341,26 @@ def a_member_that_loses_cycles_because_it_is_stopped(w):
 def a_member_that_loses_cycles_because_the_supervisor_is_stopped(w):
     w.at(1990 * MS, "did stop SUPERVISOR")
     counted(w, robot=38)
+
+
+def rested(w, strained):
+    """Its cycle rests from 2 s to 4 s and then loses four."""
+    w.at(1999 * MS, f"did strain MANIPULATOR {strained} 600").at(2 * S, "cycling MANIPULATOR 0").at(4 * S, "cycling MANIPULATOR 1")
+    for time in range(100 * MS, 5 * S, 20 * MS):
+        cycles = min(time, 2 * S) * 2 // MS + max(time - 4 * S, 0) * 2 // MS - (4 if time > 4030 * MS else 0)
+        w.at(time, f"cycles COMMUNICATION={time // (10 * MS)} MANIPULATOR={cycles} JOYSTICK={time * 2 // MS} robot={time * 2 // MS} "
+                   f"joystick={time * 2 // MS}")
+
+
+@case(TIME_RULE)
+def a_member_that_was_strained_and_rested_before_it_felt_it(w):
+    rested(w, 30)
+
+
+@case(TIME_RULE, found="MANIPULATOR made 76 cycles")
+def a_member_that_felt_its_strain_long_before(w):
+    w.at(500 * MS, "did strain MANIPULATOR 30 600")
+    rested(w, 0)
 
 
 @case(TIME_RULE)

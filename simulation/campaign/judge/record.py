@@ -194,10 +194,19 @@ class Record:
         return series
 
     def strained_until(self, name, time, number, calm):
-        """When the member has made this many cycles more: they may begin long after they were strained."""
-        counts = [(at, each[name]) for at, each in self.cycles if each.get(name) is not None]
-        begun = next((count for at, count in reversed(counts) if at <= time), 0)
-        return next((at for at, count in counts if at > time and not begun <= count < begun + number), calm)
+        """When the member has made this many cycles more, those aside that it made before it was looked at again. They may begin long
+        after they were strained, and their count anew."""
+        made, last = 0, None
+        for at, each in self.cycles:
+            count = each.get(name)
+            if at <= time or count is None:
+                continue
+            if last is not None:
+                made += count - last if count >= last else count
+            last = count
+            if made >= number:
+                return at
+        return calm
 
     # --- whom something was done to ------------------------------------------------------------------------------------
     def victims(self):

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """What was said before comes down from the log as ground asks for it (docs/adr/0140): that, in order, each once, and nothing else."""
-import collections, zlib
+import collections, struct, zlib
 
 from packet_rules import PING_US, name_of
 from record import Asked, End, meets
@@ -14,6 +14,7 @@ CUT_OFF_NS = 60            # 7 octets say 2^-24 s
 MOST_AT_ONCE, WATCH_US = 8, 10_000
 RATE_US = 100_000          # over which they are counted
 LIVE_US = 100_000          # what is said now has come down by then
+LOSS_TOLD_US, TELEMETRY_LOST = 1_100_000, 111  # the event that tells how much found no room on its way to the ground link
 DISK_PATIENCE_US = 3_000_000
 REPORT_US = 2_500          # half the rate that they can have, as what is said now goes first
 ASKED_ANEW, NOT_ON_DISK, UNREADABLE = "asked_anew", "what_was_said_last_is_not_on_the_disk_yet", "the_log_cannot_be_read:"
@@ -154,6 +155,23 @@ def whole(flight, victims, each, end, came):
         yield end.time, f"{end.missing} are told to be missing though nothing was done to the log"
 
 
+def told_losses(flight):
+    """[[time, {housekeeping: number}]]: how much was told as lost on its way to the ground link since it was told last."""
+    return [[r.time, dict(zip((True, False), struct.unpack_from(">II", r.report.data, 2)))] for r in flight.log
+            if r.kind == "event" and r.report is not None and r.source == flight.mission.supervisor.apid
+            and r.report.data[:2] == TELEMETRY_LOST.to_bytes(2, "big")]
+
+
+def told_as_lost(losses, record):
+    """Whether one of those that were told is this one; it is taken off."""
+    housekeeping = (record.report.service, record.report.subtype) == (3, 25)
+    for time, left in losses:
+        if record.time <= time <= record.time + LOSS_TOLD_US and left[housekeeping]:
+            left[housekeeping] -= 1
+            return True
+    return False
+
+
 def i14_what_is_said_now_goes_first(flight, victims):
     again = [down[0] for down in flight.down if down[3:5] == (129, RETRIEVED)]
     most = MOST_AT_ONCE * (RATE_US // WATCH_US + 1)
@@ -164,7 +182,7 @@ def i14_what_is_said_now_goes_first(flight, victims):
     came = collections.defaultdict(list)
     for down in flight.down:
         came[down[1], down[2]].append(down[0])
-    spans = []
+    spans, losses = [], told_losses(flight)
     asked = {each.sent.key: each for each in all_asked(flight)}
     for end in ends_of(flight):
         if end.key in asked and end.reports:
@@ -175,7 +193,8 @@ def i14_what_is_said_now_goes_first(flight, victims):
         until = record.time + LIVE_US
         if not quiet(flight, victims, record.time, until) or until >= flight.finished():
             continue
-        if not any(record.time <= time <= until for time in came[record.report.apid, record.report.count]):
+        here = any(record.time <= time <= until for time in came[record.report.apid, record.report.count])
+        if not here and not told_as_lost(losses, record):
             yield record.time, f"a report of {name_of(flight, record.source)} did not come down within {LIVE_US // 1000} ms beside what was said before"
             break
 

@@ -5,6 +5,7 @@ from descriptors import EDGES, ERROR, OFFLINE, OPERATIONAL, STATES, reachable_un
 from record import meets
 
 CYCLES_TO_SAFE = 5             # actuators of a network, in cycles of whoever acts
+WATCHDOG_US = 12_000           # and two periods: of the device itself, when its member says nothing any more
 STATE_LAG_US = 12_000          # the vital page tells a state by the service loop, every 1 or 10 ms
 SAFE_ALL_US = 500_000
 # The longest declared stop and the time to answer (450 ms), who has not stopped is ended then, and 500 ms after that.
@@ -26,7 +27,7 @@ def i4_actuators_are_off_outside_operational(flight, victims):
     for device, (member, _) in flight.mission.devices.items():
         for start, end in flight.active[device].spans(flight.end):
             period_us = max(flight.period_ns[member].at(start) // 1000, flight.device_period_ns[device] // 1000)
-            watchdog_us = 12_000 + 2 * period_us  # of the device itself, when its member says nothing any more
+            watchdog_us = WATCHDOG_US + 2 * period_us
             late = STATE_LAG_US + CYCLES_TO_SAFE * period_us
             for first, last in flight.state[member].spans(flight.end, lambda state: state != OPERATIONAL):
                 first, last = max(first + late, start + STATE_LAG_US), min(last, end)
@@ -142,10 +143,13 @@ def i5_no_stale_sample_is_used(flight, victims):
                 for wanted in configuration.requires if configuration else []:
                     if not wanted.inhibits or wanted.source not in flight.still:
                         continue
-                    limit_us = (wanted.age + CYCLES_TO_SAFE) * max(flight.period_ns[member.name].at(start),
-                                                                   flight.period_ns[wanted.source].at(start)) // 1000
+                    period_us = max(flight.period_ns[member.name].at(start), flight.period_ns[wanted.source].at(start)) // 1000
+                    limit_us = (wanted.age + CYCLES_TO_SAFE) * period_us
                     for first, last in flight.still[wanted.source].spans(flight.end):
                         stale = max(start, first) + limit_us
+                        # Who stands still itself notices nothing: then its device lets go.
+                        stood = [begun for begun, ended in flight.still[member.name].spans(flight.end) if begun <= stale and first <= ended]
+                        stale = max([stale] + [begun + WATCHDOG_US + 2 * period_us for begun in stood])
                         if stale < min(end, last) and not meets(victims[member.name], first, stale):
                             yield stale, f"{device} acts on samples of {wanted.source}, which stands still since {first / 1e6:.4f}"
 
