@@ -344,8 +344,9 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   const MemoryReserve reserve{memory_of_a_step};
   if (goes_on) {
     keeper.take_inhibits(clock);
-    supervisor.adopt(page.stops_asked.load() != page.stops_taken.load());
-    page.stops_taken.store(page.stops_asked.load());
+    StopsBySignal stops{page};
+    supervisor.adopt(stops.any());
+    stops.carried_out();
     // Until its thread runs: no device is to miss its enable.
     static_cast<void>(guard.step(clock.now()));
   } else {
@@ -353,7 +354,12 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   }
   const auto guard_thread = GuardShell::start(guard, clock, options.runtime,
                                               {.on_begin = [&] { keeper.watch_this_thread(); },
-                                               .on_signal = [&] { page.stops_taken.store(page.stops_asked.load()); }});
+                                               .stop_by_signal =
+                                                   [&] {
+                                                     StopsBySignal stops{page};
+                                                     guard.stop_all(GuardFinding::Kind::StopAsked);
+                                                     stops.carried_out();
+                                                   }});
   if (!guard_thread) {
     fmt::print(stderr, "hirosco: the guard cannot start: {} ({})\n", guard_thread.error().text,
                guard_thread.error().value);

@@ -50,8 +50,9 @@ void Spacecraft::revive_supervisor() {
   kept_->wants_inhibits.store(kept_->starts.load() + 1);
   static_cast<void>(bridge_->step(clock_.now()));
   make_supervisor(next_first_epoch_);
-  supervisor_->adopt(kept_->stops_asked.load() != kept_->stops_taken.load());
-  kept_->stops_taken.store(kept_->stops_asked.load());
+  supervisor::StopsBySignal stops{*kept_};
+  supervisor_->adopt(stops.any());
+  stops.carried_out();
 }
 
 void Spacecraft::supervisor_dies_here() {

@@ -34,13 +34,15 @@ Result<> Guard::add(const descriptor::MissionSubsystem& described, bool spared) 
   member.epoch = parts_.first_epoch;
   for (const std::string_view name : descriptor::actuators_without_enable(described.subsystem))
     member.not_asked.emplace_back(name);
-  for (const descriptor::Device& device : described.subsystem.devices) {
+  for (std::uint16_t place = 0; const descriptor::Device& device : described.subsystem.devices) {
+    const std::uint16_t own_place = place++;
     member.rest_within = std::max(member.rest_within, device.stop_within);
     if (!device.enable) continue;
     HIROSCO_TRY_LET(auto flow,
                     parts_.flows.open({device.enable->transfer, device.enable->address}, FlowSide::Subsystem));
     WatchedDevice watched;
     watched.name = device.name;
+    watched.place = own_place;
     watched.flow = std::move(flow);
     watched.stop_within = device.stop_within;
     watched.note = parts_.notes.of(described.subsystem.id, device.name);
@@ -162,8 +164,8 @@ std::vector<GuardFinding> Guard::take_findings() {
   return taken;
 }
 
-void Guard::find_out(GuardFinding::Kind kind, std::uint16_t apid) {
-  if (findings_.size() < most_findings) findings_.push_back({kind, apid});
+void Guard::find_out(GuardFinding::Kind kind, std::uint16_t apid, std::uint16_t device) {
+  if (findings_.size() < most_findings) findings_.push_back({kind, apid, device});
   if (parts_.on_finding) parts_.on_finding();
 }
 
@@ -255,10 +257,13 @@ TimePoint Guard::step(TimePoint now) {
   for (GuardedMember& member : members_) {
     member.end_permission(watched_);
     for (WatchedDevice& device : member.devices) {
-      device.hear();
+      device.hear(watched_);
       // What has no power moves nothing, and cannot say so.
       const bool still = device.rests() || (!member.power.none() && member.power.said() == power_off);
       if (!member.released && still && !device.stopped) device.stopped = now - stop_begun_;
+      const bool acts = member.seen_operational && member.released && member.uses(device.place);
+      if (acts && device.falls_silent(member.released_at, watched_))
+        find_out(GuardFinding::Kind::InhibitSilent, member.apid(), device.place);
       device.tell(member.released && !supervisor_still_, member.epoch);
     }
     member.drive_power(watched_);

@@ -124,7 +124,7 @@ class Guard {
  private:
   [[nodiscard]] GuardedMember* find(std::uint16_t apid) noexcept;
   [[nodiscard]] const GuardedMember* find(std::uint16_t apid) const noexcept;
-  void find_out(GuardFinding::Kind kind, std::uint16_t apid);
+  void find_out(GuardFinding::Kind kind, std::uint16_t apid, std::uint16_t device = 0);
   void lives_changed() noexcept;
   /// The time that all judgements go by: what the guard has watched. While nobody ran (the host was stopped) nobody can be blamed for
   /// standing still, so of a longer time between two steps little counts, unless some cycle went on meanwhile.

@@ -112,8 +112,8 @@ void GuardShell::run() {
       while (::read(signals_.get(), &info, sizeof info) > 0) asked = true;
     }
     if (!asked) continue;
-    guard_.stop_all(GuardFinding::Kind::StopAsked);
-    if (calls_.on_signal) calls_.on_signal();
+    if (calls_.stop_by_signal) calls_.stop_by_signal();
+    else guard_.stop_all(GuardFinding::Kind::StopAsked);
   }
 }
 

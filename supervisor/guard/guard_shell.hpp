@@ -27,10 +27,10 @@ class GuardShell {
  public:
   /// Above all cycles (1 to 89), below the kernel's own.
   static constexpr int priority = 90;
-  /// What is done in the guard's thread besides; either may be empty.
+  /// What is done in the guard's thread besides, or in place of what it does by itself; either may be empty.
   struct Calls {
     std::function<void()> on_begin{};  ///< before its first step
-    std::function<void()> on_signal{};  ///< after a stop by signal was carried out
+    std::function<void()> stop_by_signal{};  ///< empty: the guard stops all
   };
   /// An empty `folder`: no socket. SIGUSR1 must be blocked in the process. SystemFailure: socket, thread.
   [[nodiscard]] static Result<std::unique_ptr<GuardShell>> start(Guard& guard, const Clock& clock,

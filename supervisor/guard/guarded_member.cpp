@@ -34,14 +34,22 @@ bool WatchedDevice::rests() const noexcept {
   return knows() && (last.output == DeviceOutput::Off || last.output == DeviceOutput::Holding);
 }
 
-void WatchedDevice::hear() noexcept {
+void WatchedDevice::hear(TimePoint now) noexcept {
   std::array<std::byte, enable_frame_octets> frame;
   const auto received = flow->receive(frame);
   if (!received || received->flow != Flow::New) return;
   if (const auto status = read_enable_status(Octets{frame}.first(std::min(received->octets, frame.size())))) {
     last = *status;
     heard = true;
+    heard_at = now;
+    silence_told = false;
   }
+}
+
+bool WatchedDevice::falls_silent(TimePoint since, TimePoint now) noexcept {
+  if (silence_told || now - std::max(since, heard_at) < inhibit_silence) return false;
+  silence_told = true;
+  return true;
 }
 
 void WatchedDevice::tell(bool enabled, std::uint32_t epoch) noexcept {
@@ -76,10 +84,20 @@ bool GuardedMember::damaged() const noexcept {
          vital->realtime.load(relaxed) > 1 || !known || !gate;
 }
 
-Duration GuardedMember::sampling() const noexcept {
-  if (vital == nullptr) return {};
+const descriptor::Configuration* GuardedMember::in_force() const noexcept {
+  if (vital == nullptr) return nullptr;
   const auto id = static_cast<std::uint8_t>(vital->configuration.load(std::memory_order_relaxed));
-  const auto* configured = described->subsystem.find_configuration(id);
+  return described->subsystem.find_configuration(id);
+}
+
+bool GuardedMember::uses(std::uint16_t device) const noexcept {
+  const auto* configured = in_force();
+  return configured != nullptr &&
+         std::ranges::any_of(configured->devices, [&](const auto& use) { return use.device == device; });
+}
+
+Duration GuardedMember::sampling() const noexcept {
+  const auto* configured = in_force();
   return configured != nullptr ? configured->sampling : Duration{};
 }
 

@@ -22,6 +22,9 @@ namespace hirosco::supervisor {
 
 inline constexpr Duration guard_observation_period = std::chrono::milliseconds{10};
 inline constexpr Duration permission_entry_limit = std::chrono::seconds{2};
+/// Each step of the guard asks the second inhibit of a device, which answers at once. It takes no part in what moves: who is asked in
+/// vain only says that a stop of this device would not be heard of, so there is time for a busy device.
+inline constexpr Duration inhibit_silence = std::chrono::seconds{1};
 
 /// What the guard saw or did, for the rest of the supervisor to tell and to plan for.
 struct GuardFinding {
@@ -35,27 +38,34 @@ struct GuardFinding {
     Killed,  ///< it did not come back
     SupervisorStill,  ///< the supervisor's own loop stood still: everything was fenced
     StopAsked,  ///< somebody stopped everything by signal or local socket
+    InhibitSilent,  ///< it may act, and the second inhibit of one of its devices does not answer
   };
   Kind kind{};
   std::uint16_t apid{0};
+  std::uint16_t device{0};  ///< of InhibitSilent: place in its descriptor
 };
 
 /// A device of a member, by the endnode of its second inhibit.
 struct WatchedDevice {
   std::string name;
+  std::uint16_t place{0};  ///< in the descriptor of its member
   std::unique_ptr<DataFlow> flow;
   Duration stop_within{};
   std::uint32_t sequence{0};
   KeptInhibit* note{nullptr};  ///< of what it was told last; null: nobody would go on telling it
   EnableStatus last{};
   bool heard{false};
+  TimePoint heard_at{};
+  bool silence_told{false};
   std::uint32_t fenced_at_sequence{0};  ///< an answer to a later command knows of the newest stop
   std::optional<Duration> stopped;
   /// It has answered a command that came after the newest fence.
   [[nodiscard]] bool knows() const noexcept;
   /// It knows, and moves nothing.
   [[nodiscard]] bool rests() const noexcept;
-  void hear() noexcept;
+  void hear(TimePoint now) noexcept;
+  /// Once for each silence: it has not answered for `inhibit_silence`, counted from `since` at the earliest.
+  [[nodiscard]] bool falls_silent(TimePoint since, TimePoint now) noexcept;
   void tell(bool enabled, std::uint32_t epoch) noexcept;
 };
 
@@ -106,8 +116,12 @@ struct GuardedMember {
   [[nodiscard]] std::uint16_t apid() const noexcept { return described->subsystem.id; }
   [[nodiscard]] std::optional<State> state() const noexcept;
   [[nodiscard]] bool damaged() const noexcept;
+  /// Null: none, or its page is gone.
+  [[nodiscard]] const descriptor::Configuration* in_force() const noexcept;
   /// Of its cycle, as declared; 0 while it has none.
   [[nodiscard]] Duration sampling() const noexcept;
+  /// Whether its configuration in force uses this device of its descriptor.
+  [[nodiscard]] bool uses(std::uint16_t device) const noexcept;
   /// In observations.
   [[nodiscard]] std::uint32_t hang_limit() const noexcept;
 

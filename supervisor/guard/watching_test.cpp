@@ -55,6 +55,29 @@ struct Watching : GuardTest {
   }
 };
 
+TEST_F(Watching, ASecondInhibitThatDoesNotAnswerIsToldOnceForEachSilence) {
+  const auto silent = [&](Duration span) { run(span, {arm, hand, camera}, std::nullopt); };
+  silent(inhibit_silence - 2 * Guard::period);
+  EXPECT_THAT(kinds(arm), IsEmpty());
+  silent(4 * Guard::period);
+  EXPECT_THAT(kinds(arm), ElementsAre(Found::InhibitSilent));
+  silent(5s);
+  EXPECT_THAT(kinds(arm), IsEmpty()) << "once";
+  run(100ms);
+  silent(inhibit_silence + 2 * Guard::period);
+  EXPECT_THAT(kinds(arm), ElementsAre(Found::InhibitSilent)) << "another silence";
+}
+
+TEST_F(Watching, WhoMayNotActOrDoesNotUseTheDeviceIsToldNothingOfItsSecondInhibit) {
+  lives[arm].vital->configuration = 0;
+  run(5s, {arm, hand, camera}, std::nullopt);
+  EXPECT_THAT(kinds(arm), IsEmpty());
+  lives[arm].vital->configuration = 2;
+  guard.fence(arm);
+  run(5s, {arm, hand, camera}, std::nullopt);
+  EXPECT_THAT(kinds(arm), IsEmpty());
+}
+
 TEST_F(Watching, APauseOfTheWholeComputerIsNobodysFault) {
   for (const Duration pause : {1s, 2s, 5s, 60s}) {
     clock.advance(pause);

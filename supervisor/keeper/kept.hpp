@@ -109,6 +109,19 @@ struct KeeperPage {
   }
 };
 
+/// The stops by signal that nobody has carried out yet, as they stood when this was made: made before they are, so that one which
+/// comes meanwhile stays asked for, whoever dies next.
+class StopsBySignal {
+ public:
+  explicit StopsBySignal(KeeperPage& page) noexcept : page_{page}, asked_{page.stops_asked.load()} {}
+  [[nodiscard]] bool any() const noexcept { return asked_ != page_.stops_taken.load(); }
+  void carried_out() noexcept { page_.stops_taken.store(asked_); }
+
+ private:
+  KeeperPage& page_;
+  std::uint64_t asked_;
+};
+
 /// How long the keeper may stand still once it has moved.
 inline constexpr Duration keeper_patience = std::chrono::seconds{3};
 /// One that ends waits twice for its log, each time at most two seconds, and nothing moves any more. What the disk has not given back

@@ -25,6 +25,21 @@ namespace {
 
 using namespace std::chrono_literals;
 
+// --- stops by signal -------------------------------------------------------------------------------------------------------
+
+TEST(StopsBySignal, OneThatComesWhileAnotherIsCarriedOutStaysAskedFor) {
+  KeeperPage page;
+  EXPECT_FALSE(StopsBySignal{page}.any());
+  page.stops_asked.fetch_add(1);
+  StopsBySignal stops{page};
+  EXPECT_TRUE(stops.any());
+  page.stops_asked.fetch_add(1);
+  stops.carried_out();
+  EXPECT_TRUE(StopsBySignal{page}.any()) << "whoever dies now, the next one stops all";
+  StopsBySignal{page}.carried_out();
+  EXPECT_FALSE(StopsBySignal{page}.any());
+}
+
 // --- another supervisor ---------------------------------------------------------------------------------------------------
 
 TEST(Revivals, AtOnceTwiceAndThenAfterAPauseThatDoubles) {

@@ -52,6 +52,7 @@ struct GuardTest : ::testing::Test {
     device.enable = descriptor::Endnode{};
     device.enable->address = "motor-enable";
     made.subsystems[0].subsystem.devices = {device};
+    for (auto& configuration : made.subsystems[0].subsystem.configurations) configuration.devices.emplace_back();
     return made;
   }();
   Guard guard{{.clock = clock, .flows = flows, .first_epoch = 1000, .on_finding = {}}};

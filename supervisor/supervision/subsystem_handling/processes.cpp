@@ -203,7 +203,7 @@ void Processes::take_guard_findings() {
   using enum GuardFinding::Kind;
   for (const GuardFinding& finding : craft_.guard.take_findings()) {
     if (Member* subject = craft_.member(finding.apid); subject != nullptr) {
-      hear_of(*subject, finding.kind);
+      hear_of(*subject, finding);
     } else if (finding.kind == StopAsked) {
       parts_.safe_all.asked();
     } else if (finding.kind == SupervisorStill) {
@@ -213,13 +213,13 @@ void Processes::take_guard_findings() {
   }
 }
 
-void Processes::hear_of(Member& subject, GuardFinding::Kind what) {
+void Processes::hear_of(Member& subject, const GuardFinding& finding) {
   using enum GuardFinding::Kind;
   if (!subject.alive()) return;
   const auto tell = [&](std::string_view line) {
     craft_.tell(subject.descriptor().name + std::string{line}, subject.apid());
   };
-  switch (what) {
+  switch (finding.kind) {
     case CycleHangs: tell(" hangs: its cycle stands still"); break;
     case ServiceHangs: tell(" hangs: its service loop stands still"); break;
     case PageDamaged: tell(" hangs: its vital or permit page is damaged"); break;
@@ -227,6 +227,18 @@ void Processes::hear_of(Member& subject, GuardFinding::Kind what) {
     case Back: parts_.restoration.recovered(subject.apid()); return tell(" moves again");
     case Killed: return tell(" was ended: it did not come back or had not stopped in time");
     case Ended: return parts_.reception.give_up(subject);  // what it left unsaid is read when its process has gone
+    case InhibitSilent: {
+      const auto& devices = subject.descriptor().devices;
+      const std::string_view device =
+          finding.device < devices.size() ? devices[finding.device].name : std::string_view{"?"};
+      tell(
+          fmt::format(": the second inhibit of its device {} does not answer: it does not move by it, and a stop would "
+                      "not be heard of",
+                      device));
+      parts_.own.announce("INHIBIT_SILENT",
+                          {static_cast<double>(subject.apid()), static_cast<double>(finding.device + 1)});
+      return parts_.reactions.react(subject, "INHIBIT_SILENT", Severity::Medium);
+    }
     default: return;
   }
   parts_.own.announce("HANG", {static_cast<double>(subject.apid())});

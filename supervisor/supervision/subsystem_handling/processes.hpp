@@ -66,7 +66,7 @@ class Processes final : public Watch {
   enum class Whom : std::uint8_t { All, Closed };
   Result<> launch(Member& member);
   void watch_ends(Whom whom);
-  void hear_of(Member& member, GuardFinding::Kind what);
+  void hear_of(Member& member, const GuardFinding& finding);
   void died(Member& member, const ProcessEnd& end);
 
   Parts parts_;

@@ -401,5 +401,27 @@ TEST_F(ProcessesTest, OneWhoseDevicesTheGuardCannotInhibitDoesNotFlyUntilItCan) 
   EXPECT_TRUE(guard.release(hand, guard.fences(hand))) << "the guard has it";
 }
 
+TEST_F(ProcessesTest, WhoActsThoughASecondInhibitDoesNotAnswerIsToldOfWithItsDevice) {
+  descriptor::Device motor;
+  motor.name = "MOTOR";
+  motor.actuator = true;
+  motor.enable = descriptor::Endnode{};
+  motor.enable->address = "motor-enable";
+  auto& subsystem = craft.mission.subsystems[1].subsystem;
+  subsystem.devices = {descriptor::Device{}, motor};
+  subsystem.configurations[0].devices.emplace_back().device = 1;
+  start_all(Operational);
+  played[hand].vital->configuration = subsystem.configurations[0].id;
+  ASSERT_TRUE(guard.release(hand, guard.fences(hand)));
+  for (const TimePoint end = clock.now() + 2s; clock.now() < end; clock.advance(Guard::period)) {
+    for (auto& [apid, member] : played) ++member.vital->service_steps;
+    static_cast<void>(guard.step(clock.now()));
+  }
+  parts.processes.take_guard_findings();
+  EXPECT_TRUE(was_told("HAND: the second inhibit of its device MOTOR does not answer"))
+      << ::testing::PrintToString(story);
+  EXPECT_TRUE(was_told("HAND to SafeOperational because of INHIBIT_SILENT")) << ::testing::PrintToString(story);
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor
