@@ -22,8 +22,6 @@ ALLOWED = {
     ("simulation/spacecraft/simulated_ground.hpp", "communication"): "the other end of the ground link (adr 0050)",
     ("tools/hirosco/run.cpp", "communication"): "the variables that tell the ground link its addresses (adr 0054)",
     ("tools/threads/main.cpp", "communication"): "the ground link is no module, so this program brings it along (adr 0097)",
-    ("tools/ground/main.cpp", "observer"): "the variable with the token of who only looks (adr 0105)",
-    ("tools/hirosco/ground.cpp", "observer"): "who sets it",
 }
 # This tool has to name whom it allows.
 OWN = "tools/check_names.py"

@@ -63,7 +63,7 @@ class AskedWrongly(unittest.TestCase):
             self.assertIn("mission HELLO has SUPERVISOR", told("tc", "arm", "ping")[1])
             (here / "log/rokviss.db").touch()
             self.assertIn("nothing flies here", told("tc", "arm", "ping")[1], "of two nobody knows which")
-            self.assertIn("mission OBSERVER has SUPERVISOR", told("tc", "arm", "ping", where=REPOSITORY / "missions/observer")[1])
+            self.assertIn("mission STARGAZER has SUPERVISOR", told("tc", "arm", "ping", where=REPOSITORY / "missions/stargazer")[1])
             for words in (("why",), ("why", "hello"), ("why", "--mission", "hello"), ("log",)):
                 self.assertEqual(told(*words)[0], 3, words)
             self.assertEqual(sorted(path.name for path in (here / "log").iterdir()), ["hello.db", "rokviss.db"],

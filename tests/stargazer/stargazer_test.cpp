@@ -43,7 +43,7 @@ struct Downlink {
 };
 
 struct Observing : ::testing::Test {
-  simulation::Flight flight{plan_of("missions/observer/mission.xml")};
+  simulation::Flight flight{plan_of("missions/stargazer/mission.xml")};
   Downlink ground;
 
   void SetUp() override {
@@ -132,7 +132,7 @@ TEST_F(Observing, WhoDiesComesBackAsItWasAndItsNumbersGoOn) {
 
 /// 1 Mi pixels, 30 a second, lent to a subsystem that sums them up.
 TEST(Watching, ImagesReachWhoIsOnBoardThirtyTimesASecondAsTheCameraMadeThem) {
-  simulation::Flight flight{plan_of("tests/observer/watched.xml")};
+  simulation::Flight flight{plan_of("tests/stargazer/watched.xml")};
   ASSERT_TRUE(flight.commission()) << flight.story().text();
   auto& camera = flight.device<Camera>("camera");
   std::uint32_t number = 0, whole = 0, overtaken = 0;

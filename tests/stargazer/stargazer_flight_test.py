@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""The mission observer with real processes, flown by an ordinary user without real-time rights: an image goes down over a ground link that loses
+"""The mission stargazer with real processes, flown by an ordinary user without real-time rights: an image goes down over a ground link that loses
 parts and is cut, and is put together octet by octet as the camera made it. And images of 1 MiB by a link to who is on board."""
 import contextlib
 import importlib
@@ -17,7 +17,7 @@ import sky
 from lossy_link import LossyLink
 from ordinary_user import ordinary_user
 
-OBSERVER = flight.REPOSITORY / "missions/observer"
+STARGAZER = flight.REPOSITORY / "missions/stargazer"
 WATCHED = pathlib.Path(__file__).resolve().parent / "watched.xml"
 IMAGES, PART = 210, 4
 
@@ -28,11 +28,11 @@ def is_part(packet):
 
 @contextlib.contextmanager
 def client_of(mission):
-    """The exported package of a mission, and fetch_image.py of the observer."""
+    """The exported package of a mission, and fetch_image.py of the mission."""
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([str(flight.BINARIES / "hirosco"), "export", "python", str(mission), "--to", folder],
                        capture_output=True, timeout=20, check=True)
-        paths = [folder, str(OBSERVER)]
+        paths = [folder, str(STARGAZER)]
         sys.path[:0] = paths
         try:
             yield importlib.import_module(f"hirosco_{pathlib.Path(mission).parent.name}"), importlib.import_module("fetch_image")
@@ -43,8 +43,8 @@ def client_of(mission):
 
 class Observer(unittest.TestCase):
     def test_an_ordinary_user_gets_an_image_whole_over_a_link_that_loses_parts_and_is_cut(self):
-        with client_of(OBSERVER / "mission.xml") as (package, fetch_image), \
-                ordinary_user(OBSERVER / "mission.xml") as arguments, flight.Flight(**arguments) as craft:
+        with client_of(STARGAZER / "mission.xml") as (package, fetch_image), \
+                ordinary_user(STARGAZER / "mission.xml") as arguments, flight.Flight(**arguments) as craft:
             craft.wait_told("no real-time scheduling", 5.0)
             craft.wait_told("commissioned: mode observation", 30.0)
             begin = craft.count()

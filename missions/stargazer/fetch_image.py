@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Takes an image with the imager of a flying mission, or fetches one that is on board, and writes it as PGM or PNG.
 
-    hirosco run observer                               # in another terminal
-    hirosco export python observer --to out
-    PYTHONPATH=out python3 missions/observer/fetch_image.py --expose 20 --to stars.png
+    hirosco run stargazer                               # in another terminal
+    hirosco export python stargazer --to out
+    PYTHONPATH=out python3 missions/stargazer/fetch_image.py --expose 20 --to stars.png
 
 What is lost on the way is asked for again, also after a ground link that was cut; nothing is written before the checksum of the whole is right.
 Nothing but Python 3.9 is needed. `fetch()` is what a script of one's own takes from here."""
@@ -102,7 +102,7 @@ def main():
     words.add_argument("--expose", type=float, metavar="MS", help="take one first, exposed so long")
     words.add_argument("--number", type=int, default=0, help="of the image; the newest where nothing is said")
     words.add_argument("--to", default="image.pgm", metavar="FILE", help=".pgm or .png")
-    words.add_argument("--mission", default="observer", help="whose exported package is used")
+    words.add_argument("--mission", default="stargazer", help="whose exported package is used")
     words.add_argument("--subsystem", default="imager", help="the imager's name in it")
     words.add_argument("--telemetry", metavar="HOST:PORT", help="where the ground link is; else the flight on this computer is found")
     asked = words.parse_args()
