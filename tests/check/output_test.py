@@ -38,6 +38,19 @@ class Output(unittest.TestCase):
                 self.refused(ENVIRONMENT, "No space left on device", *words, to="/dev/full")
         self.refused(ENVIRONMENT, "No space left on device", "simulate", ROKVISS, "--for", "0.2s", "--trace", "/dev/full")
 
+    def test_a_trace_goes_on_when_there_is_no_cycle_and_changes_nothing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            trace = os.path.join(folder, "trace.csv")
+            words = ["simulate", ROKVISS, "--for", "3s", "--at", "1.5 robot unplug"]
+            alone, traced = (subprocess.run([HIROSCO, *words, *more], capture_output=True, check=False).stdout for more in ((), ("--trace", trace)))
+            self.assertEqual(alone, traced)
+            with open(trace, encoding="ascii") as rows:
+                times = [float(row.partition(",")[0]) for row in list(rows)[1:]]
+        self.assertAlmostEqual(times[-1], 3.0, delta=0.011)
+        steps = [(after - before, before) for before, after in zip(times, times[1:])]
+        self.assertLess(max(steps)[0], 0.0105)
+        self.assertLess(max(step for step, at in steps if 1.0 < at < 1.4), 0.0006, "at cycle rate while it cycles")
+
     def test_an_export_that_cannot_be_written_is_no_success(self):
         for what in ("python", "xtce", "yamcs", "icd"):
             with self.subTest(what):

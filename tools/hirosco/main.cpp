@@ -147,7 +147,9 @@ int read_and_do(int argc, char** argv) {
   simulate_command->add_option("--mode", simulate_options.mode, "Start in this mode of the mission");
   simulate_command->add_option("--for", simulate_for, "Virtual time")->capture_default_str();
   simulate_command->add_option("--seed", simulate_seed, "Seed of everything random")->capture_default_str();
-  simulate_command->add_option("--trace", simulate_options.trace, "Write link and world truth at cycle rate as CSV");
+  simulate_command->add_option(
+      "--trace", simulate_options.trace,
+      "Write the truth of the simulated world as CSV, at cycle rate; each 10 ms while there is no cycle");
   simulate_command->add_option("--at", simulate_options.at,
                                "Injection \"SECONDS DEVICE LINE\" or \"SECONDS kill SUBSYSTEM\"");
   simulate_command->add_option(

@@ -57,9 +57,11 @@ void print_record(const supervisor::LogRecord& record, const pus::PacketDescribe
   fmt::print("\n");
 }
 
-/// World truth of all devices as CSV: "DEVICE.NAME" a column, a line after each cycle of whose device is the first.
+/// World truth of all devices as CSV: "DEVICE.NAME" a column, a line after each cycle of whose device is the first. While that
+/// has none, Offline or dead, the world goes on all the same: a line each 10 ms.
 class Trace {
  public:
+  static constexpr Duration without_cycles = std::chrono::milliseconds{10};
   explicit Trace(const descriptor::Mission& mission) : mission_{mission} {}
   [[nodiscard]] bool open(const std::string& path) {
     file_.reset(std::fopen(path.c_str(), "w"));
@@ -67,6 +69,7 @@ class Trace {
   }
   void write_line(std::string_view subsystem, TimePoint now, simulation::Spacecraft& craft) {
     if (mission_.devices.empty() || subsystem != mission_.devices.front().subsystem) return;
+    written_ = now;
     std::string names = "t_s", values = fmt::format("{:.6f}", seconds(now - TimePoint{1s}));
     for (const auto& described : mission_.devices) {
       const auto* device = craft.device(described.name);
@@ -81,6 +84,14 @@ class Trace {
     if (!std::exchange(headed_, true)) fmt::print(file_.get(), "{}\n", names);
     fmt::print(file_.get(), "{}\n", values);
   }
+  /// The craft flies until then.
+  void fly(simulation::Spacecraft& craft, TimePoint end) {
+    while (craft.now() < end) {
+      craft.run(std::min<Duration>(1ms, end - craft.now()));
+      if (!mission_.devices.empty() && craft.now() - written_ >= without_cycles)
+        write_line(mission_.devices.front().subsystem, craft.now(), craft);
+    }
+  }
   /// False: not all of it arrived.
   [[nodiscard]] bool close() { return std::ferror(file_.get()) == 0 && std::fclose(file_.release()) == 0; }
 
@@ -88,6 +99,7 @@ class Trace {
   const descriptor::Mission& mission_;
   File file_{nullptr, &std::fclose};
   bool headed_{false};
+  TimePoint written_{1s};
 };
 
 }  // namespace
@@ -145,17 +157,21 @@ int simulate(const SimulateOptions& options) {
                                 .values = options.values.empty() ? nullptr : &values}};
   if (trace)
     craft.on_cycle([&](std::string_view subsystem, TimePoint now) { trace->write_line(subsystem, now, craft); });
+  const auto fly_until = [&](TimePoint until) {
+    if (trace) trace->fly(craft, until);
+    else if (craft.now() < until) craft.run(until - craft.now());
+  };
   const TimePoint end = craft.now() + options.run_for;
   bool all_taken = true;
   for (const Injection& injection : injections) {
-    if (injection.at > craft.now() && injection.at < end) craft.run(injection.at - craft.now());
+    if (injection.at < end) fly_until(injection.at);
     if (injection.device == "kill") craft.kill(injection.line);
     else if (auto* device = craft.device(injection.device); device == nullptr || !device->fault(injection.line)) {
       fmt::print(stderr, "hirosco simulate: device '{}' does not take '{}'\n", injection.device, injection.line);
       all_taken = false;
     }
   }
-  if (craft.now() < end) craft.run(end - craft.now());
+  fly_until(end);
 
   const auto page = log.read({.last = SIZE_MAX});
   if (!page) return exit_internal;
