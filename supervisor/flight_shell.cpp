@@ -20,22 +20,18 @@
 #include "hirosco/utilities/memory_reserve.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
-#include "hirosco/utilities/os/life.hpp"
-#include "hirosco/utilities/os/shared_memory.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
 #include "supervisor/console.hpp"
 #include "supervisor/guard/guard_shell.hpp"
 #include "supervisor/guard/life_watch.hpp"
+#include "supervisor/inheritance.hpp"
 #include "supervisor/keeper/kept.hpp"
-#include "supervisor/keeper/kept_endnodes.hpp"
-#include "supervisor/keeper/kept_store.hpp"
 #include "supervisor/platform/storage/begin_log.hpp"
 #include "supervisor/platform/storage/epoch_file.hpp"
 #include "supervisor/platform/storage/log_store.hpp"
 #include "supervisor/platform/storage/postgresql_database.hpp"
 #include "supervisor/platform/storage/value_store.hpp"
-#include "supervisor/supervision/texts_in_force.hpp"
 #include "supervisor/supervisor.hpp"
 #include "supervisor/unprovoked_reactions.hpp"
 
@@ -150,65 +146,6 @@ class Waker {
   std::set<int> members_;
 };
 
-/// What the keeper holds for this supervisor and for one after it; where there is none, memory of our own.
-class Kept {
- public:
-  Kept() {
-    if (auto mapped = MappedMemory::map(keeper_page_descriptor, sizeof(KeeperPage), MapMode::ReadWrite)) {
-      page_memory_ = std::move(*mapped);
-      page_ = reinterpret_cast<KeeperPage*>(page_memory_.octets().data());
-    }
-    if (auto mapped = MappedMemory::map(keeper_journal_descriptor, journal_octets, MapMode::ReadWrite)) {
-      journal_memory_ = std::move(*mapped);
-      journal_.emplace(journal_memory_.octets());
-    }
-    if (auto mapped = MappedMemory::map(keeper_texts_descriptor, texts_octets, MapMode::ReadWrite)) {
-      texts_memory_ = std::move(*mapped);
-      texts_.emplace(texts_memory_.octets());
-    }
-  }
-  [[nodiscard]] KeeperPage& page() noexcept { return *page_; }
-  /// There was a supervisor before this one.
-  [[nodiscard]] bool goes_on() const noexcept { return page_->starts.load() > 1; }
-  [[nodiscard]] StoreClient store() const noexcept {
-    return StoreClient{page_ != &own_ ? keeper_store_descriptor : -1};
-  }
-  [[nodiscard]] Journal* journal() noexcept { return journal_ ? &*journal_ : nullptr; }
-  [[nodiscard]] InhibitNotes notes(const descriptor::Mission& mission) const { return InhibitNotes{mission, *page_}; }
-  /// By what the supervisor before flew: its files may say something else by now, and nobody has judged that.
-  [[nodiscard]] descriptor::FileSource source() const {
-    auto texts = goes_on() && texts_ ? texts_->newest() : TextsInForce::Texts{};
-    if (texts.empty()) return descriptor::file_system();
-    return [texts = std::move(texts)](const std::filesystem::path& asked) -> Result<std::string> {
-      const auto known = texts.find(asked);
-      if (known == texts.end()) return fail(ErrorCode::NotFound, "is no file of this flight");
-      return *known->second;
-    };
-  }
-  /// False: they have no room. The next supervisor reads the files.
-  bool note(const TextsInForce::Texts& texts) { return !texts_ || texts_->note(texts); }
-  /// The keeper hears of the end of the calling thread before the system has given this process's memory back (docs/adr/0135).
-  void watch_this_thread() const noexcept {
-    page_->guarded.store(page_->starts.load(), std::memory_order_release);
-    static_cast<void>(hold_life(page_->guard_life));
-  }
-  /// From the keeper, which has told the devices what the guard before had told them.
-  void take_inhibits(const Clock& clock) const {
-    constexpr Duration longest = 100ms;
-    const std::uint32_t start = page_->starts.load();
-    page_->wants_inhibits.store(start, std::memory_order_release);
-    for (const TimePoint limit = clock.now() + longest; page_->left_inhibits.load() < start && clock.now() < limit;)
-      sleep_until(clock.now() + 500us);
-  }
-
- private:
-  MappedMemory page_memory_, journal_memory_, texts_memory_;
-  KeeperPage own_;
-  KeeperPage* page_{&own_};
-  std::optional<Journal> journal_;
-  std::optional<TextsInForce> texts_;
-};
-
 /// An exception in it ends the process where it is thrown, with last words. On its way out it would shut down the channels, and with them
 /// what another supervisor is to go on with (docs/adr/0114).
 template <class Body>
@@ -222,7 +159,8 @@ auto without_unwinding(Body body) noexcept {
   std::_Exit(exit_environment);
 }
 
-int serve(const descriptor::Mission& mission, const Options& options, const MakeDeployment& deploy, Kept& keeper) {
+int serve(const descriptor::Mission& mission, const Options& options, const MakeDeployment& deploy,
+          Inheritance& keeper) {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
@@ -441,7 +379,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
 }
 
 int named_failures(const char* program, const descriptor::Mission& mission, const Options& options,
-                   const MakeDeployment& deploy, Kept& keeper) {
+                   const MakeDeployment& deploy, Inheritance& keeper) {
   const auto flight = [&] { return serve(mission, options, deploy, keeper); };
   try {
     return keeper.goes_on() ? without_unwinding(flight) : flight();
@@ -466,7 +404,7 @@ int fly(int argc, char** argv, const MakeDeployment& deploy) {
     fmt::print(stderr, "{}: started by 'hirosco run MISSION'\n  --mission FILE [--json|--quiet]\n", argv[0]);
     return exit_usage;
   }
-  Kept keeper;
+  Inheritance keeper;
   const auto source = keeper.source();
   auto reading = descriptor::read_mission(options.mission, source);
   for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));

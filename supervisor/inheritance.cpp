@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/inheritance.hpp"
+
+#include <utility>
+
+#include "hirosco/utilities/os/life.hpp"
+
+namespace hirosco::supervisor {
+
+Inheritance::Inheritance() {
+  if (auto mapped = MappedMemory::map(keeper_page_descriptor, sizeof(KeeperPage), MapMode::ReadWrite)) {
+    page_memory_ = std::move(*mapped);
+    page_ = reinterpret_cast<KeeperPage*>(page_memory_.octets().data());
+  }
+  if (auto mapped = MappedMemory::map(keeper_journal_descriptor, journal_octets, MapMode::ReadWrite)) {
+    journal_memory_ = std::move(*mapped);
+    journal_.emplace(journal_memory_.octets());
+  }
+  if (auto mapped = MappedMemory::map(keeper_texts_descriptor, texts_octets, MapMode::ReadWrite)) {
+    texts_memory_ = std::move(*mapped);
+    texts_.emplace(texts_memory_.octets());
+  }
+}
+
+StoreClient Inheritance::store() const noexcept { return StoreClient{page_ != &own_ ? keeper_store_descriptor : -1}; }
+
+descriptor::FileSource Inheritance::source() const {
+  auto texts = goes_on() && texts_ ? texts_->newest() : TextsInForce::Texts{};
+  if (texts.empty()) return descriptor::file_system();
+  return [texts = std::move(texts)](const std::filesystem::path& asked) -> Result<std::string> {
+    const auto known = texts.find(asked);
+    if (known == texts.end()) return fail(ErrorCode::NotFound, "is no file of this flight");
+    return *known->second;
+  };
+}
+
+void Inheritance::watch_this_thread() const noexcept {
+  page_->guarded.store(page_->starts.load(), std::memory_order_release);
+  static_cast<void>(hold_life(page_->guard_life));
+}
+
+void Inheritance::take_inhibits(const Clock& clock) const {
+  constexpr Duration longest = std::chrono::milliseconds{100};
+  const std::uint32_t start = page_->starts.load();
+  page_->wants_inhibits.store(start, std::memory_order_release);
+  for (const TimePoint limit = clock.now() + longest; page_->left_inhibits.load() < start && clock.now() < limit;)
+    sleep_until(clock.now() + std::chrono::microseconds{500});
+}
+
+}  // namespace hirosco::supervisor
