@@ -86,6 +86,7 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   member->asked_who_runs.reset();
   member->doomed.reset();
   member->killed = false;
+  for (WatchedDevice& device : member->devices) device.silence_told = false;
   member->falls_with.clear();
   member->life = 0;
   member->life_told = false;
@@ -197,7 +198,7 @@ bool Guard::release(std::uint16_t apid, std::uint64_t seen_fences) {
   if (stopping && !member->has_stopped()) return false;
   if (stopping) {
     member->settled = stops_;
-    if (!member->stopped) member->stopped = parts_.clock.now() - stop_begun_;
+    if (!member->stopped) member->stopped = parts_.clock.now() - member->stop_begun;
   }
   member->release(watched_at(parts_.clock.now()));
   return true;
@@ -260,7 +261,7 @@ TimePoint Guard::step(TimePoint now) {
       device.hear(watched_);
       // What has no power moves nothing, and cannot say so.
       const bool still = device.rests() || (!member.power.none() && member.power.said() == power_off);
-      if (!member.released && still && !device.stopped) device.stopped = now - stop_begun_;
+      if (!member.released && still && !device.stopped) device.stopped = now - member.stop_begun;
       const bool acts = member.seen_operational && member.released && member.uses(device.place);
       if (acts && device.falls_silent(member.released_at, watched_))
         find_out(GuardFinding::Kind::InhibitSilent, member.apid(), device.place);

@@ -155,8 +155,6 @@ class Guard {
   TimePoint next_observation_{};
   std::uint64_t stops_{0};  ///< the newest stop of everything
   std::uint64_t stops_ended_{0};
-  TimePoint stop_begun_{};
-  TimePoint stop_watched_{};  ///< the same in watched time
 };
 
 }  // namespace hirosco::supervisor

@@ -141,6 +141,14 @@ void GuardedMember::fence() noexcept {
   for (WatchedDevice& device : devices) device.fenced_at_sequence = device.sequence;
 }
 
+void GuardedMember::begin_stop(TimePoint now, TimePoint watched) noexcept {
+  stop_begun = now;
+  stop_watched = watched;
+  stop_killed = false;
+  stopped.reset();
+  for (WatchedDevice& device : devices) device.stopped.reset();
+}
+
 void GuardedMember::release(TimePoint now) noexcept {
   // Who may move has the priority that its limits are made for.
   if ((taken != Taken::Nothing || guarded_before) && grip) grip->give_realtime();
@@ -152,6 +160,8 @@ void GuardedMember::release(TimePoint now) noexcept {
   released = true;
   seen_operational = false;
   released_at = now;
+  // Whoever lets it move is told again of whom nobody would hear.
+  for (WatchedDevice& device : devices) device.silence_told = false;
 }
 
 void GuardedMember::end_permission(TimePoint now) noexcept {

@@ -101,6 +101,8 @@ struct GuardedMember {
   std::optional<TimePoint> doomed;  ///< killed then unless it comes back
   GuardFinding::Kind doom{};
   // stop
+  TimePoint stop_begun{};  ///< of the newest that found it moving
+  TimePoint stop_watched{};  ///< the same in watched time
   std::optional<Duration> stopped;  ///< by its own word
   bool killed{false};
   std::uint64_t settled{0};  ///< the stop in which it had stopped and was let go again
@@ -129,6 +131,8 @@ struct GuardedMember {
   /// By its own page, under the epoch that it has; empty: it acts.
   [[nodiscard]] std::string_view why_it_rests() const noexcept;
   void fence() noexcept;
+  /// It has yet to stop: its time runs from now.
+  void begin_stop(TimePoint now, TimePoint watched) noexcept;
   void release(TimePoint now) noexcept;
   /// A permission is for one stay in Operational: it ends with it.
   void end_permission(TimePoint now) noexcept;

@@ -21,24 +21,14 @@ std::uint64_t Guard::stop_all(GuardFinding::Kind why) {
 
 std::uint64_t Guard::stop_all() {
   const LockGuard lock{mutex_};
+  const TimePoint now = parts_.clock.now();
+  const TimePoint watched = watched_at(now);
+  // Stops that overlap end together. The time of each member runs from the first that found it moving: from this one for who moves,
+  // or did since the stop that is still open had seen it at rest.
+  const bool first = stops_ended_ == stops_;
   for (GuardedMember& member : members_) {
-    if (member.spared) continue;
-    // Who moves, or did since the stop that is still open had seen it at rest, has yet to stop.
-    if (member.released || member.settled == stops_) {
-      member.stopped.reset();
-      for (WatchedDevice& device : member.devices) device.stopped.reset();
-    }
-    member.fence();
-  }
-  // Stops that overlap end together; their time runs from the first.
-  if (stops_ended_ == stops_) {
-    stop_begun_ = parts_.clock.now();
-    stop_watched_ = watched_at(stop_begun_);
-    for (GuardedMember& member : members_) {
-      member.stop_killed = false;
-      member.stopped.reset();
-      for (WatchedDevice& device : member.devices) device.stopped.reset();
-    }
+    if (first || member.released || member.settled == stops_) member.begin_stop(now, watched);
+    if (!member.spared) member.fence();
   }
   return ++stops_;
 }
@@ -61,12 +51,12 @@ std::optional<std::vector<StopAnswer>> Guard::stop_outcome(std::uint64_t stop) c
 
 void Guard::follow_stop(TimePoint now) {
   // How long a stop took is told in real time; who is given how long goes by what was watched.
-  const Duration since = watched_ - stop_watched_;
   bool waiting = false;
   for (GuardedMember& member : members_) {
     if (member.spared || member.settled == stops_) continue;
+    const Duration since = watched_ - member.stop_watched;
     if (!member.says_stopped()) member.stopped.reset();
-    else if (!member.stopped) member.stopped = now - stop_begun_;
+    else if (!member.stopped) member.stopped = now - member.stop_begun;
     if (member.has_stopped()) continue;
     if (since >= member.stop_limit() && !member.stop_killed && member.grip && member.to_blame()) {
       member.stop_killed = true;

@@ -68,6 +68,24 @@ TEST_F(Watching, ASecondInhibitThatDoesNotAnswerIsToldOnceForEachSilence) {
   EXPECT_THAT(kinds(arm), ElementsAre(Found::InhibitSilent)) << "another silence";
 }
 
+TEST_F(Watching, ASecondInhibitThatStaysSilentIsToldAgainToWhoLetsItMoveAgain) {
+  const auto silent = [&](Duration span) { run(span, {arm, hand, camera}, std::nullopt); };
+  silent(2s);
+  EXPECT_THAT(kinds(arm), ElementsAre(Found::InhibitSilent));
+  guard.fence(arm);
+  silent(5s);
+  EXPECT_THAT(kinds(arm), IsEmpty()) << "it may not move";
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  silent(2s);
+  EXPECT_THAT(kinds(arm), ElementsAre(Found::InhibitSilent));
+  start(arm);
+  lives[arm].vital->configuration = 2;
+  cycling(arm);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  silent(2s);
+  EXPECT_THAT(kinds(arm), ElementsAre(Found::InhibitSilent)) << "another process";
+}
+
 TEST_F(Watching, WhoMayNotActOrDoesNotUseTheDeviceIsToldNothingOfItsSecondInhibit) {
   lives[arm].vital->configuration = 0;
   run(5s, {arm, hand, camera}, std::nullopt);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/utilities/octets.hpp"
@@ -22,8 +23,12 @@ class CommandDesk {
  public:
   virtual ~CommandDesk() = default;
   /// A function, by its name.
-  virtual void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
-                       CommandDone done) = 0;
+  void command(std::uint16_t apid, std::string_view function, std::optional<double> argument, CommandDone done) {
+    command(apid, function, argument, std::move(done), std::nullopt);
+  }
+  /// The same, by who was told to before: void once the addressee was stopped since (`free_at`: Guard::fences() of then).
+  virtual void command(std::uint16_t apid, std::string_view function, std::optional<double> argument, CommandDone done,
+                       std::optional<std::uint64_t> free_at) = 0;
   /// Any other request; memory travels beside it. `takes`: how long its execution may last besides.
   virtual void send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
                     const MemoryHandle& memory, CommandDone done, Duration takes) = 0;

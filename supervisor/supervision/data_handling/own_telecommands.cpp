@@ -26,7 +26,7 @@ std::string words_of(pus::FailureCode code, Octets data) {
 }  // namespace
 
 void OwnTelecommands::command(std::uint16_t apid, std::string_view name, std::optional<double> argument,
-                              CommandDone done) {
+                              CommandDone done, std::optional<std::uint64_t> free_at) {
   const auto* member = apid == supervisor_apid ? nullptr : craft_.mission.find_subsystem(apid);
   const descriptor::Subsystem& subsystem = member != nullptr ? member->subsystem : craft_.mission.supervisor;
   static const auto built_in = pus::common_functions();
@@ -40,11 +40,16 @@ void OwnTelecommands::command(std::uint16_t apid, std::string_view name, std::op
     if (done) done(false, data.error().text);
     return;
   }
-  send(apid, 8, 1, *data, {}, std::move(done), Duration{0});
+  send({.apid = apid, .service = 8, .subtype = 1, .data = *data, .free_at = free_at}, std::move(done), Duration{0});
 }
 
 void OwnTelecommands::send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data,
                            const MemoryHandle& memory, CommandDone done, Duration takes) {
+  send({.apid = apid, .service = service, .subtype = subtype, .data = data, .memory = memory}, std::move(done), takes);
+}
+
+void OwnTelecommands::send(const Packet& what, CommandDone done, Duration takes) {
+  const std::uint16_t apid = what.apid;
   std::array<std::byte, max_packet_octets> buffer;
   const std::uint16_t count = next_sequence_count_;
   next_sequence_count_ = static_cast<std::uint16_t>((count + 1) % pus::sequence_counts);
@@ -52,10 +57,10 @@ void OwnTelecommands::send(std::uint16_t apid, std::uint8_t service, std::uint8_
                                              {.apid = apid,
                                               .sequence_count = count,
                                               .ack = pus::ack_acceptance | pus::ack_completion,
-                                              .service = service,
-                                              .subtype = subtype,
+                                              .service = what.service,
+                                              .subtype = what.subtype,
                                               .source = supervisor_apid},
-                                             data);
+                                             what.data);
   if (!packet) {
     if (done) done(false, packet.error().text);
     return;
@@ -63,7 +68,8 @@ void OwnTelecommands::send(std::uint16_t apid, std::uint8_t service, std::uint8_
   const auto telecommand = pus::TelecommandView::parse(*packet);
   sent_[telecommand->request_id()] = {std::move(done), craft_.now + own_answer_limit + takes,
                                       craft_.name_of(apid) + " " + telecommand_text(*telecommand), apid};
-  telecommands_.take({.packet = *packet, .origin = Origin::supervisor(), .memory = memory});
+  telecommands_.take(
+      {.packet = *packet, .origin = Origin::supervisor(), .memory = what.memory, .free_at = what.free_at});
 }
 
 void OwnTelecommands::hear(std::uint16_t from, const pus::TelemetryView& report) {

@@ -21,8 +21,9 @@ class OwnTelecommands final : public CommandDesk, public Hearer, public Watch {
   OwnTelecommands(Craft& craft, Telecommands& telecommands, std::uint16_t first_sequence_count)
       : craft_{craft}, telecommands_{telecommands}, next_sequence_count_{first_sequence_count} {}
 
-  void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
-               CommandDone done) override;
+  using CommandDesk::command;
+  void command(std::uint16_t apid, std::string_view function, std::optional<double> argument, CommandDone done,
+               std::optional<std::uint64_t> free_at) override;
   void send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data, const MemoryHandle& memory,
             CommandDone done, Duration takes) override;
   /// Who has died answers nothing any more: what waits for it goes on at once.
@@ -39,6 +40,15 @@ class OwnTelecommands final : public CommandDesk, public Hearer, public Watch {
     std::string what;
     std::uint16_t apid{};
   };
+  struct Packet {
+    std::uint16_t apid{};
+    std::uint8_t service{}, subtype{};
+    Octets data;
+    MemoryHandle memory{};
+    std::optional<std::uint64_t> free_at{};
+  };
+  void send(const Packet& what, CommandDone done, Duration takes);
+
   Craft& craft_;
   Telecommands& telecommands_;
   std::map<std::uint32_t, Sent> sent_;  ///< by request id

@@ -48,6 +48,12 @@ void Telecommands::take(const Incoming& incoming) {
   };
   parts_.power.observe();
   auto decision = judge(*telecommand, incoming.origin);
+  if (decision && incoming.before_stop && !decision->essential &&
+      (decision->releases_stop || decision->starts || (apid == supervisor_apid && !asks_only))) {
+    FailureNotice notice{FailureCode::NotPermittedNow};
+    decision = std::unexpected{
+        notice.because({ErrorCode::NotPermitted, 0, "it may have been said before the stop: say it again"})};
+  }
   if (decision)
     if (const auto flood = refuse_flood(*telecommand, incoming.origin, *decision)) decision = std::unexpected{*flood};
   if (!decision) {
@@ -69,7 +75,7 @@ void Telecommands::take(const Incoming& incoming) {
                           .peer = apid,
                           .packet = incoming.packet,
                           .note = std::string_view{text}};
-  const std::uint64_t fences = craft_.guard.fences(apid);
+  const std::uint64_t fences = incoming.free_at.value_or(craft_.guard.fences(apid));
   // Nobody could command anything until the ground link is back: its own restoration waits for no disk either.
   const Member* addressee = craft_.member(apid);
   const bool restores = incoming.origin.is_supervisor() && craft_.restoring_ground_link && addressee != nullptr &&
@@ -329,8 +335,11 @@ void Telecommands::forward(const Outgoing& outgoing) {
   if (parts_.unanswered.full() && !essential && !to_itself)
     return reject({.packet = packet, .origin = origin}, request, FailureNotice{FailureCode::QueueFull});
   // The stop is lifted by exactly this telecommand, when it leaves.
-  if (releases_stop && !to_itself && !craft_.guard.release(apid, fences))
-    return reject({.packet = packet, .origin = origin}, request, FailureNotice{FailureCode::NotPermittedNow});
+  if (releases_stop && !to_itself && !craft_.guard.release(apid, fences)) {
+    FailureNotice notice{FailureCode::NotPermittedNow};
+    return reject({.packet = packet, .origin = origin}, request,
+                  notice.because({ErrorCode::NotPermitted, 0, "stopped since this was asked for, or stopping"}));
+  }
   Member* addressee = craft_.member(apid);
   if (releases_stop && addressee != nullptr) addressee->fences_when_free = craft_.guard.fences(apid);
   Channel* channel = to_itself ? &parts_.own.channel() : addressee != nullptr ? addressee->channel() : nullptr;

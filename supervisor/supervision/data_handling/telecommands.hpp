@@ -31,6 +31,10 @@ struct Incoming {
   Octets packet;
   Origin origin;
   MemoryHandle memory{};
+  /// What its sender knows of the addressee, Guard::fences(): stopped since, and it is void. Empty: all that holds now.
+  std::optional<std::uint64_t> free_at{};
+  /// It may have been said before a stop, and is read after it: it lets nobody move, nor any mode change.
+  bool before_stop{false};
 };
 
 /// Permits or refuses, logs and forwards every telecommand (paper 4.3). One that is not essential leaves when it is on the

@@ -225,8 +225,8 @@ void Reactions::look_ahead(const std::vector<PlanStart>& starts, pus::st129::Pla
 
 /// Ground is told of each state that a plan commands, whatever becomes of it.
 void Reactions::Desk::command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
-                              CommandDone done) {
-  desk_.command(apid, function, argument, std::move(done));
+                              CommandDone done, std::optional<std::uint64_t> free_at) {
+  desk_.command(apid, function, argument, std::move(done), free_at);
   if (function == "SET_STATE" && argument) own_.announce("RECOVERY_STEP", {static_cast<double>(apid), *argument});
 }
 

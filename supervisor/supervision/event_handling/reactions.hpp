@@ -69,8 +69,8 @@ class Reactions {
   class Desk final : public CommandDesk {
    public:
     Desk(CommandDesk& desk, OwnSubsystem& own) : desk_{desk}, own_{own} {}
-    void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
-                 CommandDone done) override;
+    void command(std::uint16_t apid, std::string_view function, std::optional<double> argument, CommandDone done,
+                 std::optional<std::uint64_t> free_at) override;
     void send(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype, Octets data, const MemoryHandle& memory,
               CommandDone done, Duration takes) override;
 

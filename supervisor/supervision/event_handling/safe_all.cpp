@@ -22,12 +22,14 @@ void SafeAll::carry_out(const pus::Request& request) {
 }
 
 void SafeAll::asked() {
+  what_is_unread_was_said_before();
   pending_.push_back({craft_.guard.stop_all(), std::nullopt});
   own_.announce(descriptor::event_of_local_stop);
   after_stop("stop by signal or local socket");
 }
 
 void SafeAll::again() {
+  what_is_unread_was_said_before();
   if (before_.empty()) before_.emplace_back();
   if (std::ranges::any_of(before_, [](const auto& asked) { return !asked; }))
     own_.announce(descriptor::event_of_local_stop);
@@ -59,14 +61,29 @@ void SafeAll::after_stop(std::string_view why) {
   craft_.tell(std::string{why} + ": every actuator inhibited", supervisor_apid);
   // Commissioning, or a change of mode, would lift the fences again with its next step.
   for (Undertaking* each : under_way_) each->all_stopped(why);
+  followed_.clear();
+  follows_until_ = craft_.now + late_entry;
+  states_follow();
+}
+
+void SafeAll::states_follow() {
+  if (craft_.now >= follows_until_) return;
   for (Member& subject : craft_.members) {
     // The ground link has no actuators and is needed now more than ever.
     if (!subject.alive() || craft_.is_ground_link(subject) || subject.state() != State::Operational) continue;
+    if (!craft_.guard.fenced(subject.apid()) || std::ranges::find(followed_, subject.apid()) != followed_.end())
+      continue;
+    followed_.push_back(subject.apid());
     desk_.command(subject.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
   }
 }
 
+void SafeAll::what_is_unread_was_said_before() {
+  for (Member& member : craft_.members) member.before_stop = true;
+}
+
 void SafeAll::follow() {
+  states_follow();
   for (auto pending = pending_.begin(); pending != pending_.end();) {
     const auto answers = craft_.guard.stop_outcome(pending->stop);
     if (!answers) return;

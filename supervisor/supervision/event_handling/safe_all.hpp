@@ -27,8 +27,12 @@ class SafeAll final : public Remembered {
   void provide();
   /// SAFE_ALL, carried out where it is received.
   void carry_out(const pus::Request& request);
-  /// A signal or the local socket asked for a stop.
+  /// How long after a stop a state that was on its way may still be entered: a cycle of some seconds.
+  static constexpr Duration late_entry = std::chrono::seconds{10};
+  /// A signal or the local socket asked for a stop, at some time before: what has not been read yet may have been said before it.
   void asked();
+  /// Nothing of it lets anybody move, until each channel was empty once. Of a stop whose place among the telecommands nobody knows.
+  void what_is_unread_was_said_before();
   /// Everything was stopped already: nothing starts it again, and the states follow.
   void after_stop(std::string_view why);
   /// One was under way when the supervisor before died, or was asked for when there was none.
@@ -46,6 +50,8 @@ class SafeAll final : public Remembered {
     std::optional<pus::Request> request;  ///< empty: asked for by signal or local socket
   };
   void tell_outcome(const Pending& pending, const std::vector<StopAnswer>& answers);
+  /// Whoever acts, or enters Operational after all, on the word of before: once for each stop.
+  void states_follow();
 
   Craft& craft_;
   OwnSubsystem& own_;
@@ -53,6 +59,8 @@ class SafeAll final : public Remembered {
   std::vector<Undertaking*> under_way_;
   std::vector<Pending> pending_;
   std::vector<std::optional<pus::Request>> before_;  ///< of stops that the supervisor before had begun
+  TimePoint follows_until_{};
+  std::vector<std::uint16_t> followed_;
 };
 
 }  // namespace hirosco::supervisor

@@ -2,25 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/modes/commissioning.hpp"
 
+#include <utility>
+
 #include "supervisor/supervision/modes/mode_plan.hpp"
 
 namespace hirosco::supervisor {
 
 void Commissioning::start(std::function<void()> failed) {
-  // Itself first: the functions of the others' commissioning are its own.
-  const descriptor::Subsystem& own = craft_.mission.supervisor;
-  WayThere way;
-  way.add(own, own.configurations.front(), {State::Offline}, State::Operational);
-  runner_.start({.stages = way.stages(), .finished = [this, failed = std::move(failed)](const ProcedureEnd& end) {
-                   if (!end.success) {
-                     craft_.tell("supervisor cannot start: " + end.text(), supervisor_apid);
-                     craft_.fail();
-                     return failed();
-                   }
-                   if (const auto* start_mode = craft_.mission.find_mode(craft_.mission.start_mode))
-                     return commission(*start_mode);
-                   succeeded_ = true;
-                 }});
+  begins_ = true;
+  // Itself first: the functions of the others' commissioning are its own. A stop in these moments ends the others' only: nobody could
+  // command a supervisor that is not there.
+  start_itself([this, failed = std::move(failed)](bool success) {
+    const bool goes_on = std::exchange(begins_, false);
+    if (!success) return failed();
+    if (!goes_on) return;
+    if (const auto* start_mode = craft_.mission.find_mode(craft_.mission.start_mode)) return commission(*start_mode);
+    succeeded_ = true;
+  });
 }
 
 void Commissioning::start_itself(std::function<void(bool)> done) {
@@ -45,7 +43,8 @@ void Commissioning::commission(const descriptor::Mode& start_mode) {
   if (const auto& measured = craft_.mission.power_measured) way.await_power(measured->age);
   way.enter(start_mode);
   runner_.start({.stages = way.stages(),
-                 .finished = [this, &start_mode](const ProcedureEnd& end) { ended(start_mode, end.text()); }});
+                 .finished = [this, &start_mode](const ProcedureEnd& end) { ended(start_mode, end.text()); },
+                 .knows_of_no_stop = true});
 }
 
 void Commissioning::ended(const descriptor::Mode& start_mode, const std::string& failure) {
@@ -62,8 +61,14 @@ void Commissioning::ended(const descriptor::Mode& start_mode, const std::string&
   craft_.fail();
 }
 
+void Commissioning::drop() {
+  if (std::exchange(begins_, false)) itself_.cancel();
+  runner_.cancel();
+}
+
 bool Commissioning::cancel(std::string_view why) {
-  if (craft_.shutting_down || !runner_.running()) return false;
+  if (craft_.shutting_down || !running()) return false;
+  begins_ = false;
   runner_.cancel();
   craft_.tell("commissioning stopped: " + std::string{why}, supervisor_apid);
   return true;

@@ -24,11 +24,11 @@ class Commissioning final : public Undertaking {
   bool cancel(std::string_view why) override;
   void all_stopped(std::string_view why) override { static_cast<void>(cancel(why)); }
   /// The shutdown takes over.
-  void drop() { runner_.cancel(); }
+  void drop();
 
-  [[nodiscard]] bool running() const noexcept { return runner_.running(); }
+  [[nodiscard]] bool running() const noexcept { return begins_ || runner_.running(); }
   [[nodiscard]] bool succeeded() const noexcept { return succeeded_; }
-  [[nodiscard]] std::string waiting_for() const { return runner_.waiting_for(); }
+  [[nodiscard]] std::string waiting_for() const { return begins_ ? itself_.waiting_for() : runner_.waiting_for(); }
 
  private:
   void commission(const descriptor::Mode& start_mode);
@@ -36,7 +36,8 @@ class Commissioning final : public Undertaking {
 
   Craft& craft_;
   ProcedureRunner runner_;
-  ProcedureRunner itself_;  ///< which nothing ends
+  ProcedureRunner itself_;  ///< which no stop ends
+  bool begins_{false};  ///< the others follow when the supervisor itself is there
   bool succeeded_{false};
 };
 

@@ -72,7 +72,8 @@ void Modes::change(const descriptor::Mode& mode, ModePlan plan, const Call& call
                  .begins =
                      [this, call](std::size_t stage) {
                        if (stage > 0) parts_.own.progress(call, static_cast<std::uint16_t>(stage));
-                     }});
+                     },
+                 .knows_of_no_stop = true});
 }
 
 void Modes::ended(const descriptor::Mode& mode, const std::string& failure) {
@@ -98,7 +99,9 @@ bool Modes::cancel(std::string_view why) {
 }
 
 void Modes::all_stopped(std::string_view why) {
-  if (runner_.running()) fall_back(why, StatesFollow::Elsewhere);
+  if (runner_.running()) return fall_back(why, StatesFollow::Elsewhere);
+  // What was permitted before the stop and has not been carried out is void, a change of mode above all.
+  void_permissions();
 }
 
 void Modes::note(OctetWriter& writer) const {

@@ -18,6 +18,13 @@ struct ProcedureRunner::Run : std::enable_shared_from_this<Run> {
           for (const std::uint16_t apid : step.kind->fences(step, means)) means.craft.guard.fence(apid);
   }
 
+  /// What whoever asks for it knows: its own fences, and all before.
+  void count_fences() {
+    if (!procedure.knows_of_no_stop) return;
+    for (Stage& each : procedure.stages)
+      for (ProcedureStep& step : each) step.free_at = means.craft.guard.fences(step.subject);
+  }
+
   void begin_stage() {
     while (stage < procedure.stages.size() && procedure.stages[stage].empty()) ++stage;
     if (stage == procedure.stages.size()) return finish();
@@ -72,6 +79,7 @@ void ProcedureRunner::start(Procedure procedure) {
   run_ = std::make_shared<Run>(means_, std::move(procedure));
   const auto run = run_;  // its end may start another here
   run->fence();
+  run->count_fences();
   run->begin_stage();
 }
 

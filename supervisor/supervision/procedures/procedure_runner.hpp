@@ -29,6 +29,8 @@ struct Procedure {
   OnFailure on_failure{OnFailure::Stop};
   std::function<void(const ProcedureEnd&)> finished{};
   std::function<void(std::size_t stage)> begins{};  ///< counted from 0, those without a step not counted
+  /// Who is stopped after it has begun is let go by none of its steps: whoever asked for it did not know of that.
+  bool knows_of_no_stop{false};
 };
 
 /// Runs one procedure at a time. Whoever lets go of a runner does not end what it has begun; cancel() does.

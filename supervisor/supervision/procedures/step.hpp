@@ -51,6 +51,8 @@ struct ProcedureStep {
   Occasion occasion{};
   std::vector<std::string> words{};      ///< as of descriptor::PlanStep, as the next
   std::vector<double> arguments{};
+  /// The guard's count of its subject's fences that is known to whoever asked for it: another one, and its subject was stopped since.
+  std::optional<std::uint64_t> free_at{};
 };
 
 /// A kind of step: a file in steps/ and a row in step_kinds.hpp.

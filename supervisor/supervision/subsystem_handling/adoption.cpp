@@ -79,6 +79,10 @@ void Adoption::begin(bool stop_asked) {
   waits_ = owes_ = true;
   waits_until_ = craft_.now + longest_start;
   for (Member& member : craft_.members) take_over(member);
+  // Where anybody was stopped, what is read from now on may have been said before that.
+  const bool stopped =
+      std::ranges::any_of(craft_.members, [](const Member& member) { return !member.fences_when_free; });
+  if (stop_asked_ || stopped) parts_.safe_all.what_is_unread_was_said_before();
   parts_.commissioning.start_itself([this](bool) { go_on(); });
 }
 

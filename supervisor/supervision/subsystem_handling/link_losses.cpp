@@ -53,10 +53,13 @@ void LinkLosses::fall_back(const descriptor::MissionLink& link, Member& consumer
   const bool acts = state == State::SafeOperational || state == State::Operational;
   if (!acts || consumer.configuration() == configuration->id) return;
   const std::uint16_t apid = consumer.apid();
+  // Who was stopped before stays so: its way ends where it lets nobody move.
+  const bool stopped = craft_.guard.fences(apid) != consumer.fences_when_free;
   // With what is lost nobody goes on acting, whoever obeys and whenever.
   craft_.guard.fence(apid);
   WayThere way;
-  way.add(consumer.descriptor(), *configuration, {state, consumer.configuration()}, *state);
+  way.add(consumer.descriptor(), *configuration, {state, consumer.configuration()},
+          stopped ? State::SafeOperational : *state);
   Fallback& fallback = fallbacks_.try_emplace(apid, means_).first->second;
   fallback.fences = craft_.guard.fences(apid);
   fallback.runner.start({.stages = way.stages(),
@@ -74,7 +77,8 @@ void LinkLosses::fall_back(const descriptor::MissionLink& link, Member& consumer
                                const bool other =
                                    craft_.changing_to != nullptr || craft_.member(apid)->recovery.running();
                                if (found != fallbacks_.end() && (stopped || other)) found->second.runner.cancel();
-                             }});
+                             },
+                         .knows_of_no_stop = true});
 }
 
 bool LinkLosses::is_back(std::uint8_t link, TimePoint since) const {

@@ -147,7 +147,8 @@ void Restoration::begin() {
                  .begins =
                      [this](std::size_t) {
                        if (const std::string why = against(); !why.empty()) static_cast<void>(cancel(why));
-                     }});
+                     },
+                 .knows_of_no_stop = true});
 }
 
 void Restoration::ended(const ProcedureEnd& end) {

@@ -13,13 +13,15 @@ namespace hirosco::supervisor::testing {
 
 /// Keeps what it is asked to send; the test answers, or it answers at once.
 struct PlayedDesk final : CommandDesk {
-  void command(std::uint16_t apid, std::string_view function, std::optional<double> argument,
-               CommandDone done) override {
+  using CommandDesk::command;
+  void command(std::uint16_t apid, std::string_view function, std::optional<double> argument, CommandDone done,
+               std::optional<std::uint64_t> free_at) override {
     std::string text = std::to_string(apid);
     text.append(1, ' ').append(function);
     if (argument) text.append(1, ' ').append(std::to_string(static_cast<int>(*argument)));
     if (on_command) on_command();
     sent.push_back(text);
+    counts.push_back(free_at);
     answers.push_back(std::move(done));
     if (at_once) answers.back()(*at_once, "at once");
   }
@@ -38,6 +40,7 @@ struct PlayedDesk final : CommandDesk {
   }
 
   std::vector<std::string> sent;
+  std::vector<std::optional<std::uint64_t>> counts;  ///< of functions: the fences that their sender knows of
   std::vector<CommandDone> answers;
   std::optional<bool> at_once;
   std::function<void()> on_command{};  ///< looks at what holds when something is sent

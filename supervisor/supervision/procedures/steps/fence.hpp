@@ -10,12 +10,14 @@
 
 namespace hirosco::supervisor::steps {
 
-/// The actuators of its subject stop, whatever that does; its state stays.
+/// The actuators of its subject stop, whatever that does; its state stays. What it was commanded to be counts no more.
 inline constexpr StepKind fence{
     .name = "fence",
     .run =
         [](const ProcedureStep& step, const Means& means, CommandDone done) {
           means.craft.guard.fence(step.subject);  // again: an earlier step may have let it go since
+          // Nor is it brought back to more than that, should it crash now.
+          means.commanded.lower(step.subject, State::SafeOperational, step.occasion.event);
           if (!step.occasion.event.empty())
             means.craft.tell("plan " + step.occasion.plan + ": " + means.craft.name_of(step.subject) +
                                  " fenced because of " + step.occasion.event,

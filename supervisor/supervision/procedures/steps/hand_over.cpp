@@ -65,7 +65,8 @@ struct HandOver : std::enable_shared_from_this<HandOver> {
          .begins =
              [self = shared_from_this()](std::size_t) {
                if (const std::string why = against(self->step, self->means); !why.empty()) self->end(false, why);
-             }});
+             },
+         .knows_of_no_stop = true});
   }
 
   void end(bool success, const std::string& why) {

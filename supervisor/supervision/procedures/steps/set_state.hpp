@@ -44,7 +44,8 @@ inline constexpr StepKind set_state{
             means.craft.tell("plan " + step.occasion.plan + ": " + means.craft.name_of(step.subject) + " to " +
                                  std::string{to_text(state)} + " because of " + step.occasion.event,
                              step.subject);
-          means.desk.command(step.subject, "SET_STATE", static_cast<double>(state), std::move(done));
+          const auto free_at = state == State::Operational ? step.free_at : std::nullopt;
+          means.desk.command(step.subject, "SET_STATE", static_cast<double>(state), std::move(done), free_at);
         },
     .fences = state_step::fenced,
     .answers = state_step::answers,
