@@ -304,6 +304,7 @@ def tried(connect, **about):
             found = duty(own)
             if found == "again":  # by a wire that is not full of what nobody read
                 own.wire.close()
+                time.sleep(0.2)  # what still waits before it leaves room for a datagram
                 last, own = own, Own(connect(), **(about | {"just_begun": False}))
                 assert own.epoch >= last.epoch - 1, "it forgot its epoch"
             print(f"{'-' if found == 'not tried' else 'ok':8}{duty.__doc__}", flush=True)
