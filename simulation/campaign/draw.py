@@ -436,10 +436,11 @@ class Draw:
             self.add(time, f"{words}  # {origin} asks again")
 
     def reboot(self):
-        """In some flights a device reboots, mostly while it is commanded. By a dice of its own, too."""
+        """In some flights the network is brought up and one of its devices reboots. By a dice of its own, too, and drawn last."""
         dice = random.Random(f"reboot of {self.flight_seed}")
         if dice.random() < REBOOTS and self.index % SILENCED_EVERY != SILENCED_AT:
-            time, device = dice.uniform(1, FINALE_S - 2), dice.choice(list(self.mission.devices))
+            device = dice.choice(list(self.mission.devices))
+            time = self.bring_up(dice.uniform(1, FINALE_S - 4)) + dice.uniform(0.1, 0.6)
             self.add(time, f"fault {device} reboot")
             self.add(time + 0.3, f"fault {device} heal")
 
