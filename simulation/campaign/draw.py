@@ -20,6 +20,7 @@ LOG_FAULTS = ["slow", "failing", "full", "deleted", "frozen"]
 LEFT_ALONE_S = {**dict.fromkeys(DEVICE_FAULTS, 0.7), **dict.fromkeys(MEMBER_FAULTS, 1.6)}
 SILENCED_EVERY, SILENCED_AT = 5, 3   # flights that end with an unplug that ground silenced (hazard SF6)
 SILENCED_S = 5.5        # of the end of such a flight, in which nothing else happens
+REBOOTS = 0.25          # of flights
 MOST_STRIKES = 2        # of a member in one flight by what may end it: who dies too often stays down
 # Of every subsystem, beside those of its descriptor: states, failures, lost devices and stale sets.
 FRAMEWORK_EVENTS = [*range(0xF000, 0xF006), *range(0xF100, 0xF103), *range(0xF200, 0xF204)]
@@ -434,12 +435,22 @@ class Draw:
         for time, origin, words in retrieval.asked(dice, self.mission, BEGIN_S, FINALE_S):
             self.add(time, f"{words}  # {origin} asks again")
 
+    def reboot(self):
+        """In some flights the network is brought up and one of its devices reboots. By a dice of its own, too, and drawn last."""
+        dice = random.Random(f"reboot of {self.flight_seed}")
+        if dice.random() < REBOOTS and self.index % SILENCED_EVERY != SILENCED_AT:
+            device = dice.choice(list(self.mission.devices))
+            time = self.bring_up(dice.uniform(1, FINALE_S - 4)) + dice.uniform(0.1, 0.6)
+            self.add(time, f"fault {device} reboot")
+            self.add(time + 0.3, f"fault {device} heal")
+
     # --- all of it ---------------------------------------------------------------------------------------------------
     def text(self):
         aimed = self.aim() if self.wanted_commands or self.wanted_faults else 0.3
         self.roam(self.random.choice([0.3, aimed, aimed]))
         self.strike_in_use()
         self.ask_again()
+        self.reboot()
         if self.index % SILENCED_EVERY == SILENCED_AT:
             self.strike_silenced()
         self.lines.sort(key=lambda line: line[0])

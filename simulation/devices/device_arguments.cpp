@@ -55,6 +55,7 @@ std::vector<std::string> DeviceArguments::arguments() const {
                                  "--cycle-us",       count_of<std::chrono::microseconds>(settings.cycle),
                                  "--stop",           text_of(settings.stop),
                                  "--stop-within-ms", count_of<std::chrono::milliseconds>(settings.stop_within)};
+  if (settings.actuator) words.push_back("--actuator");
   if (enable)
     words.insert(words.end(),
                  {"--enable-transfer", std::string{to_text(enable->transfer)}, "--enable-address", enable->address});
@@ -180,6 +181,7 @@ std::expected<DeviceArguments, std::string> device_arguments(const descriptor::M
     }
   settings.cycle = main.cycle;
   settings.byte_order = endian_of(main.byte_order);
+  settings.actuator = main.device->actuator;
   settings.stop = stop_of(main.device->stop);
   settings.stop_within = main.device->stop_within;
   if (made.enable) settings.enable = address_of(*made.enable);

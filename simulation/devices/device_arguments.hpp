@@ -16,7 +16,7 @@ namespace hirosco::simulation {
 struct DeviceArguments {
   descriptor::Endnode endnode{};
   std::optional<descriptor::Endnode> enable{};
-  /// Byte order, cycle (of the fastest configuration that uses it), stop, fall-backs, further endnodes and power switch; the
+  /// Byte order, cycle (of the fastest configuration that uses it), whether it is an actuator, stop, fall-backs, further endnodes and power switch; the
   /// seed is the caller's.
   SimulatedDevice::Settings settings{};
 

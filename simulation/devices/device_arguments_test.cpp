@@ -43,15 +43,29 @@ TEST(DeviceArguments, TakesByteOrderPeriodStopAndSecondInhibitFromTheDescriptor)
   ASSERT_TRUE(made) << made.error();
   EXPECT_EQ(made->settings.byte_order, std::endian::big);
   EXPECT_EQ(made->settings.cycle, std::chrono::microseconds{250}) << "of the fastest configuration";
+  EXPECT_TRUE(made->settings.actuator);
   EXPECT_EQ(made->settings.stop, SimulatedDevice::Stop::Controlled);
   EXPECT_EQ(made->settings.stop_within, std::chrono::milliseconds{200});
   ASSERT_TRUE(made->settings.enable);
   EXPECT_EQ(made->settings.enable->address, "joints.enable");
   EXPECT_EQ(made->address().address, "joints");
-  const std::vector<std::string> expected{
-      "--transfer",        "udp",  "--address",        "joints",       "--byte-order",     "big",
-      "--cycle-us",        "250",  "--stop",           "controlled",   "--stop-within-ms", "200",
-      "--enable-transfer", "unix", "--enable-address", "joints.enable"};
+  const std::vector<std::string> expected{"--transfer",
+                                          "udp",
+                                          "--address",
+                                          "joints",
+                                          "--byte-order",
+                                          "big",
+                                          "--cycle-us",
+                                          "250",
+                                          "--stop",
+                                          "controlled",
+                                          "--stop-within-ms",
+                                          "200",
+                                          "--actuator",
+                                          "--enable-transfer",
+                                          "unix",
+                                          "--enable-address",
+                                          "joints.enable"};
   EXPECT_EQ(made->arguments(), expected);
 }
 
@@ -103,6 +117,15 @@ TEST(DeviceArguments, OneProgramPlaysAllEndnodesOfADeviceWithTheirFallBacksAndIt
   const auto words = made->arguments();
   ASSERT_GE(words.size(), expected.size());
   EXPECT_TRUE(std::equal(expected.rbegin(), expected.rend(), words.rbegin()));
+}
+
+TEST(DeviceArguments, TellADeviceThatIsNoActuatorNothingOfOne) {
+  auto mission = a_mission();
+  mission.subsystems[0].subsystem.devices[0].actuator = false;
+  const auto made = device_arguments(mission, mission.devices[0]);
+  ASSERT_TRUE(made) << made.error();
+  EXPECT_FALSE(made->settings.actuator);
+  EXPECT_EQ(std::ranges::count(made->arguments(), "--actuator"), 0);
 }
 
 TEST(DeviceArguments, TwoActuatorsInOneDeviceAreTooMany) {

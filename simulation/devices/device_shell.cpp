@@ -57,6 +57,7 @@ struct Options {
   std::uint64_t seed{1};
   std::int64_t cycle_us{500};
   std::endian byte_order{std::endian::little};
+  bool actuator{false};
   SimulatedDevice::Stop stop{SimulatedDevice::Stop::Drop};
   std::int64_t stop_within_ms{0};
   Transfer enable_transfer{Transfer::SharedMemory};
@@ -124,6 +125,8 @@ std::optional<int> read_options(int argc, char** argv, const char* name, Options
   app.add_option("--seed", options.seed, "Seed of all that is random");
   app.add_option("--cycle-us", options.cycle_us, "Device cycle")->check(CLI::Range(100, 100'000));
   app.add_option("--byte-order", options.byte_order, "Of the payload")->transform(CLI::CheckedTransformer{byte_orders});
+  app.add_flag("--actuator", options.actuator,
+               "It is one: if it is told to be active as it begins, it waits for a higher epoch");
   app.add_option("--stop", options.stop, "What it does by itself when its command is taken away")
       ->transform(CLI::CheckedTransformer{stops});
   app.add_option("--stop-within-ms", options.stop_within_ms, "Time of a controlled stop")->check(CLI::Range(0, 60'000));
@@ -259,6 +262,7 @@ std::optional<SimulatedDevice::Settings> settings_of(const Options& options) {
   SimulatedDevice::Settings settings{.cycle = std::chrono::microseconds{options.cycle_us},
                                      .byte_order = options.byte_order,
                                      .seed = options.seed,
+                                     .actuator = options.actuator,
                                      .stop = options.stop,
                                      .stop_within = std::chrono::milliseconds{options.stop_within_ms}};
   if (!options.enable_address.empty()) settings.enable = {options.enable_transfer, options.enable_address};

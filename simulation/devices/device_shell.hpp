@@ -17,7 +17,7 @@ using MakeDevice =
 /// The process around a simulated device: reads the command line, opens the flow, steps the device when a frame comes or
 /// is overdue, serves the control socket; ends on SIGTERM, SIGINT or when its standard input, a pipe, is closed.
 ///   --transfer shared_memory|unix|udp|tcp|serial|message_queue --address NAME [--seed N] [--control PATH] [--cycle-us 500] [--set NAME=VALUE]...
-///   [--byte-order little|big] [--stop drop|controlled|hold] [--stop-within-ms N]
+///   [--byte-order little|big] [--actuator] [--stop drop|controlled|hold] [--stop-within-ms N]
 ///   [--enable-transfer TRANSFER --enable-address NAME] [--fall-back TRANSFER=ADDRESS]... [--power TRANSFER=ADDRESS]
 ///   [--endnode NAME] [--further NAME,little|big,TRANSFER=ADDRESS...]...
 ///   [--beside ...]: the same words for another device in the first one's world

@@ -122,7 +122,12 @@ void SimulatedDevice::follow_power(TimePoint now) noexcept {
   if (!switch_) return;
   switch_->step(now);
   const bool has = switch_->on();
-  if (std::exchange(had_power_, has) == has) return;
+  if (std::exchange(had_power_, has) != has) begin_anew();
+}
+
+/// As it boots: it knows nothing of what was before, and what moves has brakes or nothing.
+void SimulatedDevice::begin_anew() noexcept {
+  begins_ = true;
   mode_ = DeviceMode::Off;
   epoch_ = sequence_ = 0;
   flags_ = 0;
@@ -199,11 +204,13 @@ bool SimulatedDevice::accept(const DeviceCommand& command, TimePoint now) noexce
   if (settings_.enable && command.epoch > (enable_ ? enable_->epoch : 0)) {
     sequence_ = command.sequence;
     mode_ = DeviceMode::Off;
+    begins_ = begins_ && command.mode == DeviceMode::Active;
     return true;
   }
   // An expired watchdog trips before a late command of the same epoch can hide it.
   watch(now);
-  const bool latched = watchdog_tripped() && command.epoch == epoch_;
+  const bool begins = begins_ && settings_.actuator && command.mode == DeviceMode::Active;
+  const bool latched = begins || (watchdog_tripped() && command.epoch == epoch_);
   const bool obeyed = command.mode == DeviceMode::Active && !latched && enabled(command.epoch, now);
   if (obeyed && !take(OctetReader{command.payload, settings_.byte_order})) {
     ++damaged_commands_;
@@ -211,6 +218,7 @@ bool SimulatedDevice::accept(const DeviceCommand& command, TimePoint now) noexce
   }
   raise(device_flag::old_epoch_refused, false);
   raise(device_flag::watchdog_tripped, latched);
+  begins_ = false;
   epoch_ = command.epoch;
   sequence_ = command.sequence;
   mode_ = command.mode;
@@ -376,8 +384,9 @@ void SimulatedDevice::heal() noexcept {
 
 Result<> SimulatedDevice::apply_fault(const Words& words) {
   const std::string_view what = words[0];
-  if (what == "unplug" || what == "plug" || what == "silent" || what == "heal") {
+  if (what == "unplug" || what == "plug" || what == "silent" || what == "reboot" || what == "heal") {
     HIROSCO_TRY(words.expect(1));
+    if (what == "reboot") begin_anew();
     if (what == "silent") silent_until_ = TimePoint::max();
     if (what == "heal") heal();
     if (what == "plug") return plug();

@@ -55,6 +55,8 @@ struct FaultLine {
 /// the epoch of the subsystem's frames and is young enough; frames of an epoch that none has named are not obeyed. Whoever
 /// takes a moving device's command away, by mode, silence or enable, makes it carry out its declared stop by itself; one
 /// whose enable was taken away moves again only with a higher epoch.
+/// Who begins is let go: an actuator that has begun (made, power, `reboot`) and hears Active as its first command is latched as
+/// if its watchdog had tripped in that epoch. Only it knows that it has just begun (docs/adr/0149).
 /// Realtime: step() is bounded and does not allocate while plugged. Thread: one.
 class SimulatedDevice {
  public:
@@ -71,6 +73,7 @@ class SimulatedDevice {
     std::uint64_t seed{1};
     /// How fast its world runs against the craft; 1 is right. A report that cannot see another number shows nothing.
     double clock{1};
+    bool actuator{false};  ///< false: always told Active, and so never let go because it begins
     Stop stop{Stop::Drop};
     Duration stop_within{0};  ///< of Stop::Controlled
     std::optional<FlowAddress> enable{};  ///< endnode of its second inhibit; none: the subsystem's frames suffice
@@ -100,6 +103,7 @@ class SimulatedDevice {
       FaultLine{"corrupt 5", "the next 5 frames are damaged"},
       FaultLine{"delay 20", "every frame 20 ms late"},
       FaultLine{"heal", "all well again"},
+      FaultLine{"reboot", "begins anew: forgets what it was told"},
       FaultLine{"way 0 silent", "one way to it: unplug, plug, silent, deaf, corrupt N, heal; 1 is the first fall-back"},
   };
   static constexpr std::array<FaultLine, 0> fault_lines{};
@@ -121,9 +125,10 @@ class SimulatedDevice {
   [[nodiscard]] bool wait(Duration timeout) noexcept;
 
   /// Injects a fault from one line of text and records it with the time of the last step:
-  ///   unplug | plug | silent | stall MS | freeze MS | corrupt N | delay MS | heal
+  ///   unplug | plug | silent | stall MS | freeze MS | corrupt N | delay MS | reboot | heal
   ///   way N WHAT | endnode NAME N WHAT   (WHAT: unplug | plug | silent | deaf | corrupt FRAMES | heal; N: 0 preferred, 1 first fall-back)
-  /// and what the device adds; heal ends all that was injected, but plugs nothing in. InvalidArgument, OutOfRange: nothing was done.
+  /// and what the device adds; heal ends all that was injected, but plugs nothing in and
+  /// gives back nothing that a reboot forgot. InvalidArgument, OutOfRange: nothing was done.
   [[nodiscard]] Result<> fault(std::string_view line);
   [[nodiscard]] const std::vector<Injection>& injections() const noexcept { return injections_; }
 
@@ -185,6 +190,7 @@ class SimulatedDevice {
   [[nodiscard]] Result<> open_all();
   void exchange_further() noexcept;
   void follow_power(TimePoint now) noexcept;
+  void begin_anew() noexcept;
   [[nodiscard]] Result<> fault_of_way(EndnodeWays* ways, const Words& words, std::size_t at);
   [[nodiscard]] EndnodeWays* ways_of(std::string_view endnode) noexcept;
   [[nodiscard]] bool receive(TimePoint now) noexcept;
@@ -222,6 +228,7 @@ class SimulatedDevice {
   std::uint64_t own_cycles_{0};
   std::uint64_t damaged_commands_{0};
 
+  bool begins_{true};  ///< and has not heard yet what it may be let go by
   DeviceMode mode_{DeviceMode::Off};
   std::uint32_t epoch_{0};
   std::uint32_t sequence_{0};

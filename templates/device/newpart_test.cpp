@@ -40,7 +40,7 @@ struct NewPartTest : ::testing::Test {
 
   std::unique_ptr<Subsystem> newpart = make_newpart();
   hirosco::testing::Rig rig{*newpart, descriptor::file_system()("newpart.xml").value()};
-  NewPartDevice plate{rig.flows, {Transfer::SharedMemory, "newpart"}, {.cycle = 1ms}};
+  NewPartDevice plate{rig.flows, {Transfer::SharedMemory, "newpart"}, {.cycle = 1ms, .actuator = true}};
 };
 
 TEST_F(NewPartTest, HeatsThePlateOnlyInOperational) {

@@ -59,6 +59,10 @@ DEFECTS = {
     "NO_OUTCOME": ("I2", [
         (TELECOMMANDS, "for (const pus::Request& request : parts_.unanswered.take(apid))",
          'for (const pus::Request& request : planted("NO_OUTCOME") ? std::vector<pus::Request>{} : parts_.unanswered.take(apid))')]),
+    # A device that had just begun obeyed what it was told first.
+    "BEGINS": ("I4", [
+        ("simulation/devices/simulated_device.cpp", "const bool begins = begins_ && settings_.actuator",
+         'const bool begins = !planted("BEGINS") && begins_ && settings_.actuator')]),
     # An exchange moved a device's clock by at least one cycle, and the rest was forgotten.
     "OWN_CLOCK": ("I13", [
         ("simulation/devices/simulated_device.cpp", "  if (!exchanged && behind < settings_.cycle * (by_own_clock_ ? 1 : 2)) return 0;",

@@ -243,6 +243,73 @@ def acts_again_because_the_supervisor_itself_says_so(w):
     w.at(1200 * MS, ACTS).at(1900 * MS, "active robot 0")
 
 
+# --- I4: who begins ---------------------------------------------------------------------------------------------------------
+BEGINS_RULE = "i4_who_begins_is_let_go"
+
+
+def reboot(w, acts_until=1 * S, again=None, what="reboot"):
+    w.at(60 * MS, ACTS).at(1 * S, f"did fault robot {what}").at(acts_until, "active robot 0")
+    if again is not None:
+        w.at(again, ACTS)
+
+
+@case(BEGINS_RULE, found="robot acts 0 ms after it rebooted")
+def a_motion_goes_on_after_a_reboot(w):
+    reboot(w, 2 * S)
+
+
+@case(BEGINS_RULE)
+def a_motion_ends_with_a_reboot(w):
+    reboot(w)
+
+
+@case(BEGINS_RULE, found="robot acts 200 ms after it rebooted")
+def a_motion_begins_by_itself_after_a_reboot(w):
+    reboot(w, again=1200 * MS)
+
+
+@case(BEGINS_RULE)
+def it_is_brought_up_after_a_reboot(w):
+    w.at(1100 * MS, f"state MANIPULATOR {SAFE}").at(1200 * MS, f"state MANIPULATOR {OPERATIONAL}")
+    reboot(w, again=1201 * MS)
+
+
+@case(BEGINS_RULE)
+def it_is_told_off_meanwhile(w):
+    w.at(1002 * MS, "inhibited MANIPULATOR 4").at(1100 * MS, "inhibited MANIPULATOR 0")
+    reboot(w, again=1101 * MS)
+
+
+@case(BEGINS_RULE)
+def its_member_is_another_one_by_then(w):
+    w.at(1002 * MS, "alive MANIPULATOR 0").at(1100 * MS, "alive MANIPULATOR 1")
+    reboot(w, again=1101 * MS)
+
+
+@case(BEGINS_RULE)
+def it_did_nothing_when_it_rebooted(w):
+    reboot(w, acts_until=990 * MS, again=1100 * MS)
+
+
+@case(BEGINS_RULE)
+def it_was_being_inhibited_when_it_rebooted(w):
+    w.at(1 * S, "inhibited MANIPULATOR 4").at(1100 * MS, "inhibited MANIPULATOR 0")
+    reboot(w, again=1101 * MS)
+
+
+@case(BEGINS_RULE)
+def another_fault_is_no_reboot(w):
+    reboot(w, 2 * S, what="stall 1")
+
+
+NO_ACTUATOR = dataclasses.replace(MISSION, members=[dataclasses.replace(member, actuators=set()) for member in MISSION.members])
+
+
+@case(BEGINS_RULE, mission=NO_ACTUATOR)
+def a_sensor_goes_on_after_a_reboot(w):
+    reboot(w, 2 * S)
+
+
 # --- I4: networks --------------------------------------------------------------------------------------------------------------
 NETWORK_RULE = "i4_a_network_goes_down_with_its_member"
 

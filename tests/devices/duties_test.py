@@ -152,6 +152,13 @@ class Judge:
         line = self.played.wait("active", PATIENCE, before)
         assert abs(line["velocity"] - velocity) < 1e-9, "it does not do what it is told"
 
+    def lets_go_who_begins(self):
+        """The first of all: it has heard nobody yet."""
+        answer = self.tell(1, 2.0)
+        assert answer["sequence"] == self.sequence and answer["epoch"] == 1
+        assert answer["flags"] & TRIPPED, "it has just begun, is told to be active, and does not say that it is let go"
+        assert self.silent() and not self.played.count(), "it moves though it has just begun"
+
     def answers_each_command(self):
         for velocity in (0.5, -0.25, 3.0):
             answer = self.tell(1, velocity)
@@ -172,6 +179,7 @@ class Judge:
         assert not self.tell(5, 1.0)["flags"] & OLD_EPOCH
 
     def watchdog_stops_it(self):
+        self.played.wait("active", PATIENCE)  # since it was told so above; its line may be late
         self.active(6, 2.0)
         since, before = time.monotonic(), self.played.count()
         line = self.played.wait("stopping", PATIENCE, before)
@@ -226,8 +234,8 @@ class Judge:
                 os.write(descriptor, burst)
         self.played.wait("stopping", PATIENCE, before)
 
-    DUTIES = (answers_each_command, refuses_what_is_no_command, refuses_who_was_fenced, watchdog_stops_it, latch_opens_for_a_higher_epoch_alone,
-              stops_when_it_is_told, finds_its_place_again, waits_for_nobody)
+    DUTIES = (lets_go_who_begins, answers_each_command, refuses_what_is_no_command, refuses_who_was_fenced, watchdog_stops_it,
+              latch_opens_for_a_higher_epoch_alone, stops_when_it_is_told, finds_its_place_again, waits_for_nobody)
 
 
 # What stands in the device, what does in its place, and which duty is broken by it.
@@ -238,6 +246,7 @@ MUTANTS = (
     ("if (axis.mode != OFF && now >= axis.watchdog_at)", "if (0)", "watchdog_stops_it"),
     ("if (epoch > axis.epoch) axis.flags &=", "axis.flags &=", "latch_opens_for_a_higher_epoch_alone"),
     ("if (axis.mode == ACTIVE && !(axis.flags & TRIPPED))", "if (axis.mode != OFF && !(axis.flags & TRIPPED))", "stops_when_it_is_told"),
+    ("if (!axis.heard && axis.mode == ACTIVE)", "if (0)", "lets_go_who_begins"),
     ("++at; /* duty 7", "break; /* duty 7", "finds_its_place_again"),
     # It waits for a command, and so its watchdog does not run.
     ("wire = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);", "wire = posix_openpt(O_RDWR | O_NOCTTY);", "watchdog_stops_it"),
@@ -281,20 +290,36 @@ class Kept(WithFolder):
     def test_in_python_by_tcp(self):
         self.judge("python", [reference.PYTHON, "-B", FOLDER / "device.py"])
 
+    def test_who_begins_in_a_motion_stays_let_go_and_is_taken_up_by_a_higher_epoch_or_after_off(self):
+        for kind, program in (("udp", [reference.built(self.folder)]), ("python", [reference.PYTHON, "-B", FOLDER / "device.py"])):
+            for first in (ACTIVE, OFF, STOP):
+                with self.subTest(kind=kind, first=first), device(kind, self.folder, program) as (played, wire):
+                    judge = Judge(played, wire, kind)
+                    answers = [judge.tell(7, 2.0, mode=first)] + [judge.tell(7, 2.0) for _ in range(5)]
+                    self.assertEqual([answer["flags"] for answer in answers], 6 * [TRIPPED if first == ACTIVE else 0])
+                    if first == ACTIVE:
+                        self.assertTrue(judge.silent() and not played.count())
+                        judge.tell(8, 2.0)
+                    self.assertEqual(played.wait("active", PATIENCE)["epoch"], 8 if first == ACTIVE else 7)
+
     def test_as_a_device_of_ones_own(self):
         for kind, program in (("udp", [reference.built(self.folder), "udp"]), ("tcp", [reference.PYTHON, "-B", FOLDER / "device.py"])):
             address = f"127.0.0.1:{free_port(socket.SOCK_DGRAM if kind == 'udp' else socket.SOCK_STREAM)}"
             with self.subTest(kind=kind), reference.Device(*program, address):
-                self.assertEqual(self.tried_own(kind, address, takes=8, gives=16), [])
+                self.assertEqual(self.tried_own(kind, address, takes=8, gives=16, just_begun=True), [])
+                again = own_device.Own(own_device.Wire(kind, address), takes=8, gives=16, just_begun=True)
+                with self.assertRaisesRegex(AssertionError, "had somebody spoken with it before"):
+                    again.lets_go_who_begins()
+                again.wire.close()
 
     @unittest.skipUnless("HIROSCO_BIN" in os.environ, "HIROSCO_BIN names the folder of a simulated arm")
     def test_as_a_device_with_a_second_inhibit(self):
         frames, enable = (f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}" for _ in range(2))
-        with subprocess.Popen([pathlib.Path(os.environ["HIROSCO_BIN"]) / "hirosco-sim-robot", "--transfer", "udp", "--address", frames, "--enable-transfer",
-                               "udp", "--enable-address", enable, "--stop", "controlled", "--stop-within-ms", "200"], stdin=subprocess.PIPE) as arm:
+        with subprocess.Popen([pathlib.Path(os.environ["HIROSCO_BIN"]) / "hirosco-sim-robot", "--transfer", "udp", "--address", frames, "--actuator",
+                               "--enable-transfer", "udp", "--enable-address", enable, "--stop", "controlled", "--stop-within-ms", "200"], stdin=subprocess.PIPE) as arm:
             self.addCleanup(arm.kill)
             second = own_device.Enable("udp", enable)
-            self.assertEqual(self.tried_own("udp", frames, takes=17, gives=89, enable=second), [])
+            self.assertEqual(self.tried_own("udp", frames, takes=17, gives=89, enable=second, just_begun=True), [])
             arm.kill()
 
     def test_they_are_as_small_as_they_are_said_to_be(self):
@@ -331,7 +356,10 @@ class Broken(WithFolder):
                 reference.compiled(source, program)
                 address = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
                 with reference.Device(program, "tcp", address):
-                    self.assertNotEqual(self.tried_own("tcp", address, takes=8, gives=16), [])
+                    found = self.tried_own("tcp", address, takes=8, gives=16, just_begun=True)
+                    self.assertNotEqual(found, [])
+                    if duty == "lets_go_who_begins":
+                        self.assertEqual(found, [duty], "and nothing else is wrong with it")
 
 
 if __name__ == "__main__":

@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tries a device of your own, which runs already, by its wire alone; nothing but Python's standard library:
 
-  duties_test.py udp|tcp HOST:PORT --takes OCTETS --gives OCTETS [--enable udp|tcp HOST:PORT] [--values V,V,...] [--rest SECONDS]
+  duties_test.py udp|tcp HOST:PORT --takes OCTETS --gives OCTETS [--enable udp|tcp HOST:PORT] [--values V,V,...] [--rest SECONDS] [--just-begun]
   duties_test.py serial FILE@BAUD  ...
 
 --takes and --gives: sizes of the payloads, as <Output> and <Input> of the descriptor have them; a DOUBLE has 8 octets. --enable: of its second
 inhibit; what it does is seen there alone, without it by its flags only. --values: DOUBLEs that it is told while it is active, 0 where not said.
---rest: within so long its stop has to be at rest. It IS told to be active: see to it that nothing falls when these values are done."""
+--rest: within so long its stop has to be at rest. --just-begun: it was switched on or started just now and nobody has spoken with it
+since; then its first command of all is to be active, which it may not obey (4: who begins is let go). It cannot be tried otherwise.
+It IS told to be active: see to it that nothing falls when these values are done."""
 import argparse
 import os
 import select
@@ -107,15 +109,26 @@ class Enable(threading.Thread):
 
 
 class Own:
-    def __init__(self, wire, takes, gives, values=(), enable=None, rest=1.0):
+    def __init__(self, wire, takes, gives, values=(), enable=None, rest=1.0, just_begun=False):
         self.wire, self.gives, self.enable, self.rest, self.sequence = wire, gives, enable, rest, 0
         self.payload = struct.pack(f"<{len(values)}d", *values).ljust(takes, b"\0")
         assert len(self.payload) == takes, f"--values has {len(self.payload)} octets, --takes says {takes}"
         try:
-            self.epoch = max(self.tell(1, OFF)["epoch"], 1)
+            self.first = self.begin() if just_begun else None
+            self.epoch = max((self.first or self.tell(1, OFF))["epoch"], 1)
         except AssertionError:
             wire.close()
             raise
+
+    def begin(self):
+        """The answer of who has heard nobody to its first command, which is Active. One may have kept its epoch: what it refuses it has not
+        accepted."""
+        self.name(1)
+        answer = self.tell(1)
+        if answer["flags"] & OLD_EPOCH:
+            self.name(answer["epoch"] + 1)
+            answer = self.tell(answer["epoch"] + 1)
+        return answer
 
     def command(self, epoch, mode, payload=None, watchdog_s=WATCHDOG_S):
         self.sequence += 1
@@ -148,8 +161,11 @@ class Own:
         self.tell(self.epoch, OFF)
         self.output("off", "holding")
         self.epoch += 1
+        self.name(self.epoch)
+
+    def name(self, epoch):
         if self.enable:
-            self.enable.epoch, self.enable.on = self.epoch, 1
+            self.enable.epoch, self.enable.on = epoch, 1
             time.sleep(0.05)
 
     def output(self, *wanted):
@@ -167,6 +183,17 @@ class Own:
             assert not answer["flags"] & TRIPPED, "it says watchdog_tripped while commands come"
             time.sleep(0.005)
         return answer
+
+    def lets_go_who_begins(self):
+        "4: who begins is let go: told to be active first, it waits for a higher epoch"
+        if self.first is None:
+            return "not tried"
+        answer = self.first
+        for _ in range(5):
+            assert answer["flags"] & TRIPPED, "its first command was to be active, and it does not say watchdog_tripped; or had somebody spoken with it before?"
+            assert not self.enable or self.enable.output != "active", "it is active"
+            time.sleep(0.01)
+            answer = self.tell(self.epoch)
 
     def answers_each_command(self):
         "1: each command is answered, by its sequence"
@@ -264,7 +291,7 @@ class Own:
             assert self.enable.answers > before, "it does not answer enable commands"
         self.enable.epoch = self.epoch
 
-    DUTIES = (answers_each_command, fences, watchdog, latch, stops, takes_whole_frames, second_inhibit, waits_for_nobody)
+    DUTIES = (lets_go_who_begins, answers_each_command, fences, watchdog, latch, stops, takes_whole_frames, second_inhibit, waits_for_nobody)
 
 
 def tried(connect, **about):
@@ -277,7 +304,8 @@ def tried(connect, **about):
             found = duty(own)
             if found == "again":  # by a wire that is not full of what nobody read
                 own.wire.close()
-                last, own = own, Own(connect(), **about)
+                time.sleep(0.2)  # what still waits before it leaves room for a datagram
+                last, own = own, Own(connect(), **(about | {"just_begun": False}))
                 assert own.epoch >= last.epoch - 1, "it forgot its epoch"
             print(f"{'-' if found == 'not tried' else 'ok':8}{duty.__doc__}", flush=True)
         except AssertionError as error:
@@ -296,10 +324,11 @@ def main(words):
     parser.add_argument("--enable", nargs=2, metavar=("KIND", "ADDRESS"))
     parser.add_argument("--values", type=lambda text: [float(each) for each in text.split(",")], default=[])
     parser.add_argument("--rest", type=float, default=1.0)
+    parser.add_argument("--just-begun", action="store_true")
     asked = parser.parse_args(words)
     try:
         broken = tried(lambda: Wire(asked.kind, asked.address), takes=asked.takes, gives=asked.gives, values=asked.values,
-                       enable=Enable(*asked.enable) if asked.enable else None, rest=asked.rest)
+                       enable=Enable(*asked.enable) if asked.enable else None, rest=asked.rest, just_begun=asked.just_begun)
     except (AssertionError, OSError) as error:
         sys.exit(f"duties_test: {asked.kind} {asked.address}: {error}")
     return 1 if broken else 0

@@ -80,6 +80,7 @@ MUTANTS = [
     (C, "|| !moves_))) inhibit(stop_bit);", "|| !moves_))) inhibit(0);", "permit.withdrawn"),
     (C, "  int active = state_ == 5 && inhibited_ == 0;", "  int active = state_ == 5;", "permit.withdrawn"),
     (C, "  int active = state_ == 5 && inhibited_ == 0;", "  int active = state_ == 4 || state_ == 5;", "device.frames"),
+    (C, "  int active = state_ == 5 && inhibited_ == 0;", "  int active = sequence_ < 2 || (state_ == 5 && inhibited_ == 0);", "device.frames"),
     (C, "put_le32(frame + 4, epoch_now_)", "put_le32(frame + 4, 1)", "device.frames"),
     (C, "put_le32(frame + 4, epoch_now_)", "put_le32(frame + 4, entered_epoch_ + 1)", "permit.moves"),
     (C, "put_le32(frame + 16, 200000);", "put_le32(frame + 16, 200);", "device.frames"),

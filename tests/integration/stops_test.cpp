@@ -161,12 +161,45 @@ TEST_F(Stops, WhatAnUnplugStoppedIsBroughtUpAgainByOneBringUpTenTimes) {
     ASSERT_TRUE(flight.run_until_state("MANIPULATOR", State::Offline, 2s)) << time;
     ASSERT_TRUE(flight.run_until_state("JOYSTICK", State::Offline, 2s)) << time;
     EXPECT_FALSE(robot->active());
+    // One that was exchanged or switched off meanwhile knows nothing, and is told that it is off before it is to move.
+    if (time % 2 == 0) {
+      ASSERT_TRUE(joystick->fault("reboot"));
+    }
     ASSERT_TRUE(joystick->fault("plug"));
     flight.craft().run(100ms);
     ASSERT_TRUE(bring_up()) << time;
     flight.craft().run(500ms);
   }
   EXPECT_TRUE(coupled());
+}
+
+// --- R50 ---------------------------------------------------------------------------------------------------------------
+
+TEST_F(Stops, ADeviceThatRebootsInAMotionMovesNothingByItselfIsLostAsLetGoAndFliesAgain) {
+  open_for_bring_up();
+  for (const std::string_view device : {"robot", "joystick", "robot"}) {
+    ASSERT_TRUE(joystick->hand("sine 2 0.05 0.5"));
+    flight.craft().run(800ms);
+    ASSERT_TRUE(coupled()) << device;
+    simulation::SimulatedDevice& rebooted = *flight.craft().device(device);
+    ASSERT_TRUE(rebooted.fault("reboot"));
+    int acted = 0;
+    ASSERT_TRUE(flight.craft().run_until(
+        [&] {
+          acted += rebooted.active() ? 1 : 0;
+          return flight.state("MANIPULATOR") == State::Offline && flight.state("JOYSTICK") == State::Offline;
+        },
+        2s))
+        << device;
+    EXPECT_EQ(acted, 0) << device;
+    EXPECT_TRUE(rebooted.watchdog_tripped()) << device;
+    EXPECT_TRUE(flight.story().has(device == "robot" ? "ROBOT_LOST REASON=watchdog let go"
+                                                     : "JOYSTICK_LOST REASON=watchdog let go"))
+        << flight.story().text();
+    ASSERT_TRUE(bring_up()) << device;
+    flight.craft().run(300ms);
+    EXPECT_TRUE(coupled()) << device;
+  }
 }
 
 // --- SF15 --------------------------------------------------------------------------------------------------------------

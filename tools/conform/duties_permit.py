@@ -198,6 +198,7 @@ def frames(judged):
                 expect(all(len(command[4]) == size for command in commands), f"{name}: payload of {len(commands[-1][4])} octets, declared are {size}")
                 expect(all(command[1] == craft.epoch() for command in commands), f"{name}: epoch {commands[-1][1]}, the page has {craft.epoch()}")
                 if is_actuator:
+                    expect(device.commands[0][0] == OFF, f"{name}: its first command of all has mode {device.commands[0][0]}, not Off")
                     expect({command[0] for command in commands} == {OFF}, f"{name}: modes {({c[0] for c in commands})} in state {state}")
                     wrong = [c for c in commands if c[4] != safe_payload(judged, flown, name)]
                     expect(not wrong, f"{name}: output {wrong[-1][4].hex() if wrong else ''} in state {state}, not the safe one")

@@ -157,6 +157,29 @@ TEST_F(FallBack, IsNotAliveAndHoldsBackUntilItAnswersACommandThatWentOutByIt) {
   EXPECT_EQ(port.input().angle, 8);
 }
 
+/// Of the modes that go out by it: what begins by it, a cold unit, knows of none before, and would be let go by Active (docs/adr/0149).
+TEST_F(FallBack, WhatHasJustBegunThereHasHeardOffBeforeItHearsActiveHoweverManyCommandsAreLost) {
+  for (int lost = 0; lost < static_cast<int>(limit); ++lost) {
+    make();
+    run(10, {0});
+    slot->read(true);
+    ASSERT_GT(until_it_goes_over(), 0);
+    ASSERT_EQ(slot->taken(), 1);
+    std::vector<DeviceMode> reached;
+    for (int cycle = 0; cycle < 40; ++cycle) {
+      slot->write(1, !slot->holds_back(), false);
+      if (const auto command = heard(1); command && cycle >= lost) {
+        reached.push_back(command->mode);
+        say(1, command->sequence);
+      }
+      slot->read(true);
+    }
+    ASSERT_EQ(slot->taken(), 1) << lost;
+    EXPECT_EQ(reached.front(), DeviceMode::Off) << lost;
+    EXPECT_EQ(reached.back(), DeviceMode::Active) << lost << ": and then it moves";
+  }
+}
+
 TEST_F(FallBack, WhatWasLeftIsToldToLetGoAndHoldsBackUntilItsWatchdogHasRunOut) {
   run(10, {0});
   slot->read(true);

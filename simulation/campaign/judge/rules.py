@@ -134,6 +134,26 @@ def i4_a_network_goes_down_with_its_member(flight, victims):
                              f"{STATES[flight.state[name].at(time + OFFLINE_US)]}")
 
 
+def i4_who_begins_is_let_go(flight, victims):
+    """An actuator that reboots while its member is Operational and nothing inhibits that is told Active first: it does nothing until it has
+    been told something else."""
+    for time, words in flight.did:
+        if words[0] != "fault" or words[2] != "reboot":
+            continue
+        device, (member, name) = words[1], flight.mission.devices[words[1]]
+        if name not in flight.mission.by_name(member).actuators or not flight.active[device].at(time - 1):
+            continue
+        commands = ((flight.state[member], lambda value: value == OPERATIONAL), (flight.inhibited[member], lambda value: not value),
+                    (flight.alive[member], lambda value: value))
+        if not all(holds(series.at(time)) for series, holds in commands):
+            continue
+        until = min([at for series, holds in commands for at, value in zip(series.times, series.values) if at > time and not holds(value)],
+                    default=flight.end)
+        for start, end in flight.active[device].spans(flight.end):
+            if max(start, time + STATE_LAG_US) < min(end, until):
+                yield time, f"{device} acts {(max(start, time) - time) // 1000} ms after it rebooted, though {member} has told it nothing else"
+
+
 def i5_no_stale_sample_is_used(flight, victims):
     for member in flight.mission.members:
         devices = [device for device, (owner, _) in flight.mission.devices.items() if owner == member.name]
@@ -257,6 +277,7 @@ def steady(flight, name, start, end):
 
 
 WORLD = {"I1": [i1_only_victims_die],
-         "I4": [i4_actuators_are_off_outside_operational, i4_safe_all_stops_everything, i4_a_network_goes_down_with_its_member],
+         "I4": [i4_actuators_are_off_outside_operational, i4_safe_all_stops_everything, i4_a_network_goes_down_with_its_member,
+                i4_who_begins_is_let_go],
          "I5": [i5_no_stale_sample_is_used], "I9": [i9_only_edges_of_the_table], "I10": [i10_commandable_again],
          "I12": [i12_no_operational_without_required_link], "I13": [i13_cycles_keep_time]}

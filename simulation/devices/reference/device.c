@@ -28,7 +28,7 @@ static const int64_t cycle_ns = 1000000, stop_ns = 100000000, default_watchdog_n
 static struct {
   uint32_t epoch, sequence;
   uint16_t flags;
-  int mode, output;
+  int mode, output, heard;
   int64_t watchdog_at, stop_end;
   double wanted, position, velocity, before_stop;
 } axis;
@@ -72,9 +72,9 @@ static int take(const uint8_t *frame, size_t octets, int64_t now) {
   watch(now); /* before a late command can hide it */
   axis.flags &= (uint16_t)~OLD_EPOCH;
   if (epoch > axis.epoch) axis.flags &= (uint16_t)~TRIPPED; /* duty 4: the latch opens for a higher epoch alone */
-  axis.epoch = epoch;
-  axis.sequence = (uint32_t)get(frame + 8, 4);
-  axis.mode = frame[3];
+  axis.epoch = epoch, axis.sequence = (uint32_t)get(frame + 8, 4), axis.mode = frame[3];
+  if (!axis.heard && axis.mode == ACTIVE) axis.flags |= TRIPPED; /* and who begins is let go: no motion goes on by itself after a reboot */
+  axis.heard = 1;
   uint64_t bits = get(frame + HEAD, 8);
   double wanted = 0;
   memcpy(&wanted, &bits, sizeof wanted);

@@ -10,22 +10,22 @@ def check(octets):
     return struct.pack("<H", binascii.crc_hqx(octets, 0xFFFF))
 
 class Axis:
-    epoch = sequence = flags = mode = 0
+    epoch = sequence = flags = mode = heard = 0
     watchdog_at, stop_end, wanted, position, velocity, before_stop, output = 6 * (0.0,) + ("off",)
     def watch(self, now):                                        # duty 3: its own watchdog
         self.flags |= TRIPPED if self.mode != OFF and now >= self.watchdog_at else 0
     def take(self, frame, now):                                  # the answer to a command (duty 1); None: it was none
         if len(frame) != HEAD.size + 10 or check(frame[:-2]) != frame[-2:] or frame[:3] != b"DH\x01" or frame[3] > 2 or frame[14:16] != b"\x08\0":
             return None
-        _, _, mode, epoch, sequence, _, _, watchdog_us = HEAD.unpack_from(frame)
-        self.watch(now)
+        mode, epoch, sequence, _, _, watchdog_us = HEAD.unpack_from(frame)[2:]
         if epoch < self.epoch:                                   # duty 2: nobody from before a fence
             self.flags |= OLD_EPOCH
             return self.status()
-        self.flags &= TRIPPED if epoch == self.epoch else 0      # duty 4: the latch
-        self.epoch, self.sequence, self.mode = epoch, sequence, mode
-        wanted, = struct.unpack_from("<d", frame, HEAD.size)
-        self.wanted = wanted if mode == ACTIVE and -10 <= wanted <= 10 else self.wanted
+        self.watch(now)                                          # before a late command can hide it
+        begins = mode == ACTIVE and not self.heard               # duty 4: the latch, and who begins is let go
+        self.flags = TRIPPED if begins or self.flags & TRIPPED and epoch == self.epoch else 0
+        self.epoch, self.sequence, self.mode, self.heard = epoch, sequence, mode, 1
+        self.wanted = next((v for v in struct.unpack_from("<d", frame, HEAD.size) if mode == ACTIVE and -10 <= v <= 10), self.wanted)
         self.watchdog_at = now + min(watchdog_us * 1e-6 or 0.01, 1.0)
         return self.status()
     def status(self):

@@ -30,7 +30,7 @@ struct Status {
 template <class Device>
 class Bench {
  public:
-  Bench() : device{flows, address, {}} {
+  explicit Bench(const SimulatedDevice::Settings& settings = {}) : device{flows, address, settings} {
     EXPECT_TRUE(device.plug());
     flow = flows.open(address, FlowSide::Subsystem).value();
   }
