@@ -93,6 +93,7 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
 void Spacecraft::make_supervisor(std::uint32_t first_epoch) {
   const Parts& parts = parts_;
   kept_->starts.fetch_add(1);
+  stops_.emplace(*kept_);
   const Platform platform{.clock = clock_,
                           .memory = memory_,
                           .flows = flows_,
