@@ -292,15 +292,14 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   } else {
     supervisor.start();
   }
-  const auto guard_thread = GuardShell::start(guard, clock, options.runtime,
-                                              {.on_begin = [&] { keeper.watch_this_thread(); },
-                                               .stop =
-                                                   [&] {
-                                                     stops.count();  // the keeper may have: once more harms nobody
-                                                     return stops.carry_out([&](bool) {
-                                                       return guard.stop_all(GuardFinding::Kind::StopAsked);
-                                                     });
-                                                   }});
+  const auto guard_thread = GuardShell::start(
+      guard, clock, options.runtime,
+      {.on_begin = [&] { keeper.watch_this_thread(); },
+       .stop =
+           [&] {
+             stops.count();  // the keeper may have: once more harms nobody
+             return stops.carry_out([&](bool) { return guard.stop_all(GuardFinding::Kind::StopAsked); });
+           }});
   if (!guard_thread) {
     fmt::print(stderr, "hirosco: the guard cannot start: {} ({})\n", guard_thread.error().text,
                guard_thread.error().value);

@@ -76,8 +76,9 @@ TimePoint Supervisor::step(TimePoint now) {
 void Supervisor::note() {
   noted_ = parts_->memory.note();
   if (noted_ || std::exchange(not_noted_told_, true)) return;
-  parts_->craft.tell("what this supervisor knows is too long for its journal: if it dies while that is so, all that moves is stopped",
-                     supervisor_apid);
+  parts_->craft.tell(
+      "what this supervisor knows is too long for its journal: if it dies while that is so, all that moves is stopped",
+      supervisor_apid);
   parts_->own.announce("JOURNAL_FULL");
 }
 

@@ -67,6 +67,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
     descriptor::FileSource files{descriptor::file_system()};
     /// Where the supervisor dies, another one goes on (docs/adr/0093), after so long; empty: its death ends the flight.
     std::optional<Duration> revives_after{};
+    std::size_t journal_octets{std::size_t{256} << 10};  ///< two copies of what one knows have room in it
   };
   explicit Spacecraft(const Parts& parts);
   ~Spacecraft() override;
@@ -126,7 +127,8 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   class Grip;
   // ProcessLauncher
   Result<supervisor::LaunchedSubsystem> launch(const descriptor::MissionSubsystem& described) override;
-  std::optional<supervisor::AdoptedSubsystem> adopt(const descriptor::MissionSubsystem& described) override;
+  std::expected<supervisor::AdoptedSubsystem, supervisor::NotAdopted> adopt(
+      const descriptor::MissionSubsystem& described) override;
   std::optional<supervisor::ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
 

@@ -102,11 +102,12 @@ std::unique_ptr<Channel> Spacecraft::supervisor_end(Member& member) {
                              : std::move(channel);
 }
 
-std::optional<supervisor::AdoptedSubsystem> Spacecraft::adopt(const descriptor::MissionSubsystem& described) {
+std::expected<supervisor::AdoptedSubsystem, supervisor::NotAdopted> Spacecraft::adopt(
+    const descriptor::MissionSubsystem& described) {
   const auto found = std::ranges::find_if(members_, [&](const auto& member) {
     return member->described->subsystem.id == described.subsystem.id && member->engine.has_value();
   });
-  if (found == members_.end()) return std::nullopt;
+  if (found == members_.end()) return std::unexpected{supervisor::NotAdopted{}};
   Member& member = **found;
   const PermitPage& before = member.newest_permit();
   supervisor::AdoptedSubsystem adopted;

@@ -30,7 +30,8 @@ class GuardShell {
   /// What is done in the guard's thread besides, or in place of what it does by itself; either may be empty.
   struct Calls {
     std::function<void()> on_begin{};  ///< before its first step
-    std::function<std::uint64_t()> stop{};  ///< asked for by signal or socket, named as Guard::stop_all() does; empty: the guard stops all
+    std::function<std::uint64_t()>
+        stop{};  ///< asked for by signal or socket, named as Guard::stop_all() does; empty: the guard stops all
   };
   /// An empty `folder`: no socket. SIGUSR1 must be blocked in the process. SystemFailure: socket, thread.
   [[nodiscard]] static Result<std::unique_ptr<GuardShell>> start(Guard& guard, const Clock& clock,

@@ -89,7 +89,8 @@ struct KeeperPage {
   std::atomic<std::uint32_t> end_asked{0};  ///< number of the signal that asked for an end; 0: none did
   static constexpr std::uint32_t end_of_time = 0xFFFF;  ///< in its place: the time of the flight is over
   std::atomic<std::uint64_t> stops_asked{0};  ///< by SIGUSR1, of the keeper or a guard, and on the guard's local socket
-  std::atomic<std::uint64_t> stops_taken{0};  ///< those that a supervisor has noted what they mean for what it goes on with
+  std::atomic<std::uint64_t> stops_taken{
+      0};  ///< those that a supervisor has noted what they mean for what it goes on with
   std::array<KeptInhibit, most_inhibits> inhibits;  ///< in the order of kept_endnodes()
   std::atomic<std::uint32_t> ends_told{0};
   std::array<KeptEnd, most_ends> ends;  ///< the newest

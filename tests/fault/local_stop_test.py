@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """`hirosco safe`: everything that moves is stopped from beside the flight, whatever else of it stands still."""
+import ctypes
 import os
 import pathlib
 import resource
@@ -14,6 +15,15 @@ import flight
 
 ANSWER_S = 0.5
 MOVERS = ("MANIPULATOR", "JOYSTICK")
+COMES_BACK = {"60": '1" pause_ms="20" to="commanded'}    # who dies, to what it was commanded to be
+
+
+def hold_still(thread):
+    """This thread alone, its process goes on; whoever ends that ends it all the same."""
+    seize, interrupt = 0x4206, 0x4207
+    for request in (seize, interrupt):
+        if ctypes.CDLL(None, use_errno=True).ptrace(request, thread, None, None) != 0:
+            raise OSError(ctypes.get_errno(), "ptrace")
 
 
 class LocalStop(unittest.TestCase):
@@ -45,11 +55,19 @@ class LocalStop(unittest.TestCase):
                 self.assertIn("says the device", line)
             self.nothing_moves(rokviss)
 
-    def test_everything_is_stopped_while_the_ground_link_is_dead(self):
-        with flight.Flight() as rokviss:
+    def test_what_the_guard_alone_knew_holds_for_who_dies_before_the_supervisor_hears_of_it_though_the_ground_link_is_dead(self):
+        with flight.MissionCopy(COMES_BACK) as mission, flight.Flight(mission) as rokviss:
             rokviss.wait_commissioned()
+            begin = rokviss.count()
+            loop = rokviss.pid_of("hirosco-supervisor")
             rokviss.kill("hirosco-communication")
+            hold_still(loop)
             self.stops(rokviss)
+            rokviss.kill("hirosco-manipulator")
+            rokviss.wait_told("MANIPULATOR died", 5.0, begin)      # says the next supervisor: the keeper has ended this one
+            os.waitpid(loop, 0x40000000)                           # __WALL: of whom it was held
+            time.sleep(2.0)
+            self.assertFalse([line.told for line in rokviss.told(begin) if line.told.endswith(": as commanded")])
             self.nothing_moves(rokviss)
 
     def test_the_keeper_is_signalled_where_nobody_answers(self):
