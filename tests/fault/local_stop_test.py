@@ -58,6 +58,7 @@ class LocalStop(unittest.TestCase):
     def test_what_the_guard_alone_knew_holds_for_who_dies_before_the_supervisor_hears_of_it_though_the_ground_link_is_dead(self):
         with flight.MissionCopy(COMES_BACK) as mission, flight.Flight(mission) as rokviss:
             rokviss.wait_commissioned()
+            self.assertEqual(rokviss.hirosco("mode", "standalone", "--mission", mission).returncode, 0)    # the manipulator needs nobody else
             begin = rokviss.count()
             loop = rokviss.pid_of("hirosco-supervisor")
             rokviss.kill("hirosco-communication")

@@ -261,6 +261,13 @@ void everybody_comes_back(descriptor::Mission& mission) {
         step.values = {limit, window_s, pause_ms, static_cast<std::int64_t>(State::Operational)};
 }
 
+/// In a mode in which the manipulator needs nobody else.
+[[nodiscard]] bool flies_alone(Flight& flight) {
+  const bool flies = flight.commission() && flight.set_mode("standalone").completed;
+  flight.craft().run(500ms);
+  return flies;
+}
+
 [[nodiscard]] bool permitted(Flight& flight, const char* name) {
   const auto* page = flight.craft().permit(name);
   return page != nullptr && page->permits(page->epoch.load());
@@ -268,8 +275,7 @@ void everybody_comes_back(descriptor::Mission& mission) {
 
 TEST(SupervisorDeath, WhoDiesWithTheSupervisorComesBackAsCommanded) {
   Flight flight{{.edit = everybody_comes_back, .revives_after = 300ms}};
-  ASSERT_TRUE(flight.commission());
-  flight.craft().run(500ms);
+  ASSERT_TRUE(flies_alone(flight));
   flight.craft().kill("MANIPULATOR");
   flight.craft().kill_supervisor();
   flight.craft().run(10s);
@@ -280,8 +286,7 @@ TEST(SupervisorDeath, WhoDiesWithTheSupervisorComesBackAsCommanded) {
 TEST(SupervisorDeath, AStopThatNoSupervisorHadHeardOfHoldsForWhoDiesWithIt) {
   for (const bool before_the_death : {true, false}) {
     Flight flight{{.edit = everybody_comes_back, .revives_after = 300ms}};
-    ASSERT_TRUE(flight.commission());
-    flight.craft().run(500ms);
+    ASSERT_TRUE(flies_alone(flight));
     if (before_the_death) flight.craft().stop_beside_flight();
     flight.craft().kill("MANIPULATOR");
     flight.craft().kill_supervisor();

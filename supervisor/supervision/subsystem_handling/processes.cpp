@@ -3,7 +3,6 @@
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <string>
 #include <utility>
@@ -28,6 +27,8 @@ using descriptor::Severity;
 namespace {
 /// How long a process may live on with its channel closed; what it does then cannot be known.
 constexpr Duration closed_channel_limit = 1s;
+/// The signal that ends whoever is not gone on with.
+constexpr int killed = 9;
 }  // namespace
 
 void Processes::start_all() {
@@ -143,7 +144,7 @@ void Processes::found_dead(Member& member) {
   if (leaving == leaving_.end()) return died(member, {});
   if (leaving->second.process == 0) {
     leaving_.erase(leaving);
-    return died(member, {.by_signal = true, .value = SIGKILL});
+    return died(member, {.by_signal = true, .value = killed});
   }
   leaving->second.missed = true;
   craft_.tell(member.descriptor().name + " hangs: it was ended and has not gone", apid);
