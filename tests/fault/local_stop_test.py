@@ -19,11 +19,17 @@ COMES_BACK = {"60": '1" pause_ms="20" to="commanded'}    # who dies, to what it 
 
 
 def hold_still(thread):
-    """This thread alone, its process goes on; whoever ends that ends it all the same."""
+    """This thread alone, its process goes on. Whoever ends that ends it all the same, but its parent hears of it after see_end() only."""
     seize, interrupt = 0x4206, 0x4207
     for request in (seize, interrupt):
         if ctypes.CDLL(None, use_errno=True).ptrace(request, thread, None, None) != 0:
             raise OSError(ctypes.get_errno(), "ptrace")
+
+
+def see_end(thread):
+    every_child = 0x40000000                             # __WALL
+    while os.WIFSTOPPED(os.waitpid(thread, every_child)[1]):
+        pass
 
 
 class LocalStop(unittest.TestCase):
@@ -65,8 +71,8 @@ class LocalStop(unittest.TestCase):
             hold_still(loop)
             self.stops(rokviss)
             rokviss.kill("hirosco-manipulator")
-            rokviss.wait_told("MANIPULATOR died", 5.0, begin)      # says the next supervisor: the keeper has ended this one
-            os.waitpid(loop, 0x40000000)                           # __WALL: of whom it was held
+            see_end(loop)                                # by the keeper
+            rokviss.wait_told("MANIPULATOR died", 5.0, begin)      # says the next supervisor
             time.sleep(2.0)
             self.assertFalse([line.told for line in rokviss.told(begin) if line.told.endswith(": as commanded")])
             self.nothing_moves(rokviss)
