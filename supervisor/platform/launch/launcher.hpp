@@ -67,7 +67,7 @@ struct AdoptedSubsystem {
 
 /// Why nobody goes on with a subsystem.
 struct NotAdopted {
-  std::string_view why{};  ///< it lived, or nobody can tell, and was ended for this; empty: nothing of it ran
+  std::string why{};  ///< it lived, or nobody can tell, and was ended for this; empty: nothing of it ran
   std::uint32_t process{
       0};  ///< it has not gone yet: ended() tells when it has, and none is to be launched beside it; 0: it has
 };

@@ -13,6 +13,7 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <new>
 #include <span>
 #include <string>
@@ -296,22 +297,25 @@ std::expected<AdoptedSubsystem, NotAdopted> SystemLauncher::adopt(const descript
   auto adopted = pid ? take_over(name, *process, found.mapped())
                      : Result<AdoptedSubsystem>{fail(ErrorCode::Unavailable, "its process id cannot be read")};
   if (adopted) return std::move(*adopted);
-  return std::unexpected{end_at_once(slot->second, std::move(*process), adopted.error().text)};
+  return std::unexpected{end_at_once(slot->second, std::move(*process), adopted.error())};
 }
 
 /// It obeys a permit page that nobody can write any more.
-NotAdopted SystemLauncher::end_at_once(std::size_t slot, Process process, std::string_view why) {
+NotAdopted SystemLauncher::end_at_once(std::size_t slot, Process process, const Error& why) {
+  const bool of_system = why.code == ErrorCode::SystemFailure && why.value > 0;
+  const std::string words =
+      of_system ? fmt::format("{} ({})", why.text, std::strerror(static_cast<int>(why.value))) : std::string{why.text};
   static_cast<void>(process.send_signal(SIGKILL));
   pollfd look{process.handle().get(), POLLIN, 0};
   static_cast<void>(::poll(&look, 1, longest_end_ms));
   if (const auto end = process.poll(); end && *end) {
     store_.forget(slot);
-    return {.why = why, .process = 0};
+    return {.why = words, .process = 0};
   }
   const std::uint32_t number = next_++;
   processes_.emplace(number, std::move(process));
   kept_[number] = slot;  // another supervisor tries again
-  return {.why = why, .process = number};
+  return {.why = words, .process = number};
 }
 
 Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, Process& process,

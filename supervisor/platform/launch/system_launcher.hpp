@@ -55,7 +55,7 @@ class SystemLauncher final : public FlightLauncher {
   /// The same.
   [[nodiscard]] Result<AdoptedSubsystem> take_over(const std::string& name, Process& process,
                                                    std::array<FileDescriptor, kept_roles>& kept);
-  [[nodiscard]] NotAdopted end_at_once(std::size_t slot, Process process, std::string_view why);
+  [[nodiscard]] NotAdopted end_at_once(std::size_t slot, Process process, const Error& why);
   void keep(const std::string& name, const LaunchedSubsystem& launched, const MemoryHandle& vital,
             const MemoryHandle& permit, const FileDescriptor& errors);
   [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;
