@@ -280,24 +280,26 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   TimePoint next_status = started + console.period();
   bool ends_as_a_whole = false, asked_to_end = false;
   const MemoryReserve reserve{memory_of_a_step};
+  AskedStops stops{page};
   if (goes_on) {
     keeper.take_inhibits(clock);
-    StopsBySignal stops{page};
-    supervisor.adopt(stops.any());
-    stops.carried_out();
+    stops.carry_out([&](bool any) {
+      supervisor.adopt(any);
+      return any;
+    });
     // Until its thread runs: no device is to miss its enable.
     static_cast<void>(guard.step(clock.now()));
   } else {
     supervisor.start();
   }
-  const auto guard_thread = GuardShell::start(guard, clock, options.runtime,
-                                              {.on_begin = [&] { keeper.watch_this_thread(); },
-                                               .stop_by_signal =
-                                                   [&] {
-                                                     StopsBySignal stops{page};
-                                                     guard.stop_all(GuardFinding::Kind::StopAsked);
-                                                     stops.carried_out();
-                                                   }});
+  const auto guard_thread = GuardShell::start(
+      guard, clock, options.runtime,
+      {.on_begin = [&] { keeper.watch_this_thread(); },
+       .stop =
+           [&] {
+             stops.count();  // the keeper may have: once more harms nobody
+             return stops.carry_out([&](bool) { return guard.stop_all(GuardFinding::Kind::StopAsked); });
+           }});
   if (!guard_thread) {
     fmt::print(stderr, "hirosco: the guard cannot start: {} ({})\n", guard_thread.error().text,
                guard_thread.error().value);
@@ -308,7 +310,9 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   if (!life_watch) console.told(clock.onboard(), "that a process has ended is known by its handle alone");
   without_unwinding([&] {
     while (!supervisor.finished()) {
+      const std::uint64_t stops_heard_of = stops.carried_out();
       const TimePoint wake = supervisor.step(clock.now());
+      if (supervisor.remembers()) stops.taken(stops_heard_of);
       page.supervisor.fetch_add(1, std::memory_order_relaxed);
       static_cast<void>(keeper.note(supervisor.mission().texts));
       if (reserve.used() && !std::exchange(ends_as_a_whole, true)) {

@@ -3,6 +3,7 @@
 #include "supervisor/supervisor.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "supervisor/composition.hpp"
 
@@ -35,6 +36,8 @@ void Supervisor::adopt(bool stop_asked) {
   parts_->own.start(craft.mode_epoch);
   craft.guard.beat();
   parts_->adoption.begin(stop_asked);
+  // Whoever is found dead, or dies before this one has carried it out, is not brought back by what was commanded before.
+  if (stop_asked) parts_->commanded.all_stopped();
   parts_->own.enter_mode(craft.mode_epoch);
   parts_->stored.begin();
 }
@@ -63,11 +66,20 @@ TimePoint Supervisor::step(TimePoint now) {
   parts_->shutdown.enforce(now);
   parts_->telemetry.serve_ground();  // all that this step had to say, together
   if (!parts_->telemetry.ground().waiting()) parts_->unanswered.delivered();
-  parts_->memory.note();
+  note();
   if (parts_->telemetry.ground().waiting()) wake = std::min(wake, now + ground_pace);
   // Where nothing wakes, it is looked at as often anyway.
   if (craft.platform.wakes && parts_->own.has_work()) wake = std::min(wake, now + own_pace);
   return std::min(wake, next_watch_);
+}
+
+void Supervisor::note() {
+  noted_ = parts_->memory.note();
+  if (noted_ || std::exchange(not_noted_told_, true)) return;
+  parts_->craft.tell(
+      "what this supervisor knows is too long for its journal: if it dies while that is so, all that moves is stopped",
+      supervisor_apid);
+  parts_->own.announce("JOURNAL_FULL");
 }
 
 void Supervisor::request_shutdown(std::string_view by) { parts_->shutdown.request(by); }

@@ -52,6 +52,8 @@ class Supervisor final {
   void adopt(bool stop_asked);
   /// One step; returns when the next is due at the latest. Messages should wake it earlier.
   TimePoint step(TimePoint now);
+  /// What it knew at the end of its newest step is noted for the next one, or nobody would go on for it.
+  [[nodiscard]] bool remembers() const noexcept { return noted_; }
   /// Orderly shutdown: every subsystem back to Offline, then this one. `by`: who asks, as the log is to say it.
   void request_shutdown(std::string_view by = {});
   /// Whoever started it is alive and does not move: nobody would end what is left after this one.
@@ -74,8 +76,12 @@ class Supervisor final {
   [[nodiscard]] bool reads(const Member& member) const;
 
  private:
+  void note();
+
   std::unique_ptr<SupervisorParts> parts_;
   TimePoint next_watch_{};
+  bool noted_{false};
+  bool not_noted_told_{false};
 };
 
 }  // namespace hirosco::supervisor

@@ -21,6 +21,7 @@ LEFT_ALONE_S = {**dict.fromkeys(DEVICE_FAULTS, 0.7), **dict.fromkeys(MEMBER_FAUL
 SILENCED_EVERY, SILENCED_AT = 5, 3   # flights that end with an unplug that ground silenced (hazard SF6)
 SILENCED_S = 5.5        # of the end of such a flight, in which nothing else happens
 REBOOTS = 0.25          # of flights
+STOPS_BESIDE = 0.3      # of flights: somebody on board stops everything, beside ground and its telecommands
 MOST_STRIKES = 2        # of a member in one flight by what may end it: who dies too often stays down
 # Of every subsystem, beside those of its descriptor: states, failures, lost devices and stale sets.
 FRAMEWORK_EVENTS = [*range(0xF000, 0xF006), *range(0xF100, 0xF103), *range(0xF200, 0xF204)]
@@ -444,6 +445,15 @@ class Draw:
             self.add(time, f"fault {device} reboot")
             self.add(time + 0.3, f"fault {device} heal")
 
+    def stop_beside(self):
+        """In some flights somebody presses the key, up to three times, mostly in the middle of something. By a dice of its own, drawn last."""
+        dice = random.Random(f"stops beside {self.flight_seed}")
+        if dice.random() >= STOPS_BESIDE or self.index % SILENCED_EVERY == SILENCED_AT:
+            return
+        crossed = [time for time, _ in self.lines if 0.5 < time < FINALE_S - 1]
+        for _ in range(dice.choice([1, 1, 2, 3]) if crossed else 0):
+            self.add(dice.choice(crossed) + dice.choice([0.0, 0.0002, 0.001, 0.002, 0.005, 0.02]), "safe")
+
     # --- all of it ---------------------------------------------------------------------------------------------------
     def text(self):
         aimed = self.aim() if self.wanted_commands or self.wanted_faults else 0.3
@@ -451,6 +461,7 @@ class Draw:
         self.strike_in_use()
         self.ask_again()
         self.reboot()
+        self.stop_beside()
         if self.index % SILENCED_EVERY == SILENCED_AT:
             self.strike_silenced()
         self.lines.sort(key=lambda line: line[0])

@@ -142,6 +142,10 @@ bool PlannedFlight::do_action(const std::vector<std::string>& words) {
   }
   if (verb == "flood") return flood(words);
   if (verb == "log") return disk_fault(words);
+  if (verb == "safe") {
+    craft_->stop_beside_flight();
+    return true;
+  }
   if (verb == "fault") {
     auto* device = craft_->device(subject);
     std::string line;

@@ -76,7 +76,8 @@ Flight::Flight(Plan plan) : files_{std::move(plan.files)} {
                                                           .wrap_channel = plan.wrap_channel,
                                                           .values = plan.values,
                                                           .files = source,
-                                                          .revives_after = plan.revives_after});
+                                                          .revives_after = plan.revives_after,
+                                                          .journal_octets = plan.journal_octets});
 }
 
 std::vector<supervisor::LogRecord> Flight::records() {

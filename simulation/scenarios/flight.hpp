@@ -60,6 +60,7 @@ struct Plan {
   supervisor::ValueStore* values{nullptr};
   /// Another supervisor goes on so long after one that dies; empty: its death ends the flight.
   std::optional<Duration> revives_after{};
+  std::size_t journal_octets{std::size_t{256} << 10};  ///< in which the one that died has noted what it knew, twice
 };
 
 /// Edit of a mission with a simulated hand: it rests until the test moves it.

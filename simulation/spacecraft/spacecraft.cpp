@@ -79,8 +79,7 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
     devices_.push_back({&described, std::move(made)});
   }
   if (parts.revives_after) {
-    constexpr std::size_t octets = std::size_t{256} << 10;
-    journal_memory_.resize(octets);
+    journal_memory_.resize(parts.journal_octets);
     journal_.emplace(journal_memory_);
     std::vector<FlowAddress> endnodes;
     for (auto& endnode : supervisor::kept_endnodes(parts.mission)) endnodes.push_back(std::move(endnode.address));
@@ -93,6 +92,7 @@ Spacecraft::Spacecraft(const Parts& parts) : parts_{parts} {
 void Spacecraft::make_supervisor(std::uint32_t first_epoch) {
   const Parts& parts = parts_;
   kept_->starts.fetch_add(1);
+  stops_.emplace(*kept_);
   const Platform platform{.clock = clock_,
                           .memory = memory_,
                           .flows = flows_,

@@ -67,6 +67,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
     descriptor::FileSource files{descriptor::file_system()};
     /// Where the supervisor dies, another one goes on (docs/adr/0093), after so long; empty: its death ends the flight.
     std::optional<Duration> revives_after{};
+    std::size_t journal_octets{std::size_t{256} << 10};  ///< two copies of what one knows have room in it
   };
   explicit Spacecraft(const Parts& parts);
   ~Spacecraft() override;
@@ -96,6 +97,9 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   /// or the journal; whoever stands between it and its channels (`wrap_channel`) keeps back what it sends.
   void supervisor_dies_here();
   [[nodiscard]] bool supervisor_is_dying() const noexcept { return last_moment_ != nullptr; }
+  /// `hirosco safe`: the guard stops everything at once, or the next one where there is none now; the supervisor hears of it in its next
+  /// step.
+  void stop_beside_flight();
   /// The process stands still, as by SIGSTOP, and goes on; the supervisor by its own name.
   void stop(std::string_view name, bool stopped);
   /// Its next cycle never ends: with one processor for all cycles (adr 0007) nobody else's runs, until it is killed.
@@ -123,7 +127,8 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   class Grip;
   // ProcessLauncher
   Result<supervisor::LaunchedSubsystem> launch(const descriptor::MissionSubsystem& described) override;
-  std::optional<supervisor::AdoptedSubsystem> adopt(const descriptor::MissionSubsystem& described) override;
+  std::expected<supervisor::AdoptedSubsystem, supervisor::NotAdopted> adopt(
+      const descriptor::MissionSubsystem& described) override;
   std::optional<supervisor::ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
 
@@ -158,6 +163,7 @@ class Spacecraft final : private supervisor::ProcessLauncher {
   std::unique_ptr<supervisor::LogReadings> log_readings_;  ///< null: its log is not read
   // What the keeper holds.
   std::unique_ptr<supervisor::KeeperPage> kept_{std::make_unique<supervisor::KeeperPage>()};
+  std::optional<supervisor::AskedStops> stops_;  ///< of the newest supervisor
   std::vector<std::byte> journal_memory_;
   std::optional<supervisor::Journal> journal_;
   std::optional<supervisor::InhibitBridge> bridge_;

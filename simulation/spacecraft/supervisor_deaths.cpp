@@ -50,9 +50,16 @@ void Spacecraft::revive_supervisor() {
   kept_->wants_inhibits.store(kept_->starts.load() + 1);
   static_cast<void>(bridge_->step(clock_.now()));
   make_supervisor(next_first_epoch_);
-  supervisor::StopsBySignal stops{*kept_};
-  supervisor_->adopt(stops.any());
-  stops.carried_out();
+  stops_->carry_out([&](bool any) {
+    supervisor_->adopt(any);
+    return any;
+  });
+}
+
+void Spacecraft::stop_beside_flight() {
+  stops_->count();
+  if (guard_) stops_->carry_out([&](bool) { return guard_->stop_all(supervisor::GuardFinding::Kind::StopAsked); });
+  else bridge_->stop();
 }
 
 void Spacecraft::supervisor_dies_here() {
@@ -69,7 +76,9 @@ void Spacecraft::supervisor_dies_here() {
 }
 
 void Spacecraft::step_supervisor() {
+  const std::uint64_t stops_heard_of = stops_->carried_out();
   supervisor_wake_ = supervisor_->step(clock_.now());
+  if (!last_moment_ && supervisor_->remembers()) stops_->taken(stops_heard_of);
   if (!last_moment_) return;
   const std::unique_ptr<LastMoment> moment = std::move(last_moment_);
   for (const LastMoment::Page& then : moment->pages) {
@@ -93,11 +102,12 @@ std::unique_ptr<Channel> Spacecraft::supervisor_end(Member& member) {
                              : std::move(channel);
 }
 
-std::optional<supervisor::AdoptedSubsystem> Spacecraft::adopt(const descriptor::MissionSubsystem& described) {
+std::expected<supervisor::AdoptedSubsystem, supervisor::NotAdopted> Spacecraft::adopt(
+    const descriptor::MissionSubsystem& described) {
   const auto found = std::ranges::find_if(members_, [&](const auto& member) {
     return member->described->subsystem.id == described.subsystem.id && member->engine.has_value();
   });
-  if (found == members_.end()) return std::nullopt;
+  if (found == members_.end()) return std::unexpected{supervisor::NotAdopted{}};
   Member& member = **found;
   const PermitPage& before = member.newest_permit();
   supervisor::AdoptedSubsystem adopted;

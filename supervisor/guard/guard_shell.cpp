@@ -111,9 +111,7 @@ void GuardShell::run() {
       signalfd_siginfo info;
       while (::read(signals_.get(), &info, sizeof info) > 0) asked = true;
     }
-    if (!asked) continue;
-    if (calls_.stop_by_signal) calls_.stop_by_signal();
-    else guard_.stop_all(GuardFinding::Kind::StopAsked);
+    if (asked) stop();
   }
 }
 
@@ -130,7 +128,7 @@ void GuardShell::hear(Client& client) {
   const auto octets = ::recv(client.socket.get(), words.data(), words.size(), MSG_DONTWAIT);
   if (octets < 0 && (errno == EAGAIN || errno == EINTR)) return;
   if (octets == 4 && std::memcmp(words.data(), "SAFE", 4) == 0) {
-    client.stop = guard_.stop_all(GuardFinding::Kind::StopAsked);
+    client.stop = stop();
     return;
   }
   client.socket.reset();

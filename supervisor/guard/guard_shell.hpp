@@ -30,7 +30,8 @@ class GuardShell {
   /// What is done in the guard's thread besides, or in place of what it does by itself; either may be empty.
   struct Calls {
     std::function<void()> on_begin{};  ///< before its first step
-    std::function<void()> stop_by_signal{};  ///< empty: the guard stops all
+    std::function<std::uint64_t()>
+        stop{};  ///< asked for by signal or socket, named as Guard::stop_all() does; empty: the guard stops all
   };
   /// An empty `folder`: no socket. SIGUSR1 must be blocked in the process. SystemFailure: socket, thread.
   [[nodiscard]] static Result<std::unique_ptr<GuardShell>> start(Guard& guard, const Clock& clock,
@@ -51,6 +52,7 @@ class GuardShell {
   void run();
   /// False: the system has no descriptor for it.
   [[nodiscard]] bool welcome(TimePoint now);
+  std::uint64_t stop() { return calls_.stop ? calls_.stop() : guard_.stop_all(GuardFinding::Kind::StopAsked); }
   void hear(Client& client);
   void answer_clients(TimePoint now);
 

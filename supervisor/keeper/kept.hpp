@@ -88,8 +88,9 @@ struct KeeperPage {
   std::atomic<std::uint64_t> log_durable{0};  ///< up to here they are on the disk
   std::atomic<std::uint32_t> end_asked{0};  ///< number of the signal that asked for an end; 0: none did
   static constexpr std::uint32_t end_of_time = 0xFFFF;  ///< in its place: the time of the flight is over
-  std::atomic<std::uint64_t> stops_asked{0};  ///< SIGUSR1 that came to the keeper
-  std::atomic<std::uint64_t> stops_taken{0};  ///< those that a guard has carried out
+  std::atomic<std::uint64_t> stops_asked{0};  ///< by SIGUSR1, of the keeper or a guard, and on the guard's local socket
+  std::atomic<std::uint64_t> stops_taken{
+      0};  ///< those that a supervisor has noted what they mean for what it goes on with
   std::array<KeptInhibit, most_inhibits> inhibits;  ///< in the order of kept_endnodes()
   std::atomic<std::uint32_t> ends_told{0};
   std::array<KeptEnd, most_ends> ends;  ///< the newest
@@ -109,17 +110,31 @@ struct KeeperPage {
   }
 };
 
-/// The stops by signal that nobody has carried out yet, as they stood when this was made: made before they are, so that one which
-/// comes meanwhile stays asked for, whoever dies next.
-class StopsBySignal {
+/// Stops that were asked for beside telecommands, from the count to the memory (docs/adr/0151): counted before they are carried out, which is
+/// at once, and taken only when what they mean is noted: whoever dies in between, the next one stops all again and brings nobody back.
+class AskedStops {
  public:
-  explicit StopsBySignal(KeeperPage& page) noexcept : page_{page}, asked_{page.stops_asked.load()} {}
-  [[nodiscard]] bool any() const noexcept { return asked_ != page_.stops_taken.load(); }
-  void carried_out() noexcept { page_.stops_taken.store(asked_); }
+  explicit AskedStops(KeeperPage& page) noexcept : page_{page}, carried_out_{page.stops_taken.load()} {}
+
+  /// One is asked for. Thread: any.
+  void count() noexcept { page_.stops_asked.fetch_add(1); }
+  /// All that are asked for so far, which `stop` carries out and makes known to the supervisor's loop. Thread: one at a time.
+  /// \param stop Whether there are any that are not noted is its argument.
+  template <class Stop>
+  auto carry_out(Stop stop) {
+    const std::uint64_t asked = page_.stops_asked.load();
+    const auto outcome = stop(asked != page_.stops_taken.load());
+    carried_out_.store(asked, std::memory_order_release);
+    return outcome;
+  }
+  /// Before it hears of them: those that it will have heard of. Thread: the supervisor's loop.
+  [[nodiscard]] std::uint64_t carried_out() const noexcept { return carried_out_.load(std::memory_order_acquire); }
+  /// It has heard of them, and that is noted.
+  void taken(std::uint64_t those) noexcept { page_.stops_taken.store(those); }
 
  private:
   KeeperPage& page_;
-  std::uint64_t asked_;
+  std::atomic<std::uint64_t> carried_out_;
 };
 
 /// How long the keeper may stand still once it has moved.

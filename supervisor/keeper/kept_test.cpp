@@ -25,19 +25,47 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// --- stops by signal -------------------------------------------------------------------------------------------------------
+// --- stops beside telecommands ---------------------------------------------------------------------------------------------
 
-TEST(StopsBySignal, OneThatComesWhileAnotherIsCarriedOutStaysAskedFor) {
+/// Whether a supervisor that came now would find a stop to carry out.
+bool one_is_asked_for(KeeperPage& page) {
+  return AskedStops{page}.carry_out([](bool any) { return any; });
+}
+
+TEST(AskedStops, OneIsAskedForUntilTheSupervisorHasNotedWhatItHeardOfIt) {
   KeeperPage page;
-  EXPECT_FALSE(StopsBySignal{page}.any());
-  page.stops_asked.fetch_add(1);
-  StopsBySignal stops{page};
-  EXPECT_TRUE(stops.any());
-  page.stops_asked.fetch_add(1);
-  stops.carried_out();
-  EXPECT_TRUE(StopsBySignal{page}.any()) << "whoever dies now, the next one stops all";
-  StopsBySignal{page}.carried_out();
-  EXPECT_FALSE(StopsBySignal{page}.any());
+  AskedStops stops{page};
+  EXPECT_FALSE(one_is_asked_for(page));
+  stops.count();
+  EXPECT_TRUE(one_is_asked_for(page)) << "counted, and its guard dies";
+  const auto before = stops.carried_out();
+  stops.carry_out([](bool any) { return any; });
+  stops.taken(before);
+  EXPECT_TRUE(one_is_asked_for(page)) << "that step had begun before the guard carried it out";
+  stops.taken(stops.carried_out());
+  EXPECT_FALSE(one_is_asked_for(page));
+}
+
+TEST(AskedStops, OneThatComesWhileAnotherIsCarriedOutStaysAskedFor) {
+  KeeperPage page;
+  AskedStops stops{page};
+  stops.count();
+  stops.carry_out([&](bool any) {
+    stops.count();
+    return any;
+  });
+  stops.taken(stops.carried_out());
+  EXPECT_TRUE(one_is_asked_for(page)) << "whoever dies now, the next one stops all";
+}
+
+TEST(AskedStops, WhoFindsOneAndDiesBeforeItHasNotedThatLeavesItToTheNext) {
+  KeeperPage page;
+  AskedStops{page}.count();
+  for (int death = 0; death < 3; ++death) EXPECT_TRUE(one_is_asked_for(page)) << death;
+  AskedStops last{page};
+  EXPECT_TRUE(last.carry_out([](bool any) { return any; }));
+  last.taken(last.carried_out());
+  EXPECT_FALSE(one_is_asked_for(page));
 }
 
 // --- another supervisor ---------------------------------------------------------------------------------------------------

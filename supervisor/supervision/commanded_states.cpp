@@ -56,9 +56,14 @@ void CommandedStates::forwarded(std::uint16_t apid, const pus::TelecommandView& 
   const bool steers = call && (call->name == "SET_STATE" || call->name == "CONFIGURE");
   if (steers && !origin.is_supervisor()) overrule(apid);
   if (const auto state = state_asked(telecommand)) lower_record(apid, *state);
-  if ((telecommand.ack() & pus::ack_completion) == 0 || open_.size() == most_open)
+  if ((telecommand.ack() & pus::ack_completion) == 0 || !has_room_for(telecommand.packet().size()))
     return tell_not_kept(apid, telecommand);
   open_.push_back({apid, pus::request_of(telecommand), {telecommand.packet().begin(), telecommand.packet().end()}});
+}
+
+bool CommandedStates::has_room_for(std::size_t octets) const {
+  for (const Open& each : open_) octets += each.packet.size();
+  return open_.size() < most_open && octets <= most_open_octets;
 }
 
 void CommandedStates::hear(std::uint16_t from, const pus::TelemetryView& report) {

@@ -20,11 +20,13 @@ namespace hirosco::supervisor {
 
 /// What each member was commanded to be (docs/adr/0076). What leads up counts when its TM[1,7] has come by, what leads down as soon as
 /// it is sent or a plan, or a stop, asks for it. Nothing is kept in a mission without a plan that brings anybody back.
-/// Bounded: `most_open` telecommands whose end is awaited, and per member what CommandedState says; what has no room is told,
+/// Bounded: `most_open` telecommands whose end is awaited, `most_open_octets` of them, and per member what CommandedState says; what has no room is told,
 /// COMMAND_NOT_KEPT. Thread: the supervisor's.
 class CommandedStates final : public Hearer, public Remembered {
  public:
   static constexpr std::size_t most_open = 256;
+  /// Less than the journal has room for by far.
+  static constexpr std::size_t most_open_octets = std::size_t{128} << 10;
   /// The partner of a link may see its loss before the supervisor sees the death that it comes from.
   static constexpr Duration loss_before_death = std::chrono::seconds{1};
 
@@ -78,6 +80,7 @@ class CommandedStates final : public Hearer, public Remembered {
     unsigned refused{0};  ///< of its instructions
   };
   void lower_record(std::uint16_t apid, State most);
+  [[nodiscard]] bool has_room_for(std::size_t octets) const;
   [[nodiscard]] bool is_just_now(const Member& member) const;
   void tell_not_kept(std::uint16_t apid, const pus::TelecommandView& telecommand);
 

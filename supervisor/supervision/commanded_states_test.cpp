@@ -243,6 +243,23 @@ TEST_F(CommandedStatesTest, WhatNobodyReportsOnIsTold) {
   EXPECT_TRUE(was_told("COMMAND_NOT_KEPT"));
 }
 
+TEST_F(CommandedStatesTest, WhatNobodyReportsOnFillsNoJournal) {
+  parts.own.start(craft.mode_epoch);
+  own_step();
+  std::vector<std::byte> wide(3000);
+  wide[2] = std::byte{one};
+  for (std::size_t i = 0; i < CommandedStates::most_open_octets / wide.size() - 1; ++i) leaves(3, 1, wide);
+  own_step();
+  EXPECT_FALSE(was_told("COMMAND_NOT_KEPT"));
+  for (int i = 0; i < 3; ++i) leaves(3, 1, wide);
+  own_step();
+  EXPECT_TRUE(was_told("COMMAND_NOT_KEPT APID=10 SERVICE=3 SUBTYPE=1"));
+  std::vector<std::byte> room(2 * CommandedStates::most_open_octets);
+  OctetWriter writer{room};
+  commanded.note(writer);
+  EXPECT_LT(writer.size(), CommandedStates::most_open_octets + 8192);
+}
+
 TEST_F(CommandedStatesTest, WhatIsDoneInPartEndsWithItsCompletionOnly) {
   parts.own.start(craft.mode_epoch);
   own_step();

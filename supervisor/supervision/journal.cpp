@@ -76,22 +76,35 @@ bool Journal::write(Octets content) noexcept {
   return true;
 }
 
+void Journal::clear() noexcept {
+  if (most_octets() == 0) return;
+  for (const std::size_t which : {0U, 1U}) std::memset(copy(which).data(), 0, sizeof(Head));
+}
+
 bool Memory::note() {
   if (journal_ == nullptr) return true;
   const std::size_t most = std::min(most_notes, journal_->most_octets());
   buffer_.resize(most);
   part_.resize(most);
   OctetWriter all{buffer_};
+  if (!put_together(all)) {
+    journal_->clear();
+    written_.clear();
+    return false;
+  }
+  if (std::ranges::equal(all.written(), written_)) return true;
+  written_.assign(all.written().begin(), all.written().end());
+  return journal_->write(written_);
+}
+
+bool Memory::put_together(OctetWriter& all) {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     OctetWriter one{part_};
     parts_[i]->note(one);
     if (!one.good()) return false;
     all.put(static_cast<std::uint16_t>(i)).put(static_cast<std::uint32_t>(one.size())).put(one.written());
   }
-  if (!all.good()) return false;
-  if (std::ranges::equal(all.written(), written_)) return true;
-  written_.assign(all.written().begin(), all.written().end());
-  return journal_->write(written_);
+  return all.good();
 }
 
 bool Memory::recall() {

@@ -26,6 +26,8 @@ class Journal {
   [[nodiscard]] Octets newest() const noexcept;
   /// False: it is longer than a copy may be, and nothing was written.  Realtime: bounded, no allocation.
   bool write(Octets content) noexcept;
+  /// Neither copy is one any more.  Realtime: bounded, no allocation.
+  void clear() noexcept;
   [[nodiscard]] std::size_t most_octets() const noexcept;
 
  private:
@@ -53,12 +55,15 @@ class Memory {
   /// `journal` null: nothing is remembered.
   Memory(Journal* journal, std::vector<Remembered*> parts) : journal_{journal}, parts_{std::move(parts)} {}
 
-  /// Notes what has changed since the last time. False: there is no room for all of it.
+  /// Notes what has changed since the last time. False: there is no room for all of it, and nothing is noted any more: what was known
+  /// before would be believed, a stop that came since forgotten.
   bool note();
   /// True: there was something, all of it was read, and each part has been told.
   [[nodiscard]] bool recall();
 
  private:
+  [[nodiscard]] bool put_together(OctetWriter& all);
+
   Journal* journal_;
   std::vector<Remembered*> parts_;
   std::vector<std::byte> buffer_, written_, part_;

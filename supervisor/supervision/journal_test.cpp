@@ -130,16 +130,46 @@ TEST_F(Journals, OtherPartsOrPartsThatReadOtherwiseAreNotTold) {
   EXPECT_FALSE((Memory{&journal, {&half}}.recall()));
 }
 
-TEST_F(Journals, WhatHasNoRoomIsToldAndTheLastNoteStays) {
+TEST_F(Journals, WhatHasNoRoomLeavesNoOlderNoteToBelieveUntilItFitsAgain) {
+  RememberedNumber stops;
   Text text;
-  Memory one{&journal, {&text}};
+  Memory one{&journal, {&stops, &text}};
+  RememberedNumber later_stops;
+  Text later;
+  Memory next{&journal, {&later_stops, &later}};
+  ASSERT_TRUE(one.note());
+  text.value = "fits";
+  ASSERT_TRUE(one.note()) << "both copies are whole";
+  stops.value = 1;
+  text.value = std::string(memory_octets, 'x');
+  for (int time = 0; time < 2; ++time) {
+    EXPECT_FALSE(one.note()) << time;
+    EXPECT_FALSE(next.recall()) << "it would say that there was no stop";
+  }
   text.value = "fits";
   ASSERT_TRUE(one.note());
-  text.value = std::string(memory_octets, 'x');
-  EXPECT_FALSE(one.note());
-  Text later;
-  EXPECT_TRUE((Memory{&journal, {&later}}.recall()));
+  ASSERT_TRUE(next.recall());
+  EXPECT_EQ(later_stops.recalled, 1u);
   EXPECT_EQ(later.recalled, "fits");
+}
+
+TEST_F(Journals, WhatTwoPartsTogetherHaveNoRoomForIsNotNotedEither) {
+  Text first, second;
+  Memory one{&journal, {&first, &second}};
+  ASSERT_TRUE(one.note());
+  first.value = second.value = std::string(journal.most_octets() / 2, 'x');
+  EXPECT_FALSE(one.note());
+  EXPECT_FALSE(one.recall());
+}
+
+TEST_F(Journals, WhatIsClearedIsNoCopyAndTakesTheNextOne) {
+  Journal{MutableOctets{}}.clear();
+  ASSERT_TRUE(journal.write(octets_of("one")));
+  ASSERT_TRUE(journal.write(octets_of("two")));
+  journal.clear();
+  EXPECT_TRUE(journal.newest().empty());
+  ASSERT_TRUE(journal.write(octets_of("three")));
+  EXPECT_EQ(text_of(journal.newest()), "three");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ import inspect, sys, tempfile
 from judge_flight import MISSION, S, Written
 from judge_cases import CASES
 import judge, packet_rules, record, retrieval_rules, rules
-import judge_cases_packets, judge_cases_permits, judge_cases_retrieval, judge_cases_stops, judge_cases_world  # noqa: F401  (cases register themselves)
+import judge_cases_packets, judge_cases_permits, judge_cases_retrieval, judge_cases_stays, judge_cases_stops, judge_cases_world  # noqa: F401  (cases register themselves)
 
 RULES = {rule.__name__: rule for table in (rules.WORLD, packet_rules.PACKETS, retrieval_rules.RETRIEVALS) for each in table.values() for rule in each}
 

@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """`hirosco safe`: everything that moves is stopped from beside the flight, whatever else of it stands still."""
+import ctypes
 import os
 import pathlib
 import resource
@@ -14,6 +15,21 @@ import flight
 
 ANSWER_S = 0.5
 MOVERS = ("MANIPULATOR", "JOYSTICK")
+COMES_BACK = {"60": '1" pause_ms="20" to="commanded'}    # who dies, to what it was commanded to be
+
+
+def hold_still(thread):
+    """This thread alone, its process goes on. Whoever ends that ends it all the same, but its parent hears of it after see_end() only."""
+    seize, interrupt = 0x4206, 0x4207
+    for request in (seize, interrupt):
+        if ctypes.CDLL(None, use_errno=True).ptrace(request, thread, None, None) != 0:
+            raise OSError(ctypes.get_errno(), "ptrace")
+
+
+def see_end(thread):
+    every_child = 0x40000000                             # __WALL
+    while os.WIFSTOPPED(os.waitpid(thread, every_child)[1]):
+        pass
 
 
 class LocalStop(unittest.TestCase):
@@ -45,11 +61,20 @@ class LocalStop(unittest.TestCase):
                 self.assertIn("says the device", line)
             self.nothing_moves(rokviss)
 
-    def test_everything_is_stopped_while_the_ground_link_is_dead(self):
-        with flight.Flight() as rokviss:
+    def test_what_the_guard_alone_knew_holds_for_who_dies_before_the_supervisor_hears_of_it_though_the_ground_link_is_dead(self):
+        with flight.MissionCopy(COMES_BACK) as mission, flight.Flight(mission) as rokviss:
             rokviss.wait_commissioned()
+            self.assertEqual(rokviss.hirosco("mode", "standalone", "--mission", mission).returncode, 0)    # the manipulator needs nobody else
+            begin = rokviss.count()
+            loop = rokviss.pid_of("hirosco-supervisor")
             rokviss.kill("hirosco-communication")
+            hold_still(loop)
             self.stops(rokviss)
+            rokviss.kill("hirosco-manipulator")
+            see_end(loop)                                # by the keeper
+            rokviss.wait_told("MANIPULATOR died", 5.0, begin)      # says the next supervisor
+            time.sleep(2.0)
+            self.assertFalse([line.told for line in rokviss.told(begin) if line.told.endswith(": as commanded")])
             self.nothing_moves(rokviss)
 
     def test_the_keeper_is_signalled_where_nobody_answers(self):

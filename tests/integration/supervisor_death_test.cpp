@@ -251,6 +251,74 @@ TEST(SupervisorDeath, AtEveryMomentOfARecoveryBothMachinesComeToRest) {
   EXPECT_GT(flights, 10 / one_in(3));
 }
 
+/// Whoever dies comes back to what it was commanded to be.
+void everybody_comes_back(descriptor::Mission& mission) {
+  constexpr std::int64_t limit = 1000, window_s = 60, pause_ms = 20;
+  simulation::hand_rests(mission);
+  for (auto& plan : mission.plans)
+    for (auto& step : plan.steps)
+      if (step.kind == "restart")
+        step.values = {limit, window_s, pause_ms, static_cast<std::int64_t>(State::Operational)};
+}
+
+/// In a mode in which the manipulator needs nobody else.
+[[nodiscard]] bool flies_alone(Flight& flight) {
+  const bool flies = flight.commission() && flight.set_mode("standalone").completed;
+  flight.craft().run(500ms);
+  return flies;
+}
+
+[[nodiscard]] bool permitted(Flight& flight, const char* name) {
+  const auto* page = flight.craft().permit(name);
+  return page != nullptr && page->permits(page->epoch.load());
+}
+
+TEST(SupervisorDeath, WhoDiesWithTheSupervisorComesBackAsCommanded) {
+  Flight flight{{.edit = everybody_comes_back, .revives_after = 300ms}};
+  ASSERT_TRUE(flies_alone(flight));
+  flight.craft().kill("MANIPULATOR");
+  flight.craft().kill_supervisor();
+  flight.craft().run(10s);
+  EXPECT_TRUE(permitted(flight, "MANIPULATOR")) << flight.story().text();
+}
+
+/// `hirosco safe` while the supervisor's loop stands still, or while there is none: nobody but the guard, or the keeper, knows of it.
+TEST(SupervisorDeath, AStopThatNoSupervisorHadHeardOfHoldsForWhoDiesWithIt) {
+  for (const bool before_the_death : {true, false}) {
+    Flight flight{{.edit = everybody_comes_back, .revives_after = 300ms}};
+    ASSERT_TRUE(flies_alone(flight));
+    if (before_the_death) flight.craft().stop_beside_flight();
+    flight.craft().kill("MANIPULATOR");
+    flight.craft().kill_supervisor();
+    if (!before_the_death) flight.craft().stop_beside_flight();
+    flight.craft().run(10s);
+    for (const char* name : movers) {
+      EXPECT_FALSE(permitted(flight, name)) << before_the_death << name << "\n" << flight.story().text();
+      EXPECT_NE(flight.state(name), State::Operational) << before_the_death << name << "\n" << flight.story().text();
+    }
+    EXPECT_FALSE(flight.story().has(": as commanded"));
+    // It was carried out and noted: the next one goes on with whoever was let go since.
+    for (const char* name : movers)
+      if (!flight.craft().alive(name)) static_cast<void>(flight.set_state(name, State::Offline));
+    ASSERT_TRUE(flight.set_mode("telepresence").completed) << flight.story().text();
+    flight.craft().run(200ms);
+    flight.craft().kill_supervisor();
+    flight.craft().run(2s);
+    for (const char* name : movers) EXPECT_TRUE(permitted(flight, name)) << name << "\n" << flight.story().text();
+  }
+}
+
+TEST(SupervisorDeath, OfOneWhoseNotesHadNoRoomNothingIsBelievedAndAllStops) {
+  Flight flight{{.edit = simulation::hand_rests, .revives_after = 300ms, .journal_octets = 256}};
+  ASSERT_TRUE(flight.commission());
+  flight.craft().run(500ms);
+  EXPECT_EQ(flight.story().count("too long for its journal"), 1U) << "told once";
+  flight.craft().kill_supervisor();
+  flight.craft().run(settles);
+  EXPECT_TRUE(flight.story().has("nothing tells what that knew"));
+  for (const char* name : movers) EXPECT_FALSE(permitted(flight, name)) << name << "\n" << flight.story().text();
+}
+
 /// From the first message of the flight on: who was let go before the death moves on only where the whole craft was commissioned.
 TEST(SupervisorDeath, AtEveryMomentOfCommissioningNobodyIsLeftMovingAndTheCraftIsCommissionedAnew) {
   std::map<std::string, int> ends;

@@ -8,6 +8,7 @@ CYCLES_TO_SAFE = 5             # actuators of a network, in cycles of whoever ac
 WATCHDOG_US = 12_000           # and two periods: of the device itself, when its member says nothing any more
 STATE_LAG_US = 12_000          # the vital page tells a state by the service loop, every 1 or 10 ms
 SAFE_ALL_US = 500_000
+STOP_BEGINS_US = 30_000        # from a stop that is asked for to the devices: a step of the supervisor where it takes that, and one of the guard
 # The longest declared stop and the time to answer (450 ms), who has not stopped is ended then, and 500 ms after that.
 SAFE_ALL_ENDS_US = 950_000
 OFFLINE_US = 2_000_000
@@ -154,6 +155,31 @@ def i4_who_begins_is_let_go(flight, victims):
                 yield time, f"{device} acts {(max(start, time) - time) // 1000} ms after it rebooted, though {member} has told it nothing else"
 
 
+def i4_a_stop_stays(flight, victims):
+    """Behind a stop nobody acts before ground has said so after it: a state for that member, or a mode."""
+    stops = [time for time, words in flight.did if words == ["safe"]]
+    answered = {(down[5], down[6]) for down in flight.down if down[3] == 1 and down[4] == 7 and len(down) > 6}
+    answered |= {r.report.request_key for r in flight.log if r.report and (r.report.service, r.report.subtype) == (1, 7)}
+    stops += [sent.time for sent in flight.sent if sent.function == "SAFE_ALL" and sent.key in answered]
+    arguments = {r.telecommand.key: r.telecommand.first_argument for r in flight.log if r.telecommand}
+    leaves = {name: [] for name in flight.members}
+    for sent in flight.sent:
+        addressee = flight.mission.by_apid(sent.apid)
+        # What the log has not kept may have been one.
+        if sent.function == "SET_STATE" and addressee is not None and addressee.name in leaves \
+                and arguments.get(sent.key, OPERATIONAL) == OPERATIONAL:
+            leaves[addressee.name].append(sent.time)
+        elif sent.function == "SET_MODE":
+            for times in leaves.values():
+                times.append(sent.time)
+    acting = [(device, member) for device, (member, name) in flight.mission.devices.items() if name in flight.mission.by_name(member).actuators]
+    for device, member in acting:
+        for start, _ in flight.active[device].spans(flight.end):
+            stopped = max((time for time in stops if time + STOP_BEGINS_US < start), default=None)
+            if stopped is not None and not any(stopped <= time <= start for time in leaves[member]):
+                yield start, f"{device} acts again {(start - stopped) // 1000} ms after a stop, and nobody has let {member} go"
+
+
 def i5_no_stale_sample_is_used(flight, victims):
     for member in flight.mission.members:
         devices = [device for device, (owner, _) in flight.mission.devices.items() if owner == member.name]
@@ -278,6 +304,6 @@ def steady(flight, name, start, end):
 
 WORLD = {"I1": [i1_only_victims_die],
          "I4": [i4_actuators_are_off_outside_operational, i4_safe_all_stops_everything, i4_a_network_goes_down_with_its_member,
-                i4_who_begins_is_let_go],
+                i4_who_begins_is_let_go, i4_a_stop_stays],
          "I5": [i5_no_stale_sample_is_used], "I9": [i9_only_edges_of_the_table], "I10": [i10_commandable_again],
          "I12": [i12_no_operational_without_required_link], "I13": [i13_cycles_keep_time]}

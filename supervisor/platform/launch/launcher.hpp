@@ -65,6 +65,13 @@ struct AdoptedSubsystem {
   std::uint32_t powered{0};  ///< Power, as that page says
 };
 
+/// Why nobody goes on with a subsystem.
+struct NotAdopted {
+  std::string why{};  ///< it lived, or nobody can tell, and was ended for this; empty: nothing of it ran
+  std::uint32_t process{
+      0};  ///< it has not gone yet: ended() tells when it has, and none is to be launched beside it; 0: it has
+};
+
 /// Why an executable is not started.
 struct StartRefusal {
   Error why;  ///< for who asked
@@ -82,9 +89,11 @@ class ProcessLauncher {
  public:
   virtual ~ProcessLauncher() = default;
   [[nodiscard]] virtual Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) = 0;
-  /// What a supervisor before this one had started and still runs. Empty: nothing does.
-  [[nodiscard]] virtual std::optional<AdoptedSubsystem> adopt(const descriptor::MissionSubsystem& /*subsystem*/) {
-    return std::nullopt;
+  /// What a supervisor before this one had started and still runs. One that lives and cannot be gone on with is ended: its permit page is one
+  /// that nobody can write any more.
+  [[nodiscard]] virtual std::expected<AdoptedSubsystem, NotAdopted> adopt(
+      const descriptor::MissionSubsystem& /*subsystem*/) {
+    return std::unexpected{NotAdopted{}};
   }
   /// It would not launch() it now, by the mission's manifest (docs/adr/0089); empty: it would, as far as that goes.
   [[nodiscard]] virtual std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& /*subsystem*/) {

@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -12,6 +13,7 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <new>
 #include <span>
 #include <string>
@@ -52,7 +54,12 @@ class OwnedEnd final : public Channel {
   SocketChannel channel_;
 };
 
-/// Of the process behind a handle; empty: there is none, or it has ended.
+/// How long one that cannot be gone on with may take to go before it is told as one that hangs.
+constexpr int longest_end_ms = 50;
+/// Of whom only the handle is known.
+constexpr int unknown_pid = -1;
+
+/// Of the process behind a handle; empty: there is none, it has ended, or no descriptor is left to ask by.
 [[nodiscard]] std::optional<int> pid_of(int handle) {
   if (handle < 0) return std::nullopt;
   const FileDescriptor file{::open(("/proc/self/fdinfo/" + std::to_string(handle)).c_str(), O_RDONLY | O_CLOEXEC)};
@@ -221,14 +228,15 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     return fail(spawned.error());
   }
   HIROSCO_TRY_LET(LaunchedSubsystem launched,
-                  hold(std::move(*spawned), std::move(ends.first), std::move(vital.second), std::move(permit.second)));
+                  hold(*spawned, std::move(ends.first), std::move(vital.second), std::move(permit.second)));
   keep(subsystem.subsystem.name, launched, vital.first, permit.first, errors_read);
   if (script && image != nullptr) launched.not_held = "it is a script, whose interpreter is another file";
   if (script && !sandbox_is_off()) launched.not_isolated = "it is a script";
   return launched;
 }
 
-Result<LaunchedSubsystem> SystemLauncher::hold(Process process, FileDescriptor channel, Mapping vital, Mapping permit) {
+Result<LaunchedSubsystem> SystemLauncher::hold(Process& process, FileDescriptor channel, Mapping vital,
+                                               Mapping permit) {
   auto grip = grip_of(process);
   if (!grip) {
     // One that nobody could end is not let go at all.
@@ -270,23 +278,49 @@ void SystemLauncher::keep(const std::string& name, const LaunchedSubsystem& laun
     kept_[launched.process] = slot->second;
 }
 
-std::optional<AdoptedSubsystem> SystemLauncher::adopt(const descriptor::MissionSubsystem& subsystem) {
+std::expected<AdoptedSubsystem, NotAdopted> SystemLauncher::adopt(const descriptor::MissionSubsystem& subsystem) {
   const std::string& name = subsystem.subsystem.name;
   const auto slot = slots_.find(name);
-  if (slot == slots_.end()) return std::nullopt;
+  if (slot == slots_.end()) return std::unexpected{NotAdopted{}};
   const auto found = inherited_.extract(slot->second);
-  const auto pid = found ? pid_of(found.mapped()[static_cast<std::size_t>(KeptRole::Process)].get()) : std::nullopt;
-  auto adopted = pid ? take_over(name, *pid, found.mapped())
-                     : Result<AdoptedSubsystem>{fail(ErrorCode::NotFound, "nothing of it runs")};
+  const auto nothing_runs = [&] {
+    store_.forget(slot->second);
+    return std::unexpected{NotAdopted{}};
+  };
+  if (!found) return nothing_runs();
+  FileDescriptor& handle = found.mapped()[static_cast<std::size_t>(KeptRole::Process)];
+  const auto pid = pid_of(handle.get());
+  auto process = Process::adopt(pid.value_or(unknown_pid), std::move(handle));
+  if (!process) return nothing_runs();
+  // Its handle alone says that it has ended: that needs no descriptor, and what cannot be told counts as a life.
+  if (const auto end = process->poll(); end && *end) return nothing_runs();
+  auto adopted = pid ? take_over(name, *process, found.mapped())
+                     : Result<AdoptedSubsystem>{fail(ErrorCode::Unavailable, "its process id cannot be read")};
   if (adopted) return std::move(*adopted);
-  store_.forget(slot->second);
-  return std::nullopt;
+  return std::unexpected{end_at_once(slot->second, std::move(*process), adopted.error())};
 }
 
-Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, int pid,
+/// It obeys a permit page that nobody can write any more.
+NotAdopted SystemLauncher::end_at_once(std::size_t slot, Process process, const Error& why) {
+  const bool of_system = why.code == ErrorCode::SystemFailure && why.value > 0;
+  const std::string words =
+      of_system ? fmt::format("{} ({})", why.text, std::strerror(static_cast<int>(why.value))) : std::string{why.text};
+  static_cast<void>(process.send_signal(SIGKILL));
+  pollfd look{process.handle().get(), POLLIN, 0};
+  static_cast<void>(::poll(&look, 1, longest_end_ms));
+  if (const auto end = process.poll(); end && *end) {
+    store_.forget(slot);
+    return {.why = words, .process = 0};
+  }
+  const std::uint32_t number = next_++;
+  processes_.emplace(number, std::move(process));
+  kept_[number] = slot;  // another supervisor tries again
+  return {.why = words, .process = number};
+}
+
+Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, Process& process,
                                                    std::array<FileDescriptor, kept_roles>& kept) {
   const auto of = [&](KeptRole role) -> FileDescriptor& { return kept[static_cast<std::size_t>(role)]; };
-  HIROSCO_TRY_LET(Process process, Process::adopt(pid, std::move(of(KeptRole::Process))));
   const MemoryHandle vital = SealedMemory::adopt(std::move(of(KeptRole::Vital)));
   const MemoryHandle old_permit = SealedMemory::adopt(std::move(of(KeptRole::Permit)));
   HIROSCO_TRY(memory_.verify(vital, sizeof(VitalPage), false));
@@ -308,8 +342,8 @@ Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, int 
   fresh.stop.store(adopted.stopped ? 1 : 0, std::memory_order_release);
   fresh.powered.store(adopted.powered, std::memory_order_release);
   vital_[name] = vital_page;
-  HIROSCO_TRY_LET(adopted.launched, hold(std::move(process), std::move(of(KeptRole::Channel)), std::move(vital_page),
-                                         std::move(permit.second)));
+  HIROSCO_TRY_LET(adopted.launched,
+                  hold(process, std::move(of(KeptRole::Channel)), std::move(vital_page), std::move(permit.second)));
   FileDescriptor& errors = of(KeptRole::Errors);
   keep(name, adopted.launched, vital, permit.first, errors);
   errors_.go_on(name, std::move(errors));

@@ -27,7 +27,8 @@ class SystemLauncher final : public FlightLauncher {
   /// Holds to the mission's manifest where it has one.
   [[nodiscard]] std::expected<std::string, std::string> begin(const descriptor::Mission& mission) override;
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
-  [[nodiscard]] std::optional<AdoptedSubsystem> adopt(const descriptor::MissionSubsystem& subsystem) override;
+  [[nodiscard]] std::expected<AdoptedSubsystem, NotAdopted> adopt(
+      const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] bool keep_with(StoreClient store, const descriptor::Mission& mission, InheritedParts inherited,
                                const KeeperPage* page) override;
   [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& subsystem) override;
@@ -49,10 +50,12 @@ class SystemLauncher final : public FlightLauncher {
   [[nodiscard]] int wait_descriptor(std::uint32_t process) override;
 
  private:
-  /// It has started, or goes on.
-  [[nodiscard]] Result<LaunchedSubsystem> hold(Process process, FileDescriptor channel, Mapping vital, Mapping permit);
-  [[nodiscard]] Result<AdoptedSubsystem> take_over(const std::string& name, int pid,
+  /// It has started, or goes on. An error leaves `process` to who called.
+  [[nodiscard]] Result<LaunchedSubsystem> hold(Process& process, FileDescriptor channel, Mapping vital, Mapping permit);
+  /// The same.
+  [[nodiscard]] Result<AdoptedSubsystem> take_over(const std::string& name, Process& process,
                                                    std::array<FileDescriptor, kept_roles>& kept);
+  [[nodiscard]] NotAdopted end_at_once(std::size_t slot, Process process, const Error& why);
   void keep(const std::string& name, const LaunchedSubsystem& launched, const MemoryHandle& vital,
             const MemoryHandle& permit, const FileDescriptor& errors);
   [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;

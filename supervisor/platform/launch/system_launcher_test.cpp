@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/launch/system_launcher.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -245,6 +247,52 @@ TEST(SystemLauncherAdoption, ThePageThatItMakesSaysWhatItFoundBeforeAnyGuardHasW
   EXPECT_FALSE(page.permits(page.epoch.load()));
   launcher.kill_all();
   ::waitpid(child, nullptr, 0);
+}
+
+/// In a process of its own that has `left` descriptors besides those that it has inherited. 0: the one that rests was not adopted, was told as
+/// ended for a reason, and has gone.
+int goes_on_short_of_descriptors(pid_t resting, int left) {
+  descriptor::Mission mission;
+  mission.subsystems.emplace_back().subsystem.name = "ARM";
+  SealedMemory memory;
+  InheritedParts inherited;
+  inherited.emplace(0, kept_of(resting, memory, PermitPage{}));
+  const FileDescriptor handle{static_cast<int>(::syscall(SYS_pidfd_open, resting, 0))};
+  SystemLauncher launcher;
+  if (!launcher.keep_with(StoreClient{-1}, mission, std::move(inherited), nullptr)) return 1;
+  const FileDescriptor first_free{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
+  const auto most = static_cast<rlim_t>(first_free.get() + 1 + left);
+  const rlimit limit{.rlim_cur = most, .rlim_max = most};
+  if (::setrlimit(RLIMIT_NOFILE, &limit) != 0) return 2;
+  const auto adopted = launcher.adopt(mission.subsystems[0]);
+  if (adopted) return 3;
+  if (adopted.error().why.empty()) return 4;
+  if (adopted.error().process != 0) return 5;
+  pollfd look{handle.get(), POLLIN, 0};
+  return ::poll(&look, 1, 0) == 1 ? 0 : 6;
+}
+
+TEST(SystemLauncherAdoption, WhoLivesAndCannotBeGoneOnWithIsEndedAndHasGoneBeforeItCountsAsDead) {
+  // With one for its id but none for its new page, and with none at all.
+  for (const int left : {1, 0}) {
+    const pid_t resting = ::fork();
+    if (resting == 0) {
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+      for (;;) ::pause();
+    }
+    static_cast<void>(::kill(resting, SIGSTOP));
+    const pid_t short_of = ::fork();
+    if (short_of == 0) ::_exit(goes_on_short_of_descriptors(resting, left));
+    int status = 0;
+    ASSERT_EQ(::waitpid(short_of, &status, 0), short_of);
+    EXPECT_TRUE(WIFEXITED(status)) << left;
+    EXPECT_EQ(WEXITSTATUS(status), 0) << left;
+    static_cast<void>(::kill(resting, SIGTERM));  // where it was let go
+    static_cast<void>(::kill(resting, SIGCONT));
+    ASSERT_EQ(::waitpid(resting, &status, 0), resting);
+    EXPECT_TRUE(WIFSIGNALED(status)) << left;
+    EXPECT_EQ(WTERMSIG(status), SIGKILL) << left;
+  }
 }
 
 }  // namespace

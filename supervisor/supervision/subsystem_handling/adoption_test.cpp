@@ -41,9 +41,12 @@ struct AdoptionTest : PartsTest {
   std::set<std::uint16_t> gone;
   std::vector<std::unique_ptr<Next>> nexts;
 
-  std::optional<AdoptedSubsystem> adopt(const descriptor::MissionSubsystem& described) override {
+  std::map<std::uint16_t, NotAdopted> ended_instead;  ///< one of them lives on
+
+  std::expected<AdoptedSubsystem, NotAdopted> adopt(const descriptor::MissionSubsystem& described) override {
     const std::uint16_t apid = described.subsystem.id;
-    if (gone.contains(apid) || !played.contains(apid)) return std::nullopt;
+    if (ended_instead.contains(apid)) return std::unexpected{ended_instead[apid]};
+    if (gone.contains(apid) || !played.contains(apid)) return std::unexpected{NotAdopted{}};
     PlayedMember& member = played[apid];
     AdoptedSubsystem adopted;
     adopted.epoch = member.permit->epoch;
@@ -162,6 +165,37 @@ TEST_F(AdoptionTest, TheDevicesOfWhoDiedWithTheSupervisorAreAskedInAStop) {
   ASSERT_NE(answer, answers->end());
   EXPECT_EQ(answer->name, "MOTOR");
   EXPECT_FALSE(answer->stopped) << "it was not heard";
+}
+
+TEST_F(AdoptionTest, WhoWasEndedInsteadHasDiedOfThat) {
+  start_all(SafeOperational);
+  ASSERT_TRUE(notes.note());
+  ended_instead[hand] = {.why = "no descriptor is left"};
+  SupervisorParts& next = go_on();
+  EXPECT_EQ(std::ranges::count(story, "cannot go on with HAND: no descriptor is left; it is ended"), 1);
+  EXPECT_TRUE(nexts.back()->guard.holds(hand)) << "its devices are asked in a stop";
+  next.processes.found_dead(*next.craft.member(hand));
+  EXPECT_EQ(std::ranges::count(story, "HAND died: signal 9"), 1);
+  EXPECT_TRUE(next.processes.start(hand));
+}
+
+TEST_F(AdoptionTest, WhoWasEndedInsteadAndHasNotGoneHangsAndNoOtherIsStartedBesideIt) {
+  start_all(SafeOperational);
+  ASSERT_TRUE(notes.note());
+  constexpr std::uint32_t leaving = 77;
+  ended_instead[hand] = {.why = "no descriptor is left", .process = leaving};
+  SupervisorParts& next = go_on();
+  next.processes.found_dead(*next.craft.member(hand));
+  EXPECT_EQ(std::ranges::count(story, "HAND hangs: it was ended and has not gone"), 1);
+  for (int time = 0; time < 3; ++time) {
+    next.processes.watch(clock.now());
+    EXPECT_FALSE(next.processes.start(hand));
+  }
+  EXPECT_EQ(std::ranges::count(story, "HAND died: signal 9"), 0);
+  ends[leaving] = {.by_signal = true, .value = 9};
+  for (int time = 0; time < 3; ++time) next.processes.watch(clock.now());
+  EXPECT_EQ(std::ranges::count(story, "HAND died: signal 9"), 1);
+  EXPECT_TRUE(next.processes.start(hand));
 }
 
 TEST_F(AdoptionTest, WhoWasNeverStartedIsNotHeld) {

@@ -27,6 +27,8 @@ using descriptor::Severity;
 namespace {
 /// How long a process may live on with its channel closed; what it does then cannot be known.
 constexpr Duration closed_channel_limit = 1s;
+/// The signal that ends whoever is not gone on with.
+constexpr int killed = 9;
 }  // namespace
 
 void Processes::start_all() {
@@ -99,13 +101,23 @@ Result<> Processes::launch(Member& member) {
 std::optional<MemoryHandle> Processes::adopt(Member& member, std::string_view against) {
   const std::string& name = member.descriptor().name;
   auto adopted = craft_.launcher.adopt(member.described());
+  if (!adopted && !adopted.error().why.empty()) {
+    craft_.tell(fmt::format("cannot go on with {}: {}; it is ended{}", name, adopted.error().why,
+                            adopted.error().process != 0 ? " and has not gone yet" : ""),
+                member.apid());
+    leaving_[member.apid()] = {.process = adopted.error().process};
+    member.was_started = true;
+  }
   if (!adopted && !member.was_started) return std::nullopt;
   if (!craft_.guard.holds(member.apid()))
     if (const auto held = craft_.guard.add(member.described(), craft_.is_ground_link(member)); !held) {
       craft_.tell("cannot hold the second inhibit of " + name + "'s devices: " + held.error().text +
                       (adopted ? "; it is ended" : ""),
                   member.apid());
-      if (adopted) craft_.launcher.kill(adopted->launched.process);
+      if (adopted) {
+        craft_.launcher.kill(adopted->launched.process);
+        leaving_[member.apid()] = {.process = adopted->launched.process};
+      }
       return std::nullopt;
     }
   if (!adopted) {
@@ -126,10 +138,37 @@ std::optional<MemoryHandle> Processes::adopt(Member& member, std::string_view ag
   return std::move(adopted->permit);
 }
 
+void Processes::found_dead(Member& member) {
+  const std::uint16_t apid = member.apid();
+  const auto leaving = leaving_.find(apid);
+  if (leaving == leaving_.end()) return died(member, {});
+  if (leaving->second.process == 0) {
+    leaving_.erase(leaving);
+    return died(member, {.by_signal = true, .value = killed});
+  }
+  leaving->second.missed = true;
+  craft_.tell(member.descriptor().name + " hangs: it was ended and has not gone", apid);
+  parts_.own.announce("HANG", {static_cast<double>(apid)});
+  parts_.restoration.lost(apid);
+  parts_.reactions.react(member, "HANG", Severity::High);
+}
+
+void Processes::watch_leaving() {
+  for (Member& member : craft_.members) {
+    const auto leaving = leaving_.find(member.apid());
+    if (leaving == leaving_.end() || leaving->second.process == 0 || !craft_.launcher.ended(leaving->second.process))
+      continue;
+    leaving->second.process = 0;
+    if (leaving->second.missed) found_dead(member);
+  }
+}
+
 Result<> Processes::start(std::uint16_t apid) {
   Member* subject = craft_.member(apid);
   if (subject == nullptr) return fail(ErrorCode::NotFound, "no such subsystem", apid);
   if (subject->alive()) return ok();
+  if (const auto leaving = leaving_.find(apid); leaving != leaving_.end() && leaving->second.process != 0)
+    return fail(ErrorCode::Unavailable, "its process before has not gone yet", apid);
   if (subject->exchanged) return fail(ErrorCode::Unavailable, "another version of it is about to be started");
   HIROSCO_TRY(launch(*subject));
   if (craft_.is_ground_link(*subject)) parts_.ground_link.restore(*subject);
@@ -150,6 +189,7 @@ void Processes::let_go(Member& subject) {
 
 void Processes::watch(TimePoint now) {
   watch_ends(Whom::All);
+  watch_leaving();
   for (const Member& member : craft_.members)
     if (member.alive())
       craft_.guard.falls_with(member.apid(),

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string_view>
 
@@ -53,8 +55,9 @@ class Processes final : public Watch {
   /// does no longer: they may be coming to rest still, and a stop asks them.
   /// \return its new permit page, which it has to be handed.
   [[nodiscard]] std::optional<MemoryHandle> adopt(Member& member, std::string_view against);
-  /// It ran when the supervisor before died, and does no longer.
-  void found_dead(Member& member) { died(member, {}); }
+  /// It ran when the supervisor before died, and does no longer; one that was ended in the place of its adoption has died when it has gone,
+  /// and hangs until then.
+  void found_dead(Member& member);
   /// One in Offline: its channel is closed, so that it ends by itself, and nobody reacts to that.
   void let_go(Member& member);
   void take_guard_findings();
@@ -64,6 +67,12 @@ class Processes final : public Watch {
 
  private:
   enum class Whom : std::uint8_t { All, Closed };
+  /// Ended in the place of its adoption.
+  struct Leaving {
+    std::uint32_t process{0};  ///< 0: it has gone
+    bool missed{false};  ///< it was found dead before it had gone
+  };
+  void watch_leaving();
   Result<> launch(Member& member);
   void watch_ends(Whom whom);
   void hear_of(Member& member, const GuardFinding& finding);
@@ -71,6 +80,7 @@ class Processes final : public Watch {
 
   Parts parts_;
   Craft& craft_;
+  std::map<std::uint16_t, Leaving> leaving_;
 };
 
 }  // namespace hirosco::supervisor
