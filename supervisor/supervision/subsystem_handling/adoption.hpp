@@ -58,6 +58,8 @@ class Adoption final : public Watch, public Remembered, public Succession {
 
   /// In the place of a start. `stop_asked`: somebody asked for a stop when nobody was there to carry it out.
   void begin(bool stop_asked);
+  /// Of now, or of one that the supervisor before had begun and not ended.
+  [[nodiscard]] bool stop_asked() const noexcept { return stop_asked_; }
   [[nodiscard]] bool waits() const noexcept override { return waits_; }
   void confirmed(std::uint16_t apid) override { pages_.erase(apid); }
   void watch(TimePoint now) override;
