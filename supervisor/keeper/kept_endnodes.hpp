@@ -26,7 +26,7 @@ struct KeptEndnode {
   for (const auto& subsystem : mission.subsystems)
     for (const auto& device : subsystem.subsystem.devices)
       if (device.enable && found.size() < most_inhibits)
-        found.push_back({subsystem.subsystem.id, device.name, {device.enable->transfer, device.enable->address}});
+        found.push_back({subsystem.subsystem.id, device.name, descriptor::held_address(*device.enable)});
   return found;
 }
 
