@@ -38,8 +38,7 @@ Result<> Guard::add(const descriptor::MissionSubsystem& described, bool spared) 
     const std::uint16_t own_place = place++;
     member.rest_within = std::max(member.rest_within, device.stop_within);
     if (!device.enable) continue;
-    HIROSCO_TRY_LET(auto flow,
-                    parts_.flows.open(descriptor::held_address(*device.enable), FlowSide::Subsystem));
+    HIROSCO_TRY_LET(auto flow, parts_.flows.open(descriptor::held_address(*device.enable), FlowSide::Subsystem));
     WatchedDevice watched;
     watched.name = device.name;
     watched.place = own_place;

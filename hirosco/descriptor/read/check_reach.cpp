@@ -43,8 +43,8 @@ namespace {
     case Transfer::Unix:
     case Transfer::MessageQueue: return own.transfer == held.transfer;
     case Transfer::Serial:
-      return own.transfer == held.transfer && (line_of(own.address) == line_of(held.address) ||
-                                               (is_named(own.address) && is_named(held.address)));
+      return own.transfer == held.transfer &&
+             (line_of(own.address) == line_of(held.address) || (is_named(own.address) && is_named(held.address)));
     case Transfer::Udp: {
       if (!there || !there->loopback()) return false;
       const auto here = read_device_address(own.address);

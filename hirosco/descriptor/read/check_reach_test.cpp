@@ -35,10 +35,12 @@ TEST(SecondInhibit, IsRefusedWhereItsOwnSubsystemsSandboxLetsItIn) {
   ASSERT_EQ(first_code(reading), "E0349");
   EXPECT_EQ(reading.problems[0].file, data / "coronagraph.xml");
   EXPECT_GT(reading.problems[0].at.line, 1);
-  EXPECT_EQ(first_code(reached_by(R"(transfer="message_queue" address="b")", R"(transfer="message_queue" address="a")")),
-            "E0349");
-  EXPECT_EQ(first_code(reached_by(R"(transfer="serial" address="b@115200")", R"(transfer="serial" address="a@115200")")),
-            "E0349")
+  EXPECT_EQ(
+      first_code(reached_by(R"(transfer="message_queue" address="b")", R"(transfer="message_queue" address="a")")),
+      "E0349");
+  EXPECT_EQ(
+      first_code(reached_by(R"(transfer="serial" address="b@115200")", R"(transfer="serial" address="a@115200")")),
+      "E0349")
       << "two pseudo-terminals";
   EXPECT_EQ(first_code(reached_by(R"(transfer="serial" address="/dev/ttyS0@115200")",
                                   R"(transfer="serial" address="/dev/ttyS0@9600")")),
@@ -56,13 +58,13 @@ TEST(SecondInhibit, IsRefusedWhereAnothersSandboxLetsThatOneIn) {
 }
 
 TEST(SecondInhibit, OfTwoLinesIsTheOneThatIsNoSubsystems) {
-  EXPECT_TRUE(reached_by(R"(transfer="serial" address="/dev/ttyS1@115200")",
-                         R"(transfer="serial" address="/dev/ttyS0@115200")")
-                  .value);
+  EXPECT_TRUE(
+      reached_by(R"(transfer="serial" address="/dev/ttyS1@115200")", R"(transfer="serial" address="/dev/ttyS0@115200")")
+          .value);
 }
 
 TEST(MissionSubsystemSockets, AreThoseOfTheGroundLinkAndOfLinksByUdp) {
-  const auto reading = read_mission(data / "mission.xml");
+  const auto reading = read_mission(data / "mission.xml", file_system());
   ASSERT_TRUE(reading.value);
   for (const MissionSubsystem& member : reading.value->subsystems) {
     EXPECT_EQ(member.carries_ground, member.subsystem.name == reading.value->ground.subsystem);
@@ -71,8 +73,9 @@ TEST(MissionSubsystemSockets, AreThoseOfTheGroundLinkAndOfLinksByUdp) {
   const auto both = [](std::string_view file) {
     return changed("methods=\"shared_memory\"", "methods=\"udp shared_memory\"", file_system()(data / file).value());
   };
-  const auto udp = read_mission(data / "mission.xml", overlay({{"coronagraph.xml", both("coronagraph.xml")},
-                                                               {"flywheel.xml", both("flywheel.xml")}}));
+  const auto udp =
+      read_mission(data / "mission.xml",
+                   overlay({{"coronagraph.xml", both("coronagraph.xml")}, {"flywheel.xml", both("flywheel.xml")}}));
   ASSERT_TRUE(udp.value) << first_code(udp);
   for (const MissionSubsystem& member : udp.value->subsystems)
     EXPECT_EQ(member.links_by_udp, member.subsystem.name == "FLYWHEEL" || member.subsystem.name == "CORONAGRAPH")

@@ -123,11 +123,10 @@ constexpr std::uint64_t of_plain_files = LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_A
   // Devices are controlled by nobody but who may write them.
   const std::uint64_t to_write = known.files & ~std::uint64_t{LANDLOCK_ACCESS_FS_EXECUTE};
   // /proc/self is of this process: another one that has the same number later is outside.
-  const bool done = permit_paths(rules, sandbox.readable, to_read) &&
-                    permit_paths(rules, sandbox.executable, to_execute) &&
-                    permit_paths(rules, sandbox.writable, to_write) && permit_path(rules, "/proc/self", to_read) &&
-                    permit_ports(rules, known, sandbox.sockets.ports) &&
-                    ::syscall(SYS_landlock_restrict_self, rules, 0) == 0;
+  const bool done =
+      permit_paths(rules, sandbox.readable, to_read) && permit_paths(rules, sandbox.executable, to_execute) &&
+      permit_paths(rules, sandbox.writable, to_write) && permit_path(rules, "/proc/self", to_read) &&
+      permit_ports(rules, known, sandbox.sockets.ports) && ::syscall(SYS_landlock_restrict_self, rules, 0) == 0;
   const int error = done ? 0 : errno;
   ::close(rules);
   return error;
@@ -215,8 +214,8 @@ constexpr std::array own_calls{
 }
 
 constexpr std::uint16_t bpf_load = BPF_LD | BPF_W | BPF_ABS, bpf_equal = BPF_JMP | BPF_JEQ | BPF_K,
-                        bpf_any_of = BPF_JMP | BPF_JSET | BPF_K, bpf_and = BPF_ALU | BPF_AND | BPF_K, bpf_at_least = BPF_JMP | BPF_JGE | BPF_K,
-                        bpf_answer = BPF_RET | BPF_K;
+                        bpf_any_of = BPF_JMP | BPF_JSET | BPF_K, bpf_and = BPF_ALU | BPF_AND | BPF_K,
+                        bpf_at_least = BPF_JMP | BPF_JGE | BPF_K, bpf_answer = BPF_RET | BPF_K;
 constexpr std::uint32_t number_at = offsetof(seccomp_data, nr), machine_at = offsetof(seccomp_data, arch);
 /// The lower half of an argument, which is all of a number of 32 bits; the upper one stands behind it.
 constexpr std::uint32_t argument_at(std::size_t which) noexcept {
@@ -419,7 +418,8 @@ std::vector<std::string> isolation_lacks() {
   std::vector<std::string> lacks;
   const long rules_known = rules_version();
   if (rules_known < 1) lacks.emplace_back("files are open to all (no Landlock)");
-  else if (rules_known < 4) lacks.emplace_back("whoever has a device by TCP reaches every port (Landlock before version 4)");
+  else if (rules_known < 4)
+    lacks.emplace_back("whoever has a device by TCP reaches every port (Landlock before version 4)");
   if (rules_known >= 1 && rules_known < 6) lacks.emplace_back("signals reach others (Landlock before version 6)");
   const std::uint32_t trap = SECCOMP_RET_TRAP;
   if (::syscall(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &trap) != 0)

@@ -203,8 +203,8 @@ bool connects_to(std::uint16_t port) {
 bool sends_at_once_to(std::uint16_t port) {
   const FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
   const sockaddr_in there = at_port(port);
-  return socket && ::sendto(socket.get(), "x", 1, MSG_FASTOPEN, reinterpret_cast<const sockaddr*>(&there),
-                            sizeof there) == 1;
+  return socket &&
+         ::sendto(socket.get(), "x", 1, MSG_FASTOPEN, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 1;
 }
 
 bool binds_to(std::uint16_t port) {
