@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/data_transfer/device/device_memory.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 namespace hirosco {
 
@@ -14,10 +14,12 @@ std::string device_memory_file(const std::string& address, FlowHolder holder) {
   return device_memory_folder + ((holder == FlowHolder::Supervisor ? "." : "/") + name);
 }
 
-void make_device_memory_folder() noexcept {
-  constexpr mode_t for_all = 01777;
+void make_device_memory_folder() {
+  namespace fs = std::filesystem;
+  std::error_code error;
   // Not as the mask of who comes first has it.
-  if (::mkdir(device_memory_folder, for_all) == 0) static_cast<void>(::chmod(device_memory_folder, for_all));
+  if (fs::create_directory(device_memory_folder, error))
+    fs::permissions(device_memory_folder, fs::perms::all | fs::perms::sticky_bit, error);
 }
 
 }  // namespace hirosco

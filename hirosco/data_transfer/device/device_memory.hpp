@@ -17,7 +17,7 @@ inline constexpr const char* device_memory_folder = "/dev/shm/hirosco";
 [[nodiscard]] std::string device_memory_file(const std::string& address, FlowHolder holder);
 
 /// Makes the folder unless it is there, as open to all users of the computer as the one that it is in. It stays: who has been let in
-/// would not be in another one of that name.  Realtime: bounded, memory only.
-void make_device_memory_folder() noexcept;
+/// would not be in another one of that name.  Realtime: blocks, allocates.
+void make_device_memory_folder();
 
 }  // namespace hirosco

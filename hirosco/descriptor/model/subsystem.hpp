@@ -150,11 +150,6 @@ struct Endnode {
   Location at;
 };
 
-/// Of a second inhibit or a power switch, which the supervisor's side holds.
-[[nodiscard]] inline FlowAddress held_address(const Endnode& endnode) {
-  return {.transfer = endnode.transfer, .address = endnode.address, .holder = FlowHolder::Supervisor};
-}
-
 /// What a device does by itself when its command is taken away: the inhibit falls, or its frames stay out.
 enum class StopKind : std::uint8_t {
   Drop,  ///< no force at once

@@ -70,12 +70,11 @@ TEST(MissionSubsystemSockets, AreThoseOfTheGroundLinkAndOfLinksByUdp) {
     EXPECT_EQ(member.carries_ground, member.subsystem.name == reading.value->ground.subsystem);
     EXPECT_FALSE(member.links_by_udp) << member.subsystem.name;
   }
-  const auto both = [](std::string_view file) {
-    return changed("methods=\"shared_memory\"", "methods=\"udp shared_memory\"", file_system()(data / file).value());
-  };
-  const auto udp =
-      read_mission(data / "mission.xml",
-                   overlay({{"coronagraph.xml", both("coronagraph.xml")}, {"flywheel.xml", both("flywheel.xml")}}));
+  const std::string both = R"(methods="udp shared_memory")";
+  const auto robot = changed(R"(methods="shared_memory")", both, file_system()(data / "coronagraph.xml").value());
+  const auto wheel = changed(R"(<Requires name="PLATE_STATE")", R"(<Requires name="PLATE_STATE" )" + both,
+                             file_system()(data / "flywheel.xml").value());
+  const auto udp = read_mission(data / "mission.xml", overlay({{"coronagraph.xml", robot}, {"flywheel.xml", wheel}}));
   ASSERT_TRUE(udp.value) << first_code(udp);
   for (const MissionSubsystem& member : udp.value->subsystems)
     EXPECT_EQ(member.links_by_udp, member.subsystem.name == "FLYWHEEL" || member.subsystem.name == "CORONAGRAPH")

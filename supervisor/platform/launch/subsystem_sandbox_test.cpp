@@ -172,9 +172,8 @@ TEST(SubsystemInItsSandbox, OpensTheFramesOfItsDeviceAndNoSecondInhibit) {
   make_device_memory_folder();
   SystemFlowFactory flows{""};
   const FlowAddress frames{Transfer::SharedMemory, address};
-  descriptor::Endnode enable;
-  enable.address = address + "-enable";
-  const FlowAddress held = descriptor::held_address(enable);
+  const FlowAddress held{
+      .transfer = Transfer::SharedMemory, .address = address + "-enable", .holder = FlowHolder::Supervisor};
   auto device = flows.open(frames, FlowSide::Device), guarded = flows.open(held, FlowSide::Device);
   ASSERT_TRUE(device);
   ASSERT_TRUE(guarded);
@@ -184,7 +183,7 @@ TEST(SubsystemInItsSandbox, OpensTheFramesOfItsDeviceAndNoSecondInhibit) {
     if (prepared.enter() != 0) ::_exit(99);
     auto own = flows.open(frames, FlowSide::Subsystem);
     if (!own || !(*own)->send(std::array{std::byte{7}})) ::_exit(1);
-    const std::string segment = device_memory_file(enable.address, FlowHolder::Supervisor);
+    const std::string segment = device_memory_file(held.address, held.holder);
     for (const int how : {O_RDWR, O_RDONLY}) {
       const FileDescriptor file{::open(segment.c_str(), how | O_CLOEXEC)};
       if (file) ::_exit(2);
