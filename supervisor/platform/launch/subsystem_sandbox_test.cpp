@@ -76,6 +76,7 @@ TEST(SubsystemSandbox, LetsMakeTheSocketsOfItsDevicesLinksAndGroundLinkAndNoOthe
   linked.links_by_udp = true;
   EXPECT_EQ(sandbox_of(linked, "/bin/arm").sockets, (SandboxSockets{.datagrams = true}));
   auto ground = descriptor::MissionSubsystem{};
+  ground.subsystem.file = "/missions/link.xml";
   ground.carries_ground = true;
   EXPECT_EQ(sandbox_of(ground, "/bin/link").sockets, (SandboxSockets{.datagrams = true, .streams = true}));
 }
