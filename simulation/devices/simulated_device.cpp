@@ -21,6 +21,11 @@ constexpr Duration longest_unseen = std::chrono::microseconds{250};  // of a fra
 
 Duration milliseconds_of(double ms) noexcept { return Duration{std::llround(ms * 1e6)}; }
 
+FlowAddress held(FlowAddress address) {
+  address.holder = FlowHolder::Supervisor;
+  return address;
+}
+
 }  // namespace
 
 Words::Words(std::string_view line) noexcept {
@@ -66,10 +71,10 @@ Result<> SimulatedDevice::plug() {
   }
   world_made_ = true;
   if (settings_.enable && enable_flow_ == nullptr) {
-    HIROSCO_TRY_LET(enable_flow_, flows_.open(*settings_.enable, FlowSide::Device));
+    HIROSCO_TRY_LET(enable_flow_, flows_.open(held(*settings_.enable), FlowSide::Device));
   }
   if (settings_.power && !switch_) {
-    HIROSCO_TRY_LET(auto flow, flows_.open(*settings_.power, FlowSide::Device));
+    HIROSCO_TRY_LET(auto flow, flows_.open(held(*settings_.power), FlowSide::Device));
     switch_.emplace(std::move(flow));
     had_power_ = false;
   }

@@ -38,8 +38,7 @@ Result<> Guard::add(const descriptor::MissionSubsystem& described, bool spared) 
     const std::uint16_t own_place = place++;
     member.rest_within = std::max(member.rest_within, device.stop_within);
     if (!device.enable) continue;
-    HIROSCO_TRY_LET(auto flow,
-                    parts_.flows.open({device.enable->transfer, device.enable->address}, FlowSide::Subsystem));
+    HIROSCO_TRY_LET(auto flow, parts_.flows.open(held_address(*device.enable), FlowSide::Subsystem));
     WatchedDevice watched;
     watched.name = device.name;
     watched.place = own_place;
@@ -50,7 +49,7 @@ Result<> Guard::add(const descriptor::MissionSubsystem& described, bool spared) 
     member.devices.push_back(std::move(watched));
   }
   for (const descriptor::PowerSwitch& power : described.subsystem.power_switches) {
-    HIROSCO_TRY_LET(auto flow, parts_.flows.open({power.endnode.transfer, power.endnode.address}, FlowSide::Subsystem));
+    HIROSCO_TRY_LET(auto flow, parts_.flows.open(held_address(power.endnode), FlowSide::Subsystem));
     member.power.add(std::move(flow));
   }
   const LockGuard lock{mutex_};

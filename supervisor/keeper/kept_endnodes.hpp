@@ -13,6 +13,11 @@
 
 namespace hirosco::supervisor {
 
+/// Of a second inhibit or a power switch, which the supervisor's side holds.
+[[nodiscard]] inline FlowAddress held_address(const descriptor::Endnode& endnode) {
+  return {.transfer = endnode.transfer, .address = endnode.address, .holder = FlowHolder::Supervisor};
+}
+
 /// The second inhibit of one device of the mission.
 struct KeptEndnode {
   std::uint16_t apid{0};
@@ -26,7 +31,7 @@ struct KeptEndnode {
   for (const auto& subsystem : mission.subsystems)
     for (const auto& device : subsystem.subsystem.devices)
       if (device.enable && found.size() < most_inhibits)
-        found.push_back({subsystem.subsystem.id, device.name, {device.enable->transfer, device.enable->address}});
+        found.push_back({subsystem.subsystem.id, device.name, held_address(*device.enable)});
   return found;
 }
 

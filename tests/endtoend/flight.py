@@ -79,7 +79,9 @@ def listens(port):
 def segments():
     """Named shared memory of the project on this computer."""
     with contextlib.suppress(FileNotFoundError):
-        return sorted(path.name for path in pathlib.Path("/dev/shm").iterdir() if path.name.startswith("hirosco"))
+        memory = pathlib.Path("/dev/shm")
+        named = [path for path in memory.iterdir() if path.name.startswith("hirosco")]
+        return sorted(str(path.relative_to(memory)) for top in named for path in ([top] if top.is_file() else top.iterdir()))
     return []
 
 

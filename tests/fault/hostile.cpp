@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
 #include <linux/falloc.h>
+#include <netinet/in.h>
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/eventfd.h>
 #include <sys/mman.h>
 #include <sys/ptrace.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/uio.h>
 #include <time.h>
 #include <unistd.h>
@@ -140,6 +143,41 @@ void attack_scheduling(const Report& report) {
   report.tried("others: before the keeper", ::sched_setscheduler(0, SCHED_FIFO, &as) == 0);
 }
 
+sockaddr_in in_this_computer(std::uint16_t port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(port);
+  return address;
+}
+
+/// The second inhibits, which would let its robot go on, and the ground's port, by which it would let itself go (docs/adr/0150).
+void attack_inhibits(const Report& report) {
+  const char* const instance = std::getenv("HIROSCO_INSTANCE");
+  const std::string behind = instance == nullptr || *instance == '\0' ? "" : std::string{"."} + instance;
+  for (const char* const device : {"rokviss-robot", "rokviss-joystick"}) {
+    const std::string segment = std::string{"/dev/shm/hirosco."} + device + "-enable" + behind;
+    const std::string here = std::string{"/dev/shm/hirosco/mine-"} + device;
+    const int file = ::open(segment.c_str(), O_RDWR | O_CLOEXEC);
+    if (file >= 0) ::close(file);
+    report.tried("inhibits: open " + segment, file >= 0);
+    report.tried("inhibits: link " + segment, ::link(segment.c_str(), here.c_str()) == 0);
+    report.tried("inhibits: move " + segment, ::rename(segment.c_str(), here.c_str()) == 0);
+  }
+  constexpr std::uint16_t telecommands = 10025;
+  const sockaddr_in there = in_this_computer(telecommands);
+  const auto* const to = reinterpret_cast<const sockaddr*>(&there);
+  const int stream = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  report.tried("inhibits: connect to the ground's telecommand port", ::connect(stream, to, sizeof there) == 0);
+  const int datagrams = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  report.tried("inhibits: send a datagram", ::sendto(datagrams, "x", 1, 0, to, sizeof there) == 1);
+  report.tried("inhibits: a UNIX socket", ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0) >= 0);
+  // What is its own it reaches.
+  const int own = ::open(("/dev/shm/hirosco/rokviss-robot" + behind).c_str(), O_RDWR | O_CLOEXEC);
+  report.tried("own frames", own >= 0);
+  if (own >= 0) ::close(own);
+}
+
 /// What its sandbox is to refuse (docs/adr/0081).
 void attack_others(const Report& report) {
   const std::string supervisor = "/proc/" + std::to_string(::getppid());
@@ -181,12 +219,18 @@ hirosco::PermitPage* put_look_alike(const Region& permit) {
   return std::launder(static_cast<hirosco::PermitPage*>(copy));
 }
 
-/// The channel stays open, and nobody reads it or answers.
+std::atomic<bool>& is_deaf() {
+  static std::atomic<bool> deaf{false};
+  return deaf;
+}
+
+/// The channel stays open, and nobody reads it or answers: what stands in its place never has anything to read.
 void turn_deaf() {
-  std::array<int, 2> silence{};
-  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, silence.data()) != 0) return;
+  const int silence = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if (silence < 0) return;
   static_cast<void>(::dup(channel_number));
-  static_cast<void>(::dup2(silence[0], channel_number));
+  is_deaf() = true;
+  static_cast<void>(::dup2(silence, channel_number));
 }
 
 void* turn(void* argument) {
@@ -200,6 +244,7 @@ void* turn(void* argument) {
   {
     const Report report{"hostile-report"};
     attack_others(report);
+    attack_inhibits(report);
     attack_descriptor(report, "hirosco-permit", permit);
     const auto regions = read_only_regions();
     for (const Region& region : regions) attack_mapping(report, region);
@@ -232,3 +277,19 @@ struct Hostile {
 } hostile;
 
 }  // namespace
+
+// In place of the C library's, for all that is linked here: whoever is deaf hears nothing and believes that it was heard.
+extern "C" ssize_t recvmsg(int socket, msghdr* message, int flags) {
+  if (!is_deaf() || socket != channel_number) return ::syscall(SYS_recvmsg, socket, message, flags);
+  errno = EAGAIN;
+  return -1;
+}
+extern "C" ssize_t sendmsg(int socket, const msghdr* message, int flags) {
+  if (!is_deaf() || socket != channel_number) return ::syscall(SYS_sendmsg, socket, message, flags);
+  return 1;
+}
+extern "C" int sendmmsg(int socket, mmsghdr* messages, unsigned int count, int flags) {
+  if (!is_deaf() || socket != channel_number)
+    return static_cast<int>(::syscall(SYS_sendmmsg, socket, messages, count, flags));
+  return static_cast<int>(count);
+}

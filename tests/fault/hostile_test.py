@@ -49,7 +49,12 @@ class Hostile(unittest.TestCase):
         flight.measure(f"{len(lines) - 1} attempts on pages and links of others")
         self.assertGreaterEqual(len([line for line in lines if line.startswith("hirosco-permit")]), 12)
         self.assertGreaterEqual(len([line for line in lines if line.startswith("others: ")]), 12)
-        done = ["look-alike: DONE"]
+        inhibits = [line.split()[2].rstrip(":") for line in lines if line.startswith("inhibits: open ")]
+        self.assertEqual([path for path in inhibits if pathlib.Path(path).exists()], inhibits, "there to be opened")
+        self.assertEqual(len(inhibits), 2, "its own and another's")
+        for tried in ("connect to the ground's telecommand port", "send a datagram"):
+            self.assertIn(f"inhibits: {tried}: refused", lines)
+        done = ["own frames: DONE", "look-alike: DONE"]
         # Root in a container that may not limit whom it starts says so at the start (docs/adr/0146).
         if any("every real-time priority is open" in line.told for line in craft.told()):
             done.insert(0, "others: before the keeper: DONE")

@@ -44,7 +44,7 @@ class ProcessDeath(unittest.TestCase):
 
     def test_a_killed_device_leaves_neither_socket_nor_shared_memory_behind_its_flight(self):
         memory = pathlib.Path("/dev/shm")
-        before = set(memory.iterdir())
+        before = set(memory.rglob("*")) | {memory / "hirosco"}
         with flight.Flight(instance="bereaved") as rokviss:
             folder = pathlib.Path(rokviss.place()["folder"])
             rokviss.wait_commissioned()
@@ -54,7 +54,7 @@ class ProcessDeath(unittest.TestCase):
             rokviss.wait_told("MANIPULATOR is Offline")
             rokviss.end()
             self.assertEqual([file for file in folder.iterdir() if file.is_socket()], [])
-        self.assertEqual(set(memory.iterdir()) - before, set())
+        self.assertEqual(set(memory.rglob("*")) - before, set())
 
     def actuators_were_inhibited_in_time(self, rokviss):
         status = rokviss.wait_status(lambda s: True, 3.0)

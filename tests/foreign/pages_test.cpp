@@ -412,7 +412,7 @@ TEST(InterfacePages, SharedMemoryFlows) {
   const std::string address = "interface-page-" + std::to_string(::getpid());
   auto subsystem = SharedMemoryFlow::open(address, FlowSide::Subsystem).value();
   auto device = SharedMemoryFlow::open(address, FlowSide::Device).value();
-  const int file = ::shm_open(("/hirosco." + address).c_str(), O_RDONLY, 0);
+  const int file = ::open(("/dev/shm/hirosco/" + address).c_str(), O_RDONLY | O_CLOEXEC);
   ASSERT_GE(file, 0);
   struct stat status{};
   ASSERT_EQ(::fstat(file, &status), 0);

@@ -73,6 +73,10 @@ struct EnumTexts<Framing> {
   static constexpr auto table = enum_table<Framing>({{Framing::Frames, "frames"}, {Framing::Raw, "raw"}});
 };
 
+/// Who holds the subsystem's end of a flow: the subsystem itself, or the supervisor's side alone, as second inhibits and power switches
+/// are. What is the supervisor's is where no sandbox lets a subsystem in (docs/adr/0150).
+enum class FlowHolder : std::uint8_t { Subsystem, Supervisor };
+
 /// A flow that lost its peer looks for it no more often than this.
 inline constexpr Duration reconnect_pause = std::chrono::milliseconds{50};
 
@@ -81,6 +85,7 @@ struct FlowAddress {
   Transfer transfer{};
   std::string address;  ///< a name, a line, or host:port
   Framing framing{Framing::Frames};
+  FlowHolder holder{FlowHolder::Subsystem};
 };
 
 /// Opens data flows. Real: by means of transfer; simulated: a pair of mailboxes in memory.  Realtime: allocates.

@@ -21,6 +21,7 @@ struct FlowOpening {
   std::string address;  ///< with the flight's instance in it
   FlowSide side{FlowSide::Subsystem};
   Framing framing{Framing::Frames};
+  FlowHolder holder{FlowHolder::Subsystem};
   std::span<const DeviceNetwork> networks{};  ///< outside this computer that it may be in
 };
 

@@ -16,7 +16,7 @@ namespace {
 /// A means is in force where it stands here: for descriptors, subsystems, the supervisor's inhibits and devices.
 constexpr std::array built_in_means{
     FlowMeans{Transfer::SharedMemory, AddressForm::Name,
-              [](const FlowOpening& at) { return SharedMemoryFlow::open(at.address, at.side); }},
+              [](const FlowOpening& at) { return SharedMemoryFlow::open(at.address, at.side, at.holder); }},
     FlowMeans{Transfer::Unix, AddressForm::Name,
               [](const FlowOpening& at) { return open_unix_flow(at.address, at.side); }},
     FlowMeans{Transfer::Udp, AddressForm::HostPort, open_udp_flow},

@@ -15,6 +15,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "hirosco/data_transfer/device/device_memory.hpp"
+
 // Invariants:
 //  1. A segment of zeroes is a valid one, so it does not matter who makes it or how far he came.
 //  2. A side belongs to whoever has the lock on its octet of the file. The system frees it with the process, so a stale
@@ -64,8 +66,8 @@ bool is_locked_by_another(int file, std::size_t octet) noexcept {
   return ::fcntl(file, F_OFD_GETLK, &range) != 0 || range.l_type != F_UNLCK;
 }
 
-bool names(const std::string& name, int file) noexcept {
-  const FileDescriptor named{::shm_open(name.c_str(), O_RDWR | O_CLOEXEC, 0)};
+bool names(const std::string& path, int file) noexcept {
+  const FileDescriptor named{::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW)};
   struct stat ours{};
   struct stat theirs{};
   return named && ::fstat(file, &ours) == 0 && ::fstat(named.get(), &theirs) == 0 && ours.st_ino == theirs.st_ino;
@@ -92,15 +94,15 @@ struct SharedMemoryFlow::Segment {
   std::array<Mailbox, 2> mailboxes;  ///< to side 0, to side 1
 };
 
-Result<std::unique_ptr<DataFlow>> SharedMemoryFlow::open(const std::string& address, FlowSide side) {
+Result<std::unique_ptr<DataFlow>> SharedMemoryFlow::open(const std::string& address, FlowSide side, FlowHolder holder) {
   if (address.empty() || address.size() > 200 || address.find('\0') != std::string::npos)
     return fail(ErrorCode::InvalidArgument, "address of shared memory");
-  std::string name = "/hirosco." + address;
-  std::replace(name.begin() + 1, name.end(), '/', '.');
+  if (holder == FlowHolder::Subsystem) make_device_memory_folder();
+  const std::string path = device_memory_file(address, holder);
   // A peer that closes holds both locks for a moment, so a claim that fails is tried again before it is believed.
   Result<std::unique_ptr<SharedMemoryFlow>> opened = fail(ErrorCode::Unavailable, "shared memory");
   for (int i = 0; i < opening_attempts; ++i) {
-    opened = try_open(name, side);
+    opened = try_open(path, side);
     if (opened || (opened.error().code != ErrorCode::AlreadyExists && opened.error().code != ErrorCode::Unavailable))
       break;
     pause_opening();
@@ -109,25 +111,25 @@ Result<std::unique_ptr<DataFlow>> SharedMemoryFlow::open(const std::string& addr
   return std::unique_ptr<DataFlow>{std::move(*opened)};
 }
 
-Result<std::unique_ptr<SharedMemoryFlow>> SharedMemoryFlow::try_open(const std::string& name, FlowSide side) {
-  FileDescriptor file{::shm_open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)};
+Result<std::unique_ptr<SharedMemoryFlow>> SharedMemoryFlow::try_open(const std::string& path, FlowSide side) {
+  FileDescriptor file{::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)};
   if (!file) return fail(ErrorCode::SystemFailure, "open shared memory", errno);
   if (!lock(file.get(), side == FlowSide::Subsystem ? 0 : 1))
     return fail(ErrorCode::AlreadyExists, "this side of the flow is open");
-  if (!names(name, file.get())) return fail(ErrorCode::Unavailable, "shared memory was removed");
+  if (!names(path, file.get())) return fail(ErrorCode::Unavailable, "shared memory was removed");
   HIROSCO_TRY(os_detail::give_size(file.get(), sizeof(Segment)));
   HIROSCO_TRY_LET(MappedMemory memory, MappedMemory::map(file.get(), sizeof(Segment), MapMode::ReadWrite));
   auto& segment = *reinterpret_cast<Segment*>(memory.octets().data());
   Word found = 0;
   if (!segment.magic.compare_exchange_strong(found, magic) && found != magic)
     return fail(ErrorCode::Mismatch, "shared memory is not a flow's", static_cast<std::int64_t>(found));
-  std::unique_ptr<SharedMemoryFlow> flow{new SharedMemoryFlow{name, std::move(file), std::move(memory), side}};
+  std::unique_ptr<SharedMemoryFlow> flow{new SharedMemoryFlow{path, std::move(file), std::move(memory), side}};
   flow->take_over();
   return flow;
 }
 
-SharedMemoryFlow::SharedMemoryFlow(std::string name, FileDescriptor file, MappedMemory memory, FlowSide side) noexcept
-    : name_{std::move(name)},
+SharedMemoryFlow::SharedMemoryFlow(std::string path, FileDescriptor file, MappedMemory memory, FlowSide side) noexcept
+    : path_{std::move(path)},
       file_{std::move(file)},
       memory_{std::move(memory)},
       segment_{*reinterpret_cast<Segment*>(memory_.octets().data())},
@@ -154,7 +156,7 @@ SharedMemoryFlow::~SharedMemoryFlow() {
   segment_.opened[own_].fetch_add(1);
   segment_.mailboxes[peer].bell.fetch_add(1);
   (void)futex(segment_.mailboxes[peer].bell, FUTEX_WAKE, 1, nullptr);
-  if (lock(file_.get(), peer) && names(name_, file_.get())) (void)::shm_unlink(name_.c_str());
+  if (lock(file_.get(), peer) && names(path_, file_.get())) (void)::unlink(path_.c_str());
 }
 
 Result<> SharedMemoryFlow::do_send(Octets frame) noexcept {

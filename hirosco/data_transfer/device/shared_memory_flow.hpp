@@ -19,7 +19,8 @@ namespace hirosco {
 class SharedMemoryFlow final : public DataFlow {
  public:
   /// `address`: 1 .. 200 characters, "/" becomes ".". AlreadyExists: another live flow has this side. Realtime: blocks.
-  [[nodiscard]] static Result<std::unique_ptr<DataFlow>> open(const std::string& address, FlowSide side);
+  [[nodiscard]] static Result<std::unique_ptr<DataFlow>> open(const std::string& address, FlowSide side,
+                                                              FlowHolder holder = FlowHolder::Subsystem);
   ~SharedMemoryFlow() override;
   SharedMemoryFlow(const SharedMemoryFlow&) = delete;
   SharedMemoryFlow& operator=(const SharedMemoryFlow&) = delete;
@@ -27,8 +28,8 @@ class SharedMemoryFlow final : public DataFlow {
  private:
   struct Segment;
   struct Mailbox;
-  SharedMemoryFlow(std::string name, FileDescriptor file, MappedMemory memory, FlowSide side) noexcept;
-  static Result<std::unique_ptr<SharedMemoryFlow>> try_open(const std::string& name, FlowSide side);
+  SharedMemoryFlow(std::string path, FileDescriptor file, MappedMemory memory, FlowSide side) noexcept;
+  static Result<std::unique_ptr<SharedMemoryFlow>> try_open(const std::string& path, FlowSide side);
   [[nodiscard]] Result<> do_send(Octets frame) noexcept override;
   [[nodiscard]] Result<Received> do_receive(MutableOctets buffer) noexcept override;
   [[nodiscard]] bool do_wait(Duration timeout) noexcept override;
@@ -36,7 +37,7 @@ class SharedMemoryFlow final : public DataFlow {
   [[nodiscard]] bool something_to_tell() const noexcept;
   [[nodiscard]] bool peer_hung_up() const noexcept;
 
-  std::string name_;
+  std::string path_;
   FileDescriptor file_;  ///< its lock on one octet is the claim to this side; it goes with the process
   MappedMemory memory_;
   Segment& segment_;

@@ -28,7 +28,7 @@ Result<std::unique_ptr<DataFlow>> SystemFlowFactory::do_open(const FlowAddress& 
   if (means == nullptr)
     return fail(ErrorCode::NotPermitted, "this means of transfer is not built in",
                 std::to_underlying(address.transfer));
-  FlowOpening opening{address.address, side, address.framing, networks_};
+  FlowOpening opening{address.address, side, address.framing, address.holder, networks_};
   const bool line = means->form == AddressForm::Line;
   if (means->form == AddressForm::Name || (line && !opening.address.starts_with('/')))
     opening.address.insert(std::min(line ? opening.address.find('@') : std::string::npos, opening.address.size()),

@@ -184,10 +184,29 @@ TEST(SharedMemoryFlow, LeavesNoNameBehindWhenBothSidesHaveClosed) {
   auto subsystem = factory.open(address, FlowSide::Subsystem).value();
   auto device = factory.open(address, FlowSide::Device).value();
   subsystem.reset();
-  const std::string name = "/hirosco." + address.address;
-  EXPECT_TRUE(FileDescriptor{::shm_open(name.c_str(), O_RDWR | O_CLOEXEC, 0)}.valid());
+  const std::string file = "/dev/shm/hirosco/" + address.address;
+  EXPECT_TRUE(std::filesystem::exists(file));
   device.reset();
-  EXPECT_FALSE(FileDescriptor{::shm_open(name.c_str(), O_RDWR | O_CLOEXEC, 0)}.valid());
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_TRUE(std::filesystem::exists("/dev/shm/hirosco")) << "whoever is let in there would not be in another";
+}
+
+TEST(SharedMemoryFlow, OfTheSupervisorsSideIsNotWhereThoseOfSubsystemsAre) {
+  SystemFlowFactory factory{"twin"};
+  FlowAddress address = SharedMemoryTraits::address();
+  auto frames = factory.open(address, FlowSide::Subsystem).value();
+  address.holder = FlowHolder::Supervisor;
+  auto held = factory.open(address, FlowSide::Subsystem);
+  ASSERT_TRUE(held) << "not the same though it has the same address";
+  EXPECT_TRUE(std::filesystem::exists("/dev/shm/hirosco/" + address.address + ".twin"));
+  EXPECT_TRUE(std::filesystem::exists("/dev/shm/hirosco." + address.address + ".twin"));
+  auto device = factory.open(address, FlowSide::Device).value();
+  ASSERT_TRUE((*held)->send(std::array{std::byte{1}}));
+  std::array<std::byte, 8> buffer{};
+  EXPECT_EQ(device->receive(buffer).value().octets, 1U);
+  held->reset();
+  device.reset();
+  EXPECT_FALSE(std::filesystem::exists("/dev/shm/hirosco." + address.address + ".twin"));
 }
 
 TEST(SharedMemoryFlow, NeitherSideHasGoneBeforeItCame) {

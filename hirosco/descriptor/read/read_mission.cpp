@@ -105,6 +105,8 @@ Mission MissionReader::read(const xml::Element& root) {
   for (const auto* element : modes) read_modes(*element);
   for (const auto* element : recoveries) read_recovery(*element);
   for (const auto* element : consoles) read_console(*element);
+  note_sockets();
+  check_reach();
   if (const std::string wrong = give_everybody_a_row(mission_); !wrong.empty())
     problems_.add(root, "E0328",
                   fmt::format("the supervisor cannot tell of {} subsystems and {} links in one report",

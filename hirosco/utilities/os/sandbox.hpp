@@ -9,12 +9,22 @@
 
 namespace hirosco {
 
+/// Which sockets a process may make (docs/adr/0150); by itself none.
+struct SandboxSockets {
+  bool local{false};  ///< UNIX, to whatever has a path and permits it
+  bool datagrams{false};  ///< UDP, from and to everywhere
+  bool streams{false};  ///< TCP, from and to everywhere
+  std::vector<std::uint16_t> ports{};  ///< of others that it may connect to by TCP, wherever they are
+  friend bool operator==(const SandboxSockets&, const SandboxSockets&) = default;
+};
+
 /// What of its computer a started process reaches (docs/adr/0081). Files and folders with all below; what is not there counts as
 /// not named.
 struct Sandbox {
   std::vector<std::string> readable;
   std::vector<std::string> executable;
   std::vector<std::string> writable;  ///< also made and removed, and read
+  SandboxSockets sockets{};
 };
 
 /// What this computer or build cannot keep a process from, in words; empty: all of it.
@@ -26,7 +36,7 @@ struct Sandbox {
 
 /// A sandbox made ready, to be entered between fork and exec. No way leads out of it, for nothing that is started in it either: no new
 /// rights, of root's rights those only that real time needs, files as Sandbox says, signals, memory, scheduling and limits of nobody outside,
-/// and no system calls that no subsystem needs, among them those that start a process.
+/// sockets as Sandbox says, and no system calls that no subsystem needs, among them those that start a process.
 class PreparedSandbox {
  public:
   /// Touches no file: a disk that stands still holds up who enters, and nobody else.

@@ -115,6 +115,8 @@ class ProcessLauncher {
                                              const descriptor::MissionSubsystem& /*fresh*/) {
     return {};
   }
+  /// What the sandbox of this subsystem cannot narrow down, in words; empty: nothing (docs/adr/0150).
+  [[nodiscard]] virtual std::string left_open(const descriptor::MissionSubsystem& /*subsystem*/) const { return {}; }
   /// Empty while it runs.
   [[nodiscard]] virtual std::optional<ProcessEnd> ended(std::uint32_t process) = 0;
   virtual void kill(std::uint32_t process) = 0;

@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "hirosco/data_transfer/device/device_memory.hpp"
+#include "hirosco/data_transfer/device/device_network.hpp"
 #include "hirosco/descriptor/model/setting_files.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 
@@ -19,21 +24,39 @@ namespace {
   return find_shipped(std::string_view{text}.substr(shipped_prefix.size()));
 }
 
+void add_once(std::string place, std::vector<std::string>& places) {
+  if (std::ranges::find(places, place) == places.end()) places.push_back(std::move(place));
+}
+
 void add_file(const std::filesystem::path& file, Sandbox& sandbox) {
   sandbox.readable.push_back(place_of(file).string());
 }
 
+/// What is reached by it, and what a socket of the kind reaches.
+void add_internet_address(const descriptor::Endnode& endnode, SandboxSockets& sockets) {
+  const auto address = read_device_address(endnode.address);
+  // By a datagram it is found out from where the system would speak to a device in a network.
+  if (endnode.transfer == Transfer::Udp || (address && !address->loopback())) sockets.datagrams = true;
+  if (endnode.transfer == Transfer::Tcp && address &&
+      std::ranges::find(sockets.ports, address->port) == sockets.ports.end())
+    sockets.ports.push_back(address->port);
+}
+
 void add_address(const descriptor::Endnode& endnode, Sandbox& sandbox) {
-  if (endnode.transfer == Transfer::SharedMemory) sandbox.writable.emplace_back("/dev/shm");
+  if (endnode.transfer == Transfer::SharedMemory) add_once(device_memory_folder, sandbox.writable);
   // Queues lie in no folder that programs see, but where one is shown, that is the one whose files they are.
-  if (endnode.transfer == Transfer::MessageQueue) sandbox.writable.emplace_back("/dev/mqueue");
+  if (endnode.transfer == Transfer::MessageQueue) add_once("/dev/mqueue", sandbox.writable);
   if (endnode.transfer == Transfer::Serial) {
     const std::string line = endnode.address.substr(0, endnode.address.rfind('@'));
-    sandbox.writable.push_back(line.starts_with('/') ? line : "/dev/pts");
+    add_once(line.starts_with('/') ? line : "/dev/pts", sandbox.writable);
   }
   // A socket is made beside the other's.
-  if (endnode.transfer == Transfer::Unix)
-    sandbox.writable.push_back(std::filesystem::absolute(endnode.address).parent_path().string());
+  if (endnode.transfer == Transfer::Unix) {
+    add_once(std::filesystem::absolute(endnode.address).parent_path().string(), sandbox.writable);
+    sandbox.sockets.local = true;
+  }
+  if (endnode.transfer == Transfer::Udp || endnode.transfer == Transfer::Tcp)
+    add_internet_address(endnode, sandbox.sockets);
 }
 
 }  // namespace
@@ -73,6 +96,8 @@ Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::fil
     add_file(descriptor::file_of(subsystem.subsystem, script.file), sandbox);
   for (const auto& brought : subsystem.brought) add_file(brought, sandbox);
   sandbox.writable.emplace_back("/dev/null");
+  sandbox.sockets.datagrams = subsystem.carries_ground || subsystem.links_by_udp;
+  sandbox.sockets.streams = subsystem.carries_ground;
   for (const auto& configuration : subsystem.subsystem.configurations)
     for (const auto& use : configuration.devices) {
       for (const auto& setting : use.settings)
@@ -81,6 +106,16 @@ Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::fil
       for (const auto& other : use.fall_backs) add_address(other, sandbox);
     }
   return sandbox;
+}
+
+std::string left_open(const Sandbox& sandbox) {
+  std::string open;
+  const auto add = [&](std::string_view what) { open.append(open.empty() ? "" : ", ").append(what); };
+  if (sandbox.sockets.datagrams) add("all that listens by UDP");
+  if (sandbox.sockets.local) add("all UNIX sockets that its user may open");
+  if (std::ranges::find(sandbox.writable, "/dev/mqueue") != sandbox.writable.end()) add("all message queues");
+  if (std::ranges::find(sandbox.writable, "/dev/pts") != sandbox.writable.end()) add("all pseudo-terminals");
+  return open;
 }
 
 }  // namespace hirosco::supervisor

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/utilities/os/process.hpp"
@@ -13,9 +14,13 @@ namespace hirosco::supervisor {
 /// What the system itself refuses beyond. Memory is not limited where a sanitizer needs more than there is.
 [[nodiscard]] ProcessLimits limits_of(const descriptor::Resources& resources) noexcept;
 
-/// Its program, descriptors, libraries, files of its settings and what those bring along to read, what its devices' transfers need to write, and
-/// nothing else. Opens no file.
+/// Its program, descriptors, libraries, files of its settings and what those bring along to read, what its devices' transfers need to write, the
+/// sockets of those, of links by UDP and of the ground link, and nothing else: where the supervisor's side holds an endnode it lets nobody in
+/// (docs/adr/0150). Opens no file.
 [[nodiscard]] Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program);
+
+/// What it reaches beyond what is its own, because the system knows no narrower rule, in words; empty: nothing.
+[[nodiscard]] std::string left_open(const Sandbox& sandbox);
 
 /// A script reaches what its interpreter needs, which nobody says.
 [[nodiscard]] bool is_script(const std::filesystem::path& program);

@@ -11,10 +11,13 @@
 #include <unistd.h>
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
+#include "hirosco/data_transfer/device/device_memory.hpp"
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/descriptor/read/brought_files.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
@@ -53,9 +56,42 @@ TEST(SubsystemSandbox, NamesItsProgramAndDescriptorsAndNothingToWriteButWhatItsD
 
 TEST(SubsystemSandbox, OpensTheFolderThatADevicesTransferWritesTo) {
   EXPECT_THAT(sandbox_of(with_device(Transfer::SharedMemory, "arm"), "/bin/arm").writable,
-              ElementsAre("/dev/null", "/dev/shm"));
+              ElementsAre("/dev/null", "/dev/shm/hirosco"));
   EXPECT_THAT(sandbox_of(with_device(Transfer::Unix, "/run/arm/socket"), "/bin/arm").writable,
               ElementsAre("/dev/null", "/run/arm"));
+}
+
+TEST(SubsystemSandbox, LetsMakeTheSocketsOfItsDevicesLinksAndGroundLinkAndNoOthers) {
+  const auto sockets = [](Transfer transfer, const char* address) {
+    return sandbox_of(with_device(transfer, address), "/bin/arm").sockets;
+  };
+  EXPECT_EQ(sockets(Transfer::SharedMemory, "arm"), SandboxSockets{});
+  EXPECT_EQ(sockets(Transfer::Serial, "/dev/ttyS0@115200"), SandboxSockets{});
+  EXPECT_EQ(sockets(Transfer::Unix, "arm"), (SandboxSockets{.local = true}));
+  EXPECT_EQ(sockets(Transfer::Udp, "127.0.0.1:5000"), (SandboxSockets{.datagrams = true}));
+  EXPECT_EQ(sockets(Transfer::Tcp, "127.0.0.1:5000"), (SandboxSockets{.ports = {5000}}));
+  EXPECT_EQ(sockets(Transfer::Tcp, "192.0.2.7:5000"), (SandboxSockets{.datagrams = true, .ports = {5000}}))
+      << "finds out by a datagram from where it would speak";
+  auto linked = with_device(Transfer::SharedMemory, "arm");
+  linked.links_by_udp = true;
+  EXPECT_EQ(sandbox_of(linked, "/bin/arm").sockets, (SandboxSockets{.datagrams = true}));
+  auto ground = descriptor::MissionSubsystem{};
+  ground.subsystem.file = "/missions/link.xml";
+  ground.carries_ground = true;
+  EXPECT_EQ(sandbox_of(ground, "/bin/link").sockets, (SandboxSockets{.datagrams = true, .streams = true}));
+}
+
+TEST(SubsystemSandbox, SaysWhatItCannotNarrowDown) {
+  const auto open = [](Transfer transfer, const char* address) {
+    return left_open(sandbox_of(with_device(transfer, address), "/bin/arm"));
+  };
+  EXPECT_EQ(open(Transfer::SharedMemory, "arm"), "");
+  EXPECT_EQ(open(Transfer::Tcp, "127.0.0.1:5000"), "");
+  EXPECT_EQ(open(Transfer::Serial, "/dev/ttyS0@115200"), "");
+  EXPECT_EQ(open(Transfer::Udp, "127.0.0.1:5000"), "all that listens by UDP");
+  EXPECT_EQ(open(Transfer::Unix, "arm"), "all UNIX sockets that its user may open");
+  EXPECT_EQ(open(Transfer::MessageQueue, "arm"), "all message queues");
+  EXPECT_EQ(open(Transfer::Serial, "arm@115200"), "all pseudo-terminals");
 }
 
 TEST(SubsystemSandbox, LetsReadWhatASettingOfADeviceNamesAsAFileAndNothingElseThatSettingsSay) {
@@ -129,6 +165,41 @@ TEST(SubsystemInItsSandbox, ReadsTheRobotsFileAndItsMeshAndNothingElseInTheFolde
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+/// Apart (CMakeLists.txt), as above.
+TEST(SubsystemInItsSandbox, OpensTheFramesOfItsDeviceAndNoSecondInhibit) {
+  const std::string address = "sandboxed." + std::to_string(::getpid());
+  make_device_memory_folder();
+  SystemFlowFactory flows{""};
+  const FlowAddress frames{Transfer::SharedMemory, address};
+  const FlowAddress held{
+      .transfer = Transfer::SharedMemory, .address = address + "-enable", .holder = FlowHolder::Supervisor};
+  auto device = flows.open(frames, FlowSide::Device), guarded = flows.open(held, FlowSide::Device);
+  ASSERT_TRUE(device);
+  ASSERT_TRUE(guarded);
+  const PreparedSandbox prepared{sandbox_of(with_device(Transfer::SharedMemory, address.c_str()), {})};
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (prepared.enter() != 0) ::_exit(99);
+    auto own = flows.open(frames, FlowSide::Subsystem);
+    if (!own || !(*own)->send(std::array{std::byte{7}})) ::_exit(1);
+    const std::string segment = device_memory_file(held.address, held.holder);
+    for (const int how : {O_RDWR, O_RDONLY}) {
+      const FileDescriptor file{::open(segment.c_str(), how | O_CLOEXEC)};
+      if (file) ::_exit(2);
+    }
+    if (flows.open(held, FlowSide::Subsystem)) ::_exit(3);
+    if (::rename(segment.c_str(), device_memory_file("mine", FlowHolder::Subsystem).c_str()) == 0) ::_exit(4);
+    if (::link(segment.c_str(), device_memory_file("mine", FlowHolder::Subsystem).c_str()) == 0) ::_exit(5);
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  std::array<std::byte, 8> buffer{};
+  EXPECT_EQ((*device)->receive(buffer).value().octets, 1U);
 }
 
 TEST(SubsystemSandbox, KnowsAScriptByItsFirstLine) {

@@ -20,6 +20,7 @@
 #include <string_view>
 
 #include "hirosco/data_transfer/control/socket_channel.hpp"
+#include "hirosco/data_transfer/device/device_memory.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/installation.hpp"
@@ -166,7 +167,16 @@ std::string SystemLauncher::shut_out(const descriptor::MissionSubsystem& flown,
   const Sandbox had = sandbox_of(flown, {}), wants = sandbox_of(fresh, {});
   for (const std::string& place : wants.writable)
     if (std::ranges::find(had.writable, place) == had.writable.end()) return place;
+  if (wants.sockets.local && !had.sockets.local) return "UNIX sockets";
+  if (wants.sockets.datagrams && !had.sockets.datagrams) return "others by UDP";
+  for (const std::uint16_t port : wants.sockets.ports)
+    if (!had.sockets.streams && std::ranges::find(had.sockets.ports, port) == had.sockets.ports.end())
+      return "TCP port " + std::to_string(port);
   return {};
+}
+
+std::string SystemLauncher::left_open(const descriptor::MissionSubsystem& subsystem) const {
+  return sandbox_is_off() || subsystem.carries_ground ? "" : supervisor::left_open(sandbox_of(subsystem, {}));
 }
 
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
@@ -214,7 +224,8 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   if (image != nullptr) start.image = image->descriptor();
   if (image != nullptr && script) start.inherited.push_back({image->descriptor(), script_number});
   if (!sandbox_is_off() && !script) {
-    // Of one that runs from memory no file is executed.
+    // Of one that runs from memory no file is executed. What is not there cannot be let in.
+    make_device_memory_folder();
     sandbox.emplace(sandbox_of(subsystem, image != nullptr ? "" : program));
     start.sandbox = &*sandbox;
   }

@@ -37,6 +37,7 @@ class SystemLauncher final : public FlightLauncher {
   void use(const descriptor::MissionSubsystem& subsystem, const std::string& version) override;
   [[nodiscard]] std::string shut_out(const descriptor::MissionSubsystem& flown,
                                      const descriptor::MissionSubsystem& fresh) override;
+  [[nodiscard]] std::string left_open(const descriptor::MissionSubsystem& subsystem) const override;
   void drop(const descriptor::MissionSubsystem& subsystem, const std::string& version) override;
   /// From now on it starts what the manifest of this mission lists, and nothing else. Reads all of it first.
   const HeldPrograms& hold_to(const descriptor::Mission& mission);

@@ -41,6 +41,8 @@ void Processes::start_all() {
       continue;
     }
     if (!launch(member)) craft_.fail();
+    if (const std::string open = craft_.launcher.left_open(member.described()); !open.empty())
+      craft_.tell(name + " is isolated but for what its endnodes and links need: it reaches " + open, member.apid());
     for (const auto device : descriptor::actuators_without_enable(member.descriptor()))
       craft_.tell(name + "'s " + std::string{device} + " has no second inhibit: that it has stopped is known from " +
                       name + " only",

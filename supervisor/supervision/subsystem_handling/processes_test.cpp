@@ -20,6 +20,10 @@ struct ProcessesTest : PartsTest {
   const char* not_held{""};  ///< what of those that are started no manifest holds
   const char* open{""};  ///< why those that are started are in no sandbox
   [[nodiscard]] std::vector<std::string> isolation_lacks() const override { return lacks; }
+  std::string reached{};  ///< beyond what is its own, by ARM
+  [[nodiscard]] std::string left_open(const descriptor::MissionSubsystem& subsystem) const override {
+    return subsystem.subsystem.id == arm ? reached : "";
+  }
   std::optional<StartRefusal> refusal;  ///< by the manifest
   [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem&) override { return refusal; }
   int starts_that_fail{0};  ///< from now on
@@ -41,6 +45,16 @@ TEST_F(ProcessesTest, EachIsStartedInTheOrderOfTheMission) {
   parts.processes.start_all();
   EXPECT_THAT(story, ElementsAre("started ARM", "started HAND", "started CAMERA"));
   for (const Member& member : craft.members) EXPECT_TRUE(member.alive());
+}
+
+TEST_F(ProcessesTest, WhatASandboxCannotNarrowDownIsToldOnceForEachAtTheStart) {
+  reached = "all that listens by UDP";
+  craft.mission.isolation_required = true;
+  parts.processes.start_all();
+  EXPECT_THAT(
+      story, ElementsAre("started ARM",
+                         "ARM is isolated but for what its endnodes and links need: it reaches all that listens by UDP",
+                         "started HAND", "started CAMERA"));
 }
 
 /// The test writes the word as the system does.

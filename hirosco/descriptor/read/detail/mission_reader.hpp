@@ -66,6 +66,9 @@ class MissionReader {
   void read_device_network(const xml::Element& element);
   void check_endnodes(const Subsystem& subsystem);
   void check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems);
+  // check_reach.cpp
+  void note_sockets();
+  void check_reach();
   // read_mission.cpp
   [[nodiscard]] std::string executable(Attributes& attributes);
 

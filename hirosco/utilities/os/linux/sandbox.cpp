@@ -8,6 +8,7 @@
 #include <linux/filter.h>
 #include <linux/landlock.h>
 #include <linux/seccomp.h>
+#include <netinet/in.h>
 #include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -43,7 +44,13 @@ constexpr const char* built_without = nullptr;
 /// Rights on files that newer headers name; struct and numbers are the kernel's.
 constexpr std::uint64_t right_truncate = 1ULL << 14;
 constexpr std::uint64_t right_device_control = 1ULL << 15;
-constexpr std::uint64_t scope_signal = 1ULL << 1;
+constexpr std::uint64_t scope_local_socket = 1ULL << 0, scope_signal = 1ULL << 1;
+constexpr std::uint64_t right_bind = 1ULL << 0, right_connect = 1ULL << 1;
+constexpr int rule_of_port = 2;
+struct PortRule {
+  std::uint64_t rights{0};
+  std::uint64_t port{0};
+};
 struct Rules {
   std::uint64_t files{0};
   std::uint64_t network{0};
@@ -59,13 +66,14 @@ constexpr std::uint64_t of_plain_files = LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_A
   return ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
 }
 
-[[nodiscard]] Rules rules_of(long version) noexcept {
+[[nodiscard]] Rules rules_of(long version, const SandboxSockets& sockets) noexcept {
   Rules rules;
   rules.files = all_of_first_version;
   if (version >= 2) rules.files |= LANDLOCK_ACCESS_FS_REFER;
   if (version >= 3) rules.files |= right_truncate;
+  if (version >= 4 && !sockets.streams) rules.network = right_bind | right_connect;
   if (version >= 5) rules.files |= right_device_control;
-  if (version >= 6) rules.scoped = scope_signal;
+  if (version >= 6) rules.scoped = scope_local_socket | scope_signal;
   return rules;
 }
 
@@ -94,21 +102,31 @@ constexpr std::uint64_t of_plain_files = LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_A
   return true;
 }
 
+/// Async-signal-safe.
+[[nodiscard]] bool permit_ports(int rules, const Rules& known, const std::vector<std::uint16_t>& ports) noexcept {
+  if (known.network == 0) return true;
+  for (const std::uint16_t port : ports) {
+    const PortRule rule{.rights = right_connect, .port = port};
+    if (::syscall(SYS_landlock_add_rule, rules, rule_of_port, &rule, 0) != 0) return false;
+  }
+  return true;
+}
+
 /// 0, or the system's error number; also where the system knows no rules of files.  Async-signal-safe.
 [[nodiscard]] int restrict_files(const Sandbox& sandbox) noexcept {
   const long version = rules_version();
   if (version < 1) return 0;
-  const Rules known = rules_of(version);
+  const Rules known = rules_of(version, sandbox.sockets);
   const int rules = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &known, octets_of(version), 0));
   if (rules < 0) return errno;
   constexpr std::uint64_t to_execute = LANDLOCK_ACCESS_FS_EXECUTE | to_read;
   // Devices are controlled by nobody but who may write them.
   const std::uint64_t to_write = known.files & ~std::uint64_t{LANDLOCK_ACCESS_FS_EXECUTE};
   // /proc/self is of this process: another one that has the same number later is outside.
-  const bool done = permit_paths(rules, sandbox.readable, to_read) &&
-                    permit_paths(rules, sandbox.executable, to_execute) &&
-                    permit_paths(rules, sandbox.writable, to_write) && permit_path(rules, "/proc/self", to_read) &&
-                    ::syscall(SYS_landlock_restrict_self, rules, 0) == 0;
+  const bool done =
+      permit_paths(rules, sandbox.readable, to_read) && permit_paths(rules, sandbox.executable, to_execute) &&
+      permit_paths(rules, sandbox.writable, to_write) && permit_path(rules, "/proc/self", to_read) &&
+      permit_ports(rules, known, sandbox.sockets.ports) && ::syscall(SYS_landlock_restrict_self, rules, 0) == 0;
   const int error = done ? 0 : errno;
   ::close(rules);
   return error;
@@ -185,6 +203,10 @@ constexpr std::array own_calls{
   switch (number) {
     case SYS_clone: return "clone of a process";
     case SYS_socket: return "socket of this kind";
+    case SYS_socketpair: return "socketpair";
+    case SYS_sendto:
+    case SYS_sendmsg:
+    case SYS_sendmmsg: return "a send that connects";
     case SYS_prlimit64: return "prlimit64 of another process, or of its priority";
     case SYS_setpriority: return "setpriority of others";
     default: return "";
@@ -192,15 +214,15 @@ constexpr std::array own_calls{
 }
 
 constexpr std::uint16_t bpf_load = BPF_LD | BPF_W | BPF_ABS, bpf_equal = BPF_JMP | BPF_JEQ | BPF_K,
-                        bpf_any_of = BPF_JMP | BPF_JSET | BPF_K, bpf_at_least = BPF_JMP | BPF_JGE | BPF_K,
-                        bpf_answer = BPF_RET | BPF_K;
+                        bpf_any_of = BPF_JMP | BPF_JSET | BPF_K, bpf_and = BPF_ALU | BPF_AND | BPF_K,
+                        bpf_at_least = BPF_JMP | BPF_JGE | BPF_K, bpf_answer = BPF_RET | BPF_K;
 constexpr std::uint32_t number_at = offsetof(seccomp_data, nr), machine_at = offsetof(seccomp_data, arch);
 /// The lower half of an argument, which is all of a number of 32 bits; the upper one stands behind it.
 constexpr std::uint32_t argument_at(std::size_t which) noexcept {
   return static_cast<std::uint32_t>(offsetof(seccomp_data, args) + which * sizeof(std::uint64_t));
 }
 constexpr std::uint32_t half_octets = sizeof(std::uint32_t);
-constexpr std::size_t fixed_instructions = 48;
+constexpr std::size_t fixed_instructions = 128;
 
 struct Filter {
   std::array<sock_filter, 2 * refused_calls.size() + 5 * own_calls.size() + fixed_instructions> code{};
@@ -208,10 +230,67 @@ struct Filter {
   constexpr void add(std::uint16_t what, std::uint32_t value, std::uint8_t yes = 0, std::uint8_t no = 0) noexcept {
     code[length++] = sock_filter{what, yes, no, value};
   }
+  /// What follows is of this call alone, and answers in each case; until end_of_call().
+  constexpr void begin_call(std::uint32_t number) noexcept {
+    add(bpf_equal, number);
+    begun = length;
+  }
+  constexpr void end_of_call() noexcept { code[begun - 1U].jf = static_cast<std::uint8_t>(length - begun); }
+  std::uint16_t begun{0};
 };
 
+/// Of this protocol, or of that which its type means by itself: others are no UDP and no TCP, and under no rules of Landlock.
+constexpr void permit_socket(Filter& made, std::uint32_t domain, std::uint32_t type, std::uint32_t protocol) noexcept {
+  constexpr std::uint32_t without_flags = 0xF;
+  made.add(bpf_load, argument_at(0));
+  made.add(bpf_equal, domain, 0, 7);
+  made.add(bpf_load, argument_at(1));
+  made.add(bpf_and, without_flags);
+  made.add(bpf_equal, type, 0, 4);
+  made.add(bpf_load, argument_at(2));
+  made.add(bpf_equal, 0, 1, 0);
+  made.add(bpf_equal, protocol, 0, 1);
+  made.add(bpf_answer, SECCOMP_RET_ALLOW);
+}
+
+/// The number of the call is loaded, before and after.
+constexpr void filter_sockets(Filter& made, const SandboxSockets& sockets) noexcept {
+  constexpr std::uint32_t refused = SECCOMP_RET_TRAP;
+  const bool connects = sockets.streams || !sockets.ports.empty();
+  made.begin_call(SYS_socket);
+  for (const std::uint32_t domain : {std::uint32_t{AF_INET}, std::uint32_t{AF_INET6}}) {
+    if (sockets.datagrams) permit_socket(made, domain, SOCK_DGRAM, IPPROTO_UDP);
+    if (connects) permit_socket(made, domain, SOCK_STREAM, IPPROTO_TCP);
+  }
+  made.add(bpf_load, argument_at(0));
+  if (sockets.local) made.add(bpf_equal, AF_UNIX, 1, 0);
+  made.add(bpf_answer, refused);
+  made.add(bpf_answer, SECCOMP_RET_ALLOW);
+  made.end_of_call();
+  // One that is connected sends elsewhere all the same where it is told an address.
+  if (!sockets.local) {
+    made.begin_call(SYS_socketpair);
+    made.add(bpf_answer, refused);
+    made.end_of_call();
+  }
+  if (!connects || sockets.streams) return;
+  // Opens a connection past Landlock.
+  struct Sending {
+    std::uint32_t number, flags_at;
+  };
+  for (const auto& [number, flags_at] : {Sending{SYS_sendto, argument_at(3)}, Sending{SYS_sendmsg, argument_at(2)},
+                                         Sending{SYS_sendmmsg, argument_at(3)}}) {
+    made.begin_call(number);
+    made.add(bpf_load, flags_at);
+    made.add(bpf_any_of, MSG_FASTOPEN, 0, 1);
+    made.add(bpf_answer, refused);
+    made.add(bpf_answer, SECCOMP_RET_ALLOW);
+    made.end_of_call();
+  }
+}
+
 /// Refused calls raise SIGSYS, which names them (name_refused_calls()).
-[[nodiscard]] constexpr Filter call_filter() noexcept {
+[[nodiscard]] Filter call_filter(const SandboxSockets& sockets) noexcept {
   constexpr std::uint32_t refused = SECCOMP_RET_TRAP;
   constexpr std::uint32_t foreign_numbers = 0x40000000;  // of another way to call the same kernel
   Filter made;
@@ -251,18 +330,13 @@ struct Filter {
   made.add(bpf_equal, 0, 1, 0);
   made.add(bpf_answer, refused);
   made.add(bpf_answer, SECCOMP_RET_ALLOW);
+  filter_sockets(made, sockets);
   // Its flags lie in memory, where no filter looks: the C library takes clone() instead.
   made.add(bpf_equal, SYS_clone3, 0, 1);
   made.add(bpf_answer, SECCOMP_RET_ERRNO | ENOSYS);
   made.add(bpf_equal, SYS_clone, 0, 3);
   made.add(bpf_load, argument_at(0));
-  made.add(bpf_any_of, CLONE_THREAD, 7, 0);
-  made.add(bpf_answer, refused);
-  made.add(bpf_equal, SYS_socket, 0, 5);
-  made.add(bpf_load, argument_at(0));
-  made.add(bpf_equal, AF_UNIX, 3, 0);
-  made.add(bpf_equal, AF_INET, 2, 0);
-  made.add(bpf_equal, AF_INET6, 1, 0);
+  made.add(bpf_any_of, CLONE_THREAD, 1, 0);
   made.add(bpf_answer, refused);
   made.add(bpf_answer, SECCOMP_RET_ALLOW);
   return made;
@@ -344,7 +418,9 @@ std::vector<std::string> isolation_lacks() {
   std::vector<std::string> lacks;
   const long rules_known = rules_version();
   if (rules_known < 1) lacks.emplace_back("files are open to all (no Landlock)");
-  else if (rules_known < 6) lacks.emplace_back("signals reach others (Landlock before version 6)");
+  else if (rules_known < 4)
+    lacks.emplace_back("whoever has a device by TCP reaches every port (Landlock before version 4)");
+  if (rules_known >= 1 && rules_known < 6) lacks.emplace_back("signals reach others (Landlock before version 6)");
   const std::uint32_t trap = SECCOMP_RET_TRAP;
   if (::syscall(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &trap) != 0)
     lacks.emplace_back("every system call is open (no seccomp filters)");
@@ -357,7 +433,7 @@ int PreparedSandbox::enter() const noexcept {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return errno;
   give_up_rights();
   if (const int error = restrict_files(sandbox_); error != 0) return error;
-  static constexpr Filter calls = call_filter();
+  const Filter calls = call_filter(sandbox_.sockets);
   sock_fprog program{};
   program.len = calls.length;
   program.filter = const_cast<sock_filter*>(calls.code.data());  // the kernel reads it

@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sched.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -20,6 +21,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hirosco/utilities/os/process.hpp"
@@ -160,9 +162,117 @@ TEST_F(SandboxTest, KeepsWhatACycleNeeds) {
     if (!cycle) return 3;
     cycle->join();
     if (!fifo) return 4;
-    const FileDescriptor local{::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)},
-        internet{::socket(AF_INET, SOCK_DGRAM, 0)};
-    return local && internet ? 0 : 5;
+    return 0;
+  });
+  EXPECT_EQ(wrong, 0);
+}
+
+/// Port of a listener at 127.0.0.1.
+std::uint16_t listen_here(FileDescriptor& listener) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  listener.reset(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (::bind(listener.get(), reinterpret_cast<sockaddr*>(&address), size) != 0 || ::listen(listener.get(), 4) != 0 ||
+      ::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size) != 0)
+    return 0;
+  return ntohs(address.sin_port);
+}
+
+sockaddr_in at_port(std::uint16_t port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(port);
+  return address;
+}
+
+bool makes(int domain, int type, int protocol = 0) {
+  const FileDescriptor socket{::socket(domain, type | SOCK_CLOEXEC, protocol)};
+  return static_cast<bool>(socket);
+}
+
+bool connects_to(std::uint16_t port) {
+  const FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  const sockaddr_in there = at_port(port);
+  return socket && ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0;
+}
+
+/// Data with the first segment: neither connect() nor a rule of Landlock is asked.
+bool sends_at_once_to(std::uint16_t port) {
+  const FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  const sockaddr_in there = at_port(port);
+  return socket &&
+         ::sendto(socket.get(), "x", 1, MSG_FASTOPEN, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 1;
+}
+
+bool binds_to(std::uint16_t port) {
+  const FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  const sockaddr_in here = at_port(port);
+  return socket && ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0;
+}
+
+TEST_F(SandboxTest, MakesNoSocketsUnlessItNamesThem) {
+  const int wrong = inside({}, [] {
+    name_refused_calls("test");
+    for (const int domain : {AF_UNIX, AF_INET, AF_INET6, AF_PACKET, AF_NETLINK, AF_VSOCK})
+      for (const int type : {SOCK_STREAM, SOCK_DGRAM, SOCK_SEQPACKET, SOCK_RAW})
+        if (makes(domain, type)) return 1;
+    std::array<int, 2> pair{};
+    return ::socketpair(AF_UNIX, SOCK_DGRAM, 0, pair.data()) == 0 ? 2 : 0;
+  });
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(SandboxTest, MakesTheSocketsThatItNamesAndNoOthers) {
+  const auto made = [](SandboxSockets sockets) {
+    Sandbox sandbox;
+    sandbox.sockets = std::move(sockets);
+    return inside(sandbox, [] {
+      name_refused_calls("test");
+      int made = makes(AF_UNIX, SOCK_DGRAM) ? 1 : 0;
+      if (makes(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK) && makes(AF_INET6, SOCK_DGRAM, IPPROTO_UDP)) made |= 2;
+      if (makes(AF_INET, SOCK_STREAM | SOCK_NONBLOCK) && makes(AF_INET6, SOCK_STREAM, IPPROTO_TCP)) made |= 4;
+      constexpr int of_many_ways = 262;  // TCP by several ways at once, which Landlock's rules are not for
+      if (makes(AF_INET, SOCK_STREAM, of_many_ways) || makes(AF_INET, SOCK_RAW, IPPROTO_UDP)) made |= 8;
+      if (makes(AF_INET, SOCK_DGRAM, IPPROTO_ICMP) || makes(AF_NETLINK, SOCK_DGRAM)) made |= 8;
+      return made;
+    });
+  };
+  EXPECT_EQ(made({.local = true}), 1);
+  EXPECT_EQ(made({.datagrams = true}), 2);
+  EXPECT_EQ(made({.ports = {4000}}), 4);
+  EXPECT_EQ(made({.local = true, .datagrams = true, .streams = true}), 7);
+}
+
+TEST_F(SandboxTest, ConnectsToThePortsThatItNamesAndListensAtNone) {
+  FileDescriptor own, others;
+  const std::uint16_t port = listen_here(own), other = listen_here(others);
+  ASSERT_NE(port, 0);
+  ASSERT_NE(other, 0);
+  Sandbox sandbox;
+  sandbox.sockets.ports = {port};
+  const auto tried = [&] {
+    name_refused_calls("test");
+    return (connects_to(port) ? 1 : 0) + (connects_to(other) ? 2 : 0) + (sends_at_once_to(other) ? 4 : 0) +
+           (binds_to(0) ? 8 : 0);
+  };
+  EXPECT_EQ(inside(sandbox, tried), 1);
+  sandbox.sockets = {.streams = true};
+  EXPECT_EQ(inside(sandbox, tried), 15) << "the ground link, whose clients nobody knows";
+}
+
+TEST_F(SandboxTest, AConnectedDeviceOfItsOwnIsSentToAsBefore) {
+  FileDescriptor own;
+  Sandbox sandbox;
+  sandbox.sockets.ports = {listen_here(own)};
+  const int wrong = inside(sandbox, [&] {
+    name_refused_calls("test");
+    const FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+    const sockaddr_in there = at_port(sandbox.sockets.ports[0]);
+    if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&there), sizeof there) != 0) return 1;
+    return ::send(socket.get(), "frame", 5, MSG_NOSIGNAL) == 5 ? 0 : 2;
   });
   EXPECT_EQ(wrong, 0);
 }
