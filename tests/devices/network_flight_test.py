@@ -21,6 +21,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 INSTANCE = "far-axes"
 WATCHDOG_S, SLACK_S = 0.25, 0.15
 FAR = wire.ADDRESSES[1]
+BESIDE = "198.18.0.3"                            # at the far end, too
 TCP_AXIS = 71
 OFFLINE, SAFE_OPERATIONAL = 0, 4
 NAMED = '<DeviceNetwork address="198.18.0.0/24" interface="end"/>'
@@ -97,8 +98,9 @@ class Network(unittest.TestCase):
         with contextlib.ExitStack() as until_end:
             cable = until_end.enter_context(wire.Wire())
             far = cable.inside(1)
-            here, there = (until_end.enter_context(reference.Device(*far, reference.PYTHON, "-B", reference.FOLDER / "device.py", f"{FAR}:{port}"))
-                           for port in (5000, 5002))
+            subprocess.run([*far, "ip", "address", "add", f"{BESIDE}/24", "dev", "end"], check=True)
+            here, there = (until_end.enter_context(reference.Device(*far, reference.PYTHON, "-B", reference.FOLDER / "device.py", f"{host}:5000"))
+                           for host in (FAR, BESIDE))
             until_end.enter_context(reference.Device(*far, reference.built(self.folder), "udp", f"{FAR}:5001"))
             mission = mission_in(self.folder, NAMED)
             mission.write_text(mission.read_text().replace('<Permit subsystem="*" functions="*"/>',
@@ -141,6 +143,9 @@ class Network(unittest.TestCase):
                 hirosco("tc", "TCP_AXIS", "SET_STATE", state)
             self.assertFalse([each for each in there.lines if each["output"] == "active"])
             code, told = reread(f"{FAR}:5002")
+            self.assertEqual(code, 1, told)
+            self.assertIn("TCP_AXIS cannot reach TCP port 5002", told)    # docs/adr/0150
+            code, told = reread(f"{BESIDE}:5000")
             self.assertEqual(code, 0, told)
             before = here.count()
             comes_up()

@@ -15,6 +15,8 @@ struct SandboxSockets {
   bool datagrams{false};  ///< UDP, from and to everywhere
   bool streams{false};  ///< TCP, from and to everywhere
   std::vector<std::uint16_t> ports{};  ///< of others that it may connect to by TCP, wherever they are
+  bool own_port{
+      false};  ///< one that the system chooses may be its own end of TCP, as at an address of the craft's network
   friend bool operator==(const SandboxSockets&, const SandboxSockets&) = default;
 };
 

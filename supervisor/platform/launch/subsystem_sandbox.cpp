@@ -37,6 +37,8 @@ void add_internet_address(const descriptor::Endnode& endnode, SandboxSockets& so
   const auto address = read_device_address(endnode.address);
   // By a datagram it is found out from where the system would speak to a device in a network.
   if (endnode.transfer == Transfer::Udp || (address && !address->loopback())) sockets.datagrams = true;
+  // And its own end is bound to an address of that network.
+  if (endnode.transfer == Transfer::Tcp && address && !address->loopback()) sockets.own_port = true;
   if (endnode.transfer == Transfer::Tcp && address &&
       std::ranges::find(sockets.ports, address->port) == sockets.ports.end())
     sockets.ports.push_back(address->port);

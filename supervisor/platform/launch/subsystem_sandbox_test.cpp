@@ -70,7 +70,8 @@ TEST(SubsystemSandbox, LetsMakeTheSocketsOfItsDevicesLinksAndGroundLinkAndNoOthe
   EXPECT_EQ(sockets(Transfer::Unix, "arm"), (SandboxSockets{.local = true}));
   EXPECT_EQ(sockets(Transfer::Udp, "127.0.0.1:5000"), (SandboxSockets{.datagrams = true}));
   EXPECT_EQ(sockets(Transfer::Tcp, "127.0.0.1:5000"), (SandboxSockets{.ports = {5000}}));
-  EXPECT_EQ(sockets(Transfer::Tcp, "192.0.2.7:5000"), (SandboxSockets{.datagrams = true, .ports = {5000}}))
+  EXPECT_EQ(sockets(Transfer::Tcp, "192.0.2.7:5000"),
+            (SandboxSockets{.datagrams = true, .ports = {5000}, .own_port = true}))
       << "finds out by a datagram from where it would speak";
   auto linked = with_device(Transfer::SharedMemory, "arm");
   linked.links_by_udp = true;

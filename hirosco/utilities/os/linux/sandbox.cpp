@@ -103,13 +103,15 @@ constexpr std::uint64_t of_plain_files = LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_A
 }
 
 /// Async-signal-safe.
-[[nodiscard]] bool permit_ports(int rules, const Rules& known, const std::vector<std::uint16_t>& ports) noexcept {
+[[nodiscard]] bool permit_ports(int rules, const Rules& known, const SandboxSockets& sockets) noexcept {
   if (known.network == 0) return true;
-  for (const std::uint16_t port : ports) {
-    const PortRule rule{.rights = right_connect, .port = port};
-    if (::syscall(SYS_landlock_add_rule, rules, rule_of_port, &rule, 0) != 0) return false;
-  }
-  return true;
+  const auto permit = [&](std::uint64_t rights, std::uint16_t port) {
+    const PortRule rule{.rights = rights, .port = port};
+    return ::syscall(SYS_landlock_add_rule, rules, rule_of_port, &rule, 0) == 0;
+  };
+  for (const std::uint16_t port : sockets.ports)
+    if (!permit(right_connect, port)) return false;
+  return !sockets.own_port || permit(right_bind, 0);
 }
 
 /// 0, or the system's error number; also where the system knows no rules of files.  Async-signal-safe.
@@ -123,10 +125,10 @@ constexpr std::uint64_t of_plain_files = LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_A
   // Devices are controlled by nobody but who may write them.
   const std::uint64_t to_write = known.files & ~std::uint64_t{LANDLOCK_ACCESS_FS_EXECUTE};
   // /proc/self is of this process: another one that has the same number later is outside.
-  const bool done =
-      permit_paths(rules, sandbox.readable, to_read) && permit_paths(rules, sandbox.executable, to_execute) &&
-      permit_paths(rules, sandbox.writable, to_write) && permit_path(rules, "/proc/self", to_read) &&
-      permit_ports(rules, known, sandbox.sockets.ports) && ::syscall(SYS_landlock_restrict_self, rules, 0) == 0;
+  const bool done = permit_paths(rules, sandbox.readable, to_read) &&
+                    permit_paths(rules, sandbox.executable, to_execute) &&
+                    permit_paths(rules, sandbox.writable, to_write) && permit_path(rules, "/proc/self", to_read) &&
+                    permit_ports(rules, known, sandbox.sockets) && ::syscall(SYS_landlock_restrict_self, rules, 0) == 0;
   const int error = done ? 0 : errno;
   ::close(rules);
   return error;
@@ -204,6 +206,7 @@ constexpr std::array own_calls{
     case SYS_clone: return "clone of a process";
     case SYS_socket: return "socket of this kind";
     case SYS_socketpair: return "socketpair";
+    case SYS_listen: return "listen";
     case SYS_sendto:
     case SYS_sendmsg:
     case SYS_sendmmsg: return "a send that connects";
@@ -273,7 +276,11 @@ constexpr void filter_sockets(Filter& made, const SandboxSockets& sockets) noexc
     made.add(bpf_answer, refused);
     made.end_of_call();
   }
-  if (!connects || sockets.streams) return;
+  if (sockets.streams) return;
+  made.begin_call(SYS_listen);
+  made.add(bpf_answer, refused);
+  made.end_of_call();
+  if (!connects) return;
   // Opens a connection past Landlock.
   struct Sending {
     std::uint32_t number, flags_at;

@@ -259,6 +259,14 @@ TEST_F(SandboxTest, ConnectsToThePortsThatItNamesAndListensAtNone) {
            (binds_to(0) ? 8 : 0);
   };
   EXPECT_EQ(inside(sandbox, tried), 1);
+  sandbox.sockets.own_port = true;
+  EXPECT_EQ(inside(sandbox, tried), 1 + 8) << "its own end in the network of its device";
+  const int heard = inside(sandbox, [&] {
+    name_refused_calls("test");
+    const FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+    return (::listen(socket.get(), 1) == 0 ? 1 : 0) + (binds_to(static_cast<std::uint16_t>(other + 1)) ? 2 : 0);
+  });
+  EXPECT_EQ(heard, 0);
   sandbox.sockets = {.streams = true};
   EXPECT_EQ(inside(sandbox, tried), 15) << "the ground link, whose clients nobody knows";
 }
