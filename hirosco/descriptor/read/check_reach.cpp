@@ -95,7 +95,9 @@ void MissionReader::check_reach() {
       problems.add(held.at, "E0349",
                    fmt::format("{} is reached by {}, and the sandbox of '{}' lets that in", what,
                                to_text(held.transfer), other->subsystem.name),
-                   "transfer=\"shared_memory\", where no sandbox lets anybody in, one that no subsystem has (\"unix\" beside frames by udp), or a device beyond this computer", 8);
+                   "transfer=\"shared_memory\", where no sandbox lets anybody in, one that no subsystem has (\"unix\" "
+                   "beside frames by udp), or a device beyond this computer",
+                   8);
     };
     for (const Device& device : owner.subsystem.devices)
       if (device.enable) check(*device.enable, fmt::format("the second inhibit of '{}'", device.name));
