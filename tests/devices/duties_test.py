@@ -314,11 +314,14 @@ class Kept(WithFolder):
 
     @unittest.skipUnless("HIROSCO_BIN" in os.environ, "HIROSCO_BIN names the folder of a simulated arm")
     def test_as_a_device_with_a_second_inhibit(self):
-        frames, enable = (f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}" for _ in range(2))
+        frames, enable = f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}", str(self.folder / "enable")
         with subprocess.Popen([pathlib.Path(os.environ["HIROSCO_BIN"]) / "hirosco-sim-robot", "--transfer", "udp", "--address", frames, "--actuator",
-                               "--enable-transfer", "udp", "--enable-address", enable, "--stop", "controlled", "--stop-within-ms", "200"], stdin=subprocess.PIPE) as arm:
+                               "--enable-transfer", "unix", "--enable-address", enable, "--stop", "controlled", "--stop-within-ms", "200"], stdin=subprocess.PIPE) as arm:
             self.addCleanup(arm.kill)
-            second = own_device.Enable("udp", enable)
+            end = time.monotonic() + PATIENCE
+            while not pathlib.Path(enable).exists():
+                self.assertLess(time.monotonic(), end, "it has no second inhibit")
+            second = own_device.Enable("unix", enable)
             self.assertEqual(self.tried_own("udp", frames, takes=17, gives=89, enable=second, just_begun=True), [])
             arm.kill()
 
@@ -363,6 +366,6 @@ class Broken(WithFolder):
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] and sys.argv[1] in ("udp", "tcp", "serial", "--help"):
+    if sys.argv[1:] and sys.argv[1] in ("udp", "tcp", "serial", "unix", "--help"):
         sys.exit(own_device.main(sys.argv[1:]))
     unittest.main(verbosity=2)

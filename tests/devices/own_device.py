@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tries a device of your own, which runs already, by its wire alone; nothing but Python's standard library:
 
-  duties_test.py udp|tcp HOST:PORT --takes OCTETS --gives OCTETS [--enable udp|tcp HOST:PORT] [--values V,V,...] [--rest SECONDS] [--just-begun]
+  duties_test.py udp|tcp HOST:PORT --takes OCTETS --gives OCTETS [--enable udp|tcp|unix HOST:PORT|FILE] [--values V,V,...] [--rest SECONDS] [--just-begun]
   duties_test.py serial FILE@BAUD  ...
 
 --takes and --gives: sizes of the payloads, as <Output> and <Input> of the descriptor have them; a DOUBLE has 8 octets. --enable: of its second
@@ -12,6 +12,7 @@ since; then its first command of all is to be active, which it may not obey (4: 
 It IS told to be active: see to it that nothing falls when these values are done."""
 import argparse
 import os
+import pathlib
 import select
 import socket
 import struct
@@ -32,7 +33,7 @@ class Wire:
     """Frames to it and from it, whatever the wire."""
 
     def __init__(self, kind, address):
-        self.stream, self.octets = kind != "udp", b""
+        self.stream, self.octets, self.bound = kind not in ("udp", "unix"), b"", None
         if kind == "serial":
             name, _, baud = address.partition("@")
             self.descriptor = os.open(name, os.O_RDWR | os.O_NOCTTY)
@@ -40,6 +41,14 @@ class Wire:
             how = termios.tcgetattr(self.descriptor)
             how[4] = how[5] = getattr(termios, f"B{baud or 115200}")
             termios.tcsetattr(self.descriptor, termios.TCSANOW, how)
+            return
+        if kind == "unix":
+            self.bound = pathlib.Path(f"{address}.subsystem")
+            self.bound.unlink(missing_ok=True)
+            self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+            self.socket.bind(str(self.bound))
+            self.socket.connect(address)
+            self.descriptor = self.socket.fileno()
             return
         host, _, port = address.rpartition(":")
         self.socket = socket.socket(type=socket.SOCK_STREAM if self.stream else socket.SOCK_DGRAM)
@@ -57,6 +66,8 @@ class Wire:
             self.socket.close()
         else:
             os.close(self.descriptor)
+        if self.bound:
+            self.bound.unlink(missing_ok=True)
 
     def put(self, octets):
         while octets:
@@ -317,7 +328,7 @@ def tried(connect, **about):
 
 def main(words):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=("udp", "tcp", "serial"))
+    parser.add_argument("kind", choices=("udp", "tcp", "serial", "unix"))
     parser.add_argument("address")
     parser.add_argument("--takes", type=int, required=True)
     parser.add_argument("--gives", type=int, required=True)
