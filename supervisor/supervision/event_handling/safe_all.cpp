@@ -61,21 +61,22 @@ void SafeAll::after_stop(std::string_view why) {
   craft_.tell(std::string{why} + ": every actuator inhibited", supervisor_apid);
   // Commissioning, or a change of mode, would lift the fences again with its next step.
   for (Undertaking* each : under_way_) each->all_stopped(why);
-  followed_.clear();
-  follows_until_ = craft_.now + late_entry;
+  follow_.clear();
+  for (const Member& member : craft_.members)
+    // The ground link has no actuators and is needed now more than ever.
+    if (!craft_.is_ground_link(member)) follow_.push_back(member.apid());
   states_follow();
 }
 
 void SafeAll::states_follow() {
-  if (craft_.now >= follows_until_) return;
-  for (Member& subject : craft_.members) {
-    // The ground link has no actuators and is needed now more than ever.
-    if (!subject.alive() || craft_.is_ground_link(subject) || subject.state() != State::Operational) continue;
-    if (!craft_.guard.fenced(subject.apid()) || std::ranges::find(followed_, subject.apid()) != followed_.end())
-      continue;
-    followed_.push_back(subject.apid());
-    desk_.command(subject.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
-  }
+  std::erase_if(follow_, [this](std::uint16_t apid) {
+    const Member& subject = *craft_.member(apid);
+    if (!subject.alive()) return false;
+    if (!craft_.guard.fenced(apid)) return true;  // it was let go
+    if (subject.state() != State::Operational) return false;
+    desk_.command(apid, "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
+    return true;
+  });
 }
 
 void SafeAll::what_is_unread_was_said_before() {

@@ -27,8 +27,6 @@ class SafeAll final : public Remembered {
   void provide();
   /// SAFE_ALL, carried out where it is received.
   void carry_out(const pus::Request& request);
-  /// How long after a stop a state that was on its way may still be entered: a cycle of some seconds.
-  static constexpr Duration late_entry = std::chrono::seconds{10};
   /// A signal or the local socket asked for a stop, at some time before: what has not been read yet may have been said before it.
   void asked();
   /// Nothing of it lets anybody move, until each channel was empty once. Of a stop whose place among the telecommands nobody knows.
@@ -50,7 +48,7 @@ class SafeAll final : public Remembered {
     std::optional<pus::Request> request;  ///< empty: asked for by signal or local socket
   };
   void tell_outcome(const Pending& pending, const std::vector<StopAnswer>& answers);
-  /// Whoever acts, or enters Operational after all, on the word of before: once for each stop.
+  /// Whoever is Operational, or enters it after all on the word of before, however slow its cycle: until it is let go, and once.
   void states_follow();
 
   Craft& craft_;
@@ -59,8 +57,7 @@ class SafeAll final : public Remembered {
   std::vector<Undertaking*> under_way_;
   std::vector<Pending> pending_;
   std::vector<std::optional<pus::Request>> before_;  ///< of stops that the supervisor before had begun
-  TimePoint follows_until_{};
-  std::vector<std::uint16_t> followed_;
+  std::vector<std::uint16_t> follow_;  ///< whose states have not followed the newest stop
 };
 
 }  // namespace hirosco::supervisor

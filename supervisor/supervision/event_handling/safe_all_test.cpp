@@ -37,6 +37,30 @@ TEST_F(SafeAllTest, TheStatesFollowOfWhoActsButNotOfTheGroundLink) {
   EXPECT_TRUE(was_told("stop by signal or local socket: every actuator inhibited"));
 }
 
+TEST_F(SafeAllTest, TheStateFollowsOfWhoEntersOperationalAfterItHoweverLateAndOnce) {
+  start_all(SafeOperational);
+  parts.safe_all.asked();
+  wait(3600s);  // the longest cycle that a descriptor may have
+  parts.safe_all.follow();
+  EXPECT_THAT(texts(arm), IsEmpty());
+  set(arm, Operational);
+  parts.safe_all.follow();
+  EXPECT_THAT(texts(arm), ElementsAre(to(SafeOperational)));
+  parts.safe_all.follow();
+  EXPECT_THAT(texts(arm), IsEmpty()) << "once";
+}
+
+TEST_F(SafeAllTest, TheStateOfWhoWasLetGoAfterItStays) {
+  start_all(SafeOperational);
+  parts.safe_all.asked();
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  parts.safe_all.follow();
+  set(arm, Operational);
+  guard.fence(arm);  // by a plan, say: its state stays
+  parts.safe_all.follow();
+  EXPECT_THAT(texts(arm), IsEmpty());
+}
+
 TEST_F(SafeAllTest, OneThatNoTelecommandAskedForIsToldToGroundAndNoPlanAnswersIt) {
   descriptor::Plan plan;
   plan.name = "all";

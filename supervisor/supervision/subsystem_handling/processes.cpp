@@ -275,8 +275,8 @@ void Processes::hear_of(Member& subject, const GuardFinding& finding) {
       const std::string_view device =
           finding.device < devices.size() ? devices[finding.device].name : std::string_view{"?"};
       tell(
-          fmt::format(": the second inhibit of its device {} does not answer: it does not move by it, and a stop would "
-                      "not be heard of",
+          fmt::format(": the second inhibit of its device {} does not answer: that it has heard a stop would "
+                      "be known of nobody",
                       device));
       parts_.own.announce("INHIBIT_SILENT",
                           {static_cast<double>(subject.apid()), static_cast<double>(finding.device + 1)});
