@@ -55,7 +55,7 @@ class Modules(unittest.TestCase):
     def test_whoever_is_to_hold_the_ground_link_has_to_be_made_on_a_simulated_one(self):
         text = (REPOSITORY / "missions/hello/mission.xml").read_text()
         mission = self.folder / "mission.xml"
-        mission.write_text(text.replace('<Ground subsystem="COMMUNICATION"', '<Ground subsystem="HELLO"').replace("../..", str(REPOSITORY)))
+        mission.write_text(text.replace('<Ground subsystem="COMMUNICATION"', '<Ground subsystem="HELLO"').replace("../..", os.path.relpath(REPOSITORY, self.folder)))
         self.refused("it cannot hold a simulated ground link", "make_on_transport", mission=mission)
 
     def test_one_of_another_version_is_refused_and_both_versions_are_named(self):
