@@ -17,14 +17,6 @@ HOMES = ("missions", "subsystems", "simulation/devices")
 FRAMEWORK = ("hirosco", "robotics", "supervisor", "simulation", "ground", "tools", "cmake")
 TEXTS = (".cpp", ".hpp", ".py", ".js", ".mjs", ".json", ".html", ".css", ".svg", ".urdf", ".xml", ".xsd", ".cmake", ".txt", ".in", "")
 OUTSIDE = {"node_modules", "__pycache__", "build", "dist"}
-# What may name somebody all the same, and why.
-ALLOWED = {
-    ("simulation/spacecraft/simulated_ground.hpp", "communication"): "the other end of the ground link (adr 0050)",
-    ("tools/hirosco/run.cpp", "communication"): "the variables that tell the ground link its addresses (adr 0054)",
-    ("tools/threads/main.cpp", "communication"): "the ground link is no module, so this program brings it along (adr 0097)",
-}
-# This tool has to name whom it allows.
-OWN = "tools/check_names.py"
 PART = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 
 
@@ -59,7 +51,7 @@ def says(line, name, is_word):
 def found(texts, every, words):
     for path, text in texts.items():
         for number, line in enumerate([path, *text.splitlines()]):
-            told = [name for name in every if says(line, name, name in words) and (path, name) not in ALLOWED]
+            told = [name for name in every if says(line, name, name in words)]
             if told:
                 yield f"{path}:{number}: {', '.join(told)}: {line.strip()[:110]}"
 
@@ -68,14 +60,8 @@ def framework(every):
     homes = [ROOT / home / name for home in HOMES for name in every]
     for part in FRAMEWORK:
         for path in sorted((ROOT / part).rglob("*")):
-            if path.suffix in TEXTS and path.is_file() and not OUTSIDE & set(path.parts) and not any(home in path.parents for home in homes) \
-                    and path.relative_to(ROOT).as_posix() != OWN:
+            if path.suffix in TEXTS and path.is_file() and not OUTSIDE & set(path.parts) and not any(home in path.parents for home in homes):
                 yield path.relative_to(ROOT).as_posix(), path.read_text()
-
-
-def needless(texts, every, words):
-    return [f"{path}: may name {name}, but does not" for path, name in ALLOWED
-            if name in every and not any(says(line, name, name in words) for line in texts.get(path, "").splitlines())]
 
 
 # `lamp` is a name, `beam` a word, too. The first must be found in each of these, the second in none.
@@ -89,4 +75,4 @@ if __name__ == "__main__":
     wrong += [f"seen and no name: {text}" for path, text in planted.items() if text in SPARED and path in seen]
     ours, every, words = dict(framework(names())), names(), words_too()
     wrong += [f"the glossary has a word that is no name: {word}" for word in words - set(every) - {"word", "---"}]
-    sys.exit("\n".join([*found(ours, every, words), *needless(ours, every, words), *wrong]) or ("no files" if not ours or not every else None))
+    sys.exit("\n".join([*found(ours, every, words), *wrong]) or ("no files" if not ours or not every else None))

@@ -10,9 +10,7 @@ namespace hirosco::simulation {
 Modules load_modules(const descriptor::Mission& mission) {
   Modules modules;
   for (const auto& member : mission.subsystems) {
-    if (member.subsystem.name == mission.ground.subsystem) continue;
-    if (const auto loaded = load_subsystem(member.executable); loaded)
-      modules.subsystems[member.executable] = (*loaded)->make;
+    if (const auto loaded = load_subsystem(member.executable); loaded) modules.subsystems[member.executable] = **loaded;
     else modules.missing[member.executable] = loaded.error();
   }
   for (const auto& device : mission.devices) {

@@ -17,7 +17,6 @@ struct Modules {
   std::map<std::string, std::string> missing;  ///< programs without a module that can be taken, and why in words
 };
 
-/// The ground link is not among them: its other end is the simulated ground, so the spacecraft makes it.
 [[nodiscard]] Modules load_modules(const descriptor::Mission& mission);
 
 /// What Software-Init will find of an author's mistakes against this descriptor, without a flight.

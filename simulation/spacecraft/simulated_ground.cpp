@@ -10,7 +10,7 @@ namespace hirosco::simulation {
 
 class SimulatedGround::OnBoardEnd final : public GroundTransport {
  public:
-  OnBoardEnd(SimulatedGround& ground, communication::GroundTraffic& traffic) : ground_{ground}, traffic_{traffic} {
+  OnBoardEnd(SimulatedGround& ground, GroundTraffic& traffic) : ground_{ground}, traffic_{traffic} {
     ground_.end_ = this;
     counters_.clients = 1;
     counters_.admitted = 1;
@@ -20,8 +20,8 @@ class SimulatedGround::OnBoardEnd final : public GroundTransport {
   void step(TimePoint) override {
     const HeapPermitted as_of_sockets;  // in a flight these queues are the system's
     while (!uplink_.empty()) {
-      constexpr communication::ClientId only_client = 1;
-      if (traffic_.telecommand(only_client, uplink_.front()) == communication::Taken::Later) {
+      constexpr GroundTraffic::ClientId only_client = 1;
+      if (traffic_.telecommand(only_client, uplink_.front()) == GroundTraffic::Taken::Later) {
         ++counters_.held_back;
         return;
       }
@@ -39,7 +39,7 @@ class SimulatedGround::OnBoardEnd final : public GroundTransport {
     ++counters_.telemetry_packets;
     if (ground_.receive_) ground_.receive_(packet);
   }
-  [[nodiscard]] const communication::LinkCounters& counters() const override { return counters_; }
+  [[nodiscard]] const Counters& counters() const override { return counters_; }
   /// False: the link is closing.
   [[nodiscard]] bool arrive(Octets packet) {
     if (!finishing_) uplink_.emplace_back(packet.begin(), packet.end());
@@ -48,14 +48,14 @@ class SimulatedGround::OnBoardEnd final : public GroundTransport {
 
  private:
   SimulatedGround& ground_;
-  communication::GroundTraffic& traffic_;
+  GroundTraffic& traffic_;
   std::deque<std::vector<std::byte>> uplink_;
   bool finishing_{false};
-  communication::LinkCounters counters_;
+  Counters counters_;
 };
 
 OpenGroundTransport SimulatedGround::transport() {
-  return [this](communication::GroundTraffic& traffic) -> Result<std::unique_ptr<GroundTransport>> {
+  return [this](GroundTraffic& traffic) -> Result<std::unique_ptr<GroundTransport>> {
     if (end_ != nullptr) return fail(ErrorCode::AlreadyExists, "the ground link is open");
     return std::make_unique<OnBoardEnd>(*this, traffic);
   };

@@ -7,15 +7,14 @@
 #include <functional>
 #include <vector>
 
-#include "subsystems/communication/communication.hpp"
+#include "hirosco/subsystem/author/ground_transport.hpp"
 
-/// A ground station without sockets: what it sends arrives at the communication subsystem's ground link, what that sends
-/// arrives here.
+/// A ground station without sockets: what it sends arrives at the mission's ground link, what that sends arrives here.
 namespace hirosco::simulation {
 
 class SimulatedGround {
  public:
-  /// For the communication subsystem: opens the on-board end. One at a time.
+  /// For the subsystem that holds the ground link: opens the on-board end. One at a time.
   [[nodiscard]] OpenGroundTransport transport();
   /// Sends a telecommand packet up; lost, and false, while the on-board end is closed, as on a dead link.
   bool send(Octets packet);

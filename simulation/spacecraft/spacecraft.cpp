@@ -125,12 +125,13 @@ void Spacecraft::make_supervisor(std::uint32_t first_epoch) {
 }
 
 Result<supervisor::LaunchedSubsystem> Spacecraft::launch(const descriptor::MissionSubsystem& described) {
-  const auto make = parts_.subsystems.find(described.executable);
-  std::unique_ptr<Subsystem> author;
-  if (make != parts_.subsystems.end()) author = make->second();
-  else if (described.subsystem.name == parts_.mission.ground.subsystem)
-    author = make_communication(ground_.transport());
-  if (!author) return fail(ErrorCode::NotFound, "no such subsystem in this program");
+  const auto maker = parts_.subsystems.find(described.executable);
+  if (maker == parts_.subsystems.end() || !maker->second.make)
+    return fail(ErrorCode::NotFound, "no such subsystem in this program");
+  const bool holds_ground_link = described.subsystem.name == parts_.mission.ground.subsystem;
+  if (holds_ground_link && !maker->second.make_on_transport)
+    return fail(ErrorCode::InvalidArgument, SubsystemMaker::no_ground_link);
+  auto author = holds_ground_link ? maker->second.make_on_transport(ground_.transport()) : maker->second.make();
   const Platform platform{.clock = clock_,
                           .memory = memory_,
                           .flows = flows_,

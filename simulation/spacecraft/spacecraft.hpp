@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -9,12 +10,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hirosco/data_transfer/control/channel_pair.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/subsystem/author/module.hpp"
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "simulation/devices/simulated_device.hpp"
 #include "simulation/spacecraft/simulated_ground.hpp"
@@ -27,8 +30,22 @@
 /// deterministic from one seed (architecture, rule 3; mission row B1). No clock, socket or random call while it runs.
 namespace hirosco::simulation {
 
-/// Makes the author's object of an executable of the mission.
-using SubsystemCatalogue = std::map<std::string, std::function<std::unique_ptr<Subsystem>()>, std::less<>>;
+/// Makes the author's object of an executable of the mission: as its module tells, or as a callable does that takes nothing.
+struct SubsystemMaker {
+  static constexpr const char* no_ground_link =
+      "it cannot hold a simulated ground link: its module has no maker on a transport that is given "
+      "(subsystem_module<make, make_on_transport>)";
+
+  SubsystemMaker() = default;
+  SubsystemMaker(const SubsystemModule& module) : make{module.make}, make_on_transport{module.make_on_transport} {}
+  template <std::invocable Make>
+  SubsystemMaker(Make maker) : make{std::move(maker)} {}
+
+  std::function<std::unique_ptr<Subsystem>()> make;
+  /// Of what can hold the mission's ground link: here it is made on the simulated ground.
+  std::function<std::unique_ptr<Subsystem>(OpenGroundTransport)> make_on_transport;
+};
+using SubsystemCatalogue = std::map<std::string, SubsystemMaker, std::less<>>;
 /// Makes the simulated device of an executable, at the device's side of an endnode.
 using MakeDevice =
     std::function<std::unique_ptr<SimulatedDevice>(FlowFactory&, const FlowAddress&, const SimulatedDevice::Settings&)>;

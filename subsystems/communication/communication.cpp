@@ -9,14 +9,15 @@
 #include <utility>
 
 #include "subsystems/communication/delay_line.hpp"
+#include "subsystems/communication/tcp_transport.hpp"
 #include "subsystems/communication/told_ends.hpp"
 
 namespace hirosco {
 namespace {
 
-using communication::CloseReason;
+using CloseReason = GroundTransport::CloseReason;
 
-class Communication final : public Subsystem, private communication::GroundTraffic {
+class Communication final : public Subsystem, private GroundTraffic {
  public:
   explicit Communication(OpenGroundTransport open) : open_{std::move(open)} {}
 
@@ -135,17 +136,17 @@ class Communication final : public Subsystem, private communication::GroundTraff
     if (transport_ && ends_.goes_down(packet)) transport_->telemetry(packet);
   }
 
-  communication::Taken telecommand(communication::ClientId client, Octets packet) override {
+  Taken telecommand(ClientId client, Octets packet) override {
     // What the supervisor does not take now stays with its client: nothing that was received is lost.
-    if (!submit_ground_telecommand(client, packet)) return communication::Taken::Later;
+    if (!submit_ground_telecommand(client, packet)) return Taken::Later;
     ends_.went_up(packet);
     last_rx_ = now_;
-    return communication::Taken::Yes;
+    return Taken::Yes;
   }
 
   /// Gathers the counters in the service loop and hands them to the cycle, which alone writes parameters.
   void count(TimePoint now) {
-    const communication::LinkCounters& counters = transport_->counters();
+    const GroundTransport::Counters& counters = transport_->counters();
     const auto u32 = [](std::uint64_t number) { return static_cast<std::uint32_t>(number); };
     const auto closed = [&](CloseReason reason) { return u32(counters.closed[static_cast<std::size_t>(reason)]); };
     const bool connected = counters.clients > 0;
@@ -259,14 +260,16 @@ class Communication final : public Subsystem, private communication::GroundTraff
   std::uint32_t dropped_{0};  ///< telecommands that nobody took before the link was closed
   TimePoint last_rx_{};
   TimePoint last_client_{};
-  std::array<std::uint64_t, communication::close_reasons> cuts_told_{};
+  std::array<std::uint64_t, GroundTransport::close_reasons> cuts_told_{};
   TimePoint next_cut_told_{};
   bool had_client_{false};
 };
 
 }  // namespace
 
-std::unique_ptr<Subsystem> make_communication(OpenGroundTransport open) {
+std::unique_ptr<Subsystem> make_communication() { return make_communication_on(open_tcp_transport); }
+
+std::unique_ptr<Subsystem> make_communication_on(OpenGroundTransport open) {
   return std::make_unique<Communication>(std::move(open));
 }
 

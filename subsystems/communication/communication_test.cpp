@@ -23,7 +23,7 @@ std::string descriptor_text() {
 
 /// A link with so many packets that nobody takes, and what it has counted.
 struct Link {
-  communication::LinkCounters counters;
+  GroundTransport::Counters counters;
   std::size_t waiting{0};
   bool open{false};
   int finished{0};
@@ -39,7 +39,7 @@ class Transport final : public GroundTransport {
     return link_.waiting;
   }
   void telemetry(Octets) override {}
-  [[nodiscard]] const communication::LinkCounters& counters() const override { return link_.counters; }
+  [[nodiscard]] const Counters& counters() const override { return link_.counters; }
 
  private:
   Link& link_;
@@ -48,7 +48,7 @@ class Transport final : public GroundTransport {
 struct OpenLink : ::testing::Test {
   Link link;
   std::unique_ptr<Subsystem> author{
-      make_communication([this](communication::GroundTraffic&) -> Result<std::unique_ptr<GroundTransport>> {
+      make_communication_on([this](GroundTraffic&) -> Result<std::unique_ptr<GroundTransport>> {
         return std::make_unique<Transport>(link);
       })};
   Rig rig{*author, descriptor_text()};
@@ -57,7 +57,7 @@ struct OpenLink : ::testing::Test {
 };
 
 TEST_F(OpenLink, TellsEachConnectionThatTheSpacecraftEndsWithItsReasonAndNoOther) {
-  using enum communication::CloseReason;
+  using enum GroundTransport::CloseReason;
   for (const auto reason : {PeerClosed, Version, NotTelecommand, Length, Incomplete, Slow, Evicted, SocketError}) {
     rig.forget_telemetry();
     const auto number = static_cast<std::size_t>(reason);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hirosco/pus/packet/packet.hpp"
-#include "hirosco/utilities/enum_text.hpp"
+#include "hirosco/subsystem/author/ground_transport.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
@@ -16,18 +16,11 @@
 /// The rules of the ground link, without any socket (decisions 25 and 28).
 namespace hirosco::communication {
 
-/// Why a connection came to its end.
-enum class CloseReason : std::uint8_t {
-  PeerClosed,      ///< its own wish
-  Version,         ///< header: packet version not 0
-  NotTelecommand,  ///< header: a telemetry packet
-  Length,          ///< header: shorter or longer than any telecommand
-  Incomplete,      ///< a packet was not complete in time, or cut off by the end of the stream
-  Slow,            ///< did not read its telemetry
-  Evicted,         ///< silent, and somebody else needed the place
-  SocketError,
-};
-inline constexpr std::size_t close_reasons = 8;
+// Words of what the rules stand between.
+using CloseReason = GroundTransport::CloseReason;
+using LinkCounters = GroundTransport::Counters;
+using ClientId = GroundTraffic::ClientId;
+using Taken = GroundTraffic::Taken;
 
 /// Cuts a stream into telecommand packets and keeps them until somebody takes them. An implausible header ends the
 /// stream for good: searching for the next packet could find one that was embedded in another's data, and execute it.
@@ -75,21 +68,8 @@ class Deframer {
   std::array<std::byte, capacity> buffer_{};
 };
 
-/// Number of a connection, never 0; not given again soon.
-using ClientId = std::uint16_t;
-
 /// 10015 gives all telemetry and takes telecommands, 10025 takes telecommands only.
 enum class GroundPort : std::uint8_t { TelemetryAndTelecommands, TelecommandsOnly };
-
-/// What becomes of a packet that is offered: it stays with its client until it is taken.
-enum class Taken : std::uint8_t { Yes, Later };
-
-/// Who takes what comes from the ground.
-struct GroundTraffic {
-  virtual ~GroundTraffic() = default;
-  /// `packet` is valid during the call; it may be damaged in all but its header. May call `telemetry`.
-  [[nodiscard]] virtual Taken telecommand(ClientId client, Octets packet) = 0;
-};
 
 struct ClientCounters {
   GroundPort port{};
@@ -99,19 +79,6 @@ struct ClientCounters {
   std::uint64_t valid_packets{0};  ///< whole and undamaged
   std::uint64_t octets_received{0};
   std::uint64_t octets_sent{0};
-};
-/// Every packet that a client sent is one of `packets`, one of `idle_packets`, or the one at which its connection was
-/// `closed` for a reason of its stream; every connection is one of `clients` or one of `closed`.
-struct LinkCounters {
-  std::uint64_t clients{0};  ///< connected now
-  std::uint64_t admitted{0};
-  std::uint64_t refused{0};  ///< no place, and nobody to evict
-  std::uint64_t packets{0};
-  std::uint64_t valid_packets{0};
-  std::uint64_t idle_packets{0};
-  std::uint64_t held_back{0};  ///< times that a packet was offered and had to stay
-  std::uint64_t telemetry_packets{0};
-  std::array<std::uint64_t, close_reasons> closed{};  ///< by CloseReason
 };
 
 /// All clients of the link. Telemetry is kept once, in a ring that every client reads at its own pace; who falls behind
@@ -223,20 +190,3 @@ class GroundClients {
 };
 
 }  // namespace hirosco::communication
-
-namespace hirosco {
-template <>
-struct EnumTexts<communication::CloseReason> {
-  using enum communication::CloseReason;
-  static constexpr auto table = enum_table<communication::CloseReason>({
-      {PeerClosed, "closed by the client"},
-      {Version, "packet version"},
-      {NotTelecommand, "not a telecommand"},
-      {Length, "packet length"},
-      {Incomplete, "incomplete packet"},
-      {Slow, "too slow"},
-      {Evicted, "silent"},
-      {SocketError, "connection error"},
-  });
-};
-}  // namespace hirosco

@@ -16,11 +16,6 @@
 
 namespace hirosco::communication {
 
-/// In the environment of the subsystem: HOST:PORT at which it listens, as `<Ground>` of the mission and the instance of the
-/// flight have it (adr 0037).
-inline constexpr const char* telemetry_address_variable = "HIROSCO_TELEMETRY_ADDRESS";
-inline constexpr const char* telecommand_address_variable = "HIROSCO_TELECOMMAND_ADDRESS";
-
 /// The sockets of the ground link: two listening ports on a loopback address, nothing blocks, no thread of its own.
 /// Its owner waits for `descriptor()` to become readable or for the time that `step` named, then calls `step`.
 /// Anything but a loopback address is refused until connections are authenticated; that check will stand between

@@ -16,7 +16,7 @@ class TcpTransport final : public GroundTransport {
   void step(TimePoint now) override { server_->step(now); }
   [[nodiscard]] std::size_t finish(TimePoint now) override { return server_->finish(now); }
   void telemetry(Octets packet) override { static_cast<void>(server_->telemetry(packet)); }
-  [[nodiscard]] const communication::LinkCounters& counters() const override { return server_->counters(); }
+  [[nodiscard]] const Counters& counters() const override { return server_->counters(); }
   /// What waits for the supervisor is offered to it again every millisecond: it does not say when it has room.
   [[nodiscard]] ServiceWake wake() const override {
     ServiceWake wake{.descriptor = server_->descriptor()};
@@ -35,9 +35,9 @@ class TcpTransport final : public GroundTransport {
 
 }  // namespace
 
-Result<std::unique_ptr<GroundTransport>> open_tcp_transport(communication::GroundTraffic& traffic) {
-  HIROSCO_TRY_LET(const auto options, communication::TcpServer::at(given(communication::telemetry_address_variable),
-                                                                   given(communication::telecommand_address_variable)));
+Result<std::unique_ptr<GroundTransport>> open_tcp_transport(GroundTraffic& traffic) {
+  HIROSCO_TRY_LET(const auto options,
+                  communication::TcpServer::at(given(telemetry_address_variable), given(telecommand_address_variable)));
   HIROSCO_TRY_LET(auto server, communication::TcpServer::open(options, traffic));
   return std::make_unique<TcpTransport>(std::move(server));
 }

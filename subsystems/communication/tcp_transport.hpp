@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "subsystems/communication/communication.hpp"
+#include "hirosco/subsystem/author/ground_transport.hpp"
 
 namespace hirosco {
 
 /// Below the ground link: TCP sockets, where the environment or the descriptor says.
-[[nodiscard]] Result<std::unique_ptr<GroundTransport>> open_tcp_transport(communication::GroundTraffic& traffic);
+[[nodiscard]] Result<std::unique_ptr<GroundTransport>> open_tcp_transport(GroundTraffic& traffic);
 
 }  // namespace hirosco

@@ -12,6 +12,7 @@ import unittest
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 BINARIES = pathlib.Path(os.environ["HIROSCO_BIN"])
 MODULE = "hirosco-hello.so"
+GROUND_LINK = "hirosco-communication.so"
 
 
 class Modules(unittest.TestCase):
@@ -20,18 +21,19 @@ class Modules(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
         for name in ("bin", "lib/hirosco", "elsewhere"):
             (self.folder / name).mkdir(parents=True)
-        shutil.copy2(BINARIES / "hirosco", self.folder / "bin")
+        for name in ("hirosco", GROUND_LINK):
+            shutil.copy2(BINARIES / name, self.folder / "bin")
         self.module = self.folder / "bin" / MODULE
         shutil.copy2(BINARIES / MODULE, self.module)
 
-    def simulate(self, path=""):
-        done = subprocess.run([self.folder / "bin/hirosco", "simulate", REPOSITORY / "missions/hello", "--for", "1s", "--summary"],
+    def simulate(self, path="", mission=REPOSITORY / "missions/hello"):
+        done = subprocess.run([self.folder / "bin/hirosco", "simulate", mission, "--for", "1s", "--summary"],
                               capture_output=True, text=True, check=False,
                               env={**os.environ, "NO_COLOR": "1", "PATH": f"{path}:{os.environ['PATH']}"})
         return done.returncode, done.stdout + done.stderr
 
-    def refused(self, *texts):
-        code, told = self.simulate()
+    def refused(self, *texts, **settings):
+        code, told = self.simulate(**settings)
         self.assertEqual(code, 3, told)
         for text in ("no module hirosco-hello for subsystem HELLO", "mission.xml:10:3", *texts):
             self.assertIn(text, told)
@@ -43,6 +45,18 @@ class Modules(unittest.TestCase):
             code, told = self.simulate(self.folder / "elsewhere")
             self.assertEqual(code, 0, told)
         self.refused("there is no hirosco-hello.so")
+
+    def test_the_ground_link_is_a_module_like_the_others(self):
+        (self.folder / "bin" / GROUND_LINK).unlink()
+        code, told = self.simulate()
+        self.assertEqual(code, 3, told)
+        self.assertIn("no module hirosco-communication for subsystem COMMUNICATION", told)
+
+    def test_whoever_is_to_hold_the_ground_link_has_to_be_made_on_a_simulated_one(self):
+        text = (REPOSITORY / "missions/hello/mission.xml").read_text()
+        mission = self.folder / "mission.xml"
+        mission.write_text(text.replace('<Ground subsystem="COMMUNICATION"', '<Ground subsystem="HELLO"').replace("../..", os.path.relpath(REPOSITORY, self.folder)))
+        self.refused("it cannot hold a simulated ground link", "make_on_transport", mission=mission)
 
     def test_one_of_another_version_is_refused_and_both_versions_are_named(self):
         octets = self.module.read_bytes()

@@ -121,7 +121,12 @@ std::vector<Diagnostic> unready(const descriptor::Mission& mission, FlownAs flow
   };
   Lacking findings{mission, flown_as};
   for (const auto& member : mission.subsystems) {
-    findings.subsystem(member.executable, "subsystem " + member.subsystem.name, member.at, missing(member.executable));
+    std::string why_not = missing(member.executable);
+    const auto maker = modules.subsystems.find(member.executable);
+    if (flown_as == FlownAs::Simulation && member.subsystem.name == mission.ground.subsystem &&
+        maker != modules.subsystems.end() && !maker->second.make_on_transport)
+      why_not = simulation::SubsystemMaker::no_ground_link;
+    findings.subsystem(member.executable, "subsystem " + member.subsystem.name, member.at, why_not);
     if (flown_as == FlownAs::Processes && mission.manifest) findings.listed(member);
   }
   for (const auto& device : mission.devices) {
@@ -136,9 +141,9 @@ std::vector<Diagnostic> unintroduced(const descriptor::Mission& mission) {
   const auto modules = simulation::load_modules(mission);
   std::vector<Diagnostic> found;
   for (const auto& member : mission.subsystems) {
-    const auto make = modules.subsystems.find(member.executable);
-    if (make == modules.subsystems.end()) continue;
-    const auto author = make->second();
+    const auto maker = modules.subsystems.find(member.executable);
+    if (maker == modules.subsystems.end()) continue;
+    const auto author = maker->second.make();
     for (const auto& [text, at] : simulation::try_introduction(*author, member.subsystem))
       if (at)
         found.push_back({member.subsystem.file, *at, "E0405", text, "name it in use_device(), or leave it out", 1});

@@ -10,10 +10,10 @@
 #include <map>
 
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
+#include "hirosco/subsystem/author/ground_transport.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 #include "simulation/devices/device_arguments.hpp"
-#include "subsystems/communication/tcp_server.hpp"
 #include "supervisor/keeper/keeper.hpp"
 #include "supervisor/keeper/kept_endnodes.hpp"
 #include "tools/hirosco/commands.hpp"
@@ -44,8 +44,8 @@ void tell_children(const FlightEntry& flight, const descriptor::Mission& mission
     if (value.empty()) ::unsetenv(variable);
     else ::setenv(variable, value.c_str(), 1);
   };
-  tell(communication::telemetry_address_variable, flight.telemetry);
-  tell(communication::telecommand_address_variable, flight.telecommand);
+  tell(telemetry_address_variable, flight.telemetry);
+  tell(telecommand_address_variable, flight.telecommand);
   tell(flight_instance_variable, flight.named() ? flight.instance : std::string{});
   tell(device_networks_variable, words_of(mission.device_networks));
 }

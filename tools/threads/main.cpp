@@ -6,7 +6,6 @@
 
 #include "hirosco/subsystem/author/module.hpp"
 #include "hirosco/utilities/os/thread.hpp"
-#include "subsystems/communication/tcp_transport.hpp"
 #include "supervisor/flight_shell.hpp"
 #include "supervisor/platform/launch/thread_launcher.hpp"
 
@@ -17,15 +16,10 @@ namespace {
 using namespace hirosco;
 using namespace hirosco::supervisor;
 
-/// Those of the mission's executables that are modules, and the ground link, which is part of this program. False: one is not here, and
-/// why was printed.
+/// Those of the mission's executables, which are modules. False: one is not here, and why was printed.
 [[nodiscard]] bool find_makers(const descriptor::Mission& mission, ThreadLauncher::Makers& makers) {
   bool all = true;
   for (const auto& member : mission.subsystems) {
-    if (member.subsystem.name == mission.ground.subsystem) {
-      makers[member.executable] = [] { return make_communication(open_tcp_transport); };
-      continue;
-    }
     const auto loaded = load_subsystem(member.executable);
     if (loaded) makers[member.executable] = (*loaded)->make;
     else fmt::print(stderr, "hirosco-threads: no module for {}: {}\n", member.subsystem.name, loaded.error());

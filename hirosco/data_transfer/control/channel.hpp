@@ -18,7 +18,7 @@ inline constexpr std::size_t max_packet_octets = 4096;
 /// What a control-channel message is about.
 enum class MessageKind : std::uint8_t {
   Packet = 1,       ///< a space packet: to a subsystem a telecommand (or telemetry for the ground link), from it any
-  GroundTelecommand = 2,  ///< from the communication subsystem only: a telecommand that came from ground
+  GroundTelecommand = 2,  ///< from the ground link only: a telecommand that came from ground
   Event = 3,  ///< from a subsystem: it raised an event (pus/st05_event/event_message.hpp), reported to ground or not
   PermitPage = 4,  ///< to a subsystem: `memory` is its permit page from now on; from it, empty: it is in force
 };

@@ -19,6 +19,7 @@
 #include "hirosco/subsystem/author/handler.hpp"
 #include "hirosco/subsystem/author/ports.hpp"
 #include "hirosco/subsystem/author/request_port.hpp"
+#include "hirosco/subsystem/author/service_wake.hpp"
 #include "hirosco/subsystem/author/states.hpp"
 #include "hirosco/subsystem/author/subscription_port.hpp"
 #include "hirosco/utilities/result.hpp"
@@ -44,14 +45,6 @@ struct Cycle {
   State state{State::PreOperational};
   bool first{false};                 ///< first cycle in this state
   bool active{false};                ///< Operational and not inhibited: what is put out reaches the actuators
-};
-
-/// What an author's work in the service loop waits for.
-struct ServiceWake {
-  /// Waited for until it is readable, and looked at once in a millisecond at most; -1: none. Stays the author's.
-  int descriptor{-1};
-  /// The longest rest between two calls: from 1 to 10 ms, what is beyond counts as the nearer of the two.
-  Duration pace = std::chrono::milliseconds{10};
 };
 
 /// Base of every subsystem. Steady nodes run in the cycle: noexcept, no allocation, no lock, no I/O. Everything else
@@ -99,7 +92,7 @@ class Subsystem {
   /// When `service` is called besides; asked for after each call. Not overridden: every 10 ms at least, and after each message
   /// and report.
   [[nodiscard]] virtual ServiceWake service_wake() const { return {}; }
-  /// Telemetry that the supervisor routes to this subsystem (the communication subsystem's ground link).
+  /// Telemetry that the supervisor routes to this subsystem (that of the mission's ground link).
   virtual void telemetry(Octets) {}
 
   // --- in offline() ----------------------------------------------------------------------------------------------------
