@@ -178,6 +178,20 @@ TEST(StopsThatStay, WhatWasSaidBeforeAStopAndIsReadAfterItLetsNobodyMove) {
     }
 }
 
+TEST(StopsThatStay, WhatWasOnItsWayFromGroundLetsNobodyMove) {
+  for (const Duration after : {Duration{0}, Duration{100us}, Duration{1ms}, Duration{5ms}, Duration{200ms}}) {
+    Stopped craft{crashed_come_back_to(State::Offline), 300ms};
+    ASSERT_TRUE(craft.begins());
+    ASSERT_TRUE(craft.alone_and_safe());
+    craft.stop_all();
+    craft.flight.craft().run(after);
+    craft.say_go();
+    EXPECT_FALSE(craft.moves_within(3s)) << after.count() << " ns\n" << craft.flight.story().text();
+    craft.say_go();
+    EXPECT_TRUE(craft.moves_within(1s)) << "said again, it lets go";
+  }
+}
+
 TEST(StopsThatStay, WhatIsSaidAfterItLetsGo) {
   for (const bool dies : {false, true}) {
     Stopped craft{crashed_come_back_to(State::Offline), 300ms};

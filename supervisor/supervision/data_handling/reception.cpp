@@ -53,8 +53,11 @@ void Reception::read(Member& member) {
       if (++member.refused < most_refused) return;
     }
     if (!found) give_up(member);
-    if (found && found->flow == Flow::None) member.before_stop = false;
-    if (!found || found->flow == Flow::None) return;
+    if (!found) return;
+    if (found->flow == Flow::None) {
+      if (member.before_stop_until <= craft_.now) member.before_stop_until.reset();
+      return;
+    }
     take(member, found->message);
   }
 }
@@ -89,13 +92,15 @@ void Reception::take(Member& member, const Message& message) {
       return craft_.tell(member.descriptor().name + " tells the end of a telecommand that was told as unknown", from);
     if (!parts_.telemetry.take(from, message.packet)) count_unreadable(from);
   } else if (from_ground) {
-    parts_.telecommands.take(
-        {.packet = message.packet, .origin = Origin::ground(message.link), .before_stop = member.before_stop});
+    parts_.telecommands.take({.packet = message.packet,
+                              .origin = Origin::ground(message.link),
+                              .before_stop = member.before_stop_until.has_value()});
     craft_.remember();
     read_own();  // what it said about that: its own backlog must not overflow in a flood
   } else {
-    parts_.telecommands.take(
-        {.packet = message.packet, .origin = Origin::subsystem(from), .before_stop = member.before_stop});
+    parts_.telecommands.take({.packet = message.packet,
+                              .origin = Origin::subsystem(from),
+                              .before_stop = member.before_stop_until.has_value()});
     read_own();
   }
 }

@@ -80,7 +80,8 @@ void SafeAll::states_follow() {
 }
 
 void SafeAll::what_is_unread_was_said_before() {
-  for (Member& member : craft_.members) member.before_stop = true;
+  for (Member& member : craft_.members)
+    member.before_stop_until = craft_.now + (craft_.is_ground_link(member) ? on_its_way : Duration{0});
 }
 
 void SafeAll::follow() {

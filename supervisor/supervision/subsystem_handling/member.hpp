@@ -51,8 +51,9 @@ class Member {
   /// The guard's count of its fences when it was first started, or let go last: another count, and it was stopped since. Empty: it was
   /// stopped under a supervisor before, or may have been.
   std::optional<std::uint64_t> fences_when_free{0};
-  /// What its channel holds may have been said before a stop that nobody here has heard of (`SafeAll`): until it is empty once.
-  bool before_stop{false};
+  /// What its channel holds may have been said before a stop that nobody here has heard of (`SafeAll`): until it is empty at this time
+  /// or later.
+  std::optional<TimePoint> before_stop_until;
   bool was_started{false};
   /// Its process ends for another version of it, or has: nobody else starts it.
   bool exchanged{false};
