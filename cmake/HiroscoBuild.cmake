@@ -161,13 +161,9 @@ endfunction()
 # Every module of this repository, for what loads them.
 add_custom_target(hirosco_modules)
 
-# ./check builds each test once: with the sanitizers those with these two labels, optimised all others. `flown` is all that tests of
-# real processes need: programs, modules, page, libraries for authors.
-add_custom_target(unit_tests)
-add_custom_target(concurrency_tests)
+# All that tests of real processes need: programs, modules, page, libraries for authors. ./check builds of the tests themselves what those
+# need that it runs (tests/turns.py): with the sanitizers those labelled `unit` or `concurrency`, optimised all others.
 add_custom_target(flown)
-add_custom_target(optimised)
-add_dependencies(optimised flown)
 
 # hirosco_test(NAME SOURCES f_test.cpp... DEPENDS targets... [LABELS unit] [COST seconds] [HEADER file] [SLICED])
 # One GoogleTest executable; ctest runs it once as a whole, which keeps the suite fast. Labels: unit (the default) beside
@@ -205,13 +201,7 @@ function(hirosco_test name)
     add_test(NAME ${name}_whole COMMAND ${name})
     set_tests_properties(${name}_whole PROPERTIES LABELS "${ARG_LABELS};long" ENVIRONMENT HIROSCO_SLICE=whole)
   endif()
-  if(NOT ARG_LABELS MATCHES "unit|concurrency|long")
-    add_dependencies(optimised ${name})
-  endif()
   foreach(label IN LISTS ARG_LABELS)
-    if(TARGET ${label}_tests)
-      add_dependencies(${label}_tests ${name})
-    endif()
     if(label MATCHES "^(endtoend|realtime|fault)$")
       set_tests_properties(${name} PROPERTIES RUN_SERIAL ON)
     endif()
@@ -250,7 +240,6 @@ function(hirosco_library name)
     hirosco_compile_with_headers(${name}_example)
     add_test(NAME ${name}_example COMMAND ${name}_example)
     set_tests_properties(${name}_example PROPERTIES LABELS example)
-    add_dependencies(optimised ${name}_example)
   endif()
 endfunction()
 
