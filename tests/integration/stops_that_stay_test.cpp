@@ -178,15 +178,17 @@ TEST(StopsThatStay, WhatWasSaidBeforeAStopAndIsReadAfterItLetsNobodyMove) {
     }
 }
 
-TEST(StopsThatStay, WhatWasOnItsWayFromGroundLetsNobodyMove) {
-  for (const Duration after : {Duration{0}, Duration{100us}, Duration{1ms}, Duration{5ms}, Duration{200ms}}) {
+TEST(StopsThatStay, WhatLayInTheGroundLinkLetsNobodyMoveHoweverLateItIsHandedOn) {
+  for (const Duration late : {Duration{0}, Duration{1ms}, Duration{20ms}, Duration{400ms}}) {
     Stopped craft{crashed_come_back_to(State::Offline), 300ms};
     ASSERT_TRUE(craft.begins());
     ASSERT_TRUE(craft.alone_and_safe());
-    craft.stop_all();
-    craft.flight.craft().run(after);
+    if (late > Duration{0}) craft.flight.craft().stop("COMMUNICATION", true);  // its loop stands still
     craft.say_go();
-    EXPECT_FALSE(craft.moves_within(3s)) << after.count() << " ns\n" << craft.flight.story().text();
+    craft.stop_all();
+    craft.flight.craft().run(late);
+    craft.flight.craft().stop("COMMUNICATION", false);
+    EXPECT_FALSE(craft.moves_within(3s)) << late.count() << " ns\n" << craft.flight.story().text();
     craft.say_go();
     EXPECT_TRUE(craft.moves_within(1s)) << "said again, it lets go";
   }

@@ -55,7 +55,9 @@ void Reception::read(Member& member) {
     if (!found) give_up(member);
     if (!found) return;
     if (found->flow == Flow::None) {
-      if (member.before_stop_until <= craft_.now) member.before_stop_until.reset();
+      constexpr std::uint64_t one_under_way_and_a_whole_one = 2;
+      if (member.before_stop && member.service_steps() - *member.before_stop >= one_under_way_and_a_whole_one)
+        member.before_stop.reset();
       return;
     }
     take(member, found->message);
@@ -94,13 +96,12 @@ void Reception::take(Member& member, const Message& message) {
   } else if (from_ground) {
     parts_.telecommands.take({.packet = message.packet,
                               .origin = Origin::ground(message.link),
-                              .before_stop = member.before_stop_until.has_value()});
+                              .before_stop = member.before_stop.has_value()});
     craft_.remember();
     read_own();  // what it said about that: its own backlog must not overflow in a flood
   } else {
-    parts_.telecommands.take({.packet = message.packet,
-                              .origin = Origin::subsystem(from),
-                              .before_stop = member.before_stop_until.has_value()});
+    parts_.telecommands.take(
+        {.packet = message.packet, .origin = Origin::subsystem(from), .before_stop = member.before_stop.has_value()});
     read_own();
   }
 }

@@ -80,8 +80,7 @@ void SafeAll::states_follow() {
 }
 
 void SafeAll::what_is_unread_was_said_before() {
-  for (Member& member : craft_.members)
-    member.before_stop_until = craft_.now + (craft_.is_ground_link(member) ? on_its_way : Duration{0});
+  for (Member& member : craft_.members) member.before_stop = member.service_steps();
 }
 
 void SafeAll::follow() {

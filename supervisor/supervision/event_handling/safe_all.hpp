@@ -24,17 +24,13 @@ class SafeAll final : public Remembered {
   SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, std::vector<Undertaking*> under_way)
       : craft_{craft}, own_{own}, desk_{desk}, under_way_{std::move(under_way)} {}
 
-  /// What comes from ground so soon after a stop was sent by who had not heard of it: it lay in the ground link and before it. Less
-  /// than anybody takes to answer one.
-  static constexpr Duration on_its_way = 250ms;
-
   void provide();
   /// SAFE_ALL, carried out where it is received.
   void carry_out(const pus::Request& request);
   /// A signal or the local socket asked for a stop, at some time before: what has not been read yet may have been said before it.
   void asked();
-  /// Nothing of it lets anybody move, until each channel was empty once, and what came from ground not for `on_its_way` besides. Of a stop
-  /// whose place among the telecommands nobody knows.
+  /// Nothing of it lets anybody move, nor of what lies in a ground link or member that has not handed it on (`Member::before_stop`). Of a
+  /// stop whose place among the telecommands nobody knows.
   void what_is_unread_was_said_before();
   /// Everything was stopped already: nothing starts it again, and the states follow.
   void after_stop(std::string_view why);

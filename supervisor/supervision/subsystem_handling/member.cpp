@@ -21,6 +21,8 @@ std::optional<MemberStatistics> Member::statistics() const noexcept {
 
 std::uint64_t Member::stopped_at_cycle() const noexcept { return alive() ? launched_.port->stopped_at_cycle() : 0; }
 
+std::uint64_t Member::service_steps() const noexcept { return alive() ? launched_.port->service_steps() : 0; }
+
 void Member::enter_mode(std::uint32_t epoch) noexcept {
   if (alive()) launched_.port->enter_mode(epoch);
 }

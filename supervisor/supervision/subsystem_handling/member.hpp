@@ -39,6 +39,7 @@ class Member {
     return alive() ? launched_.port->latencies(place) : MemberLatencies{};
   }
   [[nodiscard]] std::uint64_t stopped_at_cycle() const noexcept;
+  [[nodiscard]] std::uint64_t service_steps() const noexcept;
   void enter_mode(std::uint32_t epoch) noexcept;
   /// Once in each step of the supervisor.
   void beat(std::uint64_t heartbeat, TimePoint now);
@@ -51,9 +52,9 @@ class Member {
   /// The guard's count of its fences when it was first started, or let go last: another count, and it was stopped since. Empty: it was
   /// stopped under a supervisor before, or may have been.
   std::optional<std::uint64_t> fences_when_free{0};
-  /// What its channel holds may have been said before a stop that nobody here has heard of (`SafeAll`): until it is empty at this time
-  /// or later.
-  std::optional<TimePoint> before_stop_until;
+  /// What it says may have been said before a stop that nobody here has heard of (`SafeAll`), when its service loop had begun
+  /// so many steps: until its channel is empty after two more, in the second of which it handed on all that had come to it.
+  std::optional<std::uint64_t> before_stop;
   bool was_started{false};
   /// Its process ends for another version of it, or has: nobody else starts it.
   bool exchanged{false};
