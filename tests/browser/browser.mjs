@@ -77,8 +77,10 @@ export async function count_clicks(page) {
   return () => page.evaluate(() => window.clicked);
 }
 
-/// Whether what is in the window's panels stands where it stood: nobody had to scroll.
-export const unscrolled = (page) => page.evaluate(() => [document.scrollingElement, ...document.querySelectorAll('main *')].every((node) => node.scrollTop === 0 || node.matches('ol, ul, table')));
+/// What in the window and its panels does not stand where it stood, as somebody had to scroll.
+export const scrolled = (page) => page.evaluate(() => [document.scrollingElement, ...document.querySelectorAll('main *')]
+    .filter((node) => node.scrollTop !== 0 && !node.matches('ol, ul, table'))
+    .map((node) => `${node.tagName}.${node.className} by ${node.scrollTop} of ${node.scrollHeight - node.clientHeight}: ${node.innerText}`));
 
 /// A line to the socket of a simulated device, by the gateway.
 export const inject = (page, device, line) => page.evaluate(async ([one, words]) => {
