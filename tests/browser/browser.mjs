@@ -77,10 +77,17 @@ export async function count_clicks(page) {
   return () => page.evaluate(() => window.clicked);
 }
 
-/// What in the window and its panels does not stand where it stood, as somebody had to scroll.
-export const scrolled = (page) => page.evaluate(() => [document.scrollingElement, ...document.querySelectorAll('main *')]
-    .filter((node) => node.scrollTop !== 0 && !node.matches('ol, ul, table'))
-    .map((node) => `${node.tagName}.${node.className} by ${node.scrollTop} of ${node.scrollHeight - node.clientHeight}: ${node.innerText}`));
+/// Clicks where `selector` is seen, as a hand does: nothing is scrolled for it, and what lies under something else or outside its panel is
+/// not clicked.
+export async function click_where_seen(page, selector, options) {
+  const place = await holds(page, (what) => {
+    const box = document.querySelector(what).getBoundingClientRect(), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    const [before, seen] = [window.place, document.elementFromPoint(x, y)?.closest(what)];
+    window.place = `${what} ${x} ${y}`;
+    return seen && before === window.place && [x, y];
+  }, selector);
+  await page.mouse.click(...await place.jsonValue(), options);
+}
 
 /// A line to the socket of a simulated device, by the gateway.
 export const inject = (page, device, line) => page.evaluate(async ([one, words]) => {

@@ -5,7 +5,7 @@
 // move the arm, unplug the joystick, read why, replay.
 import assert from 'node:assert/strict';
 import {after, before, describe, it} from 'node:test';
-import {at_view, bring_up, count_clicks, go, holds, open_browser, open_page, small, scrolled, until} from './browser.mjs';
+import {at_view, bring_up, click_where_seen, count_clicks, go, holds, open_browser, open_page, small, until} from './browser.mjs';
 import {fly} from './flight.mjs';
 
 describe('the page on a real flight', () => {
@@ -138,14 +138,13 @@ describe('the page on a real flight', () => {
     await page.waitForSelector('.quick [data-test=field-Q1]');
     const clicks = await count_clicks(page), fields = {Q1: '-1', Q2: '1.9', DURATION: '1'};
     for (const [name, text] of Object.entries(fields)) {
-      await page.click(`.quick [data-test=field-${name}]`, {clickCount: 3});
+      await click_where_seen(page, `.quick [data-test=field-${name}]`, {clickCount: 3});
       await page.keyboard.type(text);
     }
     await page.waitForSelector('[data-test=permission].yes');
     const typed = await clicks(), began = performance.now();
-    await page.click('[data-test=send]');
+    await click_where_seen(page, '[data-test=send]');
     assert.equal(await clicks(), typed + 1);
-    assert.deepEqual(await scrolled(page), []);
     await page.waitForSelector('[data-test=verdict] .accepted');
     console.log(`measured: click to acceptance on the screen ${(performance.now() - began).toFixed(0)} ms`);
     await page.waitForSelector('[data-test=verdict].completed');
