@@ -19,12 +19,12 @@
 #include <new>
 
 #include "bench/figures.hpp"
-#include "hirosco/data_transfer/control/socket_channel.hpp"
+#include "hirosco/data_transfer/channel/socket_channel.hpp"
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/pus/packet/packet.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
 #include "supervisor/platform/storage/log_readings.hpp"

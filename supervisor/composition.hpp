@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/log_watch.hpp"
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"

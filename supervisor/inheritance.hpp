@@ -10,8 +10,8 @@
 #include "supervisor/keeper/kept.hpp"
 #include "supervisor/keeper/kept_endnodes.hpp"
 #include "supervisor/keeper/kept_store.hpp"
-#include "supervisor/supervision/journal.hpp"
-#include "supervisor/supervision/texts_in_force.hpp"
+#include "supervisor/supervision/succession/journal.hpp"
+#include "supervisor/supervision/succession/texts_in_force.hpp"
 
 namespace hirosco::supervisor {
 

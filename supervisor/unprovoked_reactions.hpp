@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hirosco/descriptor/model/mission.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "supervisor/supervisor.hpp"
 
 namespace hirosco::supervisor {

@@ -9,7 +9,7 @@ may = {"hirosco": ["hirosco"], "robotics": ["hirosco", "robotics"], "subsystems"
 shells = ("hirosco/utilities/os/", "hirosco/data_transfer/device/datagram_flow", "hirosco/data_transfer/device/shared_memory_flow",
           "hirosco/data_transfer/device/device_socket", "hirosco/data_transfer/device/framed_stream", "hirosco/data_transfer/device/message_queue_flow",
           "hirosco/data_transfer/device/serial_flow", "hirosco/data_transfer/device/tcp_flow",
-          "hirosco/data_transfer/control/socket_channel", "hirosco/data_transfer/control/stream_channel", "hirosco/data_transfer/link/internet_address", "hirosco/data_transfer/link/socket_address",
+          "hirosco/data_transfer/channel/socket_channel", "hirosco/data_transfer/channel/stream_channel", "hirosco/data_transfer/link/internet_address", "hirosco/data_transfer/socket_address",
           "hirosco/data_transfer/link/udp_link",
           "hirosco/data_transfer/memory/sealed_memory", "supervisor/guard/guard_shell", "supervisor/flight_shell.cpp", "supervisor/keeper/", "supervisor/platform/", "tools/",
           "tests/", "bench/", "simulation/devices/")
@@ -19,7 +19,7 @@ system = re.compile(r"(sys|net|netinet|arpa|linux)/|(unistd|fcntl|pthread|poll|s
 include = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.M)
 def rank(path):
     return libraries.index(name) if (name := pathlib.Path(path).parts[1].split(".")[0]) in libraries else -1
-station = ["archive", "model", "link", "commands", "replay", "people", "api", "shell"]  # of ground/, lowest first
+station = ["archive", "model", "downlink", "commands", "replay", "people", "api", "shell"]  # of ground/, lowest first
 generic = ["author", "pages", "cycle", "service_loop", "process"]  # of hirosco/subsystem/, lowest first; example and testing/ know all
 def height(path):
     name = pathlib.Path(path).parts[2]
@@ -38,7 +38,7 @@ def wrong(path, to):
         if level(to) > level(path): return "a higher folder of the ground station"
     if "/" not in to or target not in [*may, "tools", "tests", "bench", "missions"]: return False  # not ours
     if target == "missions" and top not in ("missions", "tests"): return "a mission"
-    if path.startswith(("simulation/spacecraft/", "simulation/scenarios/", "simulation/campaign/")): return target == "robotics" and "the on-board model of a robot"  # assemble and fly all parts
+    if path.startswith(("simulation/spacecraft/", "simulation/figures/", "simulation/campaign/")): return target == "robotics" and "the on-board model of a robot"  # assemble and fly all parts
     same = path.split("/")[:2] == to.split("/")[:2]
     if top in may and target not in may[top] and not same: return "another part"
     if top == "robotics" and path.startswith("robotics/dynamics/") and to.startswith(("robotics/urdf/", "robotics/motion/", "robotics/shapes/")): return "a higher folder of robotics"
@@ -47,14 +47,14 @@ def wrong(path, to):
     if path.startswith("hirosco/subsystem/") and to.startswith("hirosco/subsystem/") and not path.endswith("_test.cpp"):
         if height(to) > height(path): return "a higher folder of the generic subsystem"
     if top == "ground" and to.startswith("hirosco/subsystem"): return "the generic subsystem"
-    if top in may and to.startswith(("simulation/spacecraft", "simulation/scenarios")) and not same: return "the simulated spacecraft"
+    if top in may and to.startswith(("simulation/spacecraft", "simulation/figures")) and not same: return "the simulated spacecraft"
     return "/detail/" in to and not path.startswith(to.split("/detail/")[0] + "/") and "a private header"
 planted = ["hirosco/xml/a.hpp hirosco/pus/b.hpp", "simulation/devices/a/a.cpp robotics/dynamics/b.hpp", "simulation/spacecraft/a.cpp robotics/urdf/b.hpp",
            "robotics/dynamics/a.cpp robotics/urdf/b.hpp", "hirosco/pus/a.cpp robotics/urdf/b.hpp", "robotics/urdf/a.cpp subsystems/b/b.hpp", "subsystems/a/a.cpp subsystems/b/b.hpp", "ground/a.cpp supervisor/b.hpp",
            "ground/a.cpp hirosco/subsystem/b.hpp", "hirosco/pus/a.cpp sys/mman.h", "supervisor/a.cpp unistd.h",
            "hirosco/pus/a.cpp hirosco/parameter/detail/b.hpp", "simulation/world/a.cpp simulation/spacecraft/b.hpp",
            "subsystems/a/a.cpp supervisor/b.hpp", "hirosco/pus/a.cpp supervisor/b.hpp",
-           "simulation/scenarios/a.cpp missions/b/b.hpp", "tools/hirosco/a.cpp missions/b/b.hpp",
+           "simulation/figures/a.cpp missions/b/b.hpp", "tools/hirosco/a.cpp missions/b/b.hpp",
            "ground/api/a.cpp boost/asio.hpp", "tools/ground/a.cpp boost/asio.hpp", "ground/model/a.cpp ground/api/b.hpp",
            "ground/api/a.cpp ground/shell/b.hpp", "hirosco/subsystem/author/a.hpp hirosco/subsystem/service_loop/b.hpp", "ground/clients/python/a.cpp ground/replay/b.hpp"]
 missed = [case for case in planted if not wrong(*case.split())]

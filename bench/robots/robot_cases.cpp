@@ -17,7 +17,7 @@
 #include "hirosco/pus/words/describe.hpp"
 #include "robotics/motion/inverse_kinematics.hpp"
 #include "robotics/urdf/named_robot.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 #include "tools/new_folder/postures.hpp"
 #include "tools/new_folder/robot.hpp"
 

@@ -9,7 +9,7 @@
 #include "ground/commands/foreign_command.hpp"
 #include "ground/model/json.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 
 namespace hirosco::ground {
 namespace {

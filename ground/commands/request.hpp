@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "ground/link/way.hpp"
+#include "ground/commands/way.hpp"
 #include "ground/model/answered.hpp"
 #include "ground/model/catalogue.hpp"
 

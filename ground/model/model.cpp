@@ -9,7 +9,7 @@
 
 #include "ground/model/json.hpp"
 #include "hirosco/parameter/number.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 
 namespace hirosco::ground {
 namespace {

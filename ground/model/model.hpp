@@ -12,7 +12,7 @@
 #include "ground/archive/archive.hpp"
 #include "ground/model/catalogue.hpp"
 #include "hirosco/pus/packet/packet.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/pus/words/describe.hpp"
 
 /// The spacecraft as its packets tell it: newest values, mode, states, links. The live view and every replay have one

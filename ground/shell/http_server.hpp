@@ -9,7 +9,7 @@
 #include <string>
 
 #include "ground/api/application.hpp"
-#include "ground/link/way.hpp"
+#include "ground/commands/way.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"

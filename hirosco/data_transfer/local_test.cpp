@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/control/channel_pair.hpp"
-#include "hirosco/data_transfer/control/testing/channel_conformance.hpp"
+#include "hirosco/data_transfer/channel/channel_pair.hpp"
+#include "hirosco/data_transfer/channel/testing/channel_conformance.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/device/testing/flow_conformance.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"

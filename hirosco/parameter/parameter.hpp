@@ -11,7 +11,7 @@
 #include <type_traits>
 
 #include "hirosco/parameter/detail/sequence_lock.hpp"
-#include "hirosco/parameter/layout.hpp"
+#include "hirosco/parameter/native_layout.hpp"
 #include "hirosco/utilities/octets.hpp"
 
 namespace hirosco {

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "hirosco/pus/packet/packet.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/utilities/crc32.hpp"
 #include "hirosco/utilities/octets.hpp"
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "hirosco/pus/packet/packet.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/utilities/crc16.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "simulation/campaign/plan.hpp"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/channel/channel.hpp"
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/device/device_frame.hpp"
 

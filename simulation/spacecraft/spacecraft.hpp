@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "hirosco/data_transfer/control/channel_pair.hpp"
+#include "hirosco/data_transfer/channel/channel_pair.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/descriptor/model/mission.hpp"

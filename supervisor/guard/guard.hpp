@@ -20,8 +20,7 @@
 /// second inhibit and the power switch of every device that has one, watches that cycles and service loops move, takes the processor from one
 /// that spins, and ends whoever does not come back. It needs no telemetry, queue, disk, mode or cycle, and it runs in a
 /// thread of its own above all cycles; so it stops the craft although the rest of the supervisor stands still.
-/// What else stops one: in its own cycle the reasons of `hirosco/subsystem/pages/pages.hpp` (Inhibition), carried out by `write_outputs()` of
-/// `hirosco/subsystem/cycle/actuator_gate.cpp`; in the device its own watchdog (docs/adr/0025). All ways: docs/safety/hazards.csv.
+/// What else stops one, all ways with their files: docs/safety/stops.md.
 namespace hirosco::supervisor {
 
 /// How one actuator, or a member without any, answered the stop of everything.

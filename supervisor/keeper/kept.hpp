@@ -21,9 +21,9 @@ inline constexpr int keeper_descriptor = 6;
 inline constexpr int keeper_page_descriptor = 7;
 /// Socket on which the supervisor hands over what is to be kept.
 inline constexpr int keeper_store_descriptor = 8;
-/// Memory of the journal (supervision/journal.hpp), of `journal_octets`.
+/// Memory of the journal (supervision/succession/journal.hpp), of `journal_octets`.
 inline constexpr int keeper_journal_descriptor = 9;
-/// Memory of the texts by which the mission flies (supervision/texts_in_force.hpp), of `texts_octets`.
+/// Memory of the texts by which the mission flies (supervision/succession/texts_in_force.hpp), of `texts_octets`.
 inline constexpr int keeper_texts_descriptor = 10;
 /// From here on, what the supervisor before had handed over: slot by slot, a descriptor for each role.
 inline constexpr int first_kept_descriptor = 16;

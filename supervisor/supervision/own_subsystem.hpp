@@ -7,11 +7,11 @@
 #include <memory>
 #include <string_view>
 
-#include "hirosco/data_transfer/control/channel_pair.hpp"
+#include "hirosco/data_transfer/channel/channel_pair.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "supervisor/platform/launch/member_port.hpp"
-#include "supervisor/supervision/journal.hpp"
+#include "supervisor/supervision/succession/journal.hpp"
 
 namespace hirosco::supervisor {
 

@@ -208,12 +208,12 @@ DEFECTS = [
            "if (at == State::PostOperational && configuration_ != nullptr && !PLANTED) {",
            "subsystem_test", "FailedPostOperational.GivesBackConfigurationPlanAndFlowsWhenTheCycleHasComeToRest"),
     # Arguments were narrowed to the handler's types without a word.
-    Defect("narrowed arguments", "hirosco/subsystem/service_loop/introduction.cpp",
+    Defect("narrowed arguments", "hirosco/subsystem/service_loop/software_init.cpp",
            "handler.takes, found->arguments))\n    mistake(std::move(problem));",
            "handler.takes, found->arguments))\n    if (!PLANTED) mistake(std::move(problem));",
            "subsystem_test", "AuthorsMistakes.AHandlerThatWouldNarrowAnArgumentIsNotTaken"),
     # What was wrong with the parameters of a descriptor that is built in code was told to a member not yet made.
-    Defect("twice in a dictionary", "hirosco/subsystem/service_loop/introduction.cpp", "if (!dictionary_problem_.empty()) mistake(",
+    Defect("twice in a dictionary", "hirosco/subsystem/service_loop/software_init.cpp", "if (!dictionary_problem_.empty()) mistake(",
            "if (!dictionary_problem_.empty() && !PLANTED) mistake(",
            "subsystem_test", "AuthorsMistakes.OfADescriptorBuiltInCodeAreToldAndCrashNothing"),
     # An author's reason became "node failed".

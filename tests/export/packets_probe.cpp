@@ -8,7 +8,7 @@
 #include <exception>
 
 #include "hirosco/pus/requests.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 // Flies a mission on virtual time, asks it for reports of every kind that it has, and prints each packet that it routes to the ground, in
 // hexadecimal, a line each: of rokviss what it has to tell, of others every request that has a name.

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "simulation/scenarios/expected.hpp"
+#include "simulation/figures/expected.hpp"
 
 namespace hirosco::independent {
 namespace {

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "simulation/scenarios/expected.hpp"
+#include "simulation/figures/expected.hpp"
 #include "tests/figures/rokviss_loop.hpp"
 
 namespace hirosco::simulation {

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/control/stream_frame.hpp"
+#include "hirosco/data_transfer/channel/stream_frame.hpp"
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/data_transfer/device/enable_frame.hpp"
 #include "hirosco/data_transfer/device/power_frame.hpp"

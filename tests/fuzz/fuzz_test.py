@@ -13,7 +13,7 @@ FLAGS = ["-std=c++23", "-O1", "-g1", "-fsanitize=fuzzer,address,undefined", "-fn
 LONGEST_INPUT = 400
 MOST_RUNS_WITH_A_DEFECT = 2_000_000
 ARGUMENTS = "hirosco/pus/service/arguments.cpp"
-FRAMES = "hirosco/data_transfer/control/stream_frame.cpp"
+FRAMES = "hirosco/data_transfer/channel/stream_frame.cpp"
 DATAGRAMS = "hirosco/data_transfer/link/link_datagram.cpp"
 STREAMS = "hirosco/data_transfer/device/stream_framing.cpp"
 DICTIONARY = "hirosco/parameter/dictionary.cpp"
@@ -38,7 +38,7 @@ TARGETS = {"arguments": (
          ("hirosco/pus/st08_function/function_service.cpp", " && taken_[id - 1].empty();", ";")}),
     "parameters": (
     [DICTIONARY, PARAMETERS, "hirosco/pus/st01_verification/verification.cpp", "hirosco/pus/packet/packet.cpp",
-     "hirosco/pus/packet/cuc.cpp", "hirosco/parameter/exact_number.cpp", "hirosco/parameter/layout.cpp",
+     "hirosco/pus/packet/cuc.cpp", "hirosco/parameter/exact_number.cpp", "hirosco/parameter/native_layout.cpp",
      "hirosco/parameter/parameter.cpp"],
     {"a switch may be neither on nor off":
          (DICTIONARY, "return octet == std::byte{0} || octet == std::byte{1};", "return octet != std::byte{0xFF};"),

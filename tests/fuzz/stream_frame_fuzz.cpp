@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/data_transfer/control/stream_frame.hpp"
+#include "hirosco/data_transfer/channel/stream_frame.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -17,7 +17,7 @@
 #include "ground/archive/archive.hpp"
 #include "ground/model/catalogue.hpp"
 #include "hirosco/pus/packet/packet.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 /// The ground station beside the whole spacecraft on virtual time: everything but the sockets.
 namespace hirosco::testing {

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 /// The imager of this folder on virtual time, judged at its device and in the supervisor's story.
 namespace hirosco {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 /// Flights of the repository's missions, and packets that no decent ground would send.
 namespace hirosco::testing {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hirosco/utilities/testing/slice.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 #include "tests/integration/flight.hpp"
 
 /// What the loss of the joystick's set does to the robot is what the mission says of its link (docs/adr/0077).

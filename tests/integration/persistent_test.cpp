@@ -4,7 +4,7 @@
 #include <set>
 
 #include "hirosco/parameter/type.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 #include "tests/integration/flight.hpp"
 
 /// What telecommands set of persistent parameters outlives process and flight (docs/adr/0087): rokviss, whose manipulator has one.

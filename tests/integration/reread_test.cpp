@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "tests/integration/flight.hpp"
 

@@ -5,7 +5,7 @@
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/parameter/type.hpp"
 #include "hirosco/utilities/testing/slice.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 #include "simulation/world/random.hpp"
 #include "tests/integration/flight.hpp"
 

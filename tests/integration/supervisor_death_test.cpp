@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hirosco/utilities/testing/slice.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 #include "tests/integration/flight.hpp"
 
 /// The supervisor dies, before or after each single message that it sends or takes, and another one goes on (docs/adr/0093): rokviss,

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 #include "supervisor/supervision/data_handling/permission_table.hpp"
 
 /// The catalogue of this folder on virtual time: its loop, the services of its configurations, and going from one to another.

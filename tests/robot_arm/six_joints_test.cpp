@@ -12,7 +12,7 @@
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "robotics/dynamics/dynamics.hpp"
 #include "robotics/urdf/robot.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 /// The mission six_joints on virtual time, judged by what its world tells, which shares nothing with the arm but a file.
 namespace hirosco {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 /// The mission arm_and_fingers on virtual time: two subsystems and two devices, one robot in one world.
 namespace hirosco {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/pus/packet/failure_code.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 /// The mission two_fingers on virtual time, judged by what its world tells, which shares nothing with the gripper but a file.
 namespace hirosco {

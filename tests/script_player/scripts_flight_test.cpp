@@ -6,7 +6,7 @@
 #include <set>
 
 #include "hirosco/pus/packet/failure_code.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 /// Scripts on virtual time: the player is judged like everybody who asks.
 namespace hirosco {

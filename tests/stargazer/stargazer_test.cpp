@@ -7,7 +7,7 @@
 
 #include "simulation/devices/imager/camera.hpp"
 #include "simulation/devices/module.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 /// The stock imager in whole spacecraft on virtual time: an image to ground in parts, images to who is on board, and what eclipse and faults do.
 namespace hirosco {

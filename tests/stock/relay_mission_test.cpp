@@ -9,7 +9,7 @@
 
 #include "simulation/devices/joystick/joystick_device.hpp"
 #include "simulation/devices/robot/robot_device.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 /// The mission relay.xml on virtual time: an operator whose only way to the arm is the ground link's relay.
 namespace hirosco {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 /// Ready subsystems in missions that are not theirs, on virtual time and judged by what their worlds tell.
 namespace hirosco {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/pus/packet/failure_code.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 /// The mission of this folder on virtual time, judged by what its world tells.
 namespace hirosco {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 #include "supervisor/supervision/event_handling/planned_reactions.hpp"
 #include "tools/hirosco/commands.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/pus/words/describe.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/requests.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/pus/words/describe.hpp"
 #include "hirosco/pus/words/given_words.hpp"
 #include "hirosco/utilities/lower_case.hpp"

@@ -15,7 +15,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "hirosco/data_transfer/device/device_memory.hpp"
+#include "hirosco/data_transfer/device/device_memory_name.hpp"
 
 // Invariants:
 //  1. A segment of zeroes is a valid one, so it does not matter who makes it or how far he came.

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "hirosco/data_transfer/link/internet_address.hpp"
-#include "hirosco/data_transfer/link/socket_address.hpp"
+#include "hirosco/data_transfer/socket_address.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 
 namespace hirosco {

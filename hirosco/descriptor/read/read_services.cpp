@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "hirosco/data_transfer/layout.hpp"
+#include "hirosco/data_transfer/wire_layout.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "hirosco/data_transfer/layout.hpp"
+#include "hirosco/data_transfer/wire_layout.hpp"
 #include "hirosco/pus/st128_realtime_link/detail/handshake_items.hpp"
 
 namespace hirosco::pus::st128 {

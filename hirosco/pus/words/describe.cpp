@@ -13,7 +13,7 @@
 #include "hirosco/parameter/text.hpp"
 #include "hirosco/pus/packet/cuc.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/pus/standard_services.hpp"
 #include "hirosco/utilities/utf8.hpp"
 

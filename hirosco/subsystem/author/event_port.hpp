@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "hirosco/parameter/layout.hpp"
+#include "hirosco/parameter/native_layout.hpp"
 #include "hirosco/utilities/octets.hpp"
 
 namespace hirosco {

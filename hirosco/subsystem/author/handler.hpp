@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "hirosco/parameter/layout.hpp"
+#include "hirosco/parameter/native_layout.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/service/arguments.hpp"
 #include "hirosco/pus/service/service.hpp"

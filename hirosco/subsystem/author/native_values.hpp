@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "hirosco/parameter/layout.hpp"
+#include "hirosco/parameter/native_layout.hpp"
 #include "hirosco/utilities/octets.hpp"
 
 namespace hirosco {

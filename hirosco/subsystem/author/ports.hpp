@@ -13,7 +13,7 @@
 #include "hirosco/data_transfer/device/frame_protocol.hpp"
 #include "hirosco/data_transfer/link/link.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
-#include "hirosco/parameter/layout.hpp"
+#include "hirosco/parameter/native_layout.hpp"
 #include "hirosco/utilities/octets.hpp"
 
 /// The two things a control law reads and writes besides parameters: real-time links and devices. A subsystem's author

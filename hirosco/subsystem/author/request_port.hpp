@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "hirosco/parameter/layout.hpp"
+#include "hirosco/parameter/native_layout.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/subsystem/author/native_values.hpp"
 #include "hirosco/subsystem/author/typed_values.hpp"

@@ -12,7 +12,7 @@
 #include <tuple>
 #include <utility>
 
-#include "hirosco/parameter/layout.hpp"
+#include "hirosco/parameter/native_layout.hpp"
 #include "hirosco/subsystem/author/native_values.hpp"
 #include "hirosco/subsystem/author/request_port.hpp"
 #include "hirosco/utilities/octets.hpp"

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "hirosco/parameter/layout.hpp"
+#include "hirosco/parameter/native_layout.hpp"
 #include "hirosco/pus/service/arguments.hpp"
 
 /// The C++ types of what a descriptor declares as typed values: arguments of functions, of requests to others and to own

@@ -7,8 +7,8 @@
 #include "hirosco/subsystem/cycle/cycle.hpp"
 
 /// The cycle's part in stopping an actuator: what it looks at before each output (the supervisor's stop, its permission and its
-/// heartbeat; what is lost stands in `lost_inputs.cpp`, all reasons are in `pages/pages.hpp`, Inhibition), and what an output is while it is inhibited. What stops one that does not
-/// obey is the guard's: `supervisor/guard/guard.hpp`.
+/// heartbeat; what is lost stands in `lost_inputs.cpp`, all reasons are in `pages/inhibition.hpp`), and what an output is while it is inhibited. What stops one that does not
+/// obey is the guard's: `supervisor/guard/guard.hpp`. Every way: docs/safety/stops.md.
 namespace hirosco {
 
 void CycleLoop::take_permit() noexcept {

@@ -10,7 +10,7 @@
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/device/device_frame.hpp"
-#include "hirosco/data_transfer/layout.hpp"
+#include "hirosco/data_transfer/wire_layout.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/resource/quota.hpp"

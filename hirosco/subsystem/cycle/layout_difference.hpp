@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hirosco/descriptor/model/subsystem.hpp"
-#include "hirosco/parameter/layout.hpp"
+#include "hirosco/parameter/native_layout.hpp"
 
 namespace hirosco {
 

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "hirosco/data_transfer/layout.hpp"
 #include "hirosco/data_transfer/link/link.hpp"
+#include "hirosco/data_transfer/wire_layout.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/layout.hpp"
+#include "hirosco/data_transfer/wire_layout.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/parameter.hpp"
 

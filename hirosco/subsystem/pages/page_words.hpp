@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "hirosco/data_transfer/control/stream_channel.hpp"
+#include "hirosco/data_transfer/channel/stream_channel.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 
 /// How the two pages of a member get across where they are not shared: each side has both, the words of one are told and

@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "hirosco/pus/packet/packet_counters.hpp"
+#include "hirosco/subsystem/pages/inhibition.hpp"
 #include "hirosco/utilities/time.hpp"
 
 /// The two pages of shared memory between a subsystem and the supervisor (decision 6). Both sides check magic and
@@ -20,18 +21,6 @@ namespace hirosco {
 
 inline constexpr std::uint32_t page_magic = 0x48495243;  // "HIRC"
 inline constexpr std::uint32_t page_version = 6;
-
-/// Why the framework inhibits the actuators of a subsystem; bits of VitalPage::inhibited.
-enum Inhibition : std::uint32_t {
-  inhibited_by_stop = 1,  ///< stop flag of the permit page, or another epoch
-  inhibited_by_link = 2,  ///< a required link is stale or its producer reports a fault
-  inhibited_by_device = 4,  ///< a device is silent
-  inhibited_by_author = 8,  ///< the subsystem itself (a limit)
-  inhibited_by_failure = 16,  ///< a state's node failed, or its output jumped at a bumpless change
-  inhibited_by_supervisor = 32,  ///< the supervisor is gone
-  inhibited_while_awaited =
-      64,  ///< a device or its fall-back has not answered yet, a slower producer has sent no good sample yet; passes by itself
-};
 
 /// A real-time link as its consumer sees it, since the link was made.
 struct IncomingLink {

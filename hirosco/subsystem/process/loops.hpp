@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/channel/channel.hpp"
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "hirosco/utilities/os/semaphore.hpp"
 #include "hirosco/utilities/os/thread.hpp"

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "hirosco/data_transfer/control/socket_channel.hpp"
+#include "hirosco/data_transfer/channel/socket_channel.hpp"
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/descriptor/model/mission.hpp"

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/control/socket_channel.hpp"
+#include "hirosco/data_transfer/channel/socket_channel.hpp"
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/channel/channel.hpp"
 #include "hirosco/resource/block_pools.hpp"
 
 namespace hirosco {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/control/channel_pair.hpp"
+#include "hirosco/data_transfer/channel/channel_pair.hpp"
 
 namespace hirosco {
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/channel/channel.hpp"
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/descriptor/read/read.hpp"

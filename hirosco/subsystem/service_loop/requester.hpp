@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/channel/channel.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/service/arguments.hpp"

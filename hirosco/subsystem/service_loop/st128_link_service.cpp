@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/channel/channel.hpp"
 
 namespace hirosco {
 

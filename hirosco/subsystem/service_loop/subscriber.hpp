@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/channel/channel.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/packet/packet.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/subsystem/author/subscription_port.hpp"
 #include "hirosco/utilities/time.hpp"
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/data_transfer/control/channel_pair.hpp"
+#include "hirosco/data_transfer/channel/channel_pair.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/link/latest_link.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
@@ -115,7 +115,7 @@ class Rig {
   /// A lost device or link does not change it: its actuators are inhibited, the supervisor hears of that (`raised`) and acts by the mission's
   /// plans; here that is the test's part. So a test of a loss looks at inhibited().
   [[nodiscard]] State state() const { return subsystem.state(); }
-  /// Why no output reaches an actuator, a bit for each reason (Inhibition of pages.hpp); 0: it does, in Operational.
+  /// Why no output reaches an actuator, a bit for each reason (Inhibition); 0: it does, in Operational.
   [[nodiscard]] std::uint32_t inhibited() const { return vital.inhibited.load(); }
 
   // --- a partner's end of a link ------------------------------------------------------------------------------------

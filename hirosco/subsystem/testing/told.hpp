@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/channel/channel.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 
 namespace hirosco::testing {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "missions/rokviss/independent/coupled_loop.hpp"
-#include "simulation/scenarios/plot.hpp"
+#include "simulation/figures/plot.hpp"
 
 /// What the independent loop (missions/rokviss/independent) makes of the same run, drawn beside what the craft did.
 namespace hirosco::simulation {

@@ -10,7 +10,7 @@
 
 #include "simulation/devices/joystick/joystick_device.hpp"
 #include "simulation/devices/robot/robot_device.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 namespace hirosco::simulation {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "hirosco/utilities/time.hpp"
-#include "simulation/scenarios/report_page.hpp"
+#include "simulation/figures/report_page.hpp"
 
 namespace hirosco::rokviss {
 

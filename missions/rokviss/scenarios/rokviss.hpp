@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "missions/rokviss/scenarios/coupled_craft.hpp"
-#include "simulation/scenarios/report_page.hpp"
+#include "simulation/figures/report_page.hpp"
 
 /// The runs of the rokviss mission that its figures are judged by: each flies the whole spacecraft on virtual time.
 namespace hirosco::simulation {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "missions/servicer/scenarios/servicer_craft.hpp"
-#include "simulation/scenarios/report_page.hpp"
+#include "simulation/figures/report_page.hpp"
 
 /// The runs that the servicer is judged by, each in its world: MuJoCo's, which shares nothing with the on-board model but the file.
 namespace hirosco::simulation {

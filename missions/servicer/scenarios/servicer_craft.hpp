@@ -9,7 +9,7 @@
 #include <string>
 
 #include "simulation/mujoco/mujoco_device.hpp"
-#include "simulation/scenarios/flight.hpp"
+#include "simulation/spacecraft/observed_flight.hpp"
 
 namespace hirosco::simulation {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/channel/channel.hpp"
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/subsystem/author/states.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "hirosco/data_transfer/device/device_memory.hpp"
+#include "hirosco/data_transfer/device/device_memory_name.hpp"
 #include "hirosco/data_transfer/device/device_network.hpp"
 #include "hirosco/descriptor/model/setting_files.hpp"
 #include "hirosco/utilities/os/installation.hpp"

@@ -16,7 +16,7 @@
 #include <fstream>
 #include <string>
 
-#include "hirosco/data_transfer/device/device_memory.hpp"
+#include "hirosco/data_transfer/device/device_memory_name.hpp"
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/descriptor/read/brought_files.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"

@@ -19,8 +19,8 @@
 #include <string>
 #include <string_view>
 
-#include "hirosco/data_transfer/control/socket_channel.hpp"
-#include "hirosco/data_transfer/device/device_memory.hpp"
+#include "hirosco/data_transfer/channel/socket_channel.hpp"
+#include "hirosco/data_transfer/device/device_memory_name.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/installation.hpp"

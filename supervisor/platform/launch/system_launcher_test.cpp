@@ -23,7 +23,7 @@
 #include <optional>
 #include <string>
 
-#include "hirosco/data_transfer/control/socket_channel.hpp"
+#include "hirosco/data_transfer/channel/socket_channel.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
 

@@ -8,7 +8,7 @@
 #include <new>
 #include <utility>
 
-#include "hirosco/data_transfer/control/thread_channel.hpp"
+#include "hirosco/data_transfer/channel/thread_channel.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/subsystem/process/loops.hpp"

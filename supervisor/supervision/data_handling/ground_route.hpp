@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/channel/channel.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/time.hpp"
 

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hirosco/data_transfer/control/channel_pair.hpp"
+#include "hirosco/data_transfer/channel/channel_pair.hpp"
 
 namespace hirosco::supervisor {
 namespace {

@@ -8,7 +8,7 @@
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/data_handling/telemetry.hpp"
 #include "supervisor/supervision/data_handling/unanswered.hpp"
-#include "supervisor/supervision/succession.hpp"
+#include "supervisor/supervision/succession/succession.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "hirosco/pus/service/service.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/deliveries.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"

@@ -4,7 +4,7 @@
 
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/service/service.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 
 /// TM[129,3] of the supervisor: a telecommand that it has received from a ground, the whole packet, to every ground.
 /// Operators so see each other's telecommands by name and arguments; reports of service 1 carry a request id alone. It

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/subsystem/service_loop/requester.hpp"
 #include "supervisor/supervision/commanded_states.hpp"
 #include "supervisor/supervision/data_handling/telecommand_copy.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/data_handling/telemetry.hpp"
 
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 
 namespace hirosco::supervisor {
 

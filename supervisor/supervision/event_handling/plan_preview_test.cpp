@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
 /// TC[129,6]: what a plan would do now, asked in flight. Nothing comes of it but the answer.

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "supervisor/supervision/modes/commissioning.hpp"
 
 namespace hirosco::supervisor {

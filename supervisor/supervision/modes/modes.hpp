@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/modes/mode_plan.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/procedures/procedure_runner.hpp"
+#include "supervisor/supervision/succession/journal.hpp"
 
 namespace hirosco::supervisor {
 

@@ -12,7 +12,7 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/procedures/waiting.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
-#include "supervisor/supervision/restarts.hpp"
+#include "supervisor/supervision/restart_schedule.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 /// One step of a procedure, and what a kind of step is (docs/adr/0057).

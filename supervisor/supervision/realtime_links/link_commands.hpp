@@ -12,10 +12,10 @@
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/realtime_links/link_handshakes.hpp"
 #include "supervisor/supervision/realtime_links/link_renewals.hpp"
+#include "supervisor/supervision/succession/journal.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {

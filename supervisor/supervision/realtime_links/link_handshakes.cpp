@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "hirosco/data_transfer/control/channel.hpp"
+#include "hirosco/data_transfer/channel/channel.hpp"
 #include "hirosco/data_transfer/link/internet_address.hpp"
 
 namespace hirosco::supervisor {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
-#include "supervisor/supervision/succession.hpp"
+#include "supervisor/supervision/succession/journal.hpp"
+#include "supervisor/supervision/succession/succession.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {

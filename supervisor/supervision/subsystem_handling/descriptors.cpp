@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "hirosco/descriptor/model/in_flight.hpp"
-#include "hirosco/pus/st129_supervision/supervision.hpp"
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/pus/st130_descriptor/descriptor_service.hpp"
 #include "hirosco/utilities/crc32.hpp"
 #include "supervisor/supervision/modes/under_way.hpp"

@@ -6,7 +6,7 @@
 
 #include <new>
 
-#include "hirosco/data_transfer/control/channel_pair.hpp"
+#include "hirosco/data_transfer/channel/channel_pair.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 

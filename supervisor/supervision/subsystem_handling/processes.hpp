@@ -9,7 +9,7 @@
 
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
-#include "supervisor/supervision/restarts.hpp"
+#include "supervisor/supervision/restart_schedule.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/journal.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/succession/journal.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
