@@ -127,7 +127,8 @@ bool InhibitBridge::step(TimePoint now) noexcept {
     let_go();
     return false;
   }
-  if (!until_ || now > *until_) stop();
+  // A stop that no guard has taken yet: the one that died may have told to go on after it was asked.
+  if (!until_ || now > *until_ || page_.stops_asked.load() != page_.stops_taken.load()) stop();
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     KeptInhibit& inhibit = page_.inhibits[i];
     if (lines_[i].flow == nullptr) continue;

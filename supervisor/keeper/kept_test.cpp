@@ -212,6 +212,14 @@ TEST_F(Bridged, WhoWasNotEnabledIsNotNow) {
   EXPECT_EQ(told()->enabled, 0);
 }
 
+TEST_F(Bridged, AStopThatNoGuardHasTakenWithdrawsWhateverWasToldAfterIt) {
+  page.stops_asked = 1;
+  page.inhibits[0].note(true, 77, 500);
+  bridge.begin_at(now);
+  ASSERT_TRUE(bridge.step(now));
+  EXPECT_EQ(told()->enabled, 0);
+}
+
 TEST_F(Bridged, NoLongerThanASubsystemGoesOnWithoutASupervisor) {
   page.inhibits[0].note(true, 77, 500);
   bridge.begin_at(now);

@@ -69,9 +69,9 @@ MemberLatencies MemberPort::latencies(std::size_t place) const noexcept {
   return found;
 }
 
-std::uint64_t MemberPort::service_steps() const noexcept {
+std::optional<std::uint64_t> MemberPort::service_steps() const noexcept {
   const VitalPage* page = vital();
-  return page != nullptr ? page->service_steps.load(std::memory_order_acquire) : 0;
+  return page != nullptr ? std::optional{page->service_steps.load(std::memory_order_acquire)} : std::nullopt;
 }
 
 std::uint64_t MemberPort::stopped_at_cycle() const noexcept {

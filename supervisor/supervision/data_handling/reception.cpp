@@ -42,6 +42,8 @@ void Reception::read(Member& member) {
   MessageBuffer buffer;
   const int most = craft_.is_ground_link(member) ? ground_messages_per_step : messages_per_step;
   for (int left = most; left > 0 && member.alive() && reads(member); --left) {
+    // Before its channel, which it may fill in the step that it is just counting.
+    const std::optional<std::uint64_t> steps = member.service_steps();
     const auto found = member.channel()->receive(buffer);
     if (found) member.refused = 0;
     if (!found && found.error().code != ErrorCode::Unavailable) {
@@ -55,9 +57,7 @@ void Reception::read(Member& member) {
     if (!found) give_up(member);
     if (!found) return;
     if (found->flow == Flow::None) {
-      constexpr std::uint64_t one_under_way_and_a_whole_one = 2;
-      if (member.before_stop && member.service_steps() - *member.before_stop >= one_under_way_and_a_whole_one)
-        member.before_stop.reset();
+      if (steps) member.has_handed_on(*steps);
       return;
     }
     take(member, found->message);

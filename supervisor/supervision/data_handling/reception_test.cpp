@@ -170,5 +170,114 @@ TEST_F(ReceptionTest, TheGroundWaitsWhileItsTelecommandsAreNotAnswered) {
   EXPECT_TRUE(parts.reception.reads(ground)) << "the addressee stands still, and SAFE_ALL may be behind it";
 }
 
+// --- what was said before a stop --------------------------------------------------------------------------------------------
+
+struct SaidBeforeAStop : ReceptionTest {
+  const std::vector<std::byte> go = telecommand(arm, 8, 1, call_data("SET_STATE", static_cast<int>(Operational)));
+
+  void SetUp() override {
+    ReceptionTest::SetUp();
+    for (const auto& link : craft.mission.links) parts.graph.set_up(link.id, true);
+    set(arm, SafeOperational, 2);
+    guard.fence(arm);
+  }
+  /// Whether the arm is let go by what ground said, which is read now.
+  [[nodiscard]] bool lets_go() {
+    send(camera, MessageKind::GroundTelecommand, go);
+    read(camera);
+    return !guard.fenced(arm);
+  }
+  void camera_steps(std::uint64_t steps) {
+    played[camera].vital->service_steps += steps;
+    read(camera);
+  }
+  /// The guard looks, and all live and obey.
+  void guard_looks(Duration span, bool supervisor_beats) {
+    for (const TimePoint end = clock.now() + span; clock.now() < end; wait(Guard::period)) {
+      if (supervisor_beats) guard.beat();
+      for (auto& [apid, member] : played) {
+        ++member.vital->cycles;
+        if (apid != camera) ++member.vital->service_steps;
+        member.vital->seen_epoch = member.permit->epoch.load();
+      }
+      static_cast<void>(guard.step(clock.now()));
+    }
+  }
+};
+
+TEST_F(SaidBeforeAStop, WithoutOneItLetsGo) { EXPECT_TRUE(lets_go()); }
+
+TEST_F(SaidBeforeAStop, ItLetsNobodyGoWhoeverSaidSafeAllUntilTheGroundLinkHasHandedOnWhatItHad) {
+  parts.safe_all.carry_out({});
+  guard_looks(1s, true);
+  EXPECT_FALSE(lets_go());
+  camera_steps(1);
+  EXPECT_FALSE(lets_go());
+  camera_steps(1);
+  EXPECT_TRUE(lets_go());
+}
+
+TEST_F(SaidBeforeAStop, WhatIsReadInTheMiddleOfTheStopOfAStandingSupervisorIsUndone) {
+  guard_looks(20ms, true);
+  guard_looks(Guard::supervisor_limit + 20ms, false);
+  ASSERT_TRUE(lets_go()) << "the stop is not heard of yet";
+  parts.processes.take_guard_findings();
+  EXPECT_TRUE(was_told("the supervisor itself stood still"));
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_FALSE(lets_go());
+}
+
+/// It hands on what it has, and counts the step, when its channel has just been found empty.
+struct BusyChannel final : Channel {
+  BusyChannel(VitalPage& page, Octets octets) : vital{page}, packet{octets} {}
+  Result<> send(const Message&) override { return ok(); }
+  Result<Found> receive(MessageBuffer&) override {
+    if (looks++ == 1) return Found{Flow::New, {.kind = MessageKind::GroundTelecommand, .packet = packet}};
+    if (looks == 1) vital.service_steps += 2;
+    return Found{};
+  }
+  VitalPage& vital;
+  Octets packet;
+  int looks{0};
+};
+
+TEST_F(SaidBeforeAStop, WhatIsHandedOnWhileItsChannelIsFoundEmptyIsFromBefore) {
+  Member& member = *craft.member(camera);
+  auto launched = launch(member.described()).value();
+  launched.port = std::make_unique<LocalMemberPort>(std::make_unique<BusyChannel>(*played[camera].vital, go),
+                                                    launched.vital, launched.permit);
+  member.started(std::move(launched));
+  parts.safe_all.what_is_unread_was_said_before();
+  read(camera);
+  read(camera);
+  EXPECT_TRUE(guard.fenced(arm));
+}
+
+TEST_F(SaidBeforeAStop, StepsOfAnotherProcessAreCountedFromItsOwnBeginOn) {
+  played[camera].vital->service_steps = 5000;
+  parts.safe_all.what_is_unread_was_said_before();
+  played[camera].vital->service_steps = 0;
+  camera_steps(0);
+  EXPECT_FALSE(lets_go());
+  camera_steps(2);
+  EXPECT_TRUE(lets_go());
+}
+
+TEST_F(SaidBeforeAStop, OfADamagedPageNobodyKnowsHowFarItIs) {
+  VitalPage& page = *played[camera].vital;
+  page.service_steps = 5000;
+  const std::uint32_t magic = page.magic;
+  for (const bool at_the_stop : {true, false}) {
+    page.magic = at_the_stop ? 0 : magic;
+    parts.safe_all.what_is_unread_was_said_before();
+    page.magic = 0;
+    read(camera);
+    page.magic = magic;
+    EXPECT_FALSE(lets_go()) << at_the_stop;
+  }
+  camera_steps(2);
+  EXPECT_TRUE(lets_go());
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

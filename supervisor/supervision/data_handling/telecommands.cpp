@@ -341,7 +341,7 @@ void Telecommands::forward(const Outgoing& outgoing) {
                   notice.because({ErrorCode::NotPermitted, 0, "stopped since this was asked for, or stopping"}));
   }
   Member* addressee = craft_.member(apid);
-  if (releases_stop && addressee != nullptr) addressee->fences_when_free = craft_.guard.fences(apid);
+  if (releases_stop && addressee != nullptr) addressee->fences_when_free = fences;
   Channel* channel = to_itself ? &parts_.own.channel() : addressee != nullptr ? addressee->channel() : nullptr;
   // The ground hears what was said before this telecommand in the state in which it was said.
   if (addressee != nullptr && channel != nullptr && craft_.is_ground_link(*addressee))

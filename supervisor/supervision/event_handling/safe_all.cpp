@@ -3,6 +3,7 @@
 #include "supervisor/supervision/event_handling/safe_all.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
@@ -14,6 +15,7 @@ void SafeAll::provide() {
 }
 
 void SafeAll::carry_out(const pus::Request& request) {
+  what_is_unread_was_said_before();
   pending_.push_back({craft_.guard.stop_all(), request});
   craft_.remember();
   own_.verification().accepted(request);
@@ -26,6 +28,13 @@ void SafeAll::asked() {
   pending_.push_back({craft_.guard.stop_all(), std::nullopt});
   own_.announce(descriptor::event_of_local_stop);
   after_stop("stop by signal or local socket");
+}
+
+void SafeAll::stood_still() {
+  what_is_unread_was_said_before();
+  // Once more: whoever was let go since the guard did it was let go on the word of before.
+  for (const Member& member : craft_.members) craft_.guard.fence(member.apid());
+  after_stop("the supervisor itself stood still");
 }
 
 void SafeAll::again() {
@@ -80,7 +89,8 @@ void SafeAll::states_follow() {
 }
 
 void SafeAll::what_is_unread_was_said_before() {
-  for (Member& member : craft_.members) member.before_stop = member.service_steps();
+  constexpr std::uint64_t not_known = std::numeric_limits<std::uint64_t>::max();
+  for (Member& member : craft_.members) member.before_stop = member.service_steps().value_or(not_known);
 }
 
 void SafeAll::follow() {

@@ -29,8 +29,10 @@ class SafeAll final : public Remembered {
   void carry_out(const pus::Request& request);
   /// A signal or the local socket asked for a stop, at some time before: what has not been read yet may have been said before it.
   void asked();
-  /// Nothing of it lets anybody move, nor of what lies in a ground link or member that has not handed it on (`Member::before_stop`). Of a
-  /// stop whose place among the telecommands nobody knows.
+  /// The guard stopped everybody, as nobody had heard of the supervisor for so long; what it has done in the middle of that is undone.
+  void stood_still();
+  /// Nothing of it lets anybody move, nor of what lies in a ground link or member that has not handed it on (`Member::before_stop`). Nobody
+  /// knows the place of a stop among the telecommands of others, nor, with two stations, of one of them among those of the other.
   void what_is_unread_was_said_before();
   /// Everything was stopped already: nothing starts it again, and the states follow.
   void after_stop(std::string_view why);
