@@ -55,7 +55,7 @@ class Member {
   /// The guard's count of its fences when it was first started, or let go last: another count, and it was stopped since. Empty: it was
   /// stopped under a supervisor before, or may have been.
   std::optional<std::uint64_t> fences_when_free{0};
-  /// What it says may have been said before a stop that nobody here has heard of (`SafeAll`), when its service loop had begun
+  /// What it says may have been said before a stop (`SafeAll`), at which its service loop had begun
   /// so many steps: until its channel is empty after two more, in the second of which it handed on all that had come to it. More than it has
   /// begun by now: of another process, or not known then; its steps are counted from there on.
   std::optional<std::uint64_t> before_stop;
