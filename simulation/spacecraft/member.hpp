@@ -105,7 +105,7 @@ class Spacecraft::Grip final : public supervisor::ProcessGrip {
 struct Spacecraft::LastMoment {
   struct Page {
     PermitPage* page;
-    std::uint32_t epoch, stop, mode_epoch, powered;
+    std::uint32_t epoch, stop, mode_epoch, newest_stop, powered;
     std::uint64_t go, heartbeat;
   };
   std::vector<Page> pages;

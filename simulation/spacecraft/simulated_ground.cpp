@@ -4,6 +4,7 @@
 
 #include "hirosco/utilities/allocation_guard.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace hirosco::simulation {
@@ -17,17 +18,21 @@ class SimulatedGround::OnBoardEnd final : public GroundTransport {
   }
   ~OnBoardEnd() override { ground_.end_ = nullptr; }
 
+  void all_stopped() override { before_stop_ = uplink_.size(); }
   void step(TimePoint) override {
     const HeapPermitted as_of_sockets;  // in a flight these queues are the system's
     while (!uplink_.empty()) {
       constexpr GroundTraffic::ClientId only_client = 1;
-      if (traffic_.telecommand(only_client, uplink_.front()) == GroundTraffic::Taken::Later) {
+      using enum GroundTraffic::Said;
+      if (traffic_.telecommand(only_client, uplink_.front(), before_stop_ > 0 ? PerhapsBefore : Since) ==
+          GroundTraffic::Taken::Later) {
         ++counters_.held_back;
         return;
       }
       ++counters_.packets;
       counters_.valid_packets += pus::TelecommandView::parse(uplink_.front()) ? 1 : 0;
       uplink_.pop_front();
+      before_stop_ -= std::min<std::size_t>(before_stop_, 1);
     }
   }
   [[nodiscard]] std::size_t finish(TimePoint now) override {
@@ -50,6 +55,7 @@ class SimulatedGround::OnBoardEnd final : public GroundTransport {
   SimulatedGround& ground_;
   GroundTraffic& traffic_;
   std::deque<std::vector<std::byte>> uplink_;
+  std::size_t before_stop_{0};  ///< so many of it
   bool finishing_{false};
   Counters counters_;
 };

@@ -67,8 +67,8 @@ void Spacecraft::supervisor_dies_here() {
   auto moment = std::make_unique<LastMoment>();
   for (const auto& member : members_) {
     PermitPage& page = member->newest_permit();
-    moment->pages.push_back(
-        {&page, page.epoch, page.stop, page.mode_epoch, page.powered.load(), page.go, page.heartbeat});
+    moment->pages.push_back({&page, page.epoch, page.stop, page.mode_epoch, page.newest_stop, page.powered.load(),
+                             page.go, page.heartbeat});
   }
   moment->journal = journal_memory_;
   for (std::size_t i = 0; i < moment->enabled.size(); ++i) moment->enabled[i] = kept_->inhibits[i].go;
@@ -85,6 +85,7 @@ void Spacecraft::step_supervisor() {
     then.page->epoch = then.epoch;
     then.page->stop = then.stop;
     then.page->mode_epoch = then.mode_epoch;
+    then.page->newest_stop = then.newest_stop;
     then.page->powered = then.powered;
     then.page->go = then.go;
     then.page->heartbeat = then.heartbeat;
@@ -115,12 +116,14 @@ std::expected<supervisor::AdoptedSubsystem, supervisor::NotAdopted> Spacecraft::
   adopted.permitted = before.permits(adopted.epoch);
   adopted.stopped = before.stop.load() != 0;
   adopted.powered = before.powered.load();
+  adopted.newest_stop = before.newest_stop.load();
   auto handle = memory_.create("permit", sizeof(PermitPage));
   auto page = memory_.map(*handle, Access::ReadWrite);
   auto& fresh = *::new (page->octets.data()) PermitPage;
   fresh.epoch = adopted.epoch;
   fresh.stop = adopted.stopped ? 1 : 0;
   fresh.powered = adopted.powered;
+  fresh.newest_stop = adopted.newest_stop;
   static_cast<void>(memory_.seal_writers(*handle));
   member.permits.push_back(*page);
   adopted.permit = std::move(*handle);

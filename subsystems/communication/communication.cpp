@@ -111,6 +111,7 @@ class Communication final : public Subsystem, private GroundTraffic {
   Result<Step> hardware_deinit() override {
     if (!transport_) return done;
     if (!closing_since_) closing_since_ = now_;
+    look_for_stop();
     const std::size_t left = transport_->finish(now_);
     if (left != 0 && now_ - *closing_since_ < closing_patience) return again;
     if (left != 0) raise_in_service(telecommands_dropped_, static_cast<std::uint32_t>(left));
@@ -124,6 +125,7 @@ class Communication final : public Subsystem, private GroundTraffic {
   void service(TimePoint now) override {
     if (!transport_) return;
     now_ = now;
+    look_for_stop();
     if (!closing_since_) transport_->step(now);
     count(now);
   }
@@ -136,9 +138,16 @@ class Communication final : public Subsystem, private GroundTraffic {
     if (transport_ && ends_.goes_down(packet)) transport_->telemetry(packet);
   }
 
-  Taken telecommand(ClientId client, Octets packet) override {
+  /// Before anything else of a step is looked at.
+  void look_for_stop() {
+    if (const std::uint32_t newest = newest_stop(); newest != std::exchange(known_stop_, newest))
+      transport_->all_stopped();
+  }
+
+  Taken telecommand(ClientId client, Octets packet, Said said) override {
+    constexpr std::uint32_t not_known = 0;
     // What the supervisor does not take now stays with its client: nothing that was received is lost.
-    if (!submit_ground_telecommand(client, packet)) return Taken::Later;
+    if (!submit_ground_telecommand(client, packet, said == Said::Since ? known_stop_ : not_known)) return Taken::Later;
     ends_.went_up(packet);
     last_rx_ = now_;
     return Taken::Yes;
@@ -256,6 +265,7 @@ class Communication final : public Subsystem, private GroundTraffic {
   Link next_link_{};
   Clients next_clients_{};
   TimePoint now_{};
+  std::uint32_t known_stop_{0};
   std::optional<TimePoint> closing_since_;
   std::uint32_t dropped_{0};  ///< telecommands that nobody took before the link was closed
   TimePoint last_rx_{};

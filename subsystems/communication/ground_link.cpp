@@ -209,6 +209,10 @@ void GroundClients::received(ClientId id, std::size_t octets, TimePoint now) noe
   queue(*client);
 }
 
+void GroundClients::all_stopped(ClientId id, std::size_t unread) noexcept {
+  if (Client* client = find(id)) client->stopped_at = client->counters.octets_received + unread;
+}
+
 void GroundClients::queue(Client& client) noexcept {
   if (client.queued || !client.waits()) return;
   client.queued = true;
@@ -246,7 +250,8 @@ bool GroundClients::hand_over(GroundTraffic& traffic, TimePoint now) {
     }
     const Octets packet = client.deframer.front();
     const bool valid = pus::TelecommandView::parse(packet).has_value();
-    if (traffic.telecommand(client.id, packet) == Taken::Later) {
+    const bool before = client.counters.octets_received - client.deframer.held_octets() < client.stopped_at;
+    if (traffic.telecommand(client.id, packet, before ? Said::PerhapsBefore : Said::Since) == Taken::Later) {
       ++counters_.held_back;
       return false;
     }

@@ -21,6 +21,7 @@ using CloseReason = GroundTransport::CloseReason;
 using LinkCounters = GroundTransport::Counters;
 using ClientId = GroundTraffic::ClientId;
 using Taken = GroundTraffic::Taken;
+using Said = GroundTraffic::Said;
 
 /// Cuts a stream into telecommand packets and keeps them until somebody takes them. An implausible header ends the
 /// stream for good: searching for the next packet could find one that was embedded in another's data, and execute it.
@@ -41,6 +42,8 @@ class Deframer {
   void end() noexcept;
   /// The oldest whole packet; empty when there is none. Idle packets are dropped and counted.
   [[nodiscard]] Octets front() const noexcept { return Octets{buffer_}.subspan(begin_, whole_); }
+  /// Octets that were put there and have not been taken.
+  [[nodiscard]] std::size_t held_octets() const noexcept { return end_ - begin_; }
   /// How many whole packets wait, idle ones not counted.
   [[nodiscard]] std::size_t waiting() const noexcept;
   /// That packet has been taken.
@@ -118,6 +121,8 @@ class GroundClients {
   [[nodiscard]] MutableOctets room(ClientId client) noexcept;
   /// So many octets were put there.
   void received(ClientId client, std::size_t octets, TimePoint now) noexcept;
+  /// Everything was stopped: what the client has sent until now was perhaps said before, `unread` octets in its socket included.
+  void all_stopped(ClientId client, std::size_t unread) noexcept;
   /// Offers what waits, one packet of each client in turn, to `traffic`; at most `packets_per_turn`. True when it ended
   /// because nothing waits any more.
   bool hand_over(GroundTraffic& traffic, TimePoint now);
@@ -161,6 +166,7 @@ class GroundClients {
     /// Who sends little: a packet moves it on by little_period, and never further ahead than one beyond little_burst.
     TimePoint allowance{};
     ClientCounters counters{};
+    std::uint64_t stopped_at{0};  ///< what came before this octet of it was perhaps said before a stop
     Deframer deframer;
     [[nodiscard]] bool waits() const noexcept { return !deframer.front().empty(); }
     [[nodiscard]] bool listens() const noexcept {

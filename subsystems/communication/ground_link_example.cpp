@@ -10,7 +10,7 @@ using namespace hirosco;
 using namespace hirosco::communication;
 
 struct Router final : GroundTraffic {
-  Taken telecommand(ClientId client, Octets packet) override {
+  Taken telecommand(ClientId client, Octets packet, Said) override {
     std::printf("client %u: %zu octets\n", client, packet.size());
     return Taken::Yes;   // Later: it stays, and its client is not read, until a later step
   }

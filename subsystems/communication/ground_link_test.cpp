@@ -194,7 +194,7 @@ TEST(Deframer, SaysOfAPacketThatTheEndOfTheStreamCutsOffThatItIsIncomplete) {
 }
 
 struct Received final : GroundTraffic {
-  Taken telecommand(ClientId client, Octets packet) override {
+  Taken telecommand(ClientId client, Octets packet, Said) override {
     if (room == 0) return Taken::Later;
     --room;
     all.emplace_back(client, packet.size());

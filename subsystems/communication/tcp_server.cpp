@@ -7,8 +7,10 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/epoll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <utility>
@@ -25,6 +27,14 @@ constexpr int listen_backlog = 512;
 constexpr int send_buffer_octets = 64 * 1024;
 // The epoll data of a connection is its ClientId, which is never below most_clients; listeners use the numbers below.
 constexpr std::uint32_t first_client_mark = GroundClients::most_clients;
+
+/// Of a client, in the kernel. Where the kernel does not say it, as much as it may hold.
+std::size_t unread_octets(const FileDescriptor& socket) noexcept {
+  int octets = 0;
+  if (!socket) return 0;
+  constexpr std::size_t most = std::size_t{1} << 30;
+  return ::ioctl(socket.get(), FIONREAD, &octets) == 0 ? static_cast<std::size_t>(std::max(octets, 0)) : most;
+}
 
 bool would_block(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
 
@@ -104,14 +114,20 @@ std::uint16_t TcpServer::port(GroundPort port) const noexcept {
   return ntohs(address.sin_port);
 }
 
+void TcpServer::all_stopped() noexcept {
+  for (const Connection& connection : connections_)
+    if (connection.client != 0) clients_.all_stopped(connection.client, unread_octets(connection.socket));
+  perhaps_before_ = {true, true};
+}
+
 std::optional<TimePoint> TcpServer::step(TimePoint now) {
   // Those who are in are served before others come in: a flood of newcomers cannot evict who has something to say.
   static_cast<void>(clients_.hand_over(traffic_, now));
   knocking_ = {};
   for (int round = 0; round < rounds_per_step; ++round)
     if (!serve_ready(now) || !clients_.hand_over(traffic_, now)) break;
-  if (knocking_[0]) accept_clients(GroundPort::TelemetryAndTelecommands, now);
-  if (knocking_[1]) accept_clients(GroundPort::TelecommandsOnly, now);
+  for (const GroundPort port : {GroundPort::TelemetryAndTelecommands, GroundPort::TelecommandsOnly})
+    if (knocking_[std::to_underlying(port)] || perhaps_before_[std::to_underlying(port)]) accept_clients(port, now);
   static_cast<void>(clients_.hand_over(traffic_, now));
   const auto next = clients_.step(now);
   for (Connection& connection : connections_)
@@ -177,6 +193,8 @@ void TcpServer::accept_clients(GroundPort port, TimePoint now) {
     if (!clients_.admissible(port)) return;
     FileDescriptor socket{::accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
     if (!socket && (errno == EMFILE || errno == ENFILE)) return make_room_by_refusing(listener);
+    // All who had come before the stop are in.
+    if (!socket && errno == EAGAIN) perhaps_before_[std::to_underlying(port)] = false;
     if (!socket && errno != ECONNABORTED && errno != EINTR) return;
     if (socket) welcome(std::move(socket), port, now);
   }
@@ -197,6 +215,8 @@ void TcpServer::welcome(FileDescriptor socket, GroundPort port, TimePoint now) {
   const int yes = 1;
   ::setsockopt(connection.socket.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   ::setsockopt(connection.socket.get(), SOL_SOCKET, SO_SNDBUF, &send_buffer_octets, sizeof send_buffer_octets);
+  if (perhaps_before_[std::to_underlying(port)])
+    clients_.all_stopped(connection.client, unread_octets(connection.socket));
   watch(connection, EPOLL_CTL_ADD);
   if (connection.socket) static_cast<void>(read_from(connection, now));
 }

@@ -39,6 +39,8 @@ class TcpServer {
   TcpServer(const TcpServer&) = delete;
   TcpServer& operator=(const TcpServer&) = delete;
 
+  /// GroundTransport::all_stopped().
+  void all_stopped() noexcept;
   /// Accepts, reads, hands over, writes and closes what is due, a bounded amount for each client; never blocks. The next
   /// time at which it has to be called even when `descriptor()` stays silent: that of its own limits; while packets wait
   /// for somebody who takes them, its owner knows best when that may be.
@@ -84,6 +86,7 @@ class TcpServer {
   FileDescriptor spare_;  ///< given up for a moment to refuse a client when descriptors run out
   std::array<FileDescriptor, 2> listeners_;
   std::array<bool, 2> knocking_{};  ///< somebody wants in, by GroundPort
+  std::array<bool, 2> perhaps_before_{};  ///< whoever is let in there now may have come before the newest stop
   std::array<Connection, GroundClients::most_clients> connections_;
 };
 

@@ -13,6 +13,7 @@ namespace {
 class TcpTransport final : public GroundTransport {
  public:
   explicit TcpTransport(std::unique_ptr<communication::TcpServer> server) : server_{std::move(server)} {}
+  void all_stopped() override { server_->all_stopped(); }
   void step(TimePoint now) override { server_->step(now); }
   [[nodiscard]] std::size_t finish(TimePoint now) override { return server_->finish(now); }
   void telemetry(Octets packet) override { static_cast<void>(server_->telemetry(packet)); }

@@ -11,7 +11,8 @@
 namespace hirosco::supervisor {
 namespace {
 
-/// Findings that nobody takes are those of a supervisor that stands still; the first tell the story.
+/// Findings that nobody takes are those of a supervisor that stands still: the first tell the story, and beyond them each that was not told
+/// yet, once.
 constexpr std::size_t most_findings = 1024;
 
 }  // namespace
@@ -79,6 +80,7 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   member->guarded_before = false;
   // A device may have heard of every epoch of the process before.
   member->permit->epoch.store(++member->epoch, std::memory_order_release);
+  member->permit->newest_stop.store(newest_stop(), std::memory_order_release);
   member->released = member->seen_operational = false;
   member->cycles = member->service_steps = 0;
   member->still = 0;
@@ -89,6 +91,7 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   member->falls_with.clear();
   member->life = 0;
   member->life_told = false;
+  member->fence_untold = false;
   // What was found of the process before is no matter of this one.
   std::erase_if(findings_, [&](const GuardFinding& finding) {
     return finding.apid == apid && finding.kind == GuardFinding::Kind::Ended;
@@ -105,6 +108,8 @@ std::string_view Guard::take_over(std::uint16_t apid, const AdoptedSubsystem& ad
   const bool counts = adopted.permitted || adopted.epoch == member->vital->seen_epoch.load(std::memory_order_acquire);
   member->epoch = counts ? adopted.epoch : std::max(adopted.epoch, parts_.first_epoch);
   PermitPage& page = *member->permit;
+  // What it has said so far it said under the number of the page before, and the others under the same.
+  put_newest_stop(std::max(newest_stop(), adopted.newest_stop));
   page.epoch.store(member->epoch, std::memory_order_release);
   page.powered.store(adopted.powered, std::memory_order_release);
   member->guarded_before = true;
@@ -161,20 +166,40 @@ std::vector<GuardFinding> Guard::take_findings() {
   const LockGuard lock{mutex_};
   std::vector<GuardFinding> taken{findings_};
   findings_.clear();
+  for (GuardedMember& member : members_) member.fence_untold = false;
   return taken;
 }
 
 void Guard::find_out(GuardFinding::Kind kind, std::uint16_t apid, std::uint16_t device) {
-  if (findings_.size() < most_findings) findings_.push_back({kind, apid, device});
+  const GuardFinding found{kind, apid, device};
+  if (findings_.size() < most_findings || std::ranges::find(findings_, found) == findings_.end())
+    findings_.push_back(found);
   if (parts_.on_finding) parts_.on_finding();
 }
 
 // --- fences ------------------------------------------------------------------------------------------------------------
 
-void Guard::fence(std::uint16_t apid) {
+std::uint64_t Guard::fence(std::uint16_t apid) {
   const LockGuard lock{mutex_};
-  if (GuardedMember* member = find(apid)) member->fence();
+  GuardedMember* member = find(apid);
+  if (member == nullptr) return 0;
+  member->fence();
+  return member->fences;
 }
+
+void Guard::void_what_was_said() {
+  const LockGuard lock{mutex_};
+  next_stop();
+}
+
+void Guard::put_newest_stop(std::uint32_t number) noexcept {
+  newest_stop_.store(number, std::memory_order_release);
+  for (GuardedMember& member : members_)
+    if (member.permit != nullptr) member.permit->newest_stop.store(number, std::memory_order_release);
+}
+
+/// Never 0, which is what somebody says who knows of none.
+void Guard::next_stop() noexcept { put_newest_stop(std::max(newest_stop() + 1, std::uint32_t{1})); }
 
 std::uint64_t Guard::fences(std::uint16_t apid) const {
   const LockGuard lock{mutex_};
@@ -192,6 +217,8 @@ bool Guard::release(std::uint16_t apid, std::uint64_t seen_fences) {
   const LockGuard lock{mutex_};
   GuardedMember* member = find(apid);
   if (member == nullptr || member->permit == nullptr || member->fences != seen_fences || member->doomed) return false;
+  // The supervisor is still to hear of what stopped it.
+  if (member->fence_untold) return false;
   // What is being stopped is let go again once it has stopped; what it did then is no matter of that stop any more.
   const bool stopping = stops_ended_ != stops_ && !member->spared;
   if (stopping && !member->has_stopped()) return false;
@@ -237,9 +264,9 @@ void Guard::life_changed(std::uint16_t apid) {
     return;
   }
   member->life_told = true;
-  member->fence();
+  member->fence_by_guard();
   for (const std::uint16_t other : member->falls_with)
-    if (GuardedMember* with = find(other)) with->fence();
+    if (GuardedMember* with = find(other)) with->fence_by_guard();
   find_out(GuardFinding::Kind::Ended, apid);
 }
 
@@ -256,6 +283,8 @@ TimePoint Guard::step(TimePoint now) {
   }
   for (GuardedMember& member : members_) {
     member.end_permission(watched_);
+    // Damage of its page would have all that it says refused.
+    if (member.permit != nullptr) member.permit->newest_stop.store(newest_stop(), std::memory_order_relaxed);
     for (WatchedDevice& device : member.devices) {
       device.hear(watched_);
       // What has no power moves nothing, and cannot say so.
@@ -302,7 +331,8 @@ void Guard::watch_supervisor(TimePoint now) {
   if (supervisor_still_ || now - *beat_seen_ < supervisor_limit) return;
   // Nobody permits, plans or tells any more: what moves is stopped, the ground link included.
   supervisor_still_ = true;
-  for (GuardedMember& member : members_) member.fence();
+  next_stop();
+  for (GuardedMember& member : members_) member.fence_by_guard();
   find_out(GuardFinding::Kind::SupervisorStill, 0);
 }
 
@@ -411,7 +441,7 @@ bool Guard::was_starved(GuardedMember& standing, TimePoint now) {
 }
 
 void Guard::doom(GuardedMember& member, GuardFinding::Kind why, TimePoint now) {
-  member.fence();
+  member.fence_by_guard();
   // One that merely stands (SIGSTOP) keeps its priority: it takes nothing from anybody.
   const Duration had = member.grip ? member.grip->processor_time() - member.processor_time : Duration{};
   if (member.grip && (why != GuardFinding::Kind::CycleHangs || had >= observation_period))

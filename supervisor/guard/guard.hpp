@@ -84,9 +84,14 @@ class Guard {
   [[nodiscard]] std::vector<GuardFinding> take_findings();
 
   // --- any thread ---------------------------------------------------------------------------------------------------
+  /// Number of the newest stop of everything, as it stands on all permit pages: what was said under another one lets nobody move.
+  [[nodiscard]] std::uint32_t newest_stop() const noexcept { return newest_stop_.load(std::memory_order_acquire); }
+  /// As if everything had been stopped again: what nobody has read yet, or has been said before, lets nobody move.
+  void void_what_was_said();
   /// Actuators inhibited: on its permit page at once, which its next cycle reads, and at the devices that have a second inhibit
   /// within two steps of this guard. A device without one has its own watchdog for a cycle that does not read any more.
-  void fence(std::uint16_t apid);
+  /// \return its fences(), this one counted.
+  std::uint64_t fence(std::uint16_t apid);
   /// How often it was fenced: what was permitted before must not lift a later fence.
   [[nodiscard]] std::uint64_t fences(std::uint16_t apid) const;
   [[nodiscard]] bool fenced(std::uint16_t apid) const;
@@ -125,6 +130,9 @@ class Guard {
   [[nodiscard]] const GuardedMember* find(std::uint16_t apid) const noexcept;
   void find_out(GuardFinding::Kind kind, std::uint16_t apid, std::uint16_t device = 0);
   void lives_changed() noexcept;
+  void put_newest_stop(std::uint32_t number) noexcept;
+  void next_stop() noexcept;
+  std::uint64_t begin_stop_of_all();
   /// The time that all judgements go by: what the guard has watched. While nobody ran (the host was stopped) nobody can be blamed for
   /// standing still, so of a longer time between two steps little counts, unless some cycle went on meanwhile.
   [[nodiscard]] TimePoint watched_at(TimePoint now) const noexcept;
@@ -152,7 +160,8 @@ class Guard {
   std::optional<TimePoint> stepped_;  ///< last, and what had been watched by then
   TimePoint watched_{};
   TimePoint next_observation_{};
-  std::uint64_t stops_{0};  ///< the newest stop of everything
+  std::atomic<std::uint32_t> newest_stop_{1};
+  std::uint64_t stops_{0};  ///< the newest stop of everything whose outcome may be asked for
   std::uint64_t stops_ended_{0};
 };
 

@@ -43,6 +43,7 @@ struct GuardFinding {
   Kind kind{};
   std::uint16_t apid{0};
   std::uint16_t device{0};  ///< of InhibitSilent: place in its descriptor
+  friend bool operator==(const GuardFinding&, const GuardFinding&) = default;
 };
 
 /// A device of a member, by the endnode of its second inhibit.
@@ -86,6 +87,7 @@ struct GuardedMember {
   bool guarded_before{false};  ///< by a guard that is gone and may have taken it as well
   std::uint32_t epoch{0};  ///< of the page, kept when a process ends
   std::uint64_t fences{0};
+  bool fence_untold{false};  ///< the guard fenced it, and the supervisor is still to take what it found
   // permission
   bool released{false};
   bool seen_operational{false};
@@ -131,6 +133,11 @@ struct GuardedMember {
   /// By its own page, under the epoch that it has; empty: it acts.
   [[nodiscard]] std::string_view why_it_rests() const noexcept;
   void fence() noexcept;
+  /// The same, by the guard of itself: nobody lets it go before the supervisor has heard of it.
+  void fence_by_guard() noexcept {
+    fence();
+    fence_untold = true;
+  }
   /// It has yet to stop: its time runs from now.
   void begin_stop(TimePoint now, TimePoint watched) noexcept;
   void release(TimePoint now) noexcept;

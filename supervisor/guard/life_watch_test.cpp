@@ -51,6 +51,7 @@ TEST_F(LifeWatchTest, AKilledProcessIsFencedWithItsNetworkBeforeItIsReaped) {
   auto started = LifeWatch::start(guard);
   ASSERT_TRUE(started) << started.error().text;
   for (int again = 0; again < 3; ++again) {
+    static_cast<void>(guard.take_findings());  // the supervisor has heard of the last end
     const pid_t child = adopt_process(arm);
     while (life_of(lives[arm].vital->life.load()) != hirosco::Life::Held) ::usleep(100);
     let_move(arm);

@@ -13,19 +13,25 @@ constexpr Duration killed_limit = std::chrono::milliseconds{400};
 }  // namespace
 
 std::uint64_t Guard::stop_all(GuardFinding::Kind why) {
-  const std::uint64_t stop = stop_all();
   const LockGuard lock{mutex_};
+  const std::uint64_t stop = begin_stop_of_all();
+  for (GuardedMember& member : members_) member.fence_untold = member.fence_untold || !member.spared;
   find_out(why, 0);
   return stop;
 }
 
 std::uint64_t Guard::stop_all() {
   const LockGuard lock{mutex_};
+  return begin_stop_of_all();
+}
+
+std::uint64_t Guard::begin_stop_of_all() {
   const TimePoint now = parts_.clock.now();
   const TimePoint watched = watched_at(now);
   // Stops that overlap end together. The time of each member runs from the first that found it moving: from this one for who moves,
   // or did since the stop that is still open had seen it at rest.
   const bool first = stops_ended_ == stops_;
+  next_stop();
   for (GuardedMember& member : members_) {
     if (first || member.released || member.settled == stops_) member.begin_stop(now, watched);
     if (!member.spared) member.fence();

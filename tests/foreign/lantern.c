@@ -213,7 +213,7 @@ static int another_permit_page(int memory) {
   void* at = mmap(NULL, 56, PROT_READ, MAP_SHARED, memory, 0);
   if (at == MAP_FAILED) return 0;
   const volatile uint8_t* page = at;
-  if (load32(page) != 0x48495243 || load32(page + 4) != 6) return munmap(at, 56), 0;
+  if (load32(page) != 0x48495243 || load32(page + 4) != 7) return munmap(at, 56), 0;
   munmap((void*)(uintptr_t)permit_, 56);
   permit_ = page;
   heartbeat_ = load64(page + 32);
@@ -447,8 +447,8 @@ int main(int argc, char** argv) {
   vital_ = page(vital, 4720, 1), permit_ = page(permit, 56, 0);
   if (!vital_ || !permit_ || load32(vital_) != 0x48495243 || load32(permit_) != 0x48495243)
     return fprintf(stderr, "lantern: what should be the supervisor's pages are none\n"), 3;
-  if (load32(vital_ + 4) != 6 || load32(permit_ + 4) != 6)
-    return fprintf(stderr, "lantern: the supervisor's pages are of version %u, this program's of version 6\n", load32(permit_ + 4)), 3;
+  if (load32(vital_ + 4) != 7 || load32(permit_ + 4) != 7)
+    return fprintf(stderr, "lantern: the supervisor's pages are of version %u, this program's of version 7\n", load32(permit_ + 4)), 3;
   const char* instance = getenv("HIROSCO_INSTANCE");
   size_t named = strlen(address_);
   if (instance && *instance) snprintf(address_ + named, sizeof address_ - named, ".%s", instance);

@@ -169,7 +169,7 @@ TEST(InterfacePages, Packets) {
   expect_octets("envelope", {{"kind", {0, 1}}, {"version", {1, 1}}, {"link", {2, 2}}, {"mode_epoch", {4, 4}}});
   std::array<std::byte, envelope::octets> head;
   OctetWriter writer{head};
-  envelope::write(writer, {.kind = MessageKind::Event, .mode_epoch = 0x04050607, .link = 0x0203});
+  envelope::write(writer, {.kind = MessageKind::Event, .epoch = 0x04050607, .link = 0x0203});
   constexpr std::array<unsigned char, 8> expected{3, envelope::version, 2, 3, 4, 5, 6, 7};
   EXPECT_EQ(std::memcmp(head.data(), expected.data(), head.size()), 0);
   EXPECT_EQ(number_of(table("octets: envelope")[1].at(4)), envelope::version);

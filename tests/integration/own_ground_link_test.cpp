@@ -43,17 +43,21 @@ class Radio final : public Subsystem, private GroundTraffic {
     return done;
   }
   void service(TimePoint now) override {
-    if (transport_) transport_->step(now);
+    if (!transport_) return;
+    if (const std::uint32_t newest = newest_stop(); newest != std::exchange(known_stop_, newest))
+      transport_->all_stopped();
+    transport_->step(now);
   }
   void telemetry(Octets packet) override {
     if (transport_) transport_->telemetry(packet);
   }
-  Taken telecommand(ClientId client, Octets packet) override {
-    return submit_ground_telecommand(client, packet) ? Taken::Yes : Taken::Later;
+  Taken telecommand(ClientId client, Octets packet, Said said) override {
+    return submit_ground_telecommand(client, packet, said == Said::Since ? known_stop_ : 0) ? Taken::Yes : Taken::Later;
   }
 
   OpenGroundTransport open_;
   std::unique_ptr<GroundTransport> transport_;
+  std::uint32_t known_stop_{0};
 };
 
 std::unique_ptr<Subsystem> make_radio_on(OpenGroundTransport open) { return std::make_unique<Radio>(std::move(open)); }

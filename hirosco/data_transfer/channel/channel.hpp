@@ -27,7 +27,9 @@ enum class MessageKind : std::uint8_t {
 /// a link attachment, the handle of the link's memory; or one event.
 struct Message {
   MessageKind kind{MessageKind::Packet};
-  std::uint32_t mode_epoch{0};  ///< supervisor's mode epoch at permission (decision 27)
+  /// To a subsystem: the supervisor's mode epoch at permission, 0 = any (decision 27). From one, beside a telecommand: the newest stop of
+  /// everything that was known before that was said (PermitPage::newest_stop), 0 = nobody knows (docs/adr/0156).
+  std::uint32_t epoch{0};
   std::uint16_t link{0};  ///< ground link client that a GroundTelecommand came from; else 0
   Octets packet{};
   MemoryHandle memory{};  ///< usually empty

@@ -6,7 +6,7 @@
 
 #include "hirosco/data_transfer/channel/channel.hpp"
 
-/// The header of every message between processes, whatever carries it: kind u8, version u8, link u16, mode epoch u32
+/// The header of every message between processes, whatever carries it: kind u8, version u8, link u16, epoch u32
 /// (big-endian); the packet follows. Both ends check the version of each message.
 namespace hirosco::envelope {
 
@@ -15,7 +15,7 @@ inline constexpr std::size_t octets = 8;
 inline constexpr std::uint8_t version = 1;
 
 inline void write(OctetWriter& writer, const Message& message) noexcept {
-  writer.put(static_cast<std::uint8_t>(message.kind)).put(version).put(message.link).put(message.mode_epoch);
+  writer.put(static_cast<std::uint8_t>(message.kind)).put(version).put(message.link).put(message.epoch);
 }
 
 /// A message without its packet. Malformed: too short, or of no kind; Mismatch: of another version, which is the number.
@@ -24,7 +24,7 @@ inline void write(OctetWriter& writer, const Message& message) noexcept {
   const auto theirs = reader.get<std::uint8_t>();
   Message message;
   message.link = reader.get<std::uint16_t>();
-  message.mode_epoch = reader.get<std::uint32_t>();
+  message.epoch = reader.get<std::uint32_t>();
   if (!reader.good()) return fail(ErrorCode::Malformed, "message is too short");
   if (theirs != version)
     return fail(ErrorCode::Mismatch, "another version of the control channel; build both from one hirosco", theirs);

@@ -108,7 +108,7 @@ class SocketChannelAbuse : public ::testing::Test {
 TEST_F(SocketChannelAbuse, EnvelopeIsBigEndianAndEightOctetsLong) {
   send_raw(good);
   const auto found = channel_->receive(buffer_).value();
-  EXPECT_EQ(found.message.mode_epoch, 5u);
+  EXPECT_EQ(found.message.epoch, 5u);
   ASSERT_EQ(found.message.packet.size(), 1u);
   EXPECT_EQ(found.message.packet[0], std::byte{0xAA});
 }

@@ -65,7 +65,7 @@ TEST_F(StreamChannelTest, CarriesEveryFieldOfAMessageInOrderUpToTheLargestPacket
     const auto found = there->receive(buffer).value();
     ASSERT_EQ(found.flow, Flow::New);
     EXPECT_EQ(found.message.kind, MessageKind::GroundTelecommand);
-    EXPECT_EQ(found.message.mode_epoch, 0xDEAD'BEEF);
+    EXPECT_EQ(found.message.epoch, 0xDEAD'BEEF);
     EXPECT_EQ(found.message.link, 0x1234);
     EXPECT_TRUE(std::ranges::equal(found.message.packet, packet(size, 3))) << size;
   }
@@ -186,9 +186,9 @@ TEST_F(StreamChannelAbuse, IsReadOctetByOctet) {
 
 TEST_F(StreamChannelAbuse, WithFramesOfAnotherVersionIsRefusedByName) {
   auto foreign = frame(StreamFrameKind::Permit, std::array<std::byte, 8>{});
-  foreign[2] = std::byte{2};
+  foreign[2] = std::byte{stream_frame_version + 1};
   say(foreign);
-  EXPECT_EQ(refusal(), "another version of a member's stream; build both from one hirosco 2");
+  EXPECT_EQ(refusal(), "another version of a member's stream; build both from one hirosco 3");
 }
 
 TEST_F(StreamChannelAbuse, WithMessagesOfAnotherVersionIsRefusedByName) {

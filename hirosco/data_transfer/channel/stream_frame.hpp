@@ -16,7 +16,7 @@ namespace hirosco {
 
 inline constexpr std::uint16_t stream_frame_magic = 0x484D;  // "HM"
 /// Of the frames and of all payloads but messages, whose envelope has a version of its own.
-inline constexpr std::uint8_t stream_frame_version = 1;
+inline constexpr std::uint8_t stream_frame_version = 2;
 
 enum class StreamFrameKind : std::uint8_t {
   Message = 1,  ///< either way: envelope and packet

@@ -30,7 +30,7 @@ using FrameOctets = std::vector<std::byte>;
 TEST(StreamFrame, IsMagicVersionKindLengthPayloadAndACheckSum) {
   // CRC-16/CCITT-FALSE of the eight octets before it, by a foreign tool (Python's binascii.crc_hqx with 0xFFFF).
   EXPECT_EQ(framed_octets(StreamFrameKind::Vital, octets_from({0xAA}), octets_from({0xBB})),
-            octets_from({0x48, 0x4D, 1, 2, 0, 2, 0xAA, 0xBB, 0x65, 0x94}));
+            octets_from({0x48, 0x4D, 2, 2, 0, 2, 0xAA, 0xBB, 0xAB, 0x74}));
 }
 
 TEST(StreamFrame, IsReadAsItWasWrittenWithItsSuccessorBehindIt) {
@@ -69,9 +69,9 @@ TEST(StreamFrame, OfAnotherVersionIsRefusedByNameBeforeAnythingElseOfItIsBelieve
 TEST(StreamFrame, SaysWhatIsWrongWithADamagedOne) {
   const auto why = [](FrameOctets damaged) { return std::string{read_stream_frame(damaged).error().text}; };
   EXPECT_EQ(why(octets_from({0x48, 0x4E})), "beginning of a frame");
-  EXPECT_EQ(why(octets_from({0x48, 0x4D, 1, 0})), "kind of frame");
-  EXPECT_EQ(why(octets_from({0x48, 0x4D, 1, 4})), "kind of frame");
-  EXPECT_EQ(why(octets_from({0x48, 0x4D, 1, 1, 0xFF, 0xFF})), "octets of frame");
+  EXPECT_EQ(why(octets_from({0x48, 0x4D, 2, 0})), "kind of frame");
+  EXPECT_EQ(why(octets_from({0x48, 0x4D, 2, 4})), "kind of frame");
+  EXPECT_EQ(why(octets_from({0x48, 0x4D, 2, 1, 0xFF, 0xFF})), "octets of frame");
   FrameOctets sum = framed_octets(StreamFrameKind::Message, octets_from({1, 2}));
   sum.back() ^= std::byte{1};
   EXPECT_EQ(why(sum), "check sum of frame");

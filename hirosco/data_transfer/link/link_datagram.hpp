@@ -8,7 +8,7 @@
 
 #include "hirosco/data_transfer/link/link.hpp"
 
-/// A sample of a real-time link as one datagram (docs/interfaces.md has it octet by octet), and what a consumer takes of all that
+/// A sample of a real-time link as one datagram (docs/interfaces/udp_link.md has it octet by octet), and what a consumer takes of all that
 /// arrives. No socket here: tests and fuzzers read what a network could bring.
 namespace hirosco {
 

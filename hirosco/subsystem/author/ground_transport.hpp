@@ -28,10 +28,12 @@ struct GroundTraffic {
   using ClientId = std::uint16_t;
   /// What becomes of a packet that is offered: it stays with its client until it is taken.
   enum class Taken : std::uint8_t { Yes, Later };
+  /// When it was said, as far as is known: behind the newest GroundTransport::all_stopped(), or perhaps before.
+  enum class Said : std::uint8_t { Since, PerhapsBefore };
 
   virtual ~GroundTraffic() = default;
   /// `packet` is valid during the call; it may be damaged in all but its header. May call `GroundTransport::telemetry`.
-  [[nodiscard]] virtual Taken telecommand(ClientId client, Octets packet) = 0;
+  [[nodiscard]] virtual Taken telecommand(ClientId client, Octets packet, Said said) = 0;
 };
 
 /// What carries the packets of the ground link: real sockets, or a simulated ground. It is closed by its destructor.
@@ -66,6 +68,9 @@ class GroundTransport {
   };
 
   virtual ~GroundTransport() = default;
+  /// Everything was stopped: what has come until now was perhaps said before that, and is offered as such, whether it was read from a socket
+  /// or not. Called before the step that follows.
+  virtual void all_stopped() = 0;
   /// Moves what is due; never blocks.
   virtual void step(TimePoint now) = 0;
   /// The link is to be closed: nothing more comes in, what has come is handed over. How many packets still wait for that.

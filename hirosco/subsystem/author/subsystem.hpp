@@ -157,9 +157,13 @@ class Subsystem {
   void abort(const Call& call, const Error& why) noexcept;
 
   // --- in the service loop ----------------------------------------------------------------------------------------
-  /// Sends a telecommand that came from the ground link client `client` to the supervisor. ResourceExhausted: the
-  /// supervisor is behind; offer it again.
-  Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
+  /// The number of the newest stop of everything that is known here, never 0 in a flight. It is read before one looks for what clients have
+  /// sent: where it is another one than before, all that had come until then, read or not, may have been said before the stop.
+  [[nodiscard]] std::uint32_t newest_stop() const noexcept;
+  /// Sends a telecommand that came from the ground link client `client` to the supervisor. `known_stop`: newest_stop() as it was before the
+  /// packet came, 0 = nobody knows; behind a later stop it lets nobody move (docs/adr/0156). ResourceExhausted: the supervisor is behind;
+  /// offer it again.
+  Result<> submit_ground_telecommand(std::uint16_t client, Octets packet, std::uint32_t known_stop);
   /// Asks another subsystem, through permission, log and route; what comes of it is heard by the handler under the number
   /// that is returned. NotPermitted: it is not bound; ResourceExhausted: 16 are under way, 100 went in this second, or the
   /// supervisor is behind: ask again later; InvalidArgument, OutOfRange: of the arguments.

@@ -5,9 +5,9 @@
 
 #include "hirosco/subsystem/cycle/cycle.hpp"
 
-/// The cycle reads its inputs, and what it does about one that is lost: a device (`device_slot.cpp` says when) inhibits the
-/// actuators and is told as NAME_LOST, high severity; a required link (`link_slots.cpp`) unless its absence is held over, as
-/// NAME_STALE, medium. What inhibited means for an output stands in `actuator_gate.cpp`, `write_outputs()`.
+/// The cycle reads its inputs, and what it does about one that is lost: a device (`device_slot.cpp` says when; one that has another endnode
+/// falls back to that first, told as NAME_FALL_BACK) inhibits the actuators and is told as NAME_LOST, high severity; a link that is required
+/// or made (`link_slots.cpp`) is told as NAME_STALE, medium, and inhibits unless its absence is held over. What inhibited means for an output stands in `actuator_gate.cpp`, `write_outputs()`.
 /// From there on it is the supervisor's (`supervision/event_handling/`): `reactions.cpp` hears the event, `plan_choice.cpp`
 /// finds the plan of the mission or, without one, that of the severity, and `procedures/steps/` act: `shut_down_network` for
 /// high, `set_state` to Safe-Operational for medium. Of a link that the mission gives `on_loss`, `link_losses.cpp` decides instead.

@@ -13,7 +13,7 @@ using std::memory_order_relaxed;
 using std::memory_order_release;
 
 // Of the words that are told first, which go as soon as they change.
-constexpr std::size_t urgent_permit_octets = 4 + 4 + 8 + 4;  // epoch, stop, go, mode epoch
+constexpr std::size_t urgent_permit_octets = 4 + 4 + 8 + 4 + 4;  // epoch, stop, go, mode epoch, newest stop
 constexpr std::size_t urgent_vital_octets = 6 * 4;  // state, configuration, inhibited, seen epoch, real-time, cycling
 
 }  // namespace
@@ -24,6 +24,7 @@ void SupervisorWords::tell(OctetWriter& words) noexcept {
       .put(permit_.stop.load(memory_order_acquire))
       .put(permit_.go.load(memory_order_acquire))
       .put(permit_.mode_epoch.load(memory_order_acquire))
+      .put(permit_.newest_stop.load(memory_order_acquire))
       .put(permit_.heartbeat.load(memory_order_acquire));
 }
 
@@ -35,6 +36,7 @@ Result<> MemberWords::hear(Octets words) {
   const auto stop = reader.get<std::uint32_t>();
   auto go = reader.get<std::uint64_t>();
   const auto mode_epoch = reader.get<std::uint32_t>();
+  const auto newest_stop = reader.get<std::uint32_t>();
   const auto heartbeat = reader.get<std::uint64_t>();
   if (!reader.exhausted())
     return fail(ErrorCode::Malformed, "octets of permit words", static_cast<std::int64_t>(words.size()));
@@ -46,6 +48,7 @@ Result<> MemberWords::hear(Octets words) {
   copy_.stop.store(stop, memory_order_release);
   copy_.go.store(go, memory_order_release);
   copy_.mode_epoch.store(mode_epoch, memory_order_release);
+  copy_.newest_stop.store(newest_stop, memory_order_release);
   copy_.heartbeat.store(heartbeat, memory_order_release);
   ++heard_;
   return ok();

@@ -99,12 +99,14 @@ TEST_F(PageWords, PermissionModeAndHeartbeatArrive) {
   permit.epoch = 1000;
   permit.release();
   permit.mode_epoch = 5;
+  permit.newest_stop = 9;
   permit.heartbeat = 6;
   EXPECT_FALSE(may_move());
   carry();
   EXPECT_TRUE(may_move());
   EXPECT_EQ(permit_copy.epoch, 1001u);
   EXPECT_EQ(permit_copy.mode_epoch, 5u);
+  EXPECT_EQ(permit_copy.newest_stop, 9u);
   EXPECT_EQ(permit_copy.heartbeat, 6u);
   permit.fence();
   carry();

@@ -20,7 +20,7 @@
 namespace hirosco {
 
 inline constexpr std::uint32_t page_magic = 0x48495243;  // "HIRC"
-inline constexpr std::uint32_t page_version = 6;
+inline constexpr std::uint32_t page_version = 7;
 
 /// A real-time link as its consumer sees it, since the link was made.
 struct IncomingLink {
@@ -133,6 +133,8 @@ struct PermitPage {
   std::atomic<std::uint32_t> stop{0};  ///< 1 after a fence, for displays: what decides is `go`
   std::atomic<std::uint64_t> go{0};  ///< permission_word(epoch): actuators may move; everything else: they may not
   std::atomic<std::uint32_t> mode_epoch{0};  ///< rises with every mode change
+  /// Rises with every stop of everything, never 0 in a flight: what was said under another number lets nobody move (docs/adr/0156).
+  std::atomic<std::uint32_t> newest_stop{0};
   std::atomic<std::uint64_t> heartbeat{0};  ///< advances with every step of the supervisor
   std::atomic<std::uint64_t> stopped_at_cycle{0};  ///< VitalPage::cycles that the supervisor read when it set `stop`
   CheckedWord powered{0};  ///< Power: what the switches of its devices say

@@ -159,16 +159,16 @@ void GenericSubsystem::look_at_resources(TimePoint now) {
   });
 }
 
-Result<> GenericSubsystem::submit_ground_telecommand(std::uint16_t client, Octets packet) {
+Result<> GenericSubsystem::submit_ground_telecommand(std::uint16_t client, Octets packet, std::uint32_t known_stop) {
   // Its own reports come first: telecommands that overtake them would keep them from ever being sent.
   if (!backlog_.empty()) return fail(ErrorCode::ResourceExhausted, "reports wait for the supervisor");
-  return channel_.send({.kind = MessageKind::GroundTelecommand, .link = client, .packet = packet});
+  return channel_.send({.kind = MessageKind::GroundTelecommand, .epoch = known_stop, .link = client, .packet = packet});
 }
 
 Result<std::uint32_t> GenericSubsystem::send_request(const RequestPort& asked, pus::GivenValues values) {
   // As above: what is under way would never be heard to end.
   if (!backlog_.empty()) return fail(ErrorCode::ResourceExhausted, "reports wait for the supervisor");
-  return requester_.send(asked, values, platform_.clock.now());
+  return requester_.send(asked, values, platform_.clock.now(), known_stop_);
 }
 
 /// The supervisor is told of every event; ST[05] is one that listens, and may be told to be silent (adr 0020).

@@ -136,6 +136,7 @@ TimePoint GenericSubsystem::service_step(TimePoint now) {
 }
 
 TimePoint GenericSubsystem::step_services(TimePoint now) {
+  known_stop_ = newest_stop();
   take_cycle_reports();
   take_loop_reports();
   receive_messages();
@@ -217,7 +218,7 @@ void GenericSubsystem::dispatch(const Message& message) {
   const pus::Request request = pus::request_of(*telecommand);
   if (telecommand->apid() != descriptor_.id)
     return verification_.routing_failed(request, pus::FailureNotice{pus::FailureCode::UnknownApid});
-  if (message.mode_epoch != 0 && message.mode_epoch != permit_->mode_epoch.load(std::memory_order_acquire))
+  if (message.epoch != 0 && message.epoch != permit_->mode_epoch.load(std::memory_order_acquire))
     return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::WrongMode});
   const auto found = std::ranges::find(services_, telecommand->service(), &pus::Service::type);
   if (found == services_.end() || !descriptor_.offers(telecommand->service(), configuration_))
@@ -226,7 +227,7 @@ void GenericSubsystem::dispatch(const Message& message) {
   pus::Service& service = **found;
   if (!service.in_force()) return verification_.rejected(request, wrong_state());
   if (OwnLoop* const loop = loop_of(service.type())) {
-    if (loop->offer(message.packet, message.mode_epoch)) return;
+    if (loop->offer(message.packet, message.epoch)) return;
     return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::QueueFull});
   }
   service.accompany(message.memory);

@@ -167,7 +167,10 @@ class GenericSubsystem final : private pus::TelemetrySink,
   /// For a subsystem that checks requests of others (the supervisor): reports stamped with this APID.
   [[nodiscard]] pus::Verification& verification() noexcept override { return verification_; }
   [[nodiscard]] pus::TelemetrySink& telemetry() noexcept override { return *this; }
-  Result<> submit_ground_telecommand(std::uint16_t client, Octets packet);
+  Result<> submit_ground_telecommand(std::uint16_t client, Octets packet, std::uint32_t known_stop);
+  [[nodiscard]] std::uint32_t newest_stop() const noexcept {
+    return permit_->newest_stop.load(std::memory_order_acquire);
+  }
   void raise_in_service(std::uint16_t event, std::span<const double> arguments);
   /// An event of the descriptor by its name; nothing when it declares none.
   void announce(std::string_view event_name, std::initializer_list<double> arguments = {});
@@ -370,6 +373,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   std::array<std::uint64_t, 6> told_losses_{};
   TimePoint losses_told_at_{};
   std::uint64_t last_heartbeat_{0};
+  std::uint32_t known_stop_{0};  ///< before this step of the service loop
   TimePoint watched_supervisor_at_{};
   Duration supervisor_silent_for_{};  ///< since its heartbeat moved last, in watched time
   bool supervisor_lost_{false};

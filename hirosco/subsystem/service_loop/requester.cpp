@@ -142,7 +142,8 @@ std::string Requester::bind_thing(const RequestPort& port, const descriptor::Com
   return {};
 }
 
-Result<std::uint32_t> Requester::send(const RequestPort& port, pus::GivenValues values, TimePoint now) {
+Result<std::uint32_t> Requester::send(const RequestPort& port, pus::GivenValues values, TimePoint now,
+                                      std::uint32_t known_stop) {
   const auto bound = std::ranges::find(bound_, &port, &Bound::port);
   if (bound == bound_.end()) return fail(ErrorCode::NotPermitted, "not bound: use_request() in software_init()");
   if (open_.size() == most_open)
@@ -165,7 +166,7 @@ Result<std::uint32_t> Requester::send(const RequestPort& port, pus::GivenValues 
                                                                .subtype = bound->function.subtype,
                                                                .source = descriptor_.id},
                                                               data));
-  HIROSCO_TRY(channel_.send({.packet = packet}));
+  HIROSCO_TRY(channel_.send({.epoch = known_stop, .packet = packet}));
   next_count_ = static_cast<std::uint16_t>((next_count_ + 1) % pus::sequence_counts);
   ++sent_in_window_;
   const std::uint32_t id = pus::read_primary_header(packet)->request_id;

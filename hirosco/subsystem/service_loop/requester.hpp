@@ -31,9 +31,10 @@ class Requester {
 
   /// Binds a request. What is wrong with it in words; empty when nothing is.
   [[nodiscard]] std::string use(const RequestPort& port, RequestHandler handler, Duration patience);
-  /// Sends one, and returns its number. NotPermitted: it is not bound; ResourceExhausted: too many are under way, or the
+  /// Sends one, and returns its number. `known_stop`: PermitPage::newest_stop before whatever it is said for was read. NotPermitted: it is not bound; ResourceExhausted: too many are under way, or the
   /// supervisor is behind; of the values, what the encoder of ST[08] says.
-  [[nodiscard]] Result<std::uint32_t> send(const RequestPort& port, pus::GivenValues values, TimePoint now);
+  [[nodiscard]] Result<std::uint32_t> send(const RequestPort& port, pus::GivenValues values, TimePoint now,
+                                           std::uint32_t known_stop);
   [[nodiscard]] bool waits() const noexcept { return !open_.empty(); }
   /// A report that came for this subsystem.
   void hear(const pus::TelemetryView& report);

@@ -156,6 +156,14 @@ TEST_F(Requesting, TheReportOfAServiceThatWasAskedIsHeard) {
   EXPECT_THAT(porter.heard, ElementsAre("3 2 00000009", "4"));
 }
 
+TEST_F(Requesting, SaysTheStopThatWasKnownWhenTheServiceLoopBeganItsStep) {
+  rig.permit.newest_stop = 5;
+  rig.service();
+  rig.permit.newest_stop = 6;  // behind the begin of the step, in which it is said
+  EXPECT_EQ(ring().known_stop, 5u);
+  EXPECT_EQ(ring().known_stop, 6u);
+}
+
 TEST_F(Requesting, WhatNobodyAnswersEndsInItsTimeAndALateAnswerIsNone) {
   ASSERT_TRUE(porter.request(porter.count_rings));
   rig.service();
@@ -251,7 +259,7 @@ TEST(Requests, OfAnotherLifeAreNumberedElsewhere) {
     Requester requester{porter, channel.subsystem_end(), TimePoint{born}};
     const Request<> count_rings{"BELL", "COUNT_RINGS"};
     EXPECT_EQ(requester.use(count_rings, {}, std::chrono::seconds{1}), "");
-    return requester.send(count_rings, {}, TimePoint{born}).value();
+    return requester.send(count_rings, {}, TimePoint{born}, 0).value();
   };
   EXPECT_NE(first_number(std::chrono::seconds{1}), first_number(std::chrono::seconds{2}));
 }

@@ -71,8 +71,10 @@ void Subsystem::bind_subscription(SubscriptionPort& heard) { framework_->use_sub
 Result<> Subsystem::set_subscription(SubscriptionPort& heard, bool wanted) {
   return framework_->set_subscription(heard, wanted);
 }
-Result<> Subsystem::submit_ground_telecommand(std::uint16_t client, Octets packet) {
-  return framework_->submit_ground_telecommand(client, packet);
+std::uint32_t Subsystem::newest_stop() const noexcept { return framework_->newest_stop(); }
+
+Result<> Subsystem::submit_ground_telecommand(std::uint16_t client, Octets packet, std::uint32_t known_stop) {
+  return framework_->submit_ground_telecommand(client, packet, known_stop);
 }
 PoolResource& Subsystem::resources() noexcept { return framework_->resources(); }
 State Subsystem::state() const noexcept { return framework_->state(); }

@@ -97,7 +97,8 @@ void Rig::service() {
                        request->ack(),
                        request->service(),
                        request->subtype(),
-                       {data.begin(), data.end()}});
+                       {data.begin(), data.end()},
+                       found->message.epoch});
       continue;
     }
     const auto view = pus::TelemetryView::parse(found->message.packet);
@@ -136,8 +137,7 @@ Sent Rig::send(std::uint8_t service, std::uint8_t subtype, Octets data, const Me
                                               .subtype = subtype,
                                               .source = source},
                                              data);
-  const auto sent =
-      channels.supervisor_end().send({.mode_epoch = mode_epoch, .packet = packet.value(), .memory = beside});
+  const auto sent = channels.supervisor_end().send({.epoch = mode_epoch, .packet = packet.value(), .memory = beside});
   if (!sent) throw std::runtime_error{sent.error().text};
   return {pus::TelecommandView::parse(packet.value()).value().request_id()};
 }

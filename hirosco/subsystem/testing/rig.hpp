@@ -51,6 +51,7 @@ struct Asked {
   std::uint8_t service{};
   std::uint8_t subtype{};
   std::vector<std::byte> data;
+  std::uint32_t known_stop{};  ///< Message::epoch
 };
 
 class Rig {

@@ -30,10 +30,11 @@ inline std::vector<std::byte> telecommand(std::uint16_t count = 0, std::size_t d
 
 /// Answers each valid telecommand with one telemetry packet that carries its count.
 struct Echo final : GroundTraffic {
-  Taken telecommand(ClientId, Octets packet) override {
+  Taken telecommand(ClientId, Octets packet, Said when) override {
     if (room == 0) return Taken::Later;
     --room;
     ++packets;
+    said.push_back(when);
     const auto view = pus::TelecommandView::parse(packet);
     if (!view) return Taken::Yes;
     ++valid;
@@ -45,6 +46,7 @@ struct Echo final : GroundTraffic {
   }
   TcpServer* server{nullptr};
   std::uint64_t packets{0};
+  std::vector<Said> said;
   std::uint64_t valid{0};
   std::uint64_t room{~std::uint64_t{0}};  ///< packets that it takes; then all has to wait
 };

@@ -63,6 +63,7 @@ struct AdoptedSubsystem {
   bool permitted{false};  ///< by that page, under that epoch
   bool stopped{false};  ///< by that page
   std::uint32_t powered{0};  ///< Power, as that page says
+  std::uint32_t newest_stop{0};  ///< as that page says
 };
 
 /// Why nobody goes on with a subsystem.

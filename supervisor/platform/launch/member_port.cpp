@@ -69,11 +69,6 @@ MemberLatencies MemberPort::latencies(std::size_t place) const noexcept {
   return found;
 }
 
-std::optional<std::uint64_t> MemberPort::service_steps() const noexcept {
-  const VitalPage* page = vital();
-  return page != nullptr ? std::optional{page->service_steps.load(std::memory_order_acquire)} : std::nullopt;
-}
-
 std::uint64_t MemberPort::stopped_at_cycle() const noexcept {
   return permit_ != nullptr ? permit_->stopped_at_cycle.load(std::memory_order_relaxed) : 0;
 }

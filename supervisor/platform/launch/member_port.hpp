@@ -70,8 +70,6 @@ class MemberPort {
   [[nodiscard]] MemberLatencies latencies(std::size_t place) const noexcept;
   /// VitalPage::cycles that was read when it was fenced last; for displays.
   [[nodiscard]] std::uint64_t stopped_at_cycle() const noexcept;
-  /// VitalPage::service_steps; empty: the page cannot be read.
-  [[nodiscard]] std::optional<std::uint64_t> service_steps() const noexcept;
   /// Telecommands of another mode are refused by it from now on.
   void enter_mode(std::uint32_t epoch) noexcept;
 

@@ -42,8 +42,6 @@ void Reception::read(Member& member) {
   MessageBuffer buffer;
   const int most = craft_.is_ground_link(member) ? ground_messages_per_step : messages_per_step;
   for (int left = most; left > 0 && member.alive() && reads(member); --left) {
-    // Before its channel, which it may fill in the step that it is just counting.
-    const std::optional<std::uint64_t> steps = member.service_steps();
     const auto found = member.channel()->receive(buffer);
     if (found) member.refused = 0;
     if (!found && found.error().code != ErrorCode::Unavailable) {
@@ -56,10 +54,7 @@ void Reception::read(Member& member) {
     }
     if (!found) give_up(member);
     if (!found) return;
-    if (found->flow == Flow::None) {
-      if (steps) member.has_handed_on(*steps);
-      return;
-    }
+    if (found->flow == Flow::None) return;
     take(member, found->message);
   }
 }
@@ -94,14 +89,13 @@ void Reception::take(Member& member, const Message& message) {
       return craft_.tell(member.descriptor().name + " tells the end of a telecommand that was told as unknown", from);
     if (!parts_.telemetry.take(from, message.packet)) count_unreadable(from);
   } else if (from_ground) {
-    parts_.telecommands.take({.packet = message.packet,
-                              .origin = Origin::ground(message.link),
-                              .before_stop = member.before_stop.has_value()});
+    parts_.telecommands.take(
+        {.packet = message.packet, .origin = Origin::ground(message.link), .known_stop = message.epoch});
     craft_.remember();
     read_own();  // what it said about that: its own backlog must not overflow in a flood
   } else {
     parts_.telecommands.take(
-        {.packet = message.packet, .origin = Origin::subsystem(from), .before_stop = member.before_stop.has_value()});
+        {.packet = message.packet, .origin = Origin::subsystem(from), .known_stop = message.epoch});
     read_own();
   }
 }

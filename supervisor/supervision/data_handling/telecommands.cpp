@@ -48,7 +48,8 @@ void Telecommands::take(const Incoming& incoming) {
   };
   parts_.power.observe();
   auto decision = judge(*telecommand, incoming.origin);
-  if (decision && incoming.before_stop && !decision->essential &&
+  const bool before_stop = incoming.known_stop && *incoming.known_stop != craft_.guard.newest_stop();
+  if (decision && before_stop && !decision->essential &&
       (decision->releases_stop || decision->starts || (apid == supervisor_apid && !asks_only))) {
     FailureNotice notice{FailureCode::NotPermittedNow};
     decision = std::unexpected{
@@ -346,7 +347,7 @@ void Telecommands::forward(const Outgoing& outgoing) {
   // The ground hears what was said before this telecommand in the state in which it was said.
   if (addressee != nullptr && channel != nullptr && craft_.is_ground_link(*addressee))
     parts_.ground_route.flush(*channel, craft_.now);
-  const Message message{.kind = MessageKind::Packet, .mode_epoch = mode_epoch, .packet = packet, .memory = memory};
+  const Message message{.kind = MessageKind::Packet, .epoch = mode_epoch, .packet = packet, .memory = memory};
   const bool sent = channel != nullptr && channel->send(message).has_value();
   if (!sent) {
     // The permission was for this one: an older one that stands unread must not find it (hazard SF4).

@@ -33,8 +33,9 @@ struct Incoming {
   MemoryHandle memory{};
   /// What its sender knows of the addressee, Guard::fences(): stopped since, and it is void. Empty: all that holds now.
   std::optional<std::uint64_t> free_at{};
-  /// It may have been said before a stop, and is read after it: it lets nobody move, nor any mode change.
-  bool before_stop{false};
+  /// Guard::newest_stop() as its sender knew it before it was said, 0 = it does not know. Stopped since, it lets nobody move, nor any mode
+  /// change. Empty: the sender is this process.
+  std::optional<std::uint32_t> known_stop{};
 };
 
 /// Permits or refuses, logs and forwards every telecommand (paper 4.3). One that is not essential leaves when it is on the

@@ -3,7 +3,6 @@
 #include "supervisor/supervision/event_handling/safe_all.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
@@ -15,7 +14,6 @@ void SafeAll::provide() {
 }
 
 void SafeAll::carry_out(const pus::Request& request) {
-  what_is_unread_was_said_before();
   pending_.push_back({craft_.guard.stop_all(), request});
   craft_.remember();
   own_.verification().accepted(request);
@@ -24,21 +22,12 @@ void SafeAll::carry_out(const pus::Request& request) {
 }
 
 void SafeAll::asked() {
-  what_is_unread_was_said_before();
   pending_.push_back({craft_.guard.stop_all(), std::nullopt});
   own_.announce(descriptor::event_of_local_stop);
   after_stop("stop by signal or local socket");
 }
 
-void SafeAll::stood_still() {
-  what_is_unread_was_said_before();
-  // Once more: whoever was let go since the guard did it was let go on the word of before.
-  for (const Member& member : craft_.members) craft_.guard.fence(member.apid());
-  after_stop("the supervisor itself stood still");
-}
-
 void SafeAll::again() {
-  what_is_unread_was_said_before();
   if (before_.empty()) before_.emplace_back();
   if (std::ranges::any_of(before_, [](const auto& asked) { return !asked; }))
     own_.announce(descriptor::event_of_local_stop);
@@ -86,11 +75,6 @@ void SafeAll::states_follow() {
     desk_.command(apid, "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
     return true;
   });
-}
-
-void SafeAll::what_is_unread_was_said_before() {
-  constexpr std::uint64_t not_known = std::numeric_limits<std::uint64_t>::max();
-  for (Member& member : craft_.members) member.before_stop = member.service_steps().value_or(not_known);
 }
 
 void SafeAll::follow() {

@@ -17,7 +17,8 @@
 namespace hirosco::supervisor {
 
 /// SAFE_ALL, however it was asked for: the guard stops everything, the states follow, and what became of it is told by who
-/// was to stop. It holds until a SET_STATE(Operational) that was permitted after it leaves (`Telecommands::forward()`, `Guard::release()`).
+/// was to stop. What was said before it, read or not, lets nobody move (`Guard::newest_stop()`).
+/// It holds until a SET_STATE(Operational) that was permitted after it leaves (`Telecommands::forward()`, `Guard::release()`).
 /// Thread: the supervisor's; the stop itself is the guard's.
 class SafeAll final : public Remembered {
  public:
@@ -27,13 +28,8 @@ class SafeAll final : public Remembered {
   void provide();
   /// SAFE_ALL, carried out where it is received.
   void carry_out(const pus::Request& request);
-  /// A signal or the local socket asked for a stop, at some time before: what has not been read yet may have been said before it.
+  /// A signal or the local socket asked for a stop, at some time before.
   void asked();
-  /// The guard stopped everybody, as nobody had heard of the supervisor for so long; what it has done in the middle of that is undone.
-  void stood_still();
-  /// Nothing of it lets anybody move, nor of what lies in a ground link or member that has not handed it on (`Member::before_stop`). Nobody
-  /// knows the place of a stop among the telecommands of others, nor, with two stations, of one of them among those of the other.
-  void what_is_unread_was_said_before();
   /// Everything was stopped already: nothing starts it again, and the states follow.
   void after_stop(std::string_view why);
   /// One was under way when the supervisor before died, or was asked for when there was none.

@@ -82,7 +82,7 @@ void Adoption::begin(bool stop_asked) {
   // Where anybody was stopped, what is read from now on may have been said before that.
   const bool stopped =
       std::ranges::any_of(craft_.members, [](const Member& member) { return !member.fences_when_free; });
-  if (stop_asked_ || stopped) parts_.safe_all.what_is_unread_was_said_before();
+  if (stop_asked_ || stopped) craft_.guard.void_what_was_said();
   parts_.commissioning.start_itself([this](bool) { go_on(); });
 }
 

@@ -53,15 +53,15 @@ void LinkLosses::fall_back(const descriptor::MissionLink& link, Member& consumer
   const bool acts = state == State::SafeOperational || state == State::Operational;
   if (!acts || consumer.configuration() == configuration->id) return;
   const std::uint16_t apid = consumer.apid();
-  // Who was stopped before stays so: its way ends where it lets nobody move.
-  const bool stopped = craft_.guard.fences(apid) != consumer.fences_when_free;
   // With what is lost nobody goes on acting, whoever obeys and whenever.
-  craft_.guard.fence(apid);
+  const std::uint64_t own_fence = craft_.guard.fence(apid);
+  // Who was stopped before stays so: its way ends where it lets nobody move.
+  const bool stopped = own_fence - 1 != consumer.fences_when_free;
   WayThere way;
   way.add(consumer.descriptor(), *configuration, {state, consumer.configuration()},
           stopped ? State::SafeOperational : *state);
   Fallback& fallback = fallbacks_.try_emplace(apid, means_).first->second;
-  fallback.fences = craft_.guard.fences(apid);
+  fallback.fences = own_fence;
   fallback.runner.start({.stages = way.stages(),
                          .finished =
                              [this, &link, apid](const ProcedureEnd& end) {

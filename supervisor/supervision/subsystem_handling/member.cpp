@@ -21,17 +21,6 @@ std::optional<MemberStatistics> Member::statistics() const noexcept {
 
 std::uint64_t Member::stopped_at_cycle() const noexcept { return alive() ? launched_.port->stopped_at_cycle() : 0; }
 
-std::optional<std::uint64_t> Member::service_steps() const noexcept {
-  return alive() ? launched_.port->service_steps() : std::nullopt;
-}
-
-void Member::has_handed_on(std::uint64_t steps) noexcept {
-  constexpr std::uint64_t one_under_way_and_a_whole_one = 2;
-  if (!before_stop) return;
-  if (steps < *before_stop) before_stop = steps;
-  if (steps - *before_stop >= one_under_way_and_a_whole_one) before_stop.reset();
-}
-
 void Member::enter_mode(std::uint32_t epoch) noexcept {
   if (alive()) launched_.port->enter_mode(epoch);
 }

@@ -39,10 +39,6 @@ class Member {
     return alive() ? launched_.port->latencies(place) : MemberLatencies{};
   }
   [[nodiscard]] std::uint64_t stopped_at_cycle() const noexcept;
-  /// Empty: it does not run, or its page cannot be read.
-  [[nodiscard]] std::optional<std::uint64_t> service_steps() const noexcept;
-  /// Its channel was empty after it had begun so many steps of its service loop.
-  void has_handed_on(std::uint64_t steps) noexcept;
   void enter_mode(std::uint32_t epoch) noexcept;
   /// Once in each step of the supervisor.
   void beat(std::uint64_t heartbeat, TimePoint now);
@@ -55,10 +51,6 @@ class Member {
   /// The guard's count of its fences when it was first started, or let go last: another count, and it was stopped since. Empty: it was
   /// stopped under a supervisor before, or may have been.
   std::optional<std::uint64_t> fences_when_free{0};
-  /// What it says may have been said before a stop (`SafeAll`), at which its service loop had begun
-  /// so many steps: until its channel is empty after two more, in the second of which it handed on all that had come to it. More than it has
-  /// begun by now: of another process, or not known then; its steps are counted from there on.
-  std::optional<std::uint64_t> before_stop;
   bool was_started{false};
   /// Its process ends for another version of it, or has: nobody else starts it.
   bool exchanged{false};

@@ -190,7 +190,8 @@ struct StreamMemberTest : ::testing::Test, ProcessLauncher, Observer {
   void command(std::uint8_t service, std::uint8_t subtype, Octets data) {
     heard.clear();
     const auto packet = testing::telecommand(probe_apid, service, subtype, data);
-    ASSERT_TRUE(ground.subsystem_end().send({.kind = MessageKind::GroundTelecommand, .packet = packet}));
+    ASSERT_TRUE(ground.subsystem_end().send(
+        {.kind = MessageKind::GroundTelecommand, .epoch = guard.newest_stop(), .packet = packet}));
   }
   void command_state(State state) { command(8, 1, testing::call_data("SET_STATE", static_cast<int>(state))); }
   bool completed() {
@@ -298,7 +299,7 @@ TEST_F(StreamMemberAbuse, OfAnotherVersionIsRefusedByNameAndEnded) {
   EXPECT_TRUE(guard.fenced(probe_apid));
   ASSERT_TRUE(until([&] { return !member().alive(); }, 1100)) << all();
   EXPECT_THAT(story, Contains("PROBE: 1 messages could not be read: another version of a member's stream; build both "
-                              "from one hirosco (2)"));
+                              "from one hirosco (3)"));
 }
 
 TEST_F(StreamMemberAbuse, ThatSaysNothingOfASenseIsCountedAndEnded) {

@@ -43,7 +43,7 @@ TYPED_TEST_P(ChannelConformance, CarriesEveryFieldOfAMessage) {
   const auto found = this->receive().value();
   ASSERT_EQ(found.flow, Flow::New);
   EXPECT_EQ(found.message.kind, MessageKind::GroundTelecommand);
-  EXPECT_EQ(found.message.mode_epoch, 0xDEAD'BEEF);
+  EXPECT_EQ(found.message.epoch, 0xDEAD'BEEF);
   EXPECT_EQ(found.message.link, 0x1234);
   EXPECT_TRUE(std::ranges::equal(found.message.packet, octets));
   EXPECT_FALSE(found.message.memory);
