@@ -77,6 +77,9 @@ DEFECTS = [
     Defect("SF1 its states", PERMISSION, 'if (asked.calls("SET_STATE") || asked.calls("CONFIGURE")) return wrong_mode',
            'if (!PLANTED && (asked.calls("SET_STATE") || asked.calls("CONFIGURE"))) return wrong_mode',
            "supervisor_test", "Permission.InEveryStateOfTheSupervisorAndFromEveryOriginSafeAllPassesAndNobodyElseChangesThatState"),
+    # A recovery gave up who had not read the answers to its own flood.
+    Defect("recovery and a full channel", TELECOMMANDS, "const bool surely = essential &&", "const bool surely = !PLANTED && essential &&",
+           "supervisor_test", "FullChannel.ARecoveryReachesItsMemberAsSoonAsThatReads"),
     # What was permitted before a stop and waited for the disk started the robot after it.
     Defect("SF4 permitted before a stop", TELECOMMANDS, "if (craft_.guard.fences(next->apid) != next->fences) {",
            "if (craft_.guard.fences(next->apid) != next->fences && !PLANTED) {",
