@@ -67,6 +67,11 @@ DEFECTS = [
            "      if (!PLANTED) doom(member, GuardFinding::Kind::PageDamaged, now);\n",
            "supervisor_test", "GuardTest.AVitalPageThatIsOverwrittenIsAHangWhateverIsWritten"),
 
+    # A second in which supervisor and guard stood still, and a cycle did not, was counted against who had stopped in it.
+    Defect("time that nobody asked in", GUARD, "return stepped_ ? asked_ + std::min(now - *stepped_, most_unwatched) : now;",
+           "if (PLANTED) return watched_at(now);\n  return stepped_ ? asked_ + std::min(now - *stepped_, most_unwatched) : now;",
+           "supervisor_test", "Watching.AStopEndsNobodyForTimeInWhichTheGuardAskedNobody"),
+
     # --- the supervisor --------------------------------------------------------------------------------------------------
     # Reports for the ground were dropped with the housekeeping when the link was behind.
     Defect("SF3 reports dropped", f"{SUPERVISION}/data_handling/ground_route.cpp",
