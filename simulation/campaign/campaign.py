@@ -32,6 +32,7 @@ class Pilot:
         """{"violations": [[invariant, seconds, text]], ...}"""
         with tempfile.TemporaryDirectory() as own:
             folder = pathlib.Path(folder or own)
+            folder.mkdir(parents=True, exist_ok=True)
             (folder / "plan.txt").write_text(plan)
             command = [self.fly_plan, self.mission, folder / "plan.txt", folder] + ([self.defect] if self.defect else [])
             flown = subprocess.run(command, capture_output=True, text=True, preexec_fn=limited)
@@ -173,7 +174,7 @@ def parse(words=None):
     parser.add_argument("--plan", help="fly and judge this plan")
     parser.add_argument("--show", action="store_true", help="print the plan of --only instead of flying it")
     parser.add_argument("--keep", metavar="FILE", help="write down after each batch how far it is, and go on from there where FILE is there already")
-    parser.add_argument("--out", help="folder for the plans that failed")
+    parser.add_argument("--out", help="folder for the plans that failed, or for what --plan flew; it is made")
     parser.add_argument("--shrink", type=int, default=3, help="how many failed plans are made small (0: none)")
     parser.add_argument("--table", action="store_true", help="print all cells that are not full")
     parser.add_argument("--defect", help="fly with this planted defect")

@@ -39,6 +39,13 @@ void PlannedFlight::end_faults() {
   trace_->say("calm");
 }
 
+/// Nobody moves a handle while the craft is brought up: where a hand had held it away the robot may stand at the end of the rail, and whoever
+/// wanders on from there trips limits, and rightly so.
+void PlannedFlight::rest_hands() {
+  for (const auto& device : mission_.devices)
+    if (auto* simulated = craft_->device(device.name)) static_cast<void>(simulated->fault("hand hold 0 0"));
+}
+
 /// Who stands in the middle of a cycle is ended by the guard and started again; until then nobody can bring it up, and its
 /// operator is told that it hangs. That takes as long as its descriptor grants a cycle whose real-time priority was taken.
 void PlannedFlight::see_hangs_ended() {
@@ -85,6 +92,7 @@ void PlannedFlight::finale() {
   // A store that has failed takes nothing more; a new one does.
   static_cast<void>(call(mission_.supervisor.name, "SET_DATABASE", 1));
   static_cast<void>(call(mission_.supervisor.name, "SAFE_ALL", {}));
+  rest_hands();
   run_until(plan_.finale + 2s);
   trace_->say("recovered");
   for (const auto& member : mission_.subsystems)

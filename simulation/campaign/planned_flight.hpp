@@ -64,6 +64,7 @@ class PlannedFlight {
   // The end of each flight: every fault is over, and what can fly has to fly again.
   void finale();
   void end_faults();
+  void rest_hands();
   void see_hangs_ended();
   void bring_up();
   [[nodiscard]] bool call(std::string_view subsystem, std::string_view function, std::optional<double> argument);

@@ -274,6 +274,7 @@ void Guard::life_changed(std::uint16_t apid) {
 
 TimePoint Guard::step(TimePoint now) {
   const LockGuard lock{mutex_};
+  asked_ = asked_at(now);
   watched_ = watched_at(now);
   stepped_ = now;
   watch_supervisor(watched_);
@@ -307,6 +308,10 @@ TimePoint Guard::watched_at(TimePoint now) const noexcept {
   const Duration passed = now - *stepped_;
   if (passed <= most_unwatched || somebody_went_on(passed)) return watched_ + passed;
   return watched_ + most_unwatched;
+}
+
+TimePoint Guard::asked_at(TimePoint now) const noexcept {
+  return stepped_ ? asked_ + std::min(now - *stepped_, most_unwatched) : now;
 }
 
 /// Half of the cycles that were due count: while the guard alone does not run, a computer may be busy.
@@ -446,7 +451,7 @@ void Guard::doom(GuardedMember& member, GuardFinding::Kind why, TimePoint now) {
   const Duration had = member.grip ? member.grip->processor_time() - member.processor_time : Duration{};
   if (member.grip && (why != GuardFinding::Kind::CycleHangs || had >= observation_period))
     member.take_realtime(GuardedMember::Taken::All);
-  member.doomed = now + grace;
+  member.doomed = now - watched_ + asked_ + grace;
   member.doom = why;
   find_out(why, member.apid());
 }
@@ -470,7 +475,7 @@ void Guard::judge_doomed(GuardedMember& member, TimePoint now) {
     member.asked_who_runs.reset();
     return find_out(GuardFinding::Kind::Back, member.apid());
   }
-  if (now < *member.doomed || member.killed) return;
+  if (asked_ < *member.doomed || member.killed) return;
   member.killed = true;
   if (member.grip) member.grip->kill();
   find_out(GuardFinding::Kind::Killed, member.apid());

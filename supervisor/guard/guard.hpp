@@ -136,6 +136,9 @@ class Guard {
   /// The time that all judgements go by: what the guard has watched. While nobody ran (the host was stopped) nobody can be blamed for
   /// standing still, so of a longer time between two steps little counts, unless some cycle went on meanwhile.
   [[nodiscard]] TimePoint watched_at(TimePoint now) const noexcept;
+  /// The time by which somebody is ended: that in which the guard asked and could hear. Of a longer time between two of its own steps little
+  /// counts, whoever went on: what was done meanwhile, nobody could tell it.
+  [[nodiscard]] TimePoint asked_at(TimePoint now) const noexcept;
   [[nodiscard]] bool somebody_went_on(Duration passed) const noexcept;
   void watch_supervisor(TimePoint now);
   void observe(TimePoint now);
@@ -157,8 +160,8 @@ class Guard {
   std::uint64_t seen_beats_{0};
   std::optional<TimePoint> beat_seen_;
   bool supervisor_still_{false};
-  std::optional<TimePoint> stepped_;  ///< last, and what had been watched by then
-  TimePoint watched_{};
+  std::optional<TimePoint> stepped_;  ///< last, and what had been watched and asked by then
+  TimePoint watched_{}, asked_{};
   TimePoint next_observation_{};
   std::atomic<std::uint32_t> newest_stop_{1};
   std::uint64_t stops_{0};  ///< the newest stop of everything whose outcome may be asked for

@@ -141,9 +141,9 @@ void GuardedMember::fence() noexcept {
   for (WatchedDevice& device : devices) device.fenced_at_sequence = device.sequence;
 }
 
-void GuardedMember::begin_stop(TimePoint now, TimePoint watched) noexcept {
+void GuardedMember::begin_stop(TimePoint now, TimePoint asked) noexcept {
   stop_begun = now;
-  stop_watched = watched;
+  stop_asked = asked;
   stop_killed = false;
   stopped.reset();
   for (WatchedDevice& device : devices) device.stopped.reset();

@@ -100,11 +100,11 @@ struct GuardedMember {
   TimePoint service_moved{};
   std::optional<TimePoint> asked_who_runs;  ///< since its service loop stands
   std::vector<LoopTime> had_then;  ///< by the loops of each member
-  std::optional<TimePoint> doomed;  ///< killed then unless it comes back
+  std::optional<TimePoint> doomed;  ///< killed then unless it comes back, in asked time
   GuardFinding::Kind doom{};
   // stop
   TimePoint stop_begun{};  ///< of the newest that found it moving
-  TimePoint stop_watched{};  ///< the same in watched time
+  TimePoint stop_asked{};  ///< the same in the time in which its devices were asked
   std::optional<Duration> stopped;  ///< by its own word
   bool killed{false};
   std::uint64_t settled{0};  ///< the stop in which it had stopped and was let go again
@@ -139,7 +139,7 @@ struct GuardedMember {
     fence_untold = true;
   }
   /// It has yet to stop: its time runs from now.
-  void begin_stop(TimePoint now, TimePoint watched) noexcept;
+  void begin_stop(TimePoint now, TimePoint asked) noexcept;
   void release(TimePoint now) noexcept;
   /// A permission is for one stay in Operational: it ends with it.
   void end_permission(TimePoint now) noexcept;

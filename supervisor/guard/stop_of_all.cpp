@@ -27,13 +27,13 @@ std::uint64_t Guard::stop_all() {
 
 std::uint64_t Guard::begin_stop_of_all() {
   const TimePoint now = parts_.clock.now();
-  const TimePoint watched = watched_at(now);
+  const TimePoint asked = asked_at(now);
   // Stops that overlap end together. The time of each member runs from the first that found it moving: from this one for who moves,
   // or did since the stop that is still open had seen it at rest.
   const bool first = stops_ended_ == stops_;
   next_stop();
   for (GuardedMember& member : members_) {
-    if (first || member.released || member.settled == stops_) member.begin_stop(now, watched);
+    if (first || member.released || member.settled == stops_) member.begin_stop(now, asked);
     if (!member.spared) member.fence();
   }
   return ++stops_;
@@ -56,11 +56,11 @@ std::optional<std::vector<StopAnswer>> Guard::stop_outcome(std::uint64_t stop) c
 }
 
 void Guard::follow_stop(TimePoint now) {
-  // How long a stop took is told in real time; who is given how long goes by what was watched.
+  // How long a stop took is told in real time; who is given how long goes by what was asked.
   bool waiting = false;
   for (GuardedMember& member : members_) {
     if (member.spared || member.settled == stops_) continue;
-    const Duration since = watched_ - member.stop_watched;
+    const Duration since = asked_ - member.stop_asked;
     if (!member.says_stopped()) member.stopped.reset();
     else if (!member.stopped) member.stopped = now - member.stop_begun;
     if (member.has_stopped()) continue;

@@ -47,6 +47,17 @@ struct Watching : GuardTest {
       run(Guard::period);
     }
   }
+  /// The guard stands, and all others go on: what they do nobody hears.
+  void without_guard(Duration span) {
+    clock.advance(span);
+    for (auto& [apid, life] : lives) {
+      life.vital->cycles += static_cast<std::uint64_t>(span / 1ms);
+      life.vital->seen_epoch = life.permit->epoch.load();
+      ++life.vital->service_steps;
+    }
+    guard.beat();  // of a supervisor that had stood with it
+    step();
+  }
   void arm_stands(Duration span, double share) { stands(arm, hand, span, share); }
   void expect_all_may_move() {
     for (const std::uint16_t apid : {arm, hand, camera}) EXPECT_TRUE(may_move(apid)) << apid;
@@ -191,6 +202,57 @@ TEST_F(Watching, AStopThatIsNotObeyedEndsAsSoonAfterAPause) {
   EXPECT_FALSE(lives[arm].process->killed);
   run(60ms, {arm, hand, camera}, DeviceOutput::Active);
   EXPECT_TRUE(lives[arm].process->killed);
+}
+
+TEST_F(Watching, AStopEndsNobodyForTimeInWhichTheGuardAskedNobody) {
+  run(50ms, {arm, hand, camera}, DeviceOutput::Active);
+  const auto stop = guard.stop_all();
+  for (const std::uint16_t apid : {arm, hand}) lives[apid].vital->inhibited = inhibited_by_stop;
+  run(20ms, {arm, hand, camera}, DeviceOutput::Stopping);
+  without_guard(1s);
+  run(10ms, {arm, hand, camera}, DeviceOutput::Holding);
+  EXPECT_FALSE(lives[arm].process->killed) << "it has stood still for most of that second";
+  const auto answers = guard.stop_outcome(stop);
+  ASSERT_TRUE(answers);
+  EXPECT_GE(answers->at(0).stopped.value(), 1s) << "that is when it could be heard";
+}
+
+TEST_F(Watching, WhoGoesOnMovingHasItsLimitAndTheTimeInWhichNobodyWasAskedAndNoMore) {
+  run(50ms, {arm, hand, camera}, DeviceOutput::Active);
+  static_cast<void>(guard.stop_all());
+  const TimePoint asked = clock.now();
+  constexpr Duration limit = 450ms, pause = 100ms;  // of the motor: 200 ms and the time to answer
+  Duration unasked{};
+  while (!lives[arm].process->killed && clock.now() < asked + 60s) {
+    without_guard(pause);
+    unasked += pause + Guard::period - Guard::most_unwatched;
+    run(30ms, {arm, hand, camera}, DeviceOutput::Active);
+    EXPECT_EQ(lives[arm].process->killed, clock.now() - asked - unasked >= limit + Guard::period);
+  }
+}
+
+TEST_F(Watching, AStopThatIsAskedForWhileTheGuardStandsGrantsTheTimeFromThenOn) {
+  run(50ms, {arm, hand, camera}, DeviceOutput::Active);
+  clock.advance(5s);
+  lives[arm].vital->cycles += 5000;
+  static_cast<void>(guard.stop_all());
+  without_guard(0ms);
+  run(430ms, {arm, hand, camera}, DeviceOutput::Active);
+  EXPECT_FALSE(lives[arm].process->killed);
+  run(40ms, {arm, hand, camera}, DeviceOutput::Active);
+  EXPECT_TRUE(lives[arm].process->killed);
+}
+
+TEST_F(Watching, WhoHangsIsNotEndedForTimeInWhichNobodyTookItsWordAcross) {
+  run(250ms, {arm, camera});
+  EXPECT_THAT(kinds(hand), ElementsAre(Found::CycleHangs));
+  // Its page is a copy that the supervisor keeps up, which stood with the guard.
+  clock.advance(Guard::grace + 1s);
+  lives[arm].vital->cycles += 2000;
+  step();
+  EXPECT_FALSE(lives[hand].process->killed);
+  run(20ms);
+  EXPECT_THAT(kinds(hand), ElementsAre(Found::Back));
 }
 
 TEST_F(Watching, AServiceLoopThatGetsNoProcessorIsNotBlamedButWhoHasIt) {

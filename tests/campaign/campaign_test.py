@@ -19,6 +19,39 @@ DEFECTS = ["I1", "I2", "I3", "I4", "I5", "I6", "I8", "I9", "I10", "I11", "I12", 
 MOST_FLIGHTS = 40          # until a planted defect is found
 SLICE = 20
 CALLS = 1_000              # of functions with arguments of every type
+# Plans of flights with a violation, of what they cannot do without, and what holds in them by now.
+FOUND = {
+    "a recovery reaches who has flooded the supervisor and not read the answers yet": """
+seed 2067581723
+mode standalone
+finale 26.0
+14.713206 tc ground 1 8 1 15 5345545f4d4f44450000000000000000010101
+14.743206 tc ground 10 8 1 15 5345545f535441544500000000000000010104
+14.743206 tc ground 11 8 1 15 5345545f535441544500000000000000010104
+14.803206 tc ground 10 8 1 15 5345545f535441544500000000000000010103
+14.803206 tc ground 11 8 1 1 5345545f535441544500000000000000010103
+19.112965 tc ground 10 8 1 15 434f4e46494755524500000000000000010102
+19.112965 tc ground 11 8 1 15 434f4e46494755524500000000000000010102
+19.142965 tc ground 1 8 1 15 4c494e4b000000000000000000000000010101
+20.829673 kill MANIPULATOR
+20.829673 flood JOYSTICK valid 400
+""",
+    "nobody is ended for the time in which supervisor and guard stood still during a stop": """
+seed 4203175389
+mode telepresence
+finale 26.0
+18.946899 tc ground 1 8 1 15 534146455f414c4c000000000000000000
+19.073649 stop SUPERVISOR
+""",
+    "a hand that held the joystick away is no reason for a craft not to come up again": """
+seed 1824551638
+mode telepresence
+finale 26.0
+7.672652 strain MANIPULATOR 3 600
+12.180817 tc ground 10 8 1 15 5345545f535441544500000000000000010105
+23.318167 fault joystick hand hold 0.1 0.1
+""",
+}
 problems = []
 
 
@@ -96,6 +129,11 @@ def tools():
             Pilot(MISSION, fly_plan()).fly(plan, folder)
             octets.append([(pathlib.Path(folder) / name).read_bytes() for name in ("log.txt", "trace.txt")])
     check(octets[0] == octets[1], "the same plan flies to the same octets of log and trace")
+    with tempfile.TemporaryDirectory() as folder:
+        for number, (text, plan) in enumerate(FOUND.items()):
+            out = pathlib.Path(folder) / str(number) / "flown"
+            violations = Pilot(MISSION, fly_plan()).fly(plan.lstrip(), out)["violations"]
+            check(not violations and (out / "trace.txt").exists(), text + "".join(f"; {v[0]} {v[1]:.4f} s: {v[2]}" for v in violations))
     small = shrink("seed 1\n" + "".join(f"{n}.0 a{n}\n" for n in range(40)), lambda text: " a7\n" in text and " a31\n" in text, 2)
     check(split(small)[1] == ["7.0 a7", "31.0 a31"], "a plan shrinks to the two actions that it takes")
 

@@ -67,6 +67,11 @@ DEFECTS = [
            "      if (!PLANTED) doom(member, GuardFinding::Kind::PageDamaged, now);\n",
            "supervisor_test", "GuardTest.AVitalPageThatIsOverwrittenIsAHangWhateverIsWritten"),
 
+    # A second in which supervisor and guard stood still, and a cycle did not, was counted against who had stopped in it.
+    Defect("time that nobody asked in", GUARD, "return stepped_ ? asked_ + std::min(now - *stepped_, most_unwatched) : now;",
+           "if (PLANTED) return watched_at(now);\n  return stepped_ ? asked_ + std::min(now - *stepped_, most_unwatched) : now;",
+           "supervisor_test", "Watching.AStopEndsNobodyForTimeInWhichTheGuardAskedNobody"),
+
     # --- the supervisor --------------------------------------------------------------------------------------------------
     # Reports for the ground were dropped with the housekeeping when the link was behind.
     Defect("SF3 reports dropped", f"{SUPERVISION}/data_handling/ground_route.cpp",
@@ -77,6 +82,9 @@ DEFECTS = [
     Defect("SF1 its states", PERMISSION, 'if (asked.calls("SET_STATE") || asked.calls("CONFIGURE")) return wrong_mode',
            'if (!PLANTED && (asked.calls("SET_STATE") || asked.calls("CONFIGURE"))) return wrong_mode',
            "supervisor_test", "Permission.InEveryStateOfTheSupervisorAndFromEveryOriginSafeAllPassesAndNobodyElseChangesThatState"),
+    # A recovery gave up who had not read the answers to its own flood.
+    Defect("recovery and a full channel", TELECOMMANDS, "const bool surely = essential &&", "const bool surely = !PLANTED && essential &&",
+           "supervisor_test", "FullChannel.ARecoveryReachesItsMemberAsSoonAsThatReads"),
     # What was permitted before a stop and waited for the disk started the robot after it.
     Defect("SF4 permitted before a stop", TELECOMMANDS, "if (craft_.guard.fences(next->apid) != next->fences) {",
            "if (craft_.guard.fences(next->apid) != next->fences && !PLANTED) {",

@@ -77,11 +77,13 @@ void MemberPort::enter_mode(std::uint32_t epoch) noexcept {
   if (permit_ != nullptr) permit_->mode_epoch.store(epoch, std::memory_order_release);
 }
 
+void MemberPort::beat(std::uint64_t heartbeat, TimePoint now) {
+  if (permit_ != nullptr) permit_->heartbeat.store(heartbeat, std::memory_order_release);
+  take_across(now);
+  channel_.step(now);
+}
+
 LocalMemberPort::LocalMemberPort(std::unique_ptr<Channel> channel, Mapping vital, Mapping permit) noexcept
     : MemberPort{*channel, std::move(vital), std::move(permit)}, channel_{std::move(channel)} {}
-
-void LocalMemberPort::beat(std::uint64_t heartbeat, TimePoint) {
-  if (PermitPage* page = permit()) page->heartbeat.store(heartbeat, std::memory_order_release);
-}
 
 }  // namespace hirosco::supervisor

@@ -12,6 +12,7 @@
 #include "hirosco/subsystem/author/states.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/utilities/time.hpp"
+#include "supervisor/platform/launch/member_channel.hpp"
 
 /// How the supervisor reaches a started member, wherever that runs (docs/adr/0066).
 namespace hirosco::supervisor {
@@ -57,10 +58,10 @@ class MemberPort {
   MemberPort& operator=(const MemberPort&) = delete;
   virtual ~MemberPort() = default;
 
-  /// Once in each step of the supervisor: it moves. Takes across what is not shared.
-  virtual void beat(std::uint64_t heartbeat, TimePoint now) = 0;
+  /// Once in each step of the supervisor: it moves. Takes across what is not shared, and what its channel keeps.
+  void beat(std::uint64_t heartbeat, TimePoint now);
 
-  [[nodiscard]] Channel& channel() const noexcept { return channel_; }
+  [[nodiscard]] MemberChannel& channel() noexcept { return channel_; }
   /// As it says itself; empty when what it says holds no state.
   [[nodiscard]] std::optional<State> state() const noexcept;
   [[nodiscard]] std::uint8_t configuration() const noexcept;
@@ -76,13 +77,13 @@ class MemberPort {
  protected:
   /// Pages that are smaller than they should be say nothing.
   MemberPort(Channel& channel, Mapping vital, Mapping permit) noexcept;
-  [[nodiscard]] PermitPage* permit() const noexcept { return permit_; }
 
  private:
+  virtual void take_across(TimePoint) {}
   /// Nullptr: it is not a page of ours.
   [[nodiscard]] const VitalPage* vital() const noexcept;
 
-  Channel& channel_;
+  MemberChannel channel_;
   Mapping vital_memory_, permit_memory_;
   const VitalPage* vital_{nullptr};
   PermitPage* permit_{nullptr};
@@ -92,7 +93,6 @@ class MemberPort {
 class LocalMemberPort final : public MemberPort {
  public:
   LocalMemberPort(std::unique_ptr<Channel> channel, Mapping vital, Mapping permit) noexcept;
-  void beat(std::uint64_t heartbeat, TimePoint now) override;
 
  private:
   std::unique_ptr<Channel> channel_;

@@ -23,9 +23,4 @@ StreamMemberPort::StreamMemberPort(FileDescriptor stream)
 StreamMemberPort::StreamMemberPort(std::unique_ptr<Wire> wire)
     : MemberPort{wire->channel, wire->vital(), wire->permit()}, wire_{std::move(wire)} {}
 
-void StreamMemberPort::beat(std::uint64_t heartbeat, TimePoint now) {
-  permit()->heartbeat.store(heartbeat, std::memory_order_release);
-  wire_->channel.step(now);
-}
-
 }  // namespace hirosco::supervisor

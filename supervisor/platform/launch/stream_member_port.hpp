@@ -16,7 +16,6 @@ class StreamMemberPort final : public MemberPort {
  public:
   /// `stream` does not block.
   explicit StreamMemberPort(FileDescriptor stream);
-  void beat(std::uint64_t heartbeat, TimePoint now) override;
 
   /// For LaunchedSubsystem.
   [[nodiscard]] Mapping vital_page() const { return wire_->vital(); }
@@ -36,6 +35,7 @@ class StreamMemberPort final : public MemberPort {
     StreamChannel channel;
   };
   explicit StreamMemberPort(std::unique_ptr<Wire> wire);
+  void take_across(TimePoint now) override { wire_->channel.step(now); }
   std::unique_ptr<Wire> wire_;
 };
 

@@ -27,7 +27,7 @@ class Member {
   [[nodiscard]] const descriptor::MissionSubsystem& described() const noexcept { return *described_; }
   [[nodiscard]] std::uint16_t apid() const noexcept { return described_->subsystem.id; }
   [[nodiscard]] bool alive() const noexcept { return launched_.port != nullptr; }
-  [[nodiscard]] Channel* channel() const noexcept { return alive() ? &launched_.port->channel() : nullptr; }
+  [[nodiscard]] MemberChannel* channel() const noexcept { return alive() ? &launched_.port->channel() : nullptr; }
   [[nodiscard]] std::uint32_t process() const noexcept { return launched_.process; }
   /// As it says itself; empty when it does not run or what it says holds no state.
   [[nodiscard]] std::optional<State> state() const noexcept { return alive() ? launched_.port->state() : std::nullopt; }
