@@ -133,7 +133,7 @@ class Guard {
   void put_newest_stop(std::uint32_t number) noexcept;
   void next_stop() noexcept;
   std::uint64_t begin_stop_of_all();
-  /// The time that all judgements go by: what the guard has watched. While nobody ran (the host was stopped) nobody can be blamed for
+  /// The time by which somebody is found to stand still: what the guard has watched. While nobody ran (the host was stopped) nobody can be blamed for
   /// standing still, so of a longer time between two steps little counts, unless some cycle went on meanwhile.
   [[nodiscard]] TimePoint watched_at(TimePoint now) const noexcept;
   /// The time by which somebody is ended: that in which the guard asked and could hear. Of a longer time between two of its own steps little
