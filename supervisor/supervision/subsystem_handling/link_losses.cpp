@@ -72,11 +72,11 @@ void LinkLosses::fall_back(const descriptor::MissionLink& link, Member& consumer
                          .begins =
                              [this, apid](std::size_t) {
                                const auto found = fallbacks_.find(apid);
-                               const bool stopped =
+                               const bool stopped_since =
                                    found != fallbacks_.end() && craft_.guard.fences(apid) != found->second.fences;
                                const bool other =
                                    craft_.changing_to != nullptr || craft_.member(apid)->recovery.running();
-                               if (found != fallbacks_.end() && (stopped || other)) found->second.runner.cancel();
+                               if (found != fallbacks_.end() && (stopped_since || other)) found->second.runner.cancel();
                              },
                          .knows_of_no_stop = true});
 }
