@@ -116,14 +116,13 @@ std::expected<supervisor::AdoptedSubsystem, supervisor::NotAdopted> Spacecraft::
   adopted.permitted = before.permits(adopted.epoch);
   adopted.stopped = before.stop.load() != 0;
   adopted.powered = before.powered.load();
-  adopted.newest_stop = before.newest_stop.load();
   auto handle = memory_.create("permit", sizeof(PermitPage));
   auto page = memory_.map(*handle, Access::ReadWrite);
   auto& fresh = *::new (page->octets.data()) PermitPage;
   fresh.epoch = adopted.epoch;
   fresh.stop = adopted.stopped ? 1 : 0;
   fresh.powered = adopted.powered;
-  fresh.newest_stop = adopted.newest_stop;
+  fresh.newest_stop = before.newest_stop.load();
   static_cast<void>(memory_.seal_writers(*handle));
   member.permits.push_back(*page);
   adopted.permit = std::move(*handle);

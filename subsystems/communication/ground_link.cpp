@@ -209,8 +209,24 @@ void GroundClients::received(ClientId id, std::size_t octets, TimePoint now) noe
   queue(*client);
 }
 
-void GroundClients::all_stopped(ClientId id, std::size_t unread) noexcept {
-  if (Client* client = find(id)) client->stopped_at = client->counters.octets_received + unread;
+void GroundClients::all_stopped() noexcept {
+  for (Client& client : clients_) client.settled = false;
+}
+
+void GroundClients::all_stopped(ClientId id) noexcept {
+  if (Client* client = find(id)) client->settled = false;
+}
+
+void GroundClients::settled(ClientId id) noexcept {
+  Client* client = find(id);
+  if (client == nullptr || client->settled) return;
+  client->settled = true;
+  client->settled_at = client->counters.octets_received;
+}
+
+bool GroundClients::is_settled(ClientId id) const noexcept {
+  const Client* client = find(id);
+  return client == nullptr || client->settled;
 }
 
 void GroundClients::queue(Client& client) noexcept {
@@ -250,7 +266,8 @@ bool GroundClients::hand_over(GroundTraffic& traffic, TimePoint now) {
     }
     const Octets packet = client.deframer.front();
     const bool valid = pus::TelecommandView::parse(packet).has_value();
-    const bool before = client.counters.octets_received - client.deframer.held_octets() < client.stopped_at;
+    const std::uint64_t begins = client.counters.octets_received - client.deframer.held_octets();
+    const bool before = !client.settled || begins < client.settled_at;
     if (traffic.telecommand(client.id, packet, before ? Said::PerhapsBefore : Said::Since) == Taken::Later) {
       ++counters_.held_back;
       return false;

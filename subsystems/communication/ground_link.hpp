@@ -42,7 +42,7 @@ class Deframer {
   void end() noexcept;
   /// The oldest whole packet; empty when there is none. Idle packets are dropped and counted.
   [[nodiscard]] Octets front() const noexcept { return Octets{buffer_}.subspan(begin_, whole_); }
-  /// Octets that were put there and have not been taken.
+  /// Octets that were put there and have not been taken, or dropped.
   [[nodiscard]] std::size_t held_octets() const noexcept { return end_ - begin_; }
   /// How many whole packets wait, idle ones not counted.
   [[nodiscard]] std::size_t waiting() const noexcept;
@@ -121,8 +121,14 @@ class GroundClients {
   [[nodiscard]] MutableOctets room(ClientId client) noexcept;
   /// So many octets were put there.
   void received(ClientId client, std::size_t octets, TimePoint now) noexcept;
-  /// Everything was stopped: what the client has sent until now was perhaps said before, `unread` octets in its socket included.
-  void all_stopped(ClientId client, std::size_t unread) noexcept;
+  /// Everything was stopped: what clients have sent, read or not, was perhaps said before that, and so is all that comes of each until it is
+  /// settled().
+  void all_stopped() noexcept;
+  /// The same of one that came in since.
+  void all_stopped(ClientId client) noexcept;
+  /// Nothing is left of what the client had sent when everything was stopped, but for what stands here already.
+  void settled(ClientId client) noexcept;
+  [[nodiscard]] bool is_settled(ClientId client) const noexcept;
   /// Offers what waits, one packet of each client in turn, to `traffic`; at most `packets_per_turn`. True when it ended
   /// because nothing waits any more.
   bool hand_over(GroundTraffic& traffic, TimePoint now);
@@ -166,7 +172,8 @@ class GroundClients {
     /// Who sends little: a packet moves it on by little_period, and never further ahead than one beyond little_burst.
     TimePoint allowance{};
     ClientCounters counters{};
-    std::uint64_t stopped_at{0};  ///< what came before this octet of it was perhaps said before a stop
+    bool settled{true};
+    std::uint64_t settled_at{0};  ///< what came before this octet of it was perhaps said before a stop
     Deframer deframer;
     [[nodiscard]] bool waits() const noexcept { return !deframer.front().empty(); }
     [[nodiscard]] bool listens() const noexcept {

@@ -34,50 +34,103 @@ class SaidBefore : public ::testing::Test {
   std::vector<std::byte> packet_{telecommand()};
 };
 
-TEST_F(SaidBefore, WhatNobodyTookInPartInAnotherPartOrInItsSocket) {
+TEST_F(SaidBefore, WhatNobodyTookInPartInAnotherPartAndAllThatComesUntilItsSocketIsSettled) {
   taken_.holds = true;
   put(packet_);
   put(Octets{packet_}.first(5));
   hand_over();
-  clients_.all_stopped(client_, packet_.size() - 5 + packet_.size());
+  clients_.all_stopped();
+  EXPECT_FALSE(clients_.is_settled(client_));
   put(Octets{packet_}.subspan(5));
   put(packet_);
+  put(Octets{packet_}.first(1));
+  clients_.settled(client_);
+  EXPECT_TRUE(clients_.is_settled(client_));
+  put(Octets{packet_}.subspan(1));
   put(packet_);
   taken_.holds = false;
   hand_over();
-  EXPECT_THAT(taken_.said, ElementsAre(PerhapsBefore, PerhapsBefore, PerhapsBefore, Since));
+  EXPECT_THAT(taken_.said, ElementsAre(PerhapsBefore, PerhapsBefore, PerhapsBefore, PerhapsBefore, Since));
 }
 
-TEST_F(SaidBefore, WhatHadBegunAndNothingBehindIt) {
+TEST_F(SaidBefore, AnotherStopHasThatOfBeforeToo) {
+  clients_.all_stopped();
+  clients_.settled(client_);
   put(packet_);
   hand_over();
-  put(Octets{packet_}.first(1));
-  clients_.all_stopped(client_, 0);
-  put(Octets{packet_}.subspan(1));
+  clients_.all_stopped();
+  put(packet_);
+  hand_over();
+  clients_.settled(client_);
   put(packet_);
   hand_over();
   EXPECT_THAT(taken_.said, ElementsAre(Since, PerhapsBefore, Since));
 }
 
-TEST_F(TcpServerTest, WhatLiesInASocketWhenEverythingIsStoppedWasPerhapsSaidBefore) {
+struct SaidBeforeToServer : TcpServerTest {
+  /// Steps of a millisecond.
+  void pass(Duration span) {
+    for (const TimePoint end = now_ + span; now_ < end; now_ += 1ms) next_ = server_->step(now_);
+  }
+  void say(Client& client, std::uint16_t count) {
+    const std::uint64_t before = echo_.packets;
+    ASSERT_EQ(client.send(telecommand(count)), 13U);
+    until([&] { return echo_.packets > before; });
+  }
+};
+
+TEST_F(SaidBeforeToServer, WhatComesInTheMomentsAfterAStopAndNothingLater) {
   Client client{port()};
   until_connected(1);
   ASSERT_EQ(client.send(telecommand(1)), 13U);
-  ASSERT_EQ(client.send(telecommand(2)), 13U);
   server_->all_stopped();
-  ASSERT_EQ(client.send(telecommand(3)), 13U);
-  until([&] { return echo_.packets == 3; });
+  until([&] { return echo_.packets == 1; });
+  pass(40ms);
+  say(client, 2);
+  pass(20ms);
+  say(client, 3);
   EXPECT_THAT(echo_.said, ElementsAre(PerhapsBefore, PerhapsBefore, Since));
 }
 
-TEST_F(TcpServerTest, WhoStandsAtTheDoorWhenEverythingIsStoppedPerhapsSpokeBefore) {
+TEST_F(SaidBeforeToServer, WhatStandsAtTheClientsEndHoweverLateItComes) {
+  Client client{port(GroundPort::TelecommandsOnly)};
+  until_connected(1);
+  echo_.room = 0;
+  const auto packet = telecommand(1, 1000);
+  std::size_t sent = 0;
+  // Until both ends are full, with a part of a packet at last.
+  for (int idle = 0; idle < 100; ++idle) {
+    const std::size_t at = sent % packet.size();
+    const std::size_t octets = client.send(Octets{packet}.subspan(at));
+    sent += octets;
+    if (octets != 0) idle = 0;
+    next_ = server_->step(now_);
+  }
+  server_->all_stopped();
+  pass(1s);
+  echo_.room = 1'000'000;
+  const std::size_t whole = sent / packet.size();
+  until([&] {
+    now_ += 1ms;
+    return echo_.packets == whole;
+  });
+  EXPECT_GT(whole, 200U);
+  EXPECT_EQ(std::ranges::count(echo_.said, Since), 0) << "of " << whole;
+  for (std::size_t at = sent % packet.size(); at != 0 && at < packet.size();)
+    at += client.send(Octets{packet}.subspan(at));
+  pass(100ms);
+  say(client, 2);
+  EXPECT_EQ(echo_.said.back(), Since);
+}
+
+TEST_F(SaidBeforeToServer, OfWhoStoodAtTheDoorAndOfNobodyWhoComesLater) {
   Client early{port()};
   until([&] { return early.connected(); });
   ASSERT_EQ(early.send(telecommand(1)), 13U);
   server_->all_stopped();
   until([&] { return echo_.packets == 1; });
-  ASSERT_EQ(early.send(telecommand(2)), 13U);
-  until([&] { return echo_.packets == 2; });
+  pass(60ms);
+  say(early, 2);
   Client late{port(GroundPort::TelecommandsOnly)};
   until([&] { return late.connected(); });
   ASSERT_EQ(late.send(telecommand(3)), 13U);

@@ -7,10 +7,8 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/epoll.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <utility>
@@ -23,18 +21,13 @@ constexpr int accepts_per_step = 16;
 /// Times that everybody who has something to say is read in one step, as much as it may leave unread on board.
 constexpr int rounds_per_step = 4;
 constexpr int listen_backlog = 512;
+/// What a client has sent may stand at its own end until what it had sent before is acknowledged, which is at once here, and by others
+/// within 40 ms.
+constexpr Duration settling = 50ms;
 /// Of telemetry in the kernel: what is there is late already, so that little of it may be.
 constexpr int send_buffer_octets = 64 * 1024;
 // The epoll data of a connection is its ClientId, which is never below most_clients; listeners use the numbers below.
 constexpr std::uint32_t first_client_mark = GroundClients::most_clients;
-
-/// Of a client, in the kernel. Where the kernel does not say it, as much as it may hold.
-std::size_t unread_octets(const FileDescriptor& socket) noexcept {
-  int octets = 0;
-  if (!socket) return 0;
-  constexpr std::size_t most = std::size_t{1} << 30;
-  return ::ioctl(socket.get(), FIONREAD, &octets) == 0 ? static_cast<std::size_t>(std::max(octets, 0)) : most;
-}
 
 bool would_block(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
 
@@ -115,12 +108,13 @@ std::uint16_t TcpServer::port(GroundPort port) const noexcept {
 }
 
 void TcpServer::all_stopped() noexcept {
-  for (const Connection& connection : connections_)
-    if (connection.client != 0) clients_.all_stopped(connection.client, unread_octets(connection.socket));
+  clients_.all_stopped();
+  stop_heard_ = true;
   perhaps_before_ = {true, true};
 }
 
 std::optional<TimePoint> TcpServer::step(TimePoint now) {
+  if (std::exchange(stop_heard_, false)) settles_from_ = now + settling;
   // Those who are in are served before others come in: a flood of newcomers cannot evict who has something to say.
   static_cast<void>(clients_.hand_over(traffic_, now));
   knocking_ = {};
@@ -129,6 +123,7 @@ std::optional<TimePoint> TcpServer::step(TimePoint now) {
   for (const GroundPort port : {GroundPort::TelemetryAndTelecommands, GroundPort::TelecommandsOnly})
     if (knocking_[std::to_underlying(port)] || perhaps_before_[std::to_underlying(port)]) accept_clients(port, now);
   static_cast<void>(clients_.hand_over(traffic_, now));
+  if (now >= settles_from_) settle();
   const auto next = clients_.step(now);
   for (Connection& connection : connections_)
     if (connection.client != 0) tend(connection);
@@ -162,6 +157,18 @@ void TcpServer::tend(Connection& connection) {
   }
 }
 
+/// Twice, as what becomes free at this end lets more come from the other.
+void TcpServer::settle() noexcept {
+  for (Connection& connection : connections_) {
+    if (connection.client == 0 || !connection.socket || clients_.is_settled(connection.client)) continue;
+    std::byte next{};
+    const bool empty =
+        ::recv(connection.socket.get(), &next, sizeof next, MSG_PEEK | MSG_DONTWAIT) < 0 && would_block(errno);
+    if (empty && connection.found_empty) clients_.settled(connection.client);
+    connection.found_empty = empty;
+  }
+}
+
 /// Whether anything was read.
 bool TcpServer::serve_ready(TimePoint now) {
   std::array<epoll_event, GroundClients::most_clients + 2> events{};
@@ -192,9 +199,10 @@ void TcpServer::accept_clients(GroundPort port, TimePoint now) {
     // Whoever cannot come in now because of packets that wait is better off in the kernel's queue than refused.
     if (!clients_.admissible(port)) return;
     FileDescriptor socket{::accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
-    if (!socket && (errno == EMFILE || errno == ENFILE)) return make_room_by_refusing(listener);
+    if (!socket && (errno == EMFILE || errno == ENFILE))
+      return knocking_[std::to_underlying(port)] ? make_room_by_refusing(listener) : void();
     // All who had come before the stop are in.
-    if (!socket && errno == EAGAIN) perhaps_before_[std::to_underlying(port)] = false;
+    if (!socket && errno == EAGAIN && now >= settles_from_) perhaps_before_[std::to_underlying(port)] = false;
     if (!socket && errno != ECONNABORTED && errno != EINTR) return;
     if (socket) welcome(std::move(socket), port, now);
   }
@@ -215,8 +223,7 @@ void TcpServer::welcome(FileDescriptor socket, GroundPort port, TimePoint now) {
   const int yes = 1;
   ::setsockopt(connection.socket.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   ::setsockopt(connection.socket.get(), SOL_SOCKET, SO_SNDBUF, &send_buffer_octets, sizeof send_buffer_octets);
-  if (perhaps_before_[std::to_underlying(port)])
-    clients_.all_stopped(connection.client, unread_octets(connection.socket));
+  if (perhaps_before_[std::to_underlying(port)]) clients_.all_stopped(connection.client);
   watch(connection, EPOLL_CTL_ADD);
   if (connection.socket) static_cast<void>(read_from(connection, now));
 }
@@ -233,6 +240,9 @@ bool TcpServer::read_from(Connection& connection, TimePoint now) {
   if (count < 0 && would_block(errno)) return false;
   if (count < 0)
     return dismiss(connection, errno == ECONNRESET ? CloseReason::PeerClosed : CloseReason::SocketError), false;
+  connection.found_empty = false;
+  const int yes = 1;
+  ::setsockopt(connection.socket.get(), IPPROTO_TCP, TCP_QUICKACK, &yes, sizeof yes);
   clients_.received(connection.client, static_cast<std::size_t>(count), now);
   return true;
 }

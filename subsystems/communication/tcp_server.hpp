@@ -40,7 +40,7 @@ class TcpServer {
   TcpServer& operator=(const TcpServer&) = delete;
 
   /// GroundTransport::all_stopped().
-  void all_stopped() noexcept;
+  void all_stopped() noexcept;  // the step that follows says when
   /// Accepts, reads, hands over, writes and closes what is due, a bounded amount for each client; never blocks. The next
   /// time at which it has to be called even when `descriptor()` stays silent: that of its own limits; while packets wait
   /// for somebody who takes them, its owner knows best when that may be.
@@ -65,6 +65,7 @@ class TcpServer {
     bool full{false};  ///< the kernel takes no more for now
     bool deaf{false};  ///< the client has ended its sending direction
     bool held{false};  ///< not read while its packets wait
+    bool found_empty{false};  ///< by the last settle(), and nothing has come since
   };
 
   TcpServer(const Options& options, GroundTraffic& traffic);
@@ -78,6 +79,7 @@ class TcpServer {
   void write_to(Connection& connection);
   void watch(Connection& connection, int operation);
   void tend(Connection& connection);
+  void settle() noexcept;
   void dismiss(Connection& connection, CloseReason reason);
 
   GroundTraffic& traffic_;
@@ -86,6 +88,8 @@ class TcpServer {
   FileDescriptor spare_;  ///< given up for a moment to refuse a client when descriptors run out
   std::array<FileDescriptor, 2> listeners_;
   std::array<bool, 2> knocking_{};  ///< somebody wants in, by GroundPort
+  bool stop_heard_{false};
+  TimePoint settles_from_{};  ///< before it an empty socket says nothing
   std::array<bool, 2> perhaps_before_{};  ///< whoever is let in there now may have come before the newest stop
   std::array<Connection, GroundClients::most_clients> connections_;
 };

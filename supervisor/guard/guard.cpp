@@ -80,7 +80,8 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   member->guarded_before = false;
   // A device may have heard of every epoch of the process before.
   member->permit->epoch.store(++member->epoch, std::memory_order_release);
-  member->permit->newest_stop.store(newest_stop(), std::memory_order_release);
+  // One that a guard before had given is written on it.
+  put_newest_stop(std::max(newest_stop(), member->permit->newest_stop.load(std::memory_order_acquire)));
   member->released = member->seen_operational = false;
   member->cycles = member->service_steps = 0;
   member->still = 0;
@@ -108,8 +109,6 @@ std::string_view Guard::take_over(std::uint16_t apid, const AdoptedSubsystem& ad
   const bool counts = adopted.permitted || adopted.epoch == member->vital->seen_epoch.load(std::memory_order_acquire);
   member->epoch = counts ? adopted.epoch : std::max(adopted.epoch, parts_.first_epoch);
   PermitPage& page = *member->permit;
-  // What it has said so far it said under the number of the page before, and the others under the same.
-  put_newest_stop(std::max(newest_stop(), adopted.newest_stop));
   page.epoch.store(member->epoch, std::memory_order_release);
   page.powered.store(adopted.powered, std::memory_order_release);
   member->guarded_before = true;
@@ -199,7 +198,7 @@ void Guard::put_newest_stop(std::uint32_t number) noexcept {
 }
 
 /// Never 0, which is what somebody says who knows of none.
-void Guard::next_stop() noexcept { put_newest_stop(std::max(newest_stop() + 1, std::uint32_t{1})); }
+void Guard::next_stop() noexcept { put_newest_stop(std::max(newest_stop() + 1, no_stop_yet)); }
 
 std::uint64_t Guard::fences(std::uint16_t apid) const {
   const LockGuard lock{mutex_};

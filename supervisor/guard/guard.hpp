@@ -47,6 +47,8 @@ class Guard {
   static constexpr Duration supervisor_limit = std::chrono::seconds{1};
   /// A permission ends by itself unless Operational was reached in this time.
   static constexpr Duration entry_limit = permission_entry_limit;
+  /// Of newest_stop().
+  static constexpr std::uint32_t no_stop_yet = 1;
   /// What may pass between two steps and count; see `watched_at`.
   static constexpr Duration most_unwatched = 4 * period;
 
@@ -163,7 +165,7 @@ class Guard {
   std::optional<TimePoint> stepped_;  ///< last, and what had been watched and asked by then
   TimePoint watched_{}, asked_{};
   TimePoint next_observation_{};
-  std::atomic<std::uint32_t> newest_stop_{1};
+  std::atomic<std::uint32_t> newest_stop_{no_stop_yet};
   std::uint64_t stops_{0};  ///< the newest stop of everything whose outcome may be asked for
   std::uint64_t stops_ended_{0};
 };

@@ -50,10 +50,10 @@ TEST_F(NewestStop, GoesOnWithTheOneThatTheGuardBeforeHadWritten) {
     if (apid == arm) continue;  // its device listens to the guard before
     ASSERT_TRUE(next.add(described, apid == camera));
     AdoptedSubsystem adopted;
-    adopted.newest_stop = apid == hand ? on_page(hand) : 0;
     adopted.launched.vital = lives[apid].vital_memory;
     adopted.launched.permit = memory.map(memory.create("page", sizeof(PermitPage)).value(), Access::ReadWrite).value();
     pages[apid] = new (adopted.launched.permit.octets.data()) PermitPage{};
+    if (apid == hand) pages[apid]->newest_stop = on_page(hand);
     static_cast<void>(next.take_over(apid, adopted, {}));
   }
   EXPECT_EQ(next.newest_stop(), guard.newest_stop()) << "what they have said since the last stop is not void by this";

@@ -4,6 +4,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -25,6 +26,9 @@ Result<GroundConnection> GroundConnection::open(const std::string& address, std:
   if (!socket) return fail(ErrorCode::SystemFailure, "socket", errno);
   if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&peer), sizeof peer) != 0)
     return fail(ErrorCode::Unavailable, "nobody answers there: does the mission run?", errno);
+  // What is said leaves at once and does not wait here for the answer to what was said before.
+  const int yes = 1;
+  ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   return GroundConnection{std::move(socket)};
 }
 

@@ -240,6 +240,8 @@ class Craft:
         except OSError as error:
             raise LinkLost(f"{where[0]}:{where[1]}: {error}; does the mission fly?") from None
         connection.settimeout(None)
+        # What is said leaves at once and does not wait here for the answer to what was said before.
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         return connection
 
     def _start(self) -> None:

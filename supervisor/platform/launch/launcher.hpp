@@ -57,13 +57,13 @@ struct LaunchedSubsystem {
 
 /// A subsystem that goes on though the supervisor that had started it is gone (docs/adr/0093).
 struct AdoptedSubsystem {
-  LaunchedSubsystem launched;  ///< its permit page is a new one, which permits nothing yet
+  LaunchedSubsystem
+      launched;  ///< its permit page is a new one, which permits nothing yet and has the newest stop of the one before
   MemoryHandle permit;  ///< that page: the subsystem is to be handed it over its channel
   std::uint32_t epoch{0};  ///< of the page that it looks at so far
   bool permitted{false};  ///< by that page, under that epoch
   bool stopped{false};  ///< by that page
   std::uint32_t powered{0};  ///< Power, as that page says
-  std::uint32_t newest_stop{0};  ///< as that page says
 };
 
 /// Why nobody goes on with a subsystem.

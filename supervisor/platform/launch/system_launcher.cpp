@@ -346,14 +346,13 @@ Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, Proc
   adopted.permitted = page.permits(adopted.epoch);
   adopted.stopped = page.stop.load(std::memory_order_acquire) != 0;
   adopted.powered = page.powered.load(std::memory_order_acquire);
-  adopted.newest_stop = page.newest_stop.load(std::memory_order_acquire);
   // Should this supervisor die before its guard has written on the new page, the next one finds there what this one has found, permitted
   // apart.
   auto& fresh = *reinterpret_cast<PermitPage*>(permit.second.octets.data());
   fresh.epoch.store(adopted.epoch, std::memory_order_release);
   fresh.stop.store(adopted.stopped ? 1 : 0, std::memory_order_release);
   fresh.powered.store(adopted.powered, std::memory_order_release);
-  fresh.newest_stop.store(adopted.newest_stop, std::memory_order_release);
+  fresh.newest_stop.store(page.newest_stop.load(std::memory_order_acquire), std::memory_order_release);
   vital_[name] = vital_page;
   HIROSCO_TRY_LET(adopted.launched,
                   hold(process, std::move(of(KeptRole::Channel)), std::move(vital_page), std::move(permit.second)));

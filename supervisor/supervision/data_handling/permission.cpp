@@ -329,18 +329,21 @@ constexpr unsigned all_states = 0x03FF;
   return std::nullopt;
 }
 
+/// More than a look. What a service itself permits in some states only is that, too, as a self test.
+[[nodiscard]] bool acts(const Asked& asked) {
+  const std::uint8_t service = asked.telecommand.service();
+  const bool sets = service == pus::ParameterService::service_type &&
+                    asked.telecommand.subtype() == pus::ParameterService::set_values;
+  return service == pus::FunctionService::service_type || pus::standard_service(service) == nullptr || sets ||
+         states_of(asked) != all_states;
+}
+
 /// What the old mode permitted and the new one may not would cross the change: until it has ended the craft is looked at, and taken
 /// towards safety, nothing else.
 [[nodiscard]] Notice crosses_no_change(const Asked& asked) {
   const Situation& situation = asked.situation;
   if ((!situation.changing && !situation.rereading) || !is_bound(asked)) return std::nullopt;
-  const std::uint8_t service = asked.telecommand.service();
-  const bool sets = service == pus::ParameterService::service_type &&
-                    asked.telecommand.subtype() == pus::ParameterService::set_values;
-  // What a service itself permits in some states only is more than a look, as a self test.
-  const bool acts = service == pus::FunctionService::service_type || pus::standard_service(service) == nullptr ||
-                    sets || states_of(asked) != all_states;
-  if (!acts) return std::nullopt;
+  if (!acts(asked)) return std::nullopt;
   FailureNotice notice{FailureCode::NotPermittedNow};
   if (situation.rereading) return notice.because({ErrorCode::NotPermitted, 0, "its descriptor is being read again"});
   return notice.because({ErrorCode::NotPermitted, situation.mode.id, "a change of mode is under way, from mode"});
@@ -413,6 +416,7 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
       wanted == nullptr ? demand_w(*subsystem, situation) : std::max(wanted->power_w, demand_w(*subsystem, situation));
   return Permitted{.essential = essential(asked),
                    .releases_stop = up_to_operational(asked),
+                   .acts = is_bound(asked) && acts(asked),
                    .starts = starts(asked),
                    .stops_the_craft = stops_the_craft(asked),
                    .reserves_w = reserves ? reserves_w : 0};

@@ -48,6 +48,7 @@ struct Situation {
 struct Permitted {
   bool essential{false};  ///< forwarded first, logged after (decision 24)
   bool releases_stop{false};  ///< SET_STATE(Operational): lifts the addressee's stop flag
+  bool acts{false};  ///< more than a look: a function, a value that is set, whatever is bound to a state
   bool starts{false};  ///< SET_STATE(Offline) to who is down: the supervisor starts its process
   bool stops_the_craft{false};  ///< SAFE_ALL: carried out whoever says it, under whatever source id
   double reserves_w{

@@ -203,7 +203,33 @@ struct SaidBeforeAStop : ReceptionTest {
   }
 };
 
-TEST_F(SaidBeforeAStop, WithoutOneItLetsGo) { EXPECT_TRUE(lets_go(number_on_page(camera))); }
+TEST_F(SaidBeforeAStop, WithoutOneItLetsGo) {
+  EXPECT_TRUE(lets_go(number_on_page(camera)));
+  guard.fence(arm);
+  EXPECT_TRUE(lets_go(0)) << "where nothing was stopped nobody has to know of a stop";
+}
+
+TEST_F(SaidBeforeAStop, AMotionThatSomebodySaidBeforeItIsNotCarriedOutWhenAnotherHasLetGo) {
+  set(arm, Operational, 2);
+  const auto move = telecommand(arm, 8, 1, call_data("MOVE_TO"));
+  const auto ping = telecommand(arm, 17, 1);
+  const auto say = [&](Octets packet, std::uint32_t known) {
+    static_cast<void>(played[camera].channel.subsystem_end().send(
+        {.kind = MessageKind::GroundTelecommand, .epoch = known, .packet = packet}));
+    read(camera);
+    return texts(arm);
+  };
+  const std::uint32_t before = number_on_page(camera);
+  EXPECT_THAT(say(move, before), ElementsAre("MOVE_TO"));
+  parts.safe_all.carry_out({});
+  guard_looks(1s, true);
+  ASSERT_TRUE(lets_go(number_on_page(camera)));
+  static_cast<void>(texts(arm));
+  EXPECT_THAT(say(move, before), IsEmpty());
+  EXPECT_THAT(say(move, 0), IsEmpty());
+  EXPECT_THAT(say(ping, 0), ElementsAre("TC[17,1]")) << "a look harms nobody";
+  EXPECT_THAT(say(move, number_on_page(camera)), ElementsAre("MOVE_TO"));
+}
 
 TEST_F(SaidBeforeAStop, ItLetsNobodyGoHoweverLateItIsReadAndWhatIsSaidSinceDoes) {
   const std::uint32_t before = number_on_page(camera);
@@ -231,8 +257,10 @@ TEST_F(SaidBeforeAStop, OfTheSupervisorThatStoodStillInTheMiddleOfItsStepToo) {
   guard_looks(Guard::supervisor_limit + 20ms, false);
   EXPECT_FALSE(lets_go(before));
   EXPECT_FALSE(lets_go(number_on_page(camera))) << "the stop is not heard of yet";
+  const std::uint64_t fences = guard.fences(arm);
   parts.processes.take_guard_findings();
   EXPECT_TRUE(was_told("the supervisor itself stood still"));
+  EXPECT_GT(guard.fences(arm), fences) << "what was begun in that step knows of no fence of after it";
   EXPECT_FALSE(lets_go(before));
   guard_looks(20ms, true);
   EXPECT_TRUE(lets_go(number_on_page(camera)));

@@ -47,10 +47,11 @@ void Telecommands::take(const Incoming& incoming) {
     if (incoming.origin.is_ground() && !asks_only) send_telecommand_copy(parts_.own.telemetry(), incoming.packet);
   };
   parts_.power.observe();
+  // Before the number: whoever is stopped in between is not let go by this one.
+  const std::uint64_t fences = incoming.free_at.value_or(craft_.guard.fences(apid));
   auto decision = judge(*telecommand, incoming.origin);
-  const bool before_stop = incoming.known_stop && *incoming.known_stop != craft_.guard.newest_stop();
-  if (decision && before_stop && !decision->essential &&
-      (decision->releases_stop || decision->starts || (apid == supervisor_apid && !asks_only))) {
+  if (decision && said_before_a_stop(incoming) && !decision->essential &&
+      (decision->acts || decision->releases_stop || decision->starts || (apid == supervisor_apid && !asks_only))) {
     FailureNotice notice{FailureCode::NotPermittedNow};
     decision = std::unexpected{
         notice.because({ErrorCode::NotPermitted, 0, "it may have been said before the stop: say it again"})};
@@ -76,7 +77,6 @@ void Telecommands::take(const Incoming& incoming) {
                           .peer = apid,
                           .packet = incoming.packet,
                           .note = std::string_view{text}};
-  const std::uint64_t fences = incoming.free_at.value_or(craft_.guard.fences(apid));
   // Nobody could command anything until the ground link is back: its own restoration waits for no disk either.
   const Member* addressee = craft_.member(apid);
   const bool restores = incoming.origin.is_supervisor() && craft_.restoring_ground_link && addressee != nullptr &&
@@ -110,6 +110,12 @@ void Telecommands::take(const Incoming& incoming) {
                 fences,
                 decision->starts});
   forward_durable();
+}
+
+/// Where nothing was stopped yet nothing can have been said before it.
+bool Telecommands::said_before_a_stop(const Incoming& incoming) const {
+  const std::uint32_t newest = craft_.guard.newest_stop();
+  return incoming.known_stop && *incoming.known_stop != newest && newest != Guard::no_stop_yet;
 }
 
 void Telecommands::take_damaged(const Incoming& incoming, const FailureNotice& notice) {

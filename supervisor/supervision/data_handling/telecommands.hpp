@@ -33,8 +33,8 @@ struct Incoming {
   MemoryHandle memory{};
   /// What its sender knows of the addressee, Guard::fences(): stopped since, and it is void. Empty: all that holds now.
   std::optional<std::uint64_t> free_at{};
-  /// Guard::newest_stop() as its sender knew it before it was said, 0 = it does not know. Stopped since, it lets nobody move, nor any mode
-  /// change. Empty: the sender is this process.
+  /// Guard::newest_stop() as its sender knew it before it was said, 0 = it does not know. Stopped since, it lets nobody move, sets nothing and
+  /// changes no mode. Empty: the sender is this process.
   std::optional<std::uint32_t> known_stop{};
 };
 
@@ -98,6 +98,7 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
   };
   [[nodiscard]] std::expected<Permitted, pus::FailureNotice> judge(const pus::TelecommandView& telecommand,
                                                                    const Origin& origin) const;
+  [[nodiscard]] bool said_before_a_stop(const Incoming& incoming) const;
   [[nodiscard]] bool is_sound(std::uint16_t apid) const;
   /// A subsystem that asks more than it may at once: the others' telecommands have their place.
   [[nodiscard]] std::optional<pus::FailureNotice> refuse_flood(const pus::TelecommandView& telecommand,

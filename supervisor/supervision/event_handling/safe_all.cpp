@@ -27,6 +27,12 @@ void SafeAll::asked() {
   after_stop("stop by signal or local socket");
 }
 
+void SafeAll::stood_still() {
+  // Once more: nothing that was begun in the step in which it stood knows of this one.
+  for (const Member& member : craft_.members) craft_.guard.fence(member.apid());
+  after_stop("the supervisor itself stood still");
+}
+
 void SafeAll::again() {
   if (before_.empty()) before_.emplace_back();
   if (std::ranges::any_of(before_, [](const auto& asked) { return !asked; }))

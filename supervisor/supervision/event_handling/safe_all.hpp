@@ -30,6 +30,8 @@ class SafeAll final : public Remembered {
   void carry_out(const pus::Request& request);
   /// A signal or the local socket asked for a stop, at some time before.
   void asked();
+  /// The guard stopped everybody, as nobody had heard of the supervisor for so long.
+  void stood_still();
   /// Everything was stopped already: nothing starts it again, and the states follow.
   void after_stop(std::string_view why);
   /// One was under way when the supervisor before died, or was asked for when there was none.

@@ -250,7 +250,7 @@ void Processes::take_guard_findings() {
       parts_.safe_all.asked();
     } else if (finding.kind == SupervisorStill) {
       parts_.own.announce("SUPERVISOR_STILL");
-      parts_.safe_all.after_stop("the supervisor itself stood still");
+      parts_.safe_all.stood_still();
     }
   }
 }
