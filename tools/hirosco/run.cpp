@@ -13,6 +13,7 @@
 #include "hirosco/subsystem/author/ground_transport.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/installation.hpp"
+#include "hirosco/utilities/os/process_usage.hpp"
 #include "simulation/devices/device_arguments.hpp"
 #include "supervisor/keeper/keeper.hpp"
 #include "supervisor/keeper/kept_endnodes.hpp"
@@ -259,6 +260,8 @@ int run(const RunOptions& options) {
     plan.supervisor.inherited.push_back({screen->told(), first_lock + 3});
     plan.supervisor.arguments.insert(plan.supervisor.arguments.end(), {"--screen", std::to_string(first_lock + 3)});
   }
+  // It has read the whole mission, and is a small process from here on.
+  give_back_what_is_free();
   const int code = supervisor::keep(std::move(plan));
   screen.reset();
   clear_sockets(*mission, folder);

@@ -40,6 +40,10 @@ class ProcessMeter {
   int clock_;  ///< of its processor time
 };
 
+/// What this process has freed goes back to the system, as far as the C library holds on to it: for one that has read much and does little
+/// from then on. Not real-time.
+void give_back_what_is_free() noexcept;
+
 /// Of the lines that the system tells of a process: the number behind "NAME:"; 0 when there is none, the largest when it is larger.
 [[nodiscard]] std::uint32_t number_in_status(std::string_view status, std::string_view name) noexcept;
 

@@ -4,6 +4,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <malloc.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -45,6 +46,12 @@ std::uint32_t number_in_status(std::string_view status, std::string_view name) n
     return read.ec == std::errc::result_out_of_range ? most_counted : number;
   }
   return 0;
+}
+
+void give_back_what_is_free() noexcept {
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
 }
 
 Result<ProcessMeter> ProcessMeter::own() {
