@@ -197,7 +197,9 @@ void Spacecraft::stick(std::string_view name, bool stuck) {
 
 bool Spacecraft::send_as(std::string_view name, Octets packet) {
   Member* member = find(name);
-  return member != nullptr && member->channels.subsystem_end().send({.packet = packet}).has_value();
+  if (member == nullptr) return false;
+  const std::uint32_t known_stop = member->newest_permit().newest_stop.load(std::memory_order_acquire);
+  return member->channels.subsystem_end().send({.epoch = known_stop, .packet = packet}).has_value();
 }
 
 void Spacecraft::strain(std::string_view name, int cycles, Duration takes) {
