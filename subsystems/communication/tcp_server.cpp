@@ -23,7 +23,7 @@ constexpr int rounds_per_step = 4;
 constexpr int listen_backlog = 512;
 /// What a client has sent may stand at its own end until what it had sent before is acknowledged, which is at once here, and by others
 /// within 40 ms.
-constexpr Duration settling = 50ms;
+constexpr Duration settles_after = 50ms;
 /// Of telemetry in the kernel: what is there is late already, so that little of it may be.
 constexpr int send_buffer_octets = 64 * 1024;
 // The epoll data of a connection is its ClientId, which is never below most_clients; listeners use the numbers below.
@@ -114,7 +114,7 @@ void TcpServer::all_stopped() noexcept {
 }
 
 std::optional<TimePoint> TcpServer::step(TimePoint now) {
-  if (std::exchange(stop_heard_, false)) settles_from_ = now + settling;
+  if (std::exchange(stop_heard_, false)) settles_from_ = now + settles_after;
   // Those who are in are served before others come in: a flood of newcomers cannot evict who has something to say.
   static_cast<void>(clients_.hand_over(traffic_, now));
   knocking_ = {};

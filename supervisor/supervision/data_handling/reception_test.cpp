@@ -212,7 +212,7 @@ TEST_F(SaidBeforeAStop, WithoutOneItLetsGo) {
 TEST_F(SaidBeforeAStop, AMotionThatSomebodySaidBeforeItIsNotCarriedOutWhenAnotherHasLetGo) {
   set(arm, Operational, 2);
   const auto move = telecommand(arm, 8, 1, call_data("MOVE_TO"));
-  const auto ping = telecommand(arm, 17, 1);
+  const auto ping = telecommand(arm, 17, 1, {});
   const auto say = [&](Octets packet, std::uint32_t known) {
     static_cast<void>(played[camera].channel.subsystem_end().send(
         {.kind = MessageKind::GroundTelecommand, .epoch = known, .packet = packet}));
