@@ -223,7 +223,9 @@ TEST_F(SaidBeforeAStop, AMotionThatSomebodySaidBeforeItIsNotCarriedOutWhenAnothe
   EXPECT_THAT(say(move, before), ElementsAre("MOVE_TO"));
   parts.safe_all.carry_out({});
   guard_looks(1s, true);
+  set(arm, SafeOperational, 2);
   ASSERT_TRUE(lets_go(number_on_page(camera)));
+  set(arm, Operational, 2);
   static_cast<void>(texts(arm));
   EXPECT_THAT(say(move, before), IsEmpty());
   EXPECT_THAT(say(move, 0), IsEmpty());
