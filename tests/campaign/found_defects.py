@@ -34,6 +34,23 @@ class Defect:
 
 
 DEFECTS = [
+    # --- what was said before a stop (docs/adr/0156), all found by reviews ---------------------------------------------------
+    # It let somebody move when it was read after the stop.
+    Defect("known stop not compared", TELECOMMANDS, "return incoming.known_stop && *incoming.known_stop != newest && newest",
+           "return !PLANTED && incoming.known_stop && *incoming.known_stop != newest && newest",
+           "supervisor_test", "SaidBeforeAStop.ItLetsNobodyGoHoweverLateItIsReadAndWhatIsSaidSinceDoes"),
+    # A motion was carried out when somebody else had let its member go.
+    Defect("motion of before a stop", TELECOMMANDS, "(decision->acts || decision->releases_stop", "((decision->acts && !PLANTED) || decision->releases_stop",
+           "supervisor_test", "SaidBeforeAStop.AMotionThatSomebodySaidBeforeItIsNotCarriedOutWhenAnotherHasLetGo"),
+    # Somebody was let go between the guard's fence and the supervisor's hearing of it.
+    Defect("let go untold", GUARD, "if (member->fence_untold) return false;", "if (member->fence_untold && !PLANTED) return false;",
+           "supervisor_test", "NewestStop.NobodyIsLetGoBeforeTheSupervisorHasHeardOfWhatStoppedIt"),
+    # Beyond 1,024 findings that nobody had taken a stop was lost.
+    Defect("finding lost", GUARD, "if (findings_.size() < most_findings || std", "if (findings_.size() < most_findings || !PLANTED && std",
+           "supervisor_test", "NewestStop.NoFindingIsLostBehindAThousandUntakenOnes"),
+    # What stood at a client's own end was no matter of before.
+    Defect("client's own end", GROUND_LINK, "const bool before = !client.settled || begins", "const bool before = (!client.settled && !PLANTED) || begins",
+           "ground_link_test", "SaidBefore*"),
     # --- what comes down again (docs/adr/0140), both found by the campaign -------------------------------------------------
     # What went with a deleted log was not missing to who asked for times after its first record.
     Defect("gap before the times", RETRIEVAL, "query.stored_from = OnboardTime::min();", "if (!PLANTED) query.stored_from = OnboardTime::min();",
