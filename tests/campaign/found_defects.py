@@ -46,7 +46,8 @@ DEFECTS = [
     Defect("let go untold", GUARD, "if (member->fence_untold) return false;", "if (member->fence_untold && !PLANTED) return false;",
            "supervisor_test", "NewestStop.NobodyIsLetGoBeforeTheSupervisorHasHeardOfWhatStoppedIt"),
     # Beyond 1,024 findings that nobody had taken a stop was lost.
-    Defect("finding lost", GUARD, "if (findings_.size() < most_findings || std", "if (findings_.size() < most_findings || !PLANTED && std",
+    Defect("finding lost", GUARD, "|| std::ranges::find(findings_, found) == findings_.end())",
+           "|| (std::ranges::find(findings_, found) == findings_.end() && !PLANTED))",
            "supervisor_test", "NewestStop.NoFindingIsLostBehindAThousandUntakenOnes"),
     # What stood at a client's own end was no matter of before.
     Defect("client's own end", GROUND_LINK, "const bool before = !client.settled || begins", "const bool before = (!client.settled && !PLANTED) || begins",
