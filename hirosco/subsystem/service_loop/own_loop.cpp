@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "hirosco/data_transfer/channel/channel.hpp"
+
 namespace hirosco {
 namespace {
 
