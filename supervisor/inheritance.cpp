@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hirosco/utilities/os/life.hpp"
+#include "hirosco/utilities/os/thread.hpp"
 
 namespace hirosco::supervisor {
 
