@@ -160,7 +160,9 @@ void TcpServer::tend(Connection& connection) {
 /// Twice, as what becomes free at this end lets more come from the other.
 void TcpServer::settle() noexcept {
   for (Connection& connection : connections_) {
-    if (connection.client == 0 || !connection.socket || clients_.is_settled(connection.client)) continue;
+    // Who has ended its direction says nothing new.
+    const bool speaks = connection.client != 0 && connection.socket && !connection.deaf;
+    if (!speaks || clients_.is_settled(connection.client)) continue;
     std::byte next{};
     const bool empty =
         ::recv(connection.socket.get(), &next, sizeof next, MSG_PEEK | MSG_DONTWAIT) < 0 && would_block(errno);

@@ -15,6 +15,11 @@ namespace {
 /// yet, once.
 constexpr std::size_t most_findings = 1024;
 
+/// It may show that it moves again, for which it has the time in which somebody could see that; a page that was overwritten is believed no more.
+[[nodiscard]] bool has_way_back(GuardFinding::Kind doom) noexcept {
+  return doom == GuardFinding::Kind::CycleHangs || doom == GuardFinding::Kind::ServiceHangs;
+}
+
 }  // namespace
 
 GuardedMember* Guard::find(std::uint16_t apid) noexcept {
@@ -82,6 +87,7 @@ void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
   member->permit->epoch.store(++member->epoch, std::memory_order_release);
   // One that a guard before had given is written on it.
   put_newest_stop(std::max(newest_stop(), member->permit->newest_stop.load(std::memory_order_acquire)));
+  member->stopped_in = newest_stop();
   member->released = member->seen_operational = false;
   member->cycles = member->service_steps = 0;
   member->still = 0;
@@ -186,6 +192,12 @@ std::uint64_t Guard::fence(std::uint16_t apid) {
   return member->fences;
 }
 
+bool Guard::was_stopped_since(std::uint16_t apid, std::uint32_t number) const {
+  const LockGuard lock{mutex_};
+  const GuardedMember* member = find(apid);
+  return member != nullptr && number < member->stopped_in;
+}
+
 void Guard::void_what_was_said() {
   const LockGuard lock{mutex_};
   next_stop();
@@ -197,8 +209,8 @@ void Guard::put_newest_stop(std::uint32_t number) noexcept {
     if (member.permit != nullptr) member.permit->newest_stop.store(number, std::memory_order_release);
 }
 
-/// Never 0, which is what somebody says who knows of none.
-void Guard::next_stop() noexcept { put_newest_stop(std::max(newest_stop() + 1, no_stop_yet)); }
+/// Never 0, which is what somebody says who knows of none, nor as if there had been none.
+void Guard::next_stop() noexcept { put_newest_stop(std::max(newest_stop() + 1, no_stop_yet + 1)); }
 
 std::uint64_t Guard::fences(std::uint16_t apid) const {
   const LockGuard lock{mutex_};
@@ -336,7 +348,10 @@ void Guard::watch_supervisor(TimePoint now) {
   // Nobody permits, plans or tells any more: what moves is stopped, the ground link included.
   supervisor_still_ = true;
   next_stop();
-  for (GuardedMember& member : members_) member.fence_by_guard();
+  for (GuardedMember& member : members_) {
+    member.stopped_in = newest_stop();
+    member.fence_by_guard();
+  }
   find_out(GuardFinding::Kind::SupervisorStill, 0);
 }
 
@@ -450,7 +465,7 @@ void Guard::doom(GuardedMember& member, GuardFinding::Kind why, TimePoint now) {
   const Duration had = member.grip ? member.grip->processor_time() - member.processor_time : Duration{};
   if (member.grip && (why != GuardFinding::Kind::CycleHangs || had >= observation_period))
     member.take_realtime(GuardedMember::Taken::All);
-  member.doomed = now - watched_ + asked_ + grace;
+  member.doomed = (has_way_back(why) ? now - watched_ + asked_ : now) + grace;
   member.doom = why;
   find_out(why, member.apid());
 }
@@ -474,7 +489,7 @@ void Guard::judge_doomed(GuardedMember& member, TimePoint now) {
     member.asked_who_runs.reset();
     return find_out(GuardFinding::Kind::Back, member.apid());
   }
-  if (asked_ < *member.doomed || member.killed) return;
+  if ((has_way_back(member.doom) ? asked_ : now) < *member.doomed || member.killed) return;
   member.killed = true;
   if (member.grip) member.grip->kill();
   find_out(GuardFinding::Kind::Killed, member.apid());

@@ -88,6 +88,8 @@ class Guard {
   // --- any thread ---------------------------------------------------------------------------------------------------
   /// Number of the newest stop of everything, as it stands on all permit pages: what was said under another one lets nobody move.
   [[nodiscard]] std::uint32_t newest_stop() const noexcept { return newest_stop_.load(std::memory_order_acquire); }
+  /// It was stopped with everything since that number: what was said for it then was said in another situation.
+  [[nodiscard]] bool was_stopped_since(std::uint16_t apid, std::uint32_t number) const;
   /// As if everything had been stopped again: what nobody has read yet, or has been said before, lets nobody move.
   void void_what_was_said();
   /// Actuators inhibited: on its permit page at once, which its next cycle reads, and at the devices that have a second inhibit

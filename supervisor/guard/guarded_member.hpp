@@ -87,6 +87,8 @@ struct GuardedMember {
   bool guarded_before{false};  ///< by a guard that is gone and may have taken it as well
   std::uint32_t epoch{0};  ///< of the page, kept when a process ends
   std::uint64_t fences{0};
+  std::uint32_t stopped_in{
+      0};  ///< the newest stop of everything that fenced it, or may have before this guard or process
   bool fence_untold{false};  ///< the guard fenced it, and the supervisor is still to take what it found
   // permission
   bool released{false};

@@ -34,7 +34,9 @@ std::uint64_t Guard::begin_stop_of_all() {
   next_stop();
   for (GuardedMember& member : members_) {
     if (first || member.released || member.settled == stops_) member.begin_stop(now, asked);
-    if (!member.spared) member.fence();
+    if (member.spared) continue;
+    member.stopped_in = newest_stop();
+    member.fence();
   }
   return ++stops_;
 }

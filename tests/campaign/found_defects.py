@@ -40,7 +40,7 @@ DEFECTS = [
            "return !PLANTED && incoming.known_stop && *incoming.known_stop != newest && newest",
            "supervisor_test", "SaidBeforeAStop.ItLetsNobodyGoHoweverLateItIsReadAndWhatIsSaidSinceDoes"),
     # A motion was carried out when somebody else had let its member go.
-    Defect("motion of before a stop", TELECOMMANDS, "(decision->acts || decision->releases_stop", "((decision->acts && !PLANTED) || decision->releases_stop",
+    Defect("motion of before a stop", TELECOMMANDS, "(decision->acts && acts_in_another", "(decision->acts && !PLANTED && acts_in_another",
            "supervisor_test", "SaidBeforeAStop.AMotionThatSomebodySaidBeforeItIsNotCarriedOutWhenAnotherHasLetGo"),
     # Somebody was let go between the guard's fence and the supervisor's hearing of it.
     Defect("let go untold", GUARD, "if (member->fence_untold) return false;", "if (member->fence_untold && !PLANTED) return false;",

@@ -233,6 +233,19 @@ TEST_F(SaidBeforeAStop, AMotionThatSomebodySaidBeforeItIsNotCarriedOutWhenAnothe
   EXPECT_THAT(say(move, number_on_page(camera)), ElementsAre("MOVE_TO"));
 }
 
+TEST_F(SaidBeforeAStop, WhoWasNotStoppedHearsWhatIsForItWhateverNumberItWasSaidUnder) {
+  set(arm, Operational, 2);
+  const auto move = telecommand(arm, 8, 1, call_data("MOVE_TO"));
+  const std::uint32_t before = number_on_page(camera);
+  guard.void_what_was_said();  // as behind a supervisor that died, where anybody else was stopped
+  static_cast<void>(played[camera].channel.subsystem_end().send(
+      {.kind = MessageKind::GroundTelecommand, .epoch = before, .packet = move}));
+  read(camera);
+  EXPECT_THAT(texts(arm), ElementsAre("MOVE_TO"));
+  set(arm, SafeOperational, 2);
+  EXPECT_FALSE(lets_go(before));
+}
+
 TEST_F(SaidBeforeAStop, ItLetsNobodyGoHoweverLateItIsReadAndWhatIsSaidSinceDoes) {
   const std::uint32_t before = number_on_page(camera);
   parts.safe_all.carry_out({});

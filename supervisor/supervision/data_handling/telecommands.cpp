@@ -51,7 +51,7 @@ void Telecommands::take(const Incoming& incoming) {
   const std::uint64_t fences = incoming.free_at.value_or(craft_.guard.fences(apid));
   auto decision = judge(*telecommand, incoming.origin);
   if (decision && said_before_a_stop(incoming) && !decision->essential &&
-      (decision->acts || decision->releases_stop || decision->starts || (apid == supervisor_apid && !asks_only))) {
+      (decision->releases_stop || decision->starts || (decision->acts && acts_in_another_situation(incoming, apid)))) {
     FailureNotice notice{FailureCode::NotPermittedNow};
     decision = std::unexpected{
         notice.because({ErrorCode::NotPermitted, 0, "it may have been said before the stop: say it again"})};
@@ -116,6 +116,11 @@ void Telecommands::take(const Incoming& incoming) {
 bool Telecommands::said_before_a_stop(const Incoming& incoming) const {
   const std::uint32_t newest = craft_.guard.newest_stop();
   return incoming.known_stop && *incoming.known_stop != newest && newest != Guard::no_stop_yet;
+}
+
+/// A motion from before would be carried out when somebody else has let its member go. Who was not stopped goes on, and hears all.
+bool Telecommands::acts_in_another_situation(const Incoming& incoming, std::uint16_t apid) const {
+  return apid == supervisor_apid || craft_.guard.was_stopped_since(apid, *incoming.known_stop);
 }
 
 void Telecommands::take_damaged(const Incoming& incoming, const FailureNotice& notice) {

@@ -99,6 +99,7 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
   [[nodiscard]] std::expected<Permitted, pus::FailureNotice> judge(const pus::TelecommandView& telecommand,
                                                                    const Origin& origin) const;
   [[nodiscard]] bool said_before_a_stop(const Incoming& incoming) const;
+  [[nodiscard]] bool acts_in_another_situation(const Incoming& incoming, std::uint16_t apid) const;
   [[nodiscard]] bool is_sound(std::uint16_t apid) const;
   /// A subsystem that asks more than it may at once: the others' telecommands have their place.
   [[nodiscard]] std::optional<pus::FailureNotice> refuse_flood(const pus::TelecommandView& telecommand,
