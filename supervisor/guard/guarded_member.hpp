@@ -102,7 +102,7 @@ struct GuardedMember {
   TimePoint service_moved{};
   std::optional<TimePoint> asked_who_runs;  ///< since its service loop stands
   std::vector<LoopTime> had_then;  ///< by the loops of each member
-  std::optional<TimePoint> doomed;  ///< killed then unless it comes back, in asked time
+  std::optional<TimePoint> doomed;  ///< killed then: in asked time where it may come back, else in watched time
   GuardFinding::Kind doom{};
   // stop
   TimePoint stop_begun{};  ///< of the newest that found it moving
