@@ -225,10 +225,12 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   ThreadedPacketLog log{clock, std::move(store), std::move(log_options)};
   written = &log;
   page.log_run.store(log.run().time_since_epoch().count());
-  if (const auto why_not = begin_log(log, clock, log_start_limit)) {
-    fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, log_path.string());
-    return exit_environment;
-  }
+  begin_log(log);
+  const auto log_refused = [&] {
+    const auto why_not = why_not_begun(log, clock, log_start_limit);
+    if (why_not) fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, log_path.string());
+    return why_not.has_value();
+  };
   ThreadedValueStore values{clock, std::make_unique<SystemValueDisk>(),
                             std::filesystem::path{log_path}.replace_extension(".values")};
   ThreadedReadings readings;
@@ -239,7 +241,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   EpochFile epochs{std::filesystem::path{log_path}.replace_extension(".epoch")};
   const auto first_epoch = epochs.first(clock.onboard());
   if (!first_epoch) {
-    fmt::print(stderr, "hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text);
+    if (!log_refused()) fmt::print(stderr, "hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text);
     return exit_environment;
   }
   Guard guard{
@@ -281,6 +283,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   bool ends_as_a_whole = false, asked_to_end = false;
   const MemoryReserve reserve{memory_of_a_step};
   AskedStops stops{page};
+  if (log_refused()) return exit_environment;  // not asked before: its disk works while all that is made
   if (goes_on) {
     keeper.take_inhibits(clock);
     stops.carry_out([&](bool any) {

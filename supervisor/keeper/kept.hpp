@@ -37,7 +37,7 @@ inline constexpr std::size_t most_kept = 96;
 }
 
 inline constexpr std::size_t journal_octets = std::size_t{2} << 20;
-/// Twice as many as texts take; what is not used of it is no memory.
+/// Twice as many as texts take, held from the begin: who writes there is never refused memory.
 inline constexpr std::size_t texts_octets = std::size_t{8} << 20;
 
 /// The second inhibit of one device as the guard told it last: the keeper goes on telling it while there is no guard.

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <fstream>
 
 #include "hirosco/descriptor/read/read.hpp"
@@ -41,13 +42,14 @@ FileSource file_system() {
     HIROSCO_TRY(expect_regular(file));
     std::ifstream stream{file, std::ios::binary};
     if (!stream) return fail(ErrorCode::NotPermitted, "may not be read: its permissions forbid it");
-    std::string octets(xml::max_document_octets + 1, '\0');
-    stream.read(octets.data(), static_cast<std::streamsize>(octets.size()));
+    // Part by part: memory for the largest file there may be costs each process milliseconds of its start.
+    std::string octets;
+    for (std::array<char, 1 << 16> part; stream && octets.size() <= xml::max_document_octets;) {
+      stream.read(part.data(), part.size());
+      octets.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+    }
     if (stream.bad()) return fail(ErrorCode::SystemFailure, "cannot be read to its end");
-    if (stream.gcount() > static_cast<std::streamsize>(xml::max_document_octets))
-      return fail(ErrorCode::ResourceExhausted, "is larger than 4 MiB");
-    octets.resize(static_cast<std::size_t>(stream.gcount()));
-    octets.shrink_to_fit();
+    if (octets.size() > xml::max_document_octets) return fail(ErrorCode::ResourceExhausted, "is larger than 4 MiB");
     return octets;
   };
 }

@@ -9,8 +9,11 @@
 
 namespace hirosco::supervisor {
 
-std::optional<std::string> begin_log(ThreadedPacketLog& log, const Clock& clock, Duration limit) {
+void begin_log(ThreadedPacketLog& log) {
   static_cast<void>(log.append({.kind = LogKind::Action, .source = 1, .peer = 1, .packet = {}, .note = "log begins"}));
+}
+
+std::optional<std::string> why_not_begun(ThreadedPacketLog& log, const Clock& clock, Duration limit) {
   const TimePoint end = clock.now() + limit;
   for (;;) {
     // A store in trouble fails the wait at once, and heals by itself if it can.

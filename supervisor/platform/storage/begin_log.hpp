@@ -10,9 +10,12 @@
 
 namespace hirosco::supervisor {
 
+/// The first record: what opens the store, in the thread of the log.
+void begin_log(ThreadedPacketLog& log);
+
 /// Nothing flies whose telecommands nobody could find again: the first record must reach the disk within `limit`, whatever
 /// the store meets and heals meanwhile. Empty when it did, else why not.  Realtime: blocks.
-[[nodiscard]] std::optional<std::string> begin_log(ThreadedPacketLog& log, const Clock& clock, Duration limit);
+[[nodiscard]] std::optional<std::string> why_not_begun(ThreadedPacketLog& log, const Clock& clock, Duration limit);
 
 /// A log whose program died, from what that had noted last: more may have reached the disk since. Looks at the two newest pieces.
 /// Realtime: blocks.
