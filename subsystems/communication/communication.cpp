@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "hirosco/subsystem/author/ground_link.hpp"
 #include "subsystems/communication/delay_line.hpp"
 #include "subsystems/communication/tcp_transport.hpp"
 #include "subsystems/communication/told_ends.hpp"
@@ -17,9 +18,13 @@ namespace {
 
 using CloseReason = GroundTransport::CloseReason;
 
-class Communication final : public Subsystem, private GroundTraffic {
+class Communication final : public Subsystem {
  public:
-  explicit Communication(OpenGroundTransport open) : open_{std::move(open)} {}
+  explicit Communication(OpenGroundTransport open)
+      : ground_{*this, std::move(open), [this](Octets packet) {
+                  ends_.went_up(packet);
+                  last_rx_ = now_;
+                }} {}
 
  private:
   // Structures of communication.xml: same members, same order.
@@ -84,12 +89,12 @@ class Communication final : public Subsystem, private GroundTraffic {
     up_.reset();
     down_.reset();
     relay_lost_ = false;
-    if (transport_) return ok();  // a ground that reconfigures its own link must not be cut off by that
+    if (ground_.is_open()) return ok();  // a ground that reconfigures its own link must not be cut off by that
     ports_ = {};
     for (Quota::Held& port : ports_) {
       HIROSCO_TRY_LET(port, acquire_port());
     }
-    HIROSCO_TRY_LET(transport_, open_(*this));
+    HIROSCO_TRY(ground_.open());
     had_client_ = false;
     cuts_told_ = {};
     return ok();
@@ -109,53 +114,34 @@ class Communication final : public Subsystem, private GroundTraffic {
   /// What clients have already handed to us is the supervisor's to answer, and listeners wait for that answer: the link
   /// closes when all is taken. What is not in time is counted and told, at least to the log.
   Result<Step> hardware_deinit() override {
-    if (!transport_) return done;
+    if (!ground_.is_open()) return done;
     if (!closing_since_) closing_since_ = now_;
-    look_for_stop();
-    const std::size_t left = transport_->finish(now_);
+    const std::size_t left = ground_.finish(now_);
     if (left != 0 && now_ - *closing_since_ < closing_patience) return again;
     if (left != 0) raise_in_service(telecommands_dropped_, static_cast<std::uint32_t>(left));
     dropped_ += static_cast<std::uint32_t>(left);
     closing_since_.reset();
-    transport_.reset();
+    ground_.close();
     ports_ = {};
     return done;
   }
 
   void service(TimePoint now) override {
-    if (!transport_) return;
+    if (!ground_.is_open()) return;
     now_ = now;
-    look_for_stop();
-    if (!closing_since_) transport_->step(now);
+    if (!closing_since_) ground_.step(now);
     count(now);
   }
 
-  [[nodiscard]] ServiceWake service_wake() const override {
-    return transport_ && !closing_since_ ? transport_->wake() : ServiceWake{};
-  }
+  [[nodiscard]] ServiceWake service_wake() const override { return closing_since_ ? ServiceWake{} : ground_.wake(); }
 
   void telemetry(Octets packet) override {
-    if (transport_ && ends_.goes_down(packet)) transport_->telemetry(packet);
-  }
-
-  /// Before anything else of a step is looked at.
-  void look_for_stop() {
-    if (const std::uint32_t newest = newest_stop(); newest != std::exchange(known_stop_, newest))
-      transport_->all_stopped();
-  }
-
-  Taken telecommand(ClientId client, Octets packet, Said said) override {
-    constexpr std::uint32_t not_known = 0;
-    // What the supervisor does not take now stays with its client: nothing that was received is lost.
-    if (!submit_ground_telecommand(client, packet, said == Said::Since ? known_stop_ : not_known)) return Taken::Later;
-    ends_.went_up(packet);
-    last_rx_ = now_;
-    return Taken::Yes;
+    if (ground_.is_open() && ends_.goes_down(packet)) ground_.telemetry(packet);
   }
 
   /// Gathers the counters in the service loop and hands them to the cycle, which alone writes parameters.
   void count(TimePoint now) {
-    const GroundTransport::Counters& counters = transport_->counters();
+    const GroundTransport::Counters& counters = ground_.counters();
     const auto u32 = [](std::uint64_t number) { return static_cast<std::uint32_t>(number); };
     const auto closed = [&](CloseReason reason) { return u32(counters.closed[static_cast<std::size_t>(reason)]); };
     const bool connected = counters.clients > 0;
@@ -195,7 +181,7 @@ class Communication final : public Subsystem, private GroundTraffic {
     if (now < next_cut_told_) return;
     for (const CloseReason reason : told) {
       const auto place = static_cast<std::size_t>(reason);
-      const std::uint64_t closed = transport_->counters().closed[place];
+      const std::uint64_t closed = ground_.counters().closed[place];
       if (closed == cuts_told_[place]) continue;
       raise_in_service(client_cut_, static_cast<std::uint8_t>(reason),
                        static_cast<std::uint32_t>(closed - cuts_told_[place]));
@@ -238,9 +224,8 @@ class Communication final : public Subsystem, private GroundTraffic {
   static constexpr Duration cuts_period = 100ms;
   static constexpr Duration closing_patience = 500ms;
 
-  OpenGroundTransport open_;
   std::array<Quota::Held, 2> ports_;  ///< that it listens at; given back after it
-  std::unique_ptr<GroundTransport> transport_;
+  GroundLink ground_;
   Event<> ground_link_lost_{"GROUND_LINK_LOST"};
   Event<> ground_link_restored_{"GROUND_LINK_RESTORED"};
   Event<std::uint8_t, std::uint32_t> client_cut_{"CLIENT_CUT"};  ///< reason, clients
@@ -265,7 +250,6 @@ class Communication final : public Subsystem, private GroundTraffic {
   Link next_link_{};
   Clients next_clients_{};
   TimePoint now_{};
-  std::uint32_t known_stop_{0};
   std::optional<TimePoint> closing_since_;
   std::uint32_t dropped_{0};  ///< telecommands that nobody took before the link was closed
   TimePoint last_rx_{};

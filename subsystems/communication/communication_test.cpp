@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/communication/communication.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -13,7 +12,6 @@
 namespace hirosco {
 namespace {
 
-using ::testing::ElementsAre;
 using testing::Rig;
 
 std::string descriptor_text() {
@@ -23,8 +21,6 @@ std::string descriptor_text() {
   return text.str();
 }
 
-using Said = GroundTraffic::Said;
-
 /// A link with so many packets that nobody takes, and what it has counted.
 struct Link {
   GroundTransport::Counters counters;
@@ -32,18 +28,13 @@ struct Link {
   bool open{false};
   int finished{0};
   int steps{0};
-  GroundTraffic* traffic{nullptr};
-  std::vector<std::string> happened;  ///< "stopped", "step"
 };
 class Transport final : public GroundTransport {
  public:
   explicit Transport(Link& link) : link_{link} { link_.open = true; }
-  void all_stopped() override { link_.happened.emplace_back("stopped"); }
+  void all_stopped() override {}
   ~Transport() override { link_.open = false; }
-  void step(TimePoint) override {
-    ++link_.steps;
-    link_.happened.emplace_back("step");
-  }
+  void step(TimePoint) override { ++link_.steps; }
   [[nodiscard]] std::size_t finish(TimePoint) override {
     ++link_.finished;
     return link_.waiting;
@@ -58,8 +49,7 @@ class Transport final : public GroundTransport {
 struct OpenLink : ::testing::Test {
   Link link;
   std::unique_ptr<Subsystem> author{
-      make_communication_on([this](GroundTraffic& traffic) -> Result<std::unique_ptr<GroundTransport>> {
-        link.traffic = &traffic;
+      make_communication_on([this](GroundTraffic&) -> Result<std::unique_ptr<GroundTransport>> {
         return std::make_unique<Transport>(link);
       })};
   Rig rig{*author, descriptor_text()};
@@ -82,27 +72,6 @@ TEST_F(OpenLink, TellsEachConnectionThatTheSpacecraftEndsWithItsReasonAndNoOther
   }
 }
 
-TEST_F(OpenLink, HearsOfAStopBeforeItLooksForMoreAndSaysWhatItKnewOfWhatCameSince) {
-  rig.permit.newest_stop = 8;
-  rig.service();
-  link.happened.clear();
-  rig.service();
-  EXPECT_THAT(link.happened, ElementsAre("step"));
-  rig.permit.newest_stop = 9;
-  rig.service();
-  EXPECT_THAT(link.happened, ElementsAre("step", "stopped", "step"));
-  std::array<std::byte, 64> buffer;
-  const auto ping = pus::write_telecommand(buffer, {.apid = 11, .service = 17, .subtype = 1}, {}).value();
-  for (const Said said : {Said::Since, Said::PerhapsBefore})
-    EXPECT_EQ(link.traffic->telecommand(3, ping, said), GroundTraffic::Taken::Yes);
-  rig.permit.newest_stop = 10;  // it has not looked again
-  EXPECT_EQ(link.traffic->telecommand(3, ping, Said::Since), GroundTraffic::Taken::Yes);
-  rig.service();
-  std::vector<std::uint32_t> known;
-  for (const testing::Asked& asked : rig.asked) known.push_back(asked.known_stop);
-  EXPECT_THAT(known, ElementsAre(9u, 0u, 9u));
-}
-
 struct ClosedLink : OpenLink {
   testing::Sent way_down;
 
@@ -110,7 +79,7 @@ struct ClosedLink : OpenLink {
     OpenLink::SetUp();
     way_down = rig.set_state(State::Offline);
   }
-  static constexpr std::uint16_t dropped = 204;
+  static constexpr std::uint16_t dropped = 208;
 };
 
 TEST_F(ClosedLink, IsOpenUntilAllThatItHasReceivedIsTakenAndReadsNothingMeanwhile) {

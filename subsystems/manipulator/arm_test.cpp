@@ -19,6 +19,9 @@ using pus::st128::Role;
 using ::testing::Each;
 using ::testing::HasSubstr;
 
+/// So many joints differ from each other; behind them it begins anew, within their limits.
+constexpr std::size_t different = 7;
+
 /// testdata/arm.xml with another number of joints.
 std::string arm_descriptor(std::size_t joints) {
   std::string text = descriptor::file_system()(HIROSCO_SOURCE_DIR "/subsystems/manipulator/testdata/arm.xml").value();
@@ -28,7 +31,7 @@ std::string arm_descriptor(std::size_t joints) {
   };
   std::string home, safe;
   for (std::size_t i = 1; i <= joints; ++i) {
-    home += " 0." + std::to_string(i);
+    home += " 0." + std::to_string((i - 1) % different + 1);
     safe += " 0";
   }
   replace_all("0.1 0.2 0.3 0.4 0.5 0.6", home.substr(1));
@@ -42,7 +45,7 @@ std::string arm_descriptor(std::size_t joints) {
   for (std::size_t joint = 7; joint <= joints; ++joint) {
     const auto [begin, length] = line_of(joint - 1);
     std::string line = text.substr(begin, length);
-    line.replace(line.find('Q') + 1, 1, std::to_string(joint));
+    line.replace(line.find('Q') + 1, std::to_string(joint - 1).size(), std::to_string(joint));
     text.insert(begin + length, line);
   }
   return text;
@@ -68,7 +71,8 @@ struct ArmTest : ::testing::TestWithParam<std::size_t> {
   std::vector<std::vector<double>> path; ///< of every cycle
 
   void SetUp() override {
-    for (std::size_t i = 0; i < n; ++i) position_rad.push_back(0.1 * static_cast<double>(i + 1)); // at home
+    for (std::size_t i = 0; i < n; ++i)
+      position_rad.push_back(0.1 * static_cast<double>(i % different + 1));  // at home
   }
 
   void cycle(int count = 1) {
@@ -146,7 +150,7 @@ struct ArmTest : ::testing::TestWithParam<std::size_t> {
   /// Every joint another way, of another sign than its neighbours'.
   [[nodiscard]] std::vector<double> elsewhere() const {
     std::vector<double> goal = position_rad;
-    for (std::size_t i = 0; i < n; ++i) goal[i] += (i % 2 == 0 ? -0.1 : 0.08) * static_cast<double>(i + 1);
+    for (std::size_t i = 0; i < n; ++i) goal[i] += (i % 2 == 0 ? -0.1 : 0.08) * static_cast<double>(i % different + 1);
     return goal;
   }
   void expect_at(const std::vector<double>& where_rad, double tolerance_rad) const {
@@ -261,7 +265,7 @@ TEST_P(ArmTest, FollowsAHandleWithAsManyAxesFromWhereItStands) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Joints, ArmTest, ::testing::Values(1, 2, 6, 7));
+INSTANTIATE_TEST_SUITE_P(Joints, ArmTest, ::testing::Values(1, 2, 6, 7, 16));
 
 TEST(ArmDescriptor, WhoseArraysDifferInLengthIsRefusedByName) {
   std::string text = arm_descriptor(6);
@@ -275,14 +279,15 @@ TEST(ArmDescriptor, WhoseArraysDifferInLengthIsRefusedByName) {
 }
 
 TEST(ArmDescriptor, WithMoreJointsThanAnArmCanHaveIsRefusedByName) {
-  std::string text = arm_descriptor(7);
+  std::string text = arm_descriptor(16);
   const std::string velocity = R"(name="DES_VELOCITY" id="2" type="DOUBLE" count=")";
-  text.replace(text.find(velocity), velocity.size() + 1, velocity + "8");
+  text.replace(text.find(velocity), velocity.size() + 2, velocity + "17");
   const auto arm = make_arm();
   testing::Rig rig{*arm, text};
   EXPECT_THAT(rig.set_state_now(State::PreOperational), ::testing::StartsWith("1 3 8:0202"));
-  EXPECT_THAT(rig.explanations, ::testing::Contains(HasSubstr("DES_VELOCITY: the C++ type is Sized<double, 7>, the "
-                                                              "descriptor declares DOUBLE[8], which are more than 7")));
+  EXPECT_THAT(rig.explanations,
+              ::testing::Contains(HasSubstr("DES_VELOCITY: the C++ type is Sized<double, 16>, the "
+                                            "descriptor declares DOUBLE[17], which are more than 16")));
 }
 
 TEST(ArmDescriptor, WhoseMoveToNamesAnotherNumberOfJointsIsRefused) {

@@ -10,6 +10,7 @@ import shutil
 import socket
 import struct
 import subprocess
+import tempfile
 import threading
 import time
 import unittest
@@ -69,6 +70,16 @@ class Built(Outside, unittest.TestCase):
 
     def test_its_mission_is_checked_with_what_the_installed_tree_brings(self):
         self.assertIn("4 files, no problem", self.hirosco("check", "--fly", self.mission))
+
+    def test_another_version_is_refused_by_both_their_names(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(later LANGUAGES NONE)\n"
+                                                                 "find_package(hirosco 0.99 REQUIRED)\n")
+            done = subprocess.run(["cmake", "-S", folder, "-B", f"{folder}/build", f"-DCMAKE_PREFIX_PATH={self.prefix}"], capture_output=True,
+                                  text=True, check=False)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn('compatible with requested version "0.99"', " ".join(done.stderr.split()))
+        self.assertRegex(done.stderr, r"version: \d+\.\d+\.\d+")
 
     def test_its_modules_have_one_entry_point(self):
         for module in (*self.built.glob("*.so"), *(self.prefix / "lib/hirosco").glob("*.so")):
@@ -155,7 +166,7 @@ class Flown(Outside, unittest.TestCase):
             code, reports = lamp.tc("LAMP", "DIM", 0.9)
             self.assertEqual((code, reports[-1]), (0, "1,7"))
             self.assertAlmostEqual(self.brightness(lamp, 0.9), 0.9, 2)
-            self.own_service(lamp, ask)
+            self.own_service(lamp, ask, url)
             self.typed_arguments(lamp, ask, url)
             self.assertEqual(ask("/mission/index.json"), ["tour.js"])
             with urllib.request.urlopen(base + "/mission/tour.js", timeout=10) as answer:
@@ -225,8 +236,8 @@ class Flown(Outside, unittest.TestCase):
                 craft.wait_line(lambda line: False, 0.1)
         self.assertIn("source id of somebody else, client", told)
 
-    def own_service(self, lamp, ask):
-        """What its descriptor says of its own PUS service is enough for terminal, page, Python and log."""
+    def own_service(self, lamp, ask, url):
+        """What its descriptor says of its own PUS service is enough for terminal, page, Python, permission and log."""
         lamp_about = next(one for one in ask("/api/mission")["subsystems"] if one["name"] == "LAMP")
         request = next(one for one in lamp_about["functions"] if one["name"] == "READ_METER")
         self.assertEqual((request["service"], request["subtype"]), (200, 1))
@@ -243,8 +254,17 @@ class Flown(Outside, unittest.TestCase):
             with self.assertRaises(urllib.error.HTTPError) as refused:
                 ask("/api/commands", {"subsystem": "LAMP", "function": "LABEL", "arguments": {**given, name: value}})
             self.assertEqual(refused.exception.code, 400)
+        if self.by_form(url, "LABEL", "OWNER=by the page", f"SERIAL={2**64 - 4}", "LENT=1"):
+            self.logged("200", f"LAMP LABELLED OWNER='by the page' SERIAL={2**64 - 4} LENT=on")
         self.logged("200", "LAMP METER DIMMED=1 CURRENT=0.9 A", f"LAMP LABELLED OWNER='Ada' SERIAL={2**64 - 2} LENT=off",
                     f"LAMP LABELLED OWNER='by JSON' SERIAL={2**64 - 3} LENT=on")
+        # Its states are in force: LABEL is for Operational alone, READ_METER for any.
+        self.assertEqual(lamp.tc("LAMP", "SET_STATE", "SafeOperational")[1][-1], "1,7")
+        self.assertEqual(lamp.tc("LAMP", "LABEL", "Ada", 1)[1], ["1,2"])
+        self.assertEqual(lamp.tc("LAMP", "READ_METER")[1][-1], "1,7")
+        self.assertEqual(lamp.tc("LAMP", "SET_STATE", "Operational")[1][-1], "1,7")
+        self.assertEqual(lamp.tc("LAMP", "LABEL", "Ada", 1)[1][-1], "1,7")
+        self.assertEqual(lamp.tc("LAMP", "DIM", 0.9)[1][-1], "1,7")  # as it was
 
     def logged(self, service, *lines):
         """What was told a moment ago comes into the log when it is written."""
@@ -268,7 +288,7 @@ class Flown(Outside, unittest.TestCase):
         told = self.said("python3", "-B", "-c", PROGRAM, environment={"PYTHONPATH": str(self.folder)}).splitlines()
         self.assertEqual(len(told), 4, told)
         numbers = [2**64 - 1, 2**64 - 2, 2**64 - 3]
-        if self.by_form(url):
+        if self.by_form(url, "PROGRAM", f"SERIAL={2**64 - 4}", "COLOUR=2", "NOTE=by the page", "STEPS=0.25 0.5 1"):
             numbers.append(2**64 - 4)
         octets = {2**64 - 1: 15, 2**64 - 2: 13, 2**64 - 3: 11, 2**64 - 4: 11}
         self.logged("5", *(f"PROGRAMMED SERIAL={number} COLOUR=amber NOTE_OCTETS={octets[number]} STEPS=0.25,0.5,1" for number in numbers))
@@ -276,19 +296,18 @@ class Flown(Outside, unittest.TestCase):
         self.assertEqual(sorted(one["SERIAL"] for one in sent), sorted(map(str, numbers)))
         self.assertIn("\u20ac from JSON", [one["NOTE"] for one in sent])
 
-    def by_form(self, url):
+    def by_form(self, url, request, *fields):
         """By the page's form in a browser; False where there is none."""
         environment = {"HIROSCO_BROWSER_WORK": str(BUILD / "tests/browser"), "HIROSCO_PAGE": str(BUILD / "share/hirosco/page"),
                        "HIROSCO_PAGE_WORK": str(BUILD / "ground/web")}
-        done = subprocess.run(["python3", "-B", HERE.parent / "browser/with_browser.py", "fill_form.mjs", url, "LAMP", "PROGRAM",
-                               f"SERIAL={2**64 - 4}", "COLOUR=2", "NOTE=by the page", "STEPS=0.25 0.5 1"],
+        done = subprocess.run(["python3", "-B", HERE.parent / "browser/with_browser.py", "fill_form.mjs", url, "LAMP", request, *fields],
                               env={**os.environ, **environment}, capture_output=True, text=True, check=False)
         told = done.stdout + done.stderr
         if done.returncode == 77:
             print(f"by_form: skipped: {told[-200:]}")
             return False
         self.assertEqual(done.returncode, 0, told[-3000:])
-        self.assertIn("COLOUR: a choice", told)
+        self.assertIn("LENT: a choice" if request == "LABEL" else "COLOUR: a choice", told)
         return True
 
     def brightness(self, lamp, wanted, device="lamp"):

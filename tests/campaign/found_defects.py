@@ -45,6 +45,10 @@ DEFECTS = [
     # Somebody was let go between the guard's fence and the supervisor's hearing of it.
     Defect("let go untold", GUARD, "if (member->fence_untold) return false;", "if (member->fence_untold && !PLANTED) return false;",
            "supervisor_test", "NewestStop.NobodyIsLetGoBeforeTheSupervisorHasHeardOfWhatStoppedIt"),
+    # Who wrote a ground link of his own could tell its transport of a stop when that had looked already.
+    Defect("stop told behind the step", "hirosco/subsystem/author/ground_link.cpp", "  look_for_stop();\n  transport_->step(now);",
+           "  if (!PLANTED) look_for_stop();\n  transport_->step(now);\n  if (PLANTED) look_for_stop();",
+           "subsystem_test", "AGroundLink.TellsItsTransportOfAStopBeforeThatLooksForMore"),
     # Beyond 1,024 findings that nobody had taken a stop was lost.
     Defect("finding lost", GUARD, "|| std::ranges::find(findings_, found) == findings_.end())",
            "|| (std::ranges::find(findings_, found) == findings_.end() && !PLANTED))",

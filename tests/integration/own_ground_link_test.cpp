@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "hirosco/subsystem/author/ground_transport.hpp"
+#include "hirosco/subsystem/author/ground_link.hpp"
 #include "hirosco/subsystem/author/module.hpp"
 #include "tests/integration/flight.hpp"
 
@@ -29,35 +29,20 @@ constexpr auto radio_mission_text = R"(<?xml version="1.0" encoding="UTF-8"?>
 )";
 
 /// Packets both ways, and nothing else.
-class Radio final : public Subsystem, private GroundTraffic {
+class Radio final : public Subsystem {
  public:
-  explicit Radio(OpenGroundTransport open) : open_{std::move(open)} {}
+  explicit Radio(OpenGroundTransport open) : ground_{*this, std::move(open)} {}
 
  private:
-  Result<> configure(const descriptor::Configuration&) override {
-    HIROSCO_TRY_LET(transport_, open_(*this));
-    return ok();
-  }
+  Result<> configure(const descriptor::Configuration&) override { return ground_.open(); }
   Result<Step> hardware_deinit() override {
-    transport_.reset();
+    ground_.close();
     return done;
   }
-  void service(TimePoint now) override {
-    if (!transport_) return;
-    if (const std::uint32_t newest = newest_stop(); newest != std::exchange(known_stop_, newest))
-      transport_->all_stopped();
-    transport_->step(now);
-  }
-  void telemetry(Octets packet) override {
-    if (transport_) transport_->telemetry(packet);
-  }
-  Taken telecommand(ClientId client, Octets packet, Said said) override {
-    return submit_ground_telecommand(client, packet, said == Said::Since ? known_stop_ : 0) ? Taken::Yes : Taken::Later;
-  }
+  void service(TimePoint now) override { ground_.step(now); }
+  void telemetry(Octets packet) override { ground_.telemetry(packet); }
 
-  OpenGroundTransport open_;
-  std::unique_ptr<GroundTransport> transport_;
-  std::uint32_t known_stop_{0};
+  GroundLink ground_;
 };
 
 std::unique_ptr<Subsystem> make_radio_on(OpenGroundTransport open) { return std::make_unique<Radio>(std::move(open)); }

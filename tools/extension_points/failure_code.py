@@ -5,6 +5,9 @@ WHO = "a failure code"
 BEFORE = "0 + 5"
 GOAL = "1 row; here its number and its words"
 MOST_FILES, MOST_EDITED = 0, 1
+ASKED = [
+    ("docs/failure-codes.md", "AreTheRowsInTheDocuments"),
+]
 FILES = {}
 EDITS = [
     ("hirosco/pus/packet/failure_code.hpp", "      {PowerShort, \"power budget exceeded\"},\n",

@@ -7,6 +7,11 @@ WHO = "a link mechanism"
 BEFORE = "3 + 7 in 4 rooms"
 GOAL = "own files + 1 row (and its file in CMake)"
 MOST_FILES, MOST_EDITED = 2, 1
+ASKED = [
+    ("hirosco/descriptor/subsystem.xsd", "RefusesWhatTheReaderRefuses"),
+    ("hirosco/descriptor/mission.xsd", "RefusesWhatTheReaderRefuses"),
+    ("hirosco/descriptor/consumers.csv", "check_declared"),
+]
 FILES = {"hirosco/data_transfer/link/unix_queue.hpp": """\
 #pragma once
 

@@ -5,6 +5,12 @@ WHO = "a PUS service of the framework"
 BEFORE = "3 to 4 + 25"
 GOAL = "own folder + 1 row (and its file in CMake)"
 MOST_FILES, MOST_EDITED = 2, 1
+ASKED = [
+    ("docs/services.md", "AreTheTableInTheDocuments"),
+    ("hirosco/descriptor/model/service_list.hpp", "AreThoseThatADescriptorNames"),
+    ("hirosco/pus/standard_services_test.cpp", "HasAnObjectToBeTriedForEachServiceThatASubsystemHas"),
+    ("supervisor/supervision/data_handling/permission_test.cpp", "EverySubtypeOfEveryServiceIsKnownOrNot"),
+]
 FILES = {"hirosco/pus/st30_sum/sum_service.hpp": """\
 #pragma once
 

@@ -157,13 +157,6 @@ class Subsystem {
   void abort(const Call& call, const Error& why) noexcept;
 
   // --- in the service loop ----------------------------------------------------------------------------------------
-  /// The number of the newest stop of everything that is known here, never 0 in a flight. It is read before one looks for what clients have
-  /// sent: where it is another one than before, all that had come until then, read or not, may have been said before the stop.
-  [[nodiscard]] std::uint32_t newest_stop() const noexcept;
-  /// Sends a telecommand that came from the ground link client `client` to the supervisor. `known_stop`: newest_stop() as it was before the
-  /// packet came, 0 = nobody knows; behind a later stop it lets nobody move (docs/adr/0156). ResourceExhausted: the supervisor is behind;
-  /// offer it again.
-  Result<> submit_ground_telecommand(std::uint16_t client, Octets packet, std::uint32_t known_stop);
   /// Asks another subsystem, through permission, log and route; what comes of it is heard by the handler under the number
   /// that is returned. NotPermitted: it is not bound; ResourceExhausted: 16 are under way, 100 went in this second, or the
   /// supervisor is behind: ask again later; InvalidArgument, OutOfRange: of the arguments.
@@ -199,6 +192,7 @@ class Subsystem {
  private:
   friend class GenericSubsystem;
   friend class CycleLoop;
+  friend class GroundLink;  // and nobody else: who holds a ground link cannot forget what it has to say of a stop
   void bind_function(std::string_view name, BoundHandler handler);
   void raise_encoded(std::uint16_t event, Octets auxiliary) noexcept;
   void raise_encoded_in_service(const EventPort& event, Octets auxiliary);
@@ -206,6 +200,12 @@ class Subsystem {
   void bind_subscription(SubscriptionPort& heard);
   Result<> set_subscription(SubscriptionPort& heard, bool wanted);
   void abort_call(const Call& call, pus::FailureCode code, const Error& why) noexcept;
+  /// The number of the newest stop of everything that is known here, never 0 in a flight (PermitPage::newest_stop).
+  [[nodiscard]] std::uint32_t newest_stop() const noexcept;
+  /// Sends a telecommand that came from the ground link client `client` to the supervisor. `known_stop`: newest_stop() as it was before the
+  /// packet came, 0 = nobody knows; behind a later stop it lets nobody move (docs/adr/0156). ResourceExhausted: the supervisor is behind;
+  /// offer it again.
+  Result<> submit_ground_telecommand(std::uint16_t client, Octets packet, std::uint32_t known_stop);
   GenericSubsystem* framework_{nullptr};
 };
 

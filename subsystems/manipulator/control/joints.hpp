@@ -12,8 +12,8 @@
 /// All of it: Realtime: bounded, no allocation, no system call. Thread: the cycle.
 namespace hirosco::manipulator {
 
-/// As many as a telecommand MOVE_TO can name, beside its duration.
-inline constexpr std::size_t max_joints = 7;
+/// Memory for the numbers of an arm; how many joints it has its descriptor says. As in robotics/dynamics.
+inline constexpr std::size_t max_joints = 16;
 /// A number for each joint; those of one arm are all of one length.
 using Joints = Sized<double, max_joints>;
 using Temperatures = Sized<float, max_joints>;

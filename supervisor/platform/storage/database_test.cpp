@@ -231,6 +231,7 @@ TEST_F(Sqlite, LeavesAnotherProgramsFileAlone) {
   const auto database = open_database(DatabaseStrategy::Sqlite, path());
   ASSERT_FALSE(database);
   EXPECT_EQ(database.error().code, ErrorCode::Mismatch);
+  EXPECT_STREQ(database.error().text, "not a log database of ours");
 }
 
 TEST_F(Sqlite, RefusesALaterSchema) {
@@ -240,6 +241,7 @@ TEST_F(Sqlite, RefusesALaterSchema) {
   ASSERT_FALSE(database);
   EXPECT_EQ(database.error().code, ErrorCode::Mismatch);
   EXPECT_EQ(database.error().value, 2);
+  EXPECT_STREQ(database.error().text, "log database of another schema version");
 }
 
 /// TORQUE missed TORQUE_LIMIT_EXCEEDED, which only the words of a packet have, and case mattered.
