@@ -62,6 +62,52 @@ TEST(Schema, RefusesWhatTheReaderRefuses) {
   std::filesystem::remove(file);
 }
 
+/// The words of each enumeration that a schema has.
+std::set<std::set<std::string>> enumerations_of(const char* schema) {
+  std::ifstream stream{folder / schema};
+  const std::string text{std::istreambuf_iterator<char>{stream}, {}};
+  const std::regex word{"<xs:enumeration value=\"([^\"]+)\"/>"};
+  std::set<std::set<std::string>> found;
+  for (std::size_t at = text.find("<xs:restriction"); at != std::string::npos;
+       at = text.find("<xs:restriction", at + 1)) {
+    const std::string restriction = text.substr(at, text.find("</xs:restriction>", at) - at);
+    std::set<std::string> words;
+    for (std::sregex_iterator it{restriction.begin(), restriction.end(), word}, end; it != end; ++it)
+      words.insert((*it)[1]);
+    if (!words.empty()) found.insert(words);
+  }
+  return found;
+}
+
+template <class E>
+std::set<std::string> words_of() {
+  std::set<std::string> words;
+  for (const auto& row : EnumTexts<E>::table) words.insert(std::string{row.text});
+  return words;
+}
+
+/// A word that the reader takes and no schema has is one that no editor offers and no table of consumers knows, and the other way round.
+TEST(Schema, HasTheWordsOfEachEnumerationThatTheReaderTakesAndNoOthers) {
+  const auto subsystem = enumerations_of("subsystem.xsd"), mission = enumerations_of("mission.xsd");
+  ASSERT_GT(subsystem.size(), 8U);
+  EXPECT_TRUE(subsystem.contains(words_of<State>()));
+  EXPECT_TRUE(subsystem.contains(words_of<ByteOrder>()));
+  EXPECT_TRUE(subsystem.contains(words_of<MissingPolicy>()));
+  EXPECT_TRUE(subsystem.contains(words_of<SelfTest>()));
+  EXPECT_TRUE(subsystem.contains(words_of<StopKind>()));
+  EXPECT_TRUE(subsystem.contains(words_of<LinkMethod>()));
+  EXPECT_TRUE(subsystem.contains(words_of<LinkKind>()));
+  EXPECT_TRUE(subsystem.contains(words_of<Transfer>()));
+  EXPECT_TRUE(subsystem.contains(words_of<Framing>()));
+  EXPECT_TRUE(subsystem.contains(words_of<Type>()));
+  EXPECT_TRUE(mission.contains(words_of<LinkMethod>()));
+  EXPECT_TRUE(mission.contains(words_of<OnLoss>()));
+  for (const auto* schema : {&subsystem, &mission}) EXPECT_TRUE(schema->contains(words_of<Severity>()));
+  auto more = words_of<Transfer>();
+  more.insert("carrier_pigeon");
+  EXPECT_FALSE(subsystem.contains(more)) << "a word that only the reader had would be seen";
+}
+
 std::set<std::string> codes_in(const std::filesystem::path& file, const std::regex& form) {
   std::ifstream stream{file};
   const std::string text{std::istreambuf_iterator<char>{stream}, {}};
