@@ -8,8 +8,11 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <array>
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
+#include <expected>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -22,6 +25,7 @@
 #include "hirosco/utilities/os/last_words.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
+#include "hirosco/utilities/program_options.hpp"
 #include "supervisor/console.hpp"
 #include "supervisor/guard/guard_shell.hpp"
 #include "supervisor/guard/life_watch.hpp"
@@ -60,17 +64,23 @@ struct Options {
   int screen{-1};                    ///< descriptor that a screen reads from; -1: none
 };
 
-[[nodiscard]] Options read_options(int argc, char** argv) {
+constexpr std::array known_options{
+    ProgramOption{"--mission", "FILE"},     ProgramOption{"--log", "FILE"}, ProgramOption{"--runtime", "FOLDER"},
+    ProgramOption{"--mode", "NAME"},        ProgramOption{"--json"},        ProgramOption{"--quiet"},
+    ProgramOption{"--screen", "DESCRIPTOR"}};
+
+[[nodiscard]] std::expected<Options, std::string> read_options(int argc, char** argv) {
+  auto given = given_options(argc, argv, known_options);
+  if (!given) return std::unexpected{std::move(given.error())};
   Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word{argv[i]};
-    if (word == "--mission" && i + 1 < argc) options.mission = argv[++i];
-    else if (word == "--log" && i + 1 < argc) options.log = argv[++i];
-    else if (word == "--runtime" && i + 1 < argc) options.runtime = argv[++i];
-    else if (word == "--mode" && i + 1 < argc) options.mode = argv[++i];
-    else if (word == "--json") options.style = Console::Style::Json;
-    else if (word == "--screen" && i + 1 < argc) options.screen = std::atoi(argv[++i]);
-    else if (word == "--quiet") options.style = Console::Style::Quiet;
+  for (const auto& [name, value] : *given) {
+    if (name == "--mission") options.mission = value;
+    else if (name == "--log") options.log = value;
+    else if (name == "--runtime") options.runtime = value;
+    else if (name == "--mode") options.mode = value;
+    else if (name == "--json") options.style = Console::Style::Json;
+    else if (name == "--screen") std::from_chars(value.data(), value.data() + value.size(), options.screen);
+    else if (name == "--quiet") options.style = Console::Style::Quiet;
   }
   return options;
 }
@@ -406,7 +416,12 @@ int fly(int argc, char** argv, const MakeDeployment& deploy) {
   const char* const slash = std::strrchr(argv[0], '/');
   const char* const program = slash != nullptr ? slash + 1 : argv[0];
   say_last_words(program);
-  const Options options = read_options(argc, argv);
+  const auto said = read_options(argc, argv);
+  if (!said) {
+    fmt::print(stderr, "{}: {} (started by 'hirosco run MISSION')\n", program, said.error());
+    return exit_usage;
+  }
+  const Options& options = *said;
   if (options.mission.empty()) {
     fmt::print(stderr, "{}: started by 'hirosco run MISSION'\n  --mission FILE [--json|--quiet]\n", argv[0]);
     return exit_usage;

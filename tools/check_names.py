@@ -8,9 +8,11 @@ Names are those of the folders in missions/, subsystems/ and simulation/devices/
 identifier, a text or a comment, however written: for a folder `lamp` these are lamp, LAMP_LOST, LampData and hirosco-lamp.
 A name that docs/glossary.md has under "Names that are words, too" may be said in prose and be part of an identifier. It is found
 where only the name can be meant: in capitals, as a program (hirosco-NAME, hirosco-sim-NAME), as a path (subsystems/NAME).
+The code of a subsystem or a simulated device names no mission, and no other of them either (its tests and descriptors may: who is flown with whom is theirs). What the
+descriptors of its folder call its own devices, links and parameters are words of its own, whoever else is called so.
 Documentation (.md) may show the demonstrator, and so may what stands in tests/, bench/ or a folder of its own; tests beside the
 framework's code use names of nobody (ARM, LAMP, PROBE)."""
-import pathlib, re, sys
+import pathlib, re, sys, tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 HOMES = ("missions", "subsystems", "simulation/devices")
@@ -64,6 +66,28 @@ def framework(every):
                 yield path.relative_to(ROOT).as_posix(), path.read_text()
 
 
+def in_homes(theirs, every, words):
+    """Not its path: that has the names of its own home."""
+    yield from (line for line in found(theirs, every, words) if ":0: " not in line)
+
+
+CODE = (".cpp", ".hpp", ".py", ".txt")
+OWN_WORD = re.compile(r'\bname="([^"]+)"')
+
+
+def homes(every, root=ROOT):
+    """The code of each folder of its own, without its own name and words: (path, text)."""
+    for home in HOMES[1:]:
+        for folder in sorted(path for path in (root / home).iterdir() if path.is_dir()):
+            own = {word for path in folder.rglob("*.xml") for word in OWN_WORD.findall(path.read_text())}
+            hidden = re.compile("|".join([rf"\b{re.escape(word)}\b" for word in sorted(own, key=len, reverse=True)] + [rf"\b(?:{home}|simulation|hirosco-sim-{folder.name}|hirosco-{folder.name.replace('_', '-')})\b"]))
+            # A folder may have the name of one in another home: the robot's device and what a subsystem calls it.
+            names_here = re.compile("[-_ ]?".join(folder.name.split("_")), re.I)
+            for path in sorted(folder.rglob("*")):
+                if path.suffix in CODE and path.is_file() and "_test." not in path.name and "testing" not in path.parts and not OUTSIDE & set(path.parts):
+                    yield path.relative_to(root).as_posix(), names_here.sub("", hidden.sub("", path.read_text()))
+
+
 # `lamp` is a name, `beam` a word, too. The first must be found in each of these, the second in none.
 CAUGHT = ["the lamp", "LAMP_LOST", "class LampData", '"LAMP.LEVEL"', "hirosco-lamp", "lamp_test", 'name="Lamp"', "hirosco-beam", "hirosco-sim-beam",
           "subsystems/beam/beam.hpp", '"BEAM"', "BEAM_LOST", "<Mission name='BEAM'>"]
@@ -74,5 +98,14 @@ if __name__ == "__main__":
     wrong = [f"planted and not seen: {text}" for path, text in planted.items() if text in CAUGHT and path not in seen]
     wrong += [f"seen and no name: {text}" for path, text in planted.items() if text in SPARED and path in seen]
     ours, every, words = dict(framework(names())), names(), words_too()
+    theirs = dict(homes(every))
+    with tempfile.TemporaryDirectory() as made:
+        for path, text in {"subsystems/beam/beam.xml": '<Device name="LAMP"/>', "simulation/devices/lamp/lamp.cpp": "of the shed",
+                           "subsystems/beam/beam.cpp": 'use_device("LAMP"); // beam', "subsystems/beam/lit.cpp": "class LampView"}.items():
+            (pathlib.Path(made) / path).parent.mkdir(parents=True, exist_ok=True)
+            (pathlib.Path(made) / path).write_text(text)
+        caught = {line.partition(":")[0] for line in in_homes(dict(homes(["lamp", "beam", "shed"], pathlib.Path(made))), ["lamp", "beam", "shed"], set())}
+        if caught != {"subsystems/beam/lit.cpp", "simulation/devices/lamp/lamp.cpp"}:
+            wrong.append(f"planted in folders of their own, and seen in {sorted(caught)}")
     wrong += [f"the glossary has a word that is no name: {word}" for word in words - set(every) - {"word", "---"}]
-    sys.exit("\n".join([*found(ours, every, words), *wrong]) or ("no files" if not ours or not every else None))
+    sys.exit("\n".join([*found(ours, every, words), *in_homes(theirs, every, words), *wrong]) or ("no files" if not ours or not every else None))

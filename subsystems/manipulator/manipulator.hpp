@@ -119,7 +119,7 @@ class Manipulator : public Subsystem {
   Parameter<manipulator::TrajectoryValues> trajectory_values_;
   Parameter<std::uint8_t> active_;
   Parameter<manipulator::GainValues> gain_values_;
-  LinkInput<manipulator::JoystickState> handle_;  ///< whichever set the configuration requires
+  LinkInput<manipulator::HandleState> handle_;  ///< whichever set the configuration requires
   DevicePort<manipulator::RobotInput, manipulator::RobotOutput> robot_;
 
   std::unique_ptr<const manipulator::Surface> surface_;

@@ -26,7 +26,7 @@ struct TrajectoryValues {
   double duration_s;
   double progress;
 };
-struct JoystickState {
+struct HandleState {
   Joints position_rad;
   Joints velocity_rad_per_s;
   std::uint8_t enable;

@@ -13,10 +13,11 @@ try {
     const [name, text] = [word.slice(0, word.indexOf('=')), word.slice(word.indexOf('=') + 1)];
     const field = page.locator(`[data-test=field-${name}]`);
     await field.waitFor();
-    const choice = await field.evaluate((node) => node.tagName === 'SELECT');
-    if (choice) await field.selectOption(text);
+    const kind = await field.evaluate((node) => node.tagName === 'SELECT' ? 'a choice' : node.type === 'checkbox' ? 'a switch' : 'a field');
+    if (kind === 'a choice') await field.selectOption(text);
+    else if (kind === 'a switch') await field.setChecked(text === '1');
     else await field.fill(text);
-    console.log(`${name}: ${choice ? 'a choice' : 'a field'}`);
+    console.log(`${name}: ${kind}`);
   }
   await page.locator('[data-test=send]:not([disabled])').click();
   await holds(page, () => /completed|failed/.test(document.querySelector('[data-test=verdict]')?.className ?? ''));

@@ -335,8 +335,8 @@ DEFECTS = [
            "      ++counters_.held_back;\n      if (!PLANTED) return false;",
            "ground_link_test", "GroundClients.KeepWhatNobodyTakesAndReadNoMoreOfWhoSentIt"),
     # Who had to make room or sent half a packet was cut without a word.
-    Defect("cut without a word", "subsystems/communication/communication.cpp", "      if (closed == cuts_told_[place]) continue;",
-           "      if (closed == cuts_told_[place] || (PLANTED && reason != CloseReason::Slow)) continue;",
+    Defect("cut without a word", "subsystems/communication/communication.cpp", "    if (closed == cuts_told_[place]) continue;",
+           "    if (closed == cuts_told_[place] || (PLANTED && reason != CloseReason::Slow)) continue;",
            "communication_subsystem_test", "OpenLink.TellsEachConnectionThatTheSpacecraftEndsWithItsReasonAndNoOther"),
     # The addresses of the ground link in a mission were ignored.
     Defect("addresses of the ground link", "subsystems/communication/tcp_server.cpp",

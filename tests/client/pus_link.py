@@ -250,10 +250,12 @@ BUILT_IN = {"CYCLE_STATS": (("OVERRUNS", "UINT32", 1), ("MAX_US", "FLOAT", 1), (
 class Descriptor:
     """Parameters, housekeeping structures and functions of one subsystem, read from its XML."""
 
-    def __init__(self, path):
+    def __init__(self, path, instance=None):
+        """`instance`: the element of a mission, which may give another name and id."""
         self.root = xml.parse(path).getroot()
-        self.name = self.root.get("name")
-        self.apid = int(self.root.get("id"))
+        given = {**self.root.attrib, **{key: instance.get(key) for key in ("name", "id") if instance is not None and instance.get(key)}}
+        self.name = given["name"]
+        self.apid = int(given["id"])
         self.parameters = {}                              # name -> [(field name, type, count)]
         for element in self.root.iterfind("Parameters/*"):
             name = element.get("name")
@@ -336,7 +338,7 @@ class Mission:
         self.subsystems = {}
         for element in [*root.iterfind("Supervisor"), *root.iterfind("Subsystem")]:
             if element.get("descriptor"):
-                descriptor = Descriptor(self._find(element.get("descriptor")))
+                descriptor = Descriptor(self._find(element.get("descriptor")), element if element.tag == "Subsystem" else None)
                 self.subsystems[descriptor.name.lower()] = descriptor
 
     def _find(self, name):

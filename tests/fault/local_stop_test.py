@@ -54,7 +54,7 @@ class LocalStop(unittest.TestCase):
     def test_everything_is_stopped_while_the_ground_link_is_frozen(self):
         with flight.Flight() as rokviss:
             rokviss.wait_commissioned()
-            rokviss.kill("hirosco-communication", signal.SIGSTOP)
+            rokviss.kill("hirosco-telepresence-relay", signal.SIGSTOP)
             lines = self.stops(rokviss)
             self.assertEqual(len(lines), 2, "one for each device")
             for line in lines:
@@ -67,7 +67,7 @@ class LocalStop(unittest.TestCase):
             self.assertEqual(rokviss.hirosco("mode", "standalone", "--mission", mission).returncode, 0)    # the manipulator needs nobody else
             begin = rokviss.count()
             loop = rokviss.pid_of("hirosco-supervisor")
-            rokviss.kill("hirosco-communication")
+            rokviss.kill("hirosco-telepresence-relay")
             hold_still(loop)
             self.stops(rokviss)
             rokviss.kill("hirosco-manipulator")

@@ -25,7 +25,7 @@ import said_again
 
 SPINNABLE = {"hirosco-joystick": "hirosco-spinnable-joystick", "hirosco-manipulator": "hirosco-spinnable-manipulator"}
 RESTARTS = {"60": "1"}              # three deaths in a minute are many for a mission, few for a campaign
-ROBOT, JOYSTICK, GROUND = "hirosco-spinnable-manipulator", "hirosco-spinnable-joystick", "hirosco-communication"
+ROBOT, JOYSTICK, GROUND = "hirosco-spinnable-manipulator", "hirosco-spinnable-joystick", "hirosco-telepresence-relay"
 # What the supervisor may take to answer, and what `hirosco tc` itself takes to start on a busy computer.
 ANSWER_S, TOOL_S = 0.2, 0.3
 CYCLE_S = 0.0005

@@ -22,7 +22,7 @@ import honest
 import pages
 import punctual
 
-ROBOT, JOYSTICK, GROUND = "hirosco-spinnable-manipulator", "hirosco-spinnable-joystick", "hirosco-communication"
+ROBOT, JOYSTICK, GROUND = "hirosco-spinnable-manipulator", "hirosco-spinnable-joystick", "hirosco-telepresence-relay"
 CHANGES = {"hirosco-joystick": JOYSTICK, "hirosco-manipulator": ROBOT, "60": "1"}   # 60: deaths are counted over so many seconds
 FENCED_S = ACCEPTED_S = 0.5
 ENABLE_S = 0.05                     # an enable lasts so long (adr 0025); then the device begins its declared stop by itself
@@ -210,7 +210,11 @@ class Stops:
     def stop_by_telecommand(self):
         packet = honest.safe_all(self.ground.next())
         self.ground.reports.pop(honest.request_id(packet), None)
-        with socket.create_connection(("127.0.0.1", honest.TELECOMMAND_PORT)) as commander:
+        try:
+            commander = socket.create_connection(("127.0.0.1", honest.TELECOMMAND_PORT))
+        except OSError as problem:
+            raise Unready(f"nobody is there to take the stop: {problem}") from problem
+        with commander:
             looked, before = time.monotonic(), self.craft.truth("robot")
             self.asked = time.monotonic()
             commander.sendall(packet)

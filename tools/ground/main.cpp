@@ -5,13 +5,13 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <array>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
-#include <set>
 #include <string>
 
 #include "ground/api/api.hpp"
@@ -22,19 +22,34 @@
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
+#include "hirosco/utilities/program_options.hpp"
 #include "simulation/devices/module.hpp"
 #include "tools/ground/injections.hpp"
 #include "tools/ground/why.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/json_line.hpp"
 
-/// `hirosco-ground`: the process behind `hirosco ground` and `hirosco why`, which check the command line. Options in
-/// pairs: --name value.
+/// `hirosco-ground`: the process behind `hirosco ground` and `hirosco why`, which judge what a value means.
 namespace {
 
 using namespace hirosco;
 using namespace hirosco::ground;
 namespace fs = std::filesystem;
 using Options = std::map<std::string, std::string>;
+
+constexpr std::array known_options{ProgramOption{"--mission", "FILE"},
+                                   ProgramOption{"--archive", "FILE"},
+                                   ProgramOption{"--telemetry", "ADDRESS:PORT"},
+                                   ProgramOption{"--devices", "FOLDER"},
+                                   ProgramOption{"--port", "N"},
+                                   ProgramOption{"--page", "FOLDER"},
+                                   ProgramOption{"--child"},
+                                   ProgramOption{"--json"},
+                                   ProgramOption{"--quiet"},
+                                   ProgramOption{"--tour"},
+                                   ProgramOption{"--why"},
+                                   ProgramOption{"--md"},
+                                   ProgramOption{"--openapi"}};
 
 [[nodiscard]] std::string new_token() {
   std::random_device device;
@@ -159,7 +174,7 @@ constexpr std::uint16_t tried_ports = 20;
   const std::string page = fmt::format("http://127.0.0.1:{}/#token=", shell.port());
   const std::string url = page + token + (tour ? "&tour" : "");
   if (options.contains("--json")) {
-    fmt::print("{{\"url\":\"{}\",\"observer_url\":\"{}{}\"}}\n", url, page, observer);
+    fmt::print("{}\n", tools::json_line({{"url", url}, {"observer_url", page + observer}}));
   } else if (!options.contains("--quiet")) {
     fmt::print("{}: {}\n", tour ? "open this for the tour" : "ground station", url);
     fmt::print("  to look only: {}{}\n", page, observer);
@@ -173,13 +188,14 @@ constexpr std::uint16_t tried_ports = 20;
 
 int main(int argc, char** argv) {
   hirosco::say_last_words("hirosco-ground");
-  Options options;
-  const std::set<std::string> flags{"--child", "--json", "--quiet", "--why", "--md", "--tour", "--openapi"};
-  for (int i = 1; i < argc; ++i) {
-    const std::string name = argv[i];
-    if (flags.contains(name)) options[name] = "";
-    else if (i + 1 < argc) options[name] = argv[++i];
+  const auto given = given_options(argc, argv, known_options);
+  if (!given) {
+    fmt::print(stderr, "hirosco-ground: {} (started by 'hirosco ground', 'hirosco why' and 'hirosco run')\n",
+               given.error());
+    return tools::exit_usage;
   }
+  Options options;
+  for (const auto& [name, value] : *given) options[std::string{name}] = value;
   if (options.contains("--openapi")) {
     fmt::print("{}\n", openapi_document().dump(1));
     return tools::exit_ok;

@@ -14,6 +14,7 @@
 #include "hirosco/xml/reader.hpp"
 #include "supervisor/supervision/event_handling/planned_reactions.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/json_line.hpp"
 #include "tools/hirosco/readiness.hpp"
 #include "tools/hirosco/scripts.hpp"
 
@@ -150,12 +151,13 @@ class Findings {
  private:
   void show(const descriptor::Diagnostic& problem) const {
     if (options_.json)
-      fmt::print(
-          "{{\"file\":\"{}\",\"line\":{},\"column\":{},\"grade\":\"{}\",\"code\":\"{}\",\"message\":\"{}\",\"hint\":\"{"
-          "}\"}}\n",
-          json_text(problem.file.string()), problem.at.line, problem.at.column,
-          problem.grade == descriptor::Grade::Error ? "error" : "warning", problem.code, json_text(problem.message),
-          json_text(problem.hint));
+      fmt::print("{}\n", json_line({{"file", problem.file.string()},
+                                    {"line", problem.at.line},
+                                    {"column", problem.at.column},
+                                    {"grade", problem.grade == descriptor::Grade::Error ? "error" : "warning"},
+                                    {"code", problem.code},
+                                    {"message", problem.message},
+                                    {"hint", problem.hint}}));
     else fmt::print(stderr, "{}", descriptor::render(problem, source_, colour_));
   }
 

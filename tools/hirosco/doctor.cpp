@@ -8,6 +8,7 @@
 #include "hirosco/utilities/version.hpp"
 #include "tools/doctor/rows.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/json_line.hpp"
 #include "tools/hirosco/look_at.hpp"
 #include "tools/hirosco/readiness.hpp"
 
@@ -19,9 +20,11 @@ using doctor::Row;
 using doctor::Verdict;
 
 void print_json(const Row& row, const Finding& finding) {
-  fmt::print(R"({{"row":"{}","verdict":"{}","good_for":"{}","found":"{}","mends":"{}"}})"
-             "\n",
-             row.name, to_text(finding.verdict), row.good_for, json_text(finding.found), json_text(finding.mends));
+  fmt::print("{}\n", json_line({{"row", row.name},
+                                {"verdict", to_text(finding.verdict)},
+                                {"good_for", row.good_for},
+                                {"found", finding.found},
+                                {"mends", finding.mends}}));
 }
 
 void print_text(const Row& row, const Finding& finding) {

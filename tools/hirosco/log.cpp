@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <map>
 
 #include "hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp"
@@ -12,6 +13,7 @@
 #include "supervisor/platform/storage/postgresql_database.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
+#include "tools/hirosco/json_line.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -52,13 +54,31 @@ class LogValues {
   return text;
 }
 
-/// ",\"values\":{...}"
-[[nodiscard]] std::string values_json(const std::vector<pus::HousekeepingValue>& values) {
-  if (values.empty()) return {};
-  std::string text;
-  for (const auto& value : values)
-    text += fmt::format("{}\"{}\":{}", text.empty() ? "" : ",", json_text(value.name), value.json());
-  return ",\"values\":{" + text + "}";
+/// null: no number that JSON has. Whole ones stand without a point, as HousekeepingValue::json() has them.
+[[nodiscard]] nlohmann::ordered_json number_json(double number) {
+  constexpr double all_exact = 9'007'199'254'740'992.0;  // 2 to the power of 53
+  if (!std::isfinite(number)) return nullptr;
+  if (std::abs(number) < all_exact && std::trunc(number) == number) return static_cast<std::int64_t>(number);
+  return number;
+}
+
+/// Its elements, of a text the one.
+[[nodiscard]] nlohmann::ordered_json elements_json(const pus::HousekeepingValue& value) {
+  auto elements = nlohmann::ordered_json::array();
+  if (value.type == Type::Text) elements.push_back(value.words);
+  else
+    for (const double number : value.values)
+      elements.push_back(value.type == Type::Bool ? nlohmann::ordered_json(number != 0.0) : number_json(number));
+  return elements;
+}
+
+[[nodiscard]] nlohmann::ordered_json record_json(const supervisor::LogRecord& record, std::string text,
+                                                 const std::vector<pus::HousekeepingValue>& values) {
+  nlohmann::ordered_json object{{"number", record.number},      {"stored", utc_words(record.stored)},
+                                {"kind", to_text(record.kind)}, {"source", record.source},
+                                {"peer", record.peer},          {"text", std::move(text)}};
+  for (const auto& value : values) object["values"][value.name] = elements_json(value);
+  return object;
 }
 
 }  // namespace
@@ -127,10 +147,7 @@ int log(const LogOptions& options) {
   if (!options.json && !page->records.empty())
     fmt::print(stderr, "{}: number, time in UTC (Z), kind, what\n", path.string());
   for (const auto& record : page->records) {
-    if (options.json)
-      fmt::print("{{\"number\":{},\"stored\":\"{}\",\"kind\":\"{}\",\"source\":{},\"peer\":{},\"text\":\"{}\"{}}}\n",
-                 record.number, utc_words(record.stored), to_text(record.kind), record.source, record.peer,
-                 json_text(text_of(record)), values_json(values_of(record)));
+    if (options.json) fmt::print("{}\n", json_line(record_json(record, text_of(record), values_of(record))));
     else fmt::print("{}\n", text_of(record));
   }
   if (page->damaged != 0) fmt::print(stderr, "hirosco log: {} damaged records left out\n", page->damaged);

@@ -7,6 +7,7 @@
 #include "hirosco/utilities/lower_case.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
+#include "tools/hirosco/json_line.hpp"
 #include "tools/hirosco/preview.hpp"
 
 namespace hirosco::tools {
@@ -25,8 +26,10 @@ void print_preview(const pus::st129::ModePreview& preview, const descriptor::Mis
                    bool json) {
   const pus::PacketDescriber describer{mission};
   if (json) {
-    fmt::print("{{\"mode\":\"{}\",\"possible\":{},{}}}\n", mode, preview.against.empty(),
-               preview_json(preview.against, preview.steps, describer));
+    fmt::print("{}\n", json_line({{"mode", mode},
+                                  {"possible", preview.against.empty()},
+                                  {"against", preview.against},
+                                  {"steps", steps_json(preview.steps, describer)}}));
     return;
   }
   for (const std::string& why : preview.against) fmt::print("impossible: {}\n", why);

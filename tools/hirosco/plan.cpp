@@ -11,6 +11,7 @@
 #include "supervisor/supervision/event_handling/planned_reactions.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
+#include "tools/hirosco/json_line.hpp"
 #include "tools/hirosco/preview.hpp"
 
 /// `hirosco plan SUBSYSTEM:EVENT`: what recovery would do about an event, asked of the flight (TC[129,6]) or of the descriptors.
@@ -66,29 +67,33 @@ struct Asked {
 }
 
 void print_from_descriptors(const descriptor::Mission& mission, const Asked& asked, bool json) {
-  if (json) fmt::print("[");
-  bool first = true;
+  auto all = nlohmann::ordered_json::array();
   for (const supervisor::PlannedReaction& each : supervisor::planned_reactions(mission)) {
     if (each.subsystem != asked.subsystem->name || each.event != asked.event->name) continue;
     if (json)
-      fmt::print("{}{{\"plan\":\"{}\",\"severity\":\"{}\",\"priority\":{},\"modes\":[\"{}\"],\"steps\":\"{}\"}}",
-                 first ? "" : ",", json_text(each.plan), to_text(each.severity), each.priority,
-                 fmt::join(each.modes, "\",\""), json_text(each.steps));
+      all.push_back({{"plan", each.plan},
+                     {"severity", to_text(each.severity)},
+                     {"priority", each.priority},
+                     {"modes", each.modes},
+                     {"steps", each.steps}});
     else
       fmt::print("plan {} (priority {}) in {}: {}\n", each.plan, each.priority, fmt::join(each.modes, ", "),
                  each.steps.empty() ? "nothing is done" : each.steps);
-    first = false;
   }
-  if (json) fmt::print("]\n");
+  if (json) fmt::print("{}\n", json_line(all));
 }
 
 void print(const pus::st129::PlanPreview& preview, const descriptor::Mission& mission, const Asked& asked, bool json) {
   const pus::PacketDescriber describer{mission};
   const auto severity = to_text(static_cast<descriptor::Severity>(preview.severity));
   if (json) {
-    fmt::print("{{\"subsystem\":\"{}\",\"event\":\"{}\",\"severity\":\"{}\",\"plan\":\"{}\",\"number\":{},{}}}\n",
-               asked.subsystem->name, asked.event->name, severity, json_text(preview.name), preview.plan,
-               preview_json(preview.against, preview.steps, describer));
+    fmt::print("{}\n", json_line({{"subsystem", asked.subsystem->name},
+                                  {"event", asked.event->name},
+                                  {"severity", severity},
+                                  {"plan", preview.name},
+                                  {"number", preview.plan},
+                                  {"against", preview.against},
+                                  {"steps", steps_json(preview.steps, describer)}}));
     return;
   }
   fmt::print("{} {} {}: plan {}\n", asked.subsystem->name, severity, asked.event->name, preview.name);

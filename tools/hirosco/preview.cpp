@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <nlohmann/json.hpp>
 
 #include "hirosco/pus/packet/packet.hpp"
-#include "tools/hirosco/commands.hpp"
 
 namespace hirosco::tools {
 
@@ -40,17 +40,12 @@ std::optional<std::vector<std::byte>> ask(GroundConnection& connection, const Qu
   }
 }
 
-std::string preview_json(const std::vector<std::string>& against,
-                         const std::vector<pus::st129::ModePreview::Step>& steps,
-                         const pus::PacketDescriber& describer) {
-  std::string text = "\"against\":[";
-  for (std::size_t i = 0; i < against.size(); ++i)
-    text += fmt::format("{}\"{}\"", i == 0 ? "" : ",", json_text(against[i]));
-  text += "],\"steps\":[";
-  for (std::size_t i = 0; i < steps.size(); ++i)
-    text += fmt::format("{}{{\"stage\":{},\"subsystem\":\"{}\",\"what\":\"{}\"}}", i == 0 ? "" : ",", steps[i].stage,
-                        describer.name_of(steps[i].subject), json_text(steps[i].what));
-  return text + "]";
+nlohmann::ordered_json steps_json(const std::vector<pus::st129::ModePreview::Step>& steps,
+                                  const pus::PacketDescriber& describer) {
+  auto all = nlohmann::ordered_json::array();
+  for (const auto& step : steps)
+    all.push_back({{"stage", step.stage}, {"subsystem", describer.name_of(step.subject)}, {"what", step.what}});
+  return all;
 }
 
 std::string steps_text(const std::vector<pus::st129::ModePreview::Step>& steps, const pus::PacketDescriber& describer) {

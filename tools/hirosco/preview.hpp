@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,10 +26,9 @@ struct Question {
 [[nodiscard]] std::optional<std::vector<std::byte>> ask(GroundConnection& connection, const Question& question,
                                                         Duration limit);
 
-/// `"against":[...],"steps":[...]` of a JSON object.
-[[nodiscard]] std::string preview_json(const std::vector<std::string>& against,
-                                       const std::vector<pus::st129::ModePreview::Step>& steps,
-                                       const pus::PacketDescriber& describer);
+/// "steps" of a JSON object.
+[[nodiscard]] nlohmann::ordered_json steps_json(const std::vector<pus::st129::ModePreview::Step>& steps,
+                                                const pus::PacketDescriber& describer);
 /// One line for each stage: "  1  ARM SafeOperational, HAND Offline".
 [[nodiscard]] std::string steps_text(const std::vector<pus::st129::ModePreview::Step>& steps,
                                      const pus::PacketDescriber& describer);

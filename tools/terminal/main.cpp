@@ -18,6 +18,7 @@
 #include <string_view>
 
 #include "hirosco/utilities/os/last_words.hpp"
+#include "hirosco/utilities/program_options.hpp"
 #include "tools/terminal/columns.hpp"
 #include "tools/terminal/flight_screen.hpp"
 #include "tools/terminal/lines.hpp"
@@ -45,6 +46,8 @@ struct Options {
   int keeper{0};
   std::string log;
 };
+
+constexpr std::array known_options{ProgramOption{"--keeper", "PID"}, ProgramOption{"--log", "FILE"}};
 
 [[nodiscard]] sigset_t set_of(std::initializer_list<int> numbers) {
   sigset_t set;
@@ -233,9 +236,13 @@ class Drawer {
 
 int main(int argc, char** argv) {
   say_last_words("hirosco-screen");
+  const auto given = given_options(argc, argv, known_options);
+  if (!given) {
+    fmt::print(stderr, "hirosco-screen: {} (started by 'hirosco run MISSION' on a terminal)\n", given.error());
+    return exit_usage;
+  }
   Options options;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string_view name{argv[i]}, value{argv[i + 1]};
+  for (const auto& [name, value] : *given) {
     if (name == "--keeper") std::from_chars(value.data(), value.data() + value.size(), options.keeper);
     else if (name == "--log") options.log = value;
   }

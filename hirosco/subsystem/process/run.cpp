@@ -5,10 +5,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <charconv>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
+#include <expected>
 #include <memory>
 #include <string>
 #include <utility>
@@ -27,6 +28,7 @@
 #include "hirosco/utilities/os/process_usage.hpp"
 #include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/os/thread.hpp"
+#include "hirosco/utilities/program_options.hpp"
 #include "hirosco/xml/reader.hpp"
 
 namespace hirosco {
@@ -45,22 +47,36 @@ struct Options {
   [[nodiscard]] bool complete() const { return !descriptor.empty() && channel >= 0 && vital >= 0 && permit >= 0; }
 };
 
-[[nodiscard]] int number_of(const char* text) {
+/// Those behind the first five change what the descriptor says (descriptor::changes_of()).
+constexpr std::array known_options{ProgramOption{"--descriptor", "FILE"},
+                                   ProgramOption{"--channel", "FD"},
+                                   ProgramOption{"--vital", "FD"},
+                                   ProgramOption{"--permit", "FD"},
+                                   ProgramOption{"--text", "FD"},
+                                   ProgramOption{"--as", "NAME:ID"},
+                                   ProgramOption{"--set", "PARAMETER=VALUES"},
+                                   ProgramOption{"--address", "DEVICE=ADDRESS"},
+                                   ProgramOption{"--enable", "DEVICE=ADDRESS"},
+                                   ProgramOption{"--commands", "NAME=ID:FILE"},
+                                   ProgramOption{"--subscribes", "NAME=ID:FILE"}};
+
+[[nodiscard]] int number_of(std::string_view text) {
   int number = -1;
-  std::from_chars(text, text + std::strlen(text), number);
+  std::from_chars(text.data(), text.data() + text.size(), number);
   return number;
 }
 
-[[nodiscard]] Options read_options(int argc, char** argv) {
+[[nodiscard]] std::expected<Options, std::string> read_options(int argc, char** argv) {
+  auto given = given_options(argc, argv, known_options);
+  if (!given) return std::unexpected{std::move(given.error())};
   Options options;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string_view name{argv[i]};
-    if (name == "--descriptor") options.descriptor = argv[i + 1];
-    else if (name == "--channel") options.channel = number_of(argv[i + 1]);
-    else if (name == "--vital") options.vital = number_of(argv[i + 1]);
-    else if (name == "--permit") options.permit = number_of(argv[i + 1]);
-    else if (name == "--text") options.text = number_of(argv[i + 1]);
-    else options.changes.emplace_back(name, argv[i + 1]);
+  for (const auto& [name, value] : *given) {
+    if (name == "--descriptor") options.descriptor = value;
+    else if (name == "--channel") options.channel = number_of(value);
+    else if (name == "--vital") options.vital = number_of(value);
+    else if (name == "--permit") options.permit = number_of(value);
+    else if (name == "--text") options.text = number_of(value);
+    else options.changes.emplace_back(name, value);
   }
   return options;
 }
@@ -100,7 +116,12 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
   name_refused_calls(argv[0]);
   // A terminal or pipe that is gone takes no words any more; that must not end a subsystem.
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
-  const Options options = read_options(argc, argv);
+  const auto said = read_options(argc, argv);
+  if (!said) {
+    fmt::print(stderr, "{}: {} (the supervisor passes them: hirosco run MISSION)\n", argv[0], said.error());
+    return exit_usage;
+  }
+  const Options& options = *said;
   if (!options.complete()) {
     fmt::print(stderr,
                "{}: a subsystem is started by the supervisor (hirosco run MISSION), which passes\n"

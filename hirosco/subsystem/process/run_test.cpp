@@ -43,9 +43,9 @@ struct BuiltApart : ::testing::Test {
     supervisor = std::move(ends.first);
     subsystem = std::move(ends.second);
   }
-  [[noreturn]] void run(const std::function<std::unique_ptr<Subsystem>()>& make = [] {
-    return std::make_unique<Idle>();
-  }) {
+  [[noreturn]] void run(
+      const std::function<std::unique_ptr<Subsystem>()>& make = [] { return std::make_unique<Idle>(); },
+      const std::vector<std::string>& more = {}) {
     const std::string file = ::testing::TempDir() + "built_apart.xml";
     std::ofstream{file} << testing::probe_descriptor;
     const auto number = [](int descriptor) { return std::to_string(descriptor); };
@@ -58,6 +58,7 @@ struct BuiltApart : ::testing::Test {
                                    number(SealedMemory::descriptor(vital_memory)),
                                    "--permit",
                                    number(SealedMemory::descriptor(permit_memory))};
+    words.insert(words.end(), more.begin(), more.end());
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     std::_Exit(run_subsystem(static_cast<int>(arguments.size()), arguments.data(), make));
@@ -82,6 +83,27 @@ TEST_F(BuiltApart, AMessageOfAnotherVersionIsRefusedByNameOnce) {
       run(), ::testing::ExitedWithCode(0),
       "^started: the supervisor's control channel is of version 2, this program's of version 1: build both from "
       "one hirosco\n$");
+}
+
+TEST_F(BuiltApart, AWordThatItDoesNotKnowIsRefusedInOneLine) {
+  const auto run_with = [&](const std::vector<std::string>& more) {
+    run([] { return std::make_unique<Idle>(); }, more);
+  };
+  const std::string there_are =
+      "; there are: --descriptor FILE, --channel FD, .*--subscribes NAME=ID:FILE "
+      "\\(the supervisor passes them: hirosco run MISSION\\)\n$";
+  EXPECT_EXIT(run_with({"--bogus", "X"}), ::testing::ExitedWithCode(2), "^started: no option '--bogus'" + there_are);
+  EXPECT_EXIT(run_with({"--set"}), ::testing::ExitedWithCode(2),
+              "^started: --set without its PARAMETER=VALUES" + there_are);
+  EXPECT_EXIT(run_with({"--set", "GAIN=1", "2"}), ::testing::ExitedWithCode(2),
+              "^started: '2' belongs to no option" + there_are);
+}
+
+TEST_F(BuiltApart, EveryWordByWhichASupervisorChangesADescriptorIsKnown) {
+  for (const std::string& word :
+       std::vector<std::string>{"--as", "--set", "--address", "--enable", "--commands", "--subscribes"})
+    EXPECT_EXIT(run([] { return std::make_unique<Idle>(); }, {word, "?"}), ::testing::ExitedWithCode(3),
+                "^started: " + word + " \\?: ");
 }
 
 /// Counts how often its work is called while its descriptor has something, and while it has nothing.

@@ -219,9 +219,11 @@ def read_configuration(element):
     return Configuration(int(element.get("id")), element.get("name"), int(element.get("sampling_us")), requires, devices, reports)
 
 
-def read_subsystem(path):
+def read_subsystem(path, instance=None):
+    """`instance`: the element of the mission, which may give another name and id."""
     root = xml.parse(path).getroot()
-    apid = int(root.get("id"))
+    said = root.attrib | ({key: instance.get(key) for key in ("name", "id") if instance.get(key)} if instance is not None else {})
+    apid = int(said["id"])
     enumerations = {e.get("name"): {int(text.get("value"), 0) for text in e.findall("Text")} for e in root.iter("Enumeration")}
     parameters = read_parameters(root, apid, enumerations)
     ranges = {p.name: p.fields[0] for p in parameters}
@@ -241,7 +243,7 @@ def read_subsystem(path):
     events = {int(e.get("id"), 0): (e.get("name"), e.get("severity")) for e in root.iter("Event") if e.get("id")}
     configurations = {c.id: c for c in map(read_configuration, root.findall("Configuration"))}
     actuators = {d.get("name") for d in root.findall("Device") if d.get("actuator") == "yes"}
-    return Subsystem(root.get("name"), apid, functions, parameters, events, configurations, actuators)
+    return Subsystem(said["name"], apid, functions, parameters, events, configurations, actuators)
 
 
 def read_mission(path):
@@ -249,7 +251,7 @@ def read_mission(path):
     path = path / "mission.xml" if path.is_dir() else path
     root = xml.parse(path).getroot()
     supervisor = read_subsystem(path.parent / root.find("Supervisor").get("descriptor"))
-    members = [read_subsystem(path.parent / s.get("descriptor")) for s in root.findall("Subsystem")]
+    members = [read_subsystem(path.parent / s.get("descriptor"), s) for s in root.findall("Subsystem")]
     modes, mode_ids = {}, {}
     for place, mode in enumerate(root.find("Modes"), 1):
         permits = [(p.get("subsystem"), set((p.get("functions") or "").split()), set((p.get("services") or "").split()),

@@ -11,7 +11,7 @@
 #include "simulation/world/numerics.hpp"
 #include "simulation/world/random.hpp"
 
-/// The joystick of the rokviss mission as nature has it, with a hand on it.
+/// The joystick of the demonstrator as nature has it, with a hand on it.
 namespace hirosco::simulation {
 
 /// Where the operator wants the handle to be; he pulls it there through the softness of his arm.

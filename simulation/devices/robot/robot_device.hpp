@@ -13,7 +13,7 @@ struct RobotSensors {
   double torque_noise_n_m{0};        ///< standard deviation
 };
 
-/// The rokviss robot behind its joint bus.
+/// The robot of the demonstrator behind its joint bus.
 /// To the subsystem: MOTOR_POSITION DOUBLE[2], MOTOR_VELOCITY DOUBLE[2], POSITION DOUBLE[2], VELOCITY DOUBLE[2],
 /// TORQUE DOUBLE[2], TEMPERATURE FLOAT[2], SPRING UINT8 (rad, rad/s, N m, C; the spring that is hooked, 0: none).
 /// From it: TORQUE DOUBLE[2] of the motors, SPRING UINT8: a change of it hooks or releases, and hooks nothing that is not

@@ -8,7 +8,7 @@
 
 #include "subsystems/manipulator/control/joints.hpp"
 
-/// Programmes that run on board without a link, as ROKVISS did between two passes over its ground station.
+/// Programmes that run on board without a link, as the demonstrator did between two passes over its ground station.
 namespace hirosco::manipulator {
 
 /// What an arm makes by itself: legs, each ending at rest, and what its tool does between them.

@@ -14,7 +14,7 @@ struct ScriptValues {  // SCRIPT in manipulator.xml
   double bump_height_m;
 };
 
-/// The arm of ROKVISS: what it shows of its tip, its springs, its programmes.
+/// The arm of the demonstrator: what it shows of its tip, its springs, its programmes.
 class TwoJointArm final : public Manipulator {
  public:
   explicit TwoJointArm(manipulator::Law law) : Manipulator{std::make_unique<Contour>(Geometry{}), law} {}

@@ -25,9 +25,9 @@ using ::testing::HasSubstr;
 }
 
 struct ClearanceTest : ::testing::Test {
-  robotics::Model model = testing::model_of(testing::six_joints);
+  robotics::Model model = testing::model_of(testing::six_axes);
   robotics::Clearance clearance =
-      clearance_of(model, testing::six_joints, descriptor::file_system()(testing::six_joints).value());
+      clearance_of(model, testing::six_axes, descriptor::file_system()(testing::six_axes).value());
   JointVector clear = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
   /// Folded back onto the upper arm, the wrist meets it.
   JointVector folded = vector_of(std::array{0.0, 0.0, 2.6, 2.2, 0.0, 0.0});

@@ -16,7 +16,7 @@ const Law::Settings settings{.gravity_m_s2 = {0, 0, -9.81}};
 
 struct LawTest : ::testing::Test {
   static constexpr double cycle_s = 0.001;
-  robotics::Model model = model_of(testing::six_joints);
+  robotics::Model model = model_of(testing::six_axes);
   std::vector<JointBounds> bounds = bounds_of(model);
   robotics::Dynamics dynamics{model, robotics::Base::Fixed};
   robotics::FrameId tip = model.find_frame("tool").value();
@@ -64,7 +64,7 @@ TEST_F(LawTest, MeetsAnErrorWithTheSameAccelerationInEveryJoint) {
 }
 
 TEST_F(LawTest, HoldsALinksATenthHeavierWithFrictionWithinAMilliradian) {
-  const robotics::Model heavier = model_of(testing::six_joints, 1.1);
+  const robotics::Model heavier = model_of(testing::six_axes, 1.1);
   Plant plant{heavier};
   plant.place(wanted.position);
   run(plant, 0.1);
@@ -75,7 +75,7 @@ TEST_F(LawTest, HoldsALinksATenthHeavierWithFrictionWithinAMilliradian) {
 
 TEST_F(LawTest, ComesToItsSetpointThoughAJointsDryFrictionIsMoreThanItsShareOfTheIntegral) {
   // A light joint of a weak drive that sticks: where it is said to, its friction is the model's, too.
-  auto sticks = testing::described(testing::six_joints);
+  auto sticks = testing::described(testing::six_axes);
   sticks.joints[5].limits.effort = 2.8;
   sticks.joints[5].friction = 2.0;
   model = robotics::Model::make(sticks).value();

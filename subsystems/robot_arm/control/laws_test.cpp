@@ -19,7 +19,7 @@ constexpr std::array soft_kinds{LawKind::JointImpedance, LawKind::ToolImpedance,
 struct LawsTest : ::testing::Test {
   static constexpr double cycle_s = 0.001;
   static constexpr std::array rotors{0.5, 0.5, 0.4, 0.1, 0.1, 0.1};
-  robotics::Model model = model_of(testing::six_joints);
+  robotics::Model model = model_of(testing::six_axes);
   std::vector<JointBounds> bounds = bounds_of(model);
   robotics::Dynamics dynamics{model, robotics::Base::Fixed};
   robotics::Dynamics of_plant{model, robotics::Base::Fixed};
@@ -196,7 +196,7 @@ TEST_F(LawsTest, GiveNoMoreThanEachJointsEffortAndNothingForWhatIsNoNumber) {
 
 /// The model does not know a tenth of its weight, and the law of positions has learnt it.
 TEST_F(LawsTest, WhoIsLetGoNeitherSinksNorClimbsThoughItIsATenthHeavier) {
-  const robotics::Model heavier = model_of(testing::six_joints, 1.1);
+  const robotics::Model heavier = model_of(testing::six_axes, 1.1);
   Plant heavy{heavier};
   heavy.rotor = 0.1;
   heavy.friction_factor = 0;

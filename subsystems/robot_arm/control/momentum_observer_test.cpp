@@ -13,7 +13,7 @@ using testing::Plant;
 
 struct MomentumObserverTest : ::testing::Test {
   static constexpr double cycle_s = 0.001, gain_per_s = 50;
-  robotics::Model model = model_of(testing::six_joints);
+  robotics::Model model = model_of(testing::six_axes);
   robotics::Dynamics dynamics{model, robotics::Base::Fixed};
   MomentumObserver observer{6, cycle_s, gain_per_s};
   Plant plant{model};

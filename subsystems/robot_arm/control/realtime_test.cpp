@@ -18,7 +18,7 @@ constexpr double period_s = 0.001;
 /// All that a cycle of the arm calls, in every way to move.
 TEST(Control, UsesNoHeapInACycle) {
   ASSERT_TRUE(RealtimeScope::hook_present());
-  const robotics::Model model = testing::model_of(testing::six_joints);
+  const robotics::Model model = testing::model_of(testing::six_axes);
   const auto bounds = testing::bounds_of(model);
   const auto tip = model.find_frame("tool").value();
   robotics::Dynamics dynamics{model, robotics::Base::Fixed};
@@ -26,9 +26,9 @@ TEST(Control, UsesNoHeapInACycle) {
   const Impedance impedance{JointVector::Constant(6, 100), 500, 20, 0.7};
   MomentumObserver observer{6, period_s, 50};
   Setpoints setpoints{model, tip, bounds, period_s};
-  const auto text = descriptor::file_system()(testing::six_joints).value();
+  const auto text = descriptor::file_system()(testing::six_axes).value();
   robotics::Clearance clearance{
-      model, robotics::read_collision_shapes(testing::six_joints, text, descriptor::file_system()).value.value().hulls};
+      model, robotics::read_collision_shapes(testing::six_axes, text, descriptor::file_system()).value.value().hulls};
   clearance.set_limit(0.02);
   Watch watch;
   const JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});

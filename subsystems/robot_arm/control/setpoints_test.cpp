@@ -15,7 +15,7 @@ using testing::model_of;
 
 struct SetpointsTest : ::testing::Test {
   static constexpr double cycle_s = 0.001;
-  robotics::Model model = model_of(testing::six_joints);
+  robotics::Model model = model_of(testing::six_axes);
   std::vector<JointBounds> bounds = bounds_of(model);
   Setpoints setpoints{model, model.find_frame("tool").value(), bounds, cycle_s};
   JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});

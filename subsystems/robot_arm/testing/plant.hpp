@@ -15,7 +15,7 @@
 /// Robots for tests of the arm's control, and what moves them there. The world of a flight is another one (simulation/mujoco).
 namespace hirosco::robot_arm::testing {
 
-inline const std::string six_joints = HIROSCO_SOURCE_DIR "/subsystems/robot_arm/robot_arm.urdf";
+inline const std::string six_axes = HIROSCO_SOURCE_DIR "/subsystems/robot_arm/robot_arm.urdf";
 
 [[nodiscard]] inline robotics::ModelDescription described(const std::string& file) {
   const auto reading = robotics::urdf::read(file, descriptor::file_system());

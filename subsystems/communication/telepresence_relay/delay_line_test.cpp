@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "subsystems/communication/delay_line.hpp"
+#include "subsystems/communication/telepresence_relay/delay_line.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <vector>
 
-namespace hirosco::communication {
+namespace hirosco::telepresence_relay {
 namespace {
 
 using testing::ElementsAre;
@@ -39,4 +39,4 @@ TEST(Loss, StrikesByItsShare) {
 }
 
 }  // namespace
-}  // namespace hirosco::communication
+}  // namespace hirosco::telepresence_relay

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace hirosco::communication {
+namespace hirosco::telepresence_relay {
 
 /// One direction of the link between ground and spacecraft: every cycle a set goes in, and the one of `delay` cycles ago
 /// comes out, unless it was lost; then the last that arrived stays.
@@ -59,4 +59,4 @@ class Loss {
   std::uint64_t state_{0x9E3779B97F4A7C15ULL};
 };
 
-}  // namespace hirosco::communication
+}  // namespace hirosco::telepresence_relay
