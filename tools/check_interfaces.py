@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Each folder of subsystems/ says what it is for: a README.md with its purpose, what it does in which state, hazards and limits, and an
 INTERFACE.md that is what its descriptors say, no more and no less: parameters, functions, events, configurations. What a README lists of
-these beside it exists. Prints what lacks, and takes it away from copies itself, to be caught. `--write` makes the pages.
+these beside it exists. Each folder hirosco/pus/st*/ has a README.md with one row for each message of its service in docs/services.md, which a
+test holds to the code, and a test that exists in each. Prints what lacks, and takes it away from copies itself, to be caught. `--write` makes the pages.
 
 What a parameter or event is stands in front of it in the descriptor, as a comment; what a function does, in its <Description>."""
 import pathlib
@@ -11,6 +12,8 @@ import re
 import sys
 import tempfile
 import xml.etree.ElementTree as xml
+
+from check_hazards import known_tests
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 HOME = ROOT / "subsystems"
@@ -226,12 +229,62 @@ def self_test():
             assert list(problems(home)), lacking
 
 
+def messages(services):
+    """Of each type of docs/services.md its messages, as the tables of clauses call them."""
+    for number, requests, reports in re.findall(r"^\| ST\[(\d+)\][^|]* \| ([^|]+) \| ([^|]+) \|", services, re.M):
+        yield int(number), [f"{way}[{number},{one.partition(' ')[0]}] {one.partition(' ')[2]}" for way, all_of_them in (("TC", requests), ("TM", reports))
+                            for one in all_of_them.split(", ") if one != "none"]
+
+
+def unproven(home, services, tests):
+    """What a table of clauses lacks of its service, has too much, or proves by a test that is not there."""
+    declared = dict(messages(services))
+    folders = {int(re.match(r"st(\d+)", path.name)[1]): path for path in home.glob("st[0-9]*") if path.is_dir()}
+    yield from (f"hirosco/pus: no folder of ST[{number}]" for number in sorted(set(declared) - set(folders)))
+    for number, folder in sorted(folders.items()):
+        readme = folder / "README.md"
+        if not readme.exists():
+            yield f"hirosco/pus/{folder.name}: there is no README.md"
+            continue
+        rows = [re.split(r"(?<!\\) \| ", line.strip("| ")) for line in readme.read_text().splitlines() if re.match(r"\| T[CM]\[", line)]
+        told = [row[0] for row in rows]
+        page = f"hirosco/pus/{folder.name}/README.md"
+        yield from (f"{page} has no row of {name}" for name in declared.get(number, []) if name not in told)
+        yield from (f"{page} has a row of {name}, which is not in docs/services.md" for name in told if name not in declared.get(number, []))
+        yield from (f"{page} has several rows of {name}" for name in sorted(set(told)) if told.count(name) > 1)
+        for row in rows:
+            proofs = re.findall(r"`(\w+\.\w+)`", row[3]) if len(row) == 4 else []
+            if not proofs:
+                yield f"{page}: {row[0]} has no proof, or not four columns"
+            yield from (f"{page}: {row[0]} is proven by {name}, which is no test" for name in proofs if name not in tests)
+
+
+def clauses_self_test():
+    services = "| ST[9] nine | 1 ASK | 2 TOLD | everybody |\n"
+    readme = "| TC[9,1] ASK | - | a | `Nine.Asks` |\n| TM[9,2] TOLD | - | b | `Nine.Tells` |\n"
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name) / "st09_nine"
+        folder.mkdir()
+        page, tests = folder / "README.md", {"Nine.Asks", "Nine.Tells"}
+        for planted, wanted in ((None, "no README.md"), (readme.splitlines()[0], "no row of TM[9,2] TOLD"), (readme.replace("Nine.Asks", "Nine.Gone"), "Nine.Gone, which is no test"),
+                                (readme.replace("`", ""), "no proof"), (readme + readme, "several rows"), (readme + readme.replace("9,1", "9,3"), "[9,3] ASK, which is not")):
+            if planted is not None:
+                page.write_text(planted)
+            found = list(unproven(folder.parent, services, tests))
+            assert any(wanted in problem for problem in found), (wanted, found)
+        page.write_text(readme)
+        assert not list(unproven(folder.parent, services, tests)), list(unproven(folder.parent, services, tests))
+        assert list(unproven(folder.parent, services + services.replace("9", "8"), tests)) == ["hirosco/pus: no folder of ST[8]"]
+
+
 def main():
     self_test()
+    clauses_self_test()
     if sys.argv[1:] == ["--write"]:
         for folder in sorted(path for path in HOME.iterdir() if path.is_dir()):
             (folder / "INTERFACE.md").write_text(page(folder))
-    found = list(problems(HOME))
+    services = (ROOT / "docs/services.md").read_text()
+    found = [*problems(HOME), *unproven(ROOT / "hirosco/pus", services, set(known_tests()))]
     for problem in found:
         print(problem)
     sys.exit(1 if found else 0)
