@@ -205,9 +205,9 @@ struct Silent final : supervisor::Observer {
   void told(OnboardTime, std::string_view) override {}
 };
 
-[[nodiscard]] descriptor::Mission mission_of(const std::filesystem::path& repository) {
+[[nodiscard]] descriptor::Mission mission_of(const std::filesystem::path& file) {
   const auto source = descriptor::file_system();
-  auto reading = descriptor::read_mission(repository / "missions/rokviss/mission.xml", source);
+  auto reading = descriptor::read_mission(file, source);
   if (!reading.value) std::exit(1);
   descriptor::Mission mission = std::move(*reading.value);
   // Nothing is commissioned and nothing has devices: ground and subsystem are stand-ins.
@@ -217,7 +217,7 @@ struct Silent final : supervisor::Observer {
 }
 
 /// The product: the supervisor between ground and subsystem.
-Round routed(const std::filesystem::path& repository, const SystemClock& clock, const Pace& pace) {
+Round routed(const std::filesystem::path& file, const SystemClock& clock, const Pace& pace) {
   SealedMemory memory;
   SystemFlowFactory flows;
   const MemoryHandle figures = memory.create("figures", sizeof(Round)).value();
@@ -240,7 +240,7 @@ Round routed(const std::filesystem::path& repository, const SystemClock& clock, 
   const auto folder = std::filesystem::temp_directory_path() / ("hirosco-routing-" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   {
-    const descriptor::Mission mission = mission_of(repository);
+    const descriptor::Mission mission = mission_of(file);
     Silent silent;
     // As in a flight, whoever waits for the disk is woken by the log.
     auto log_progress = WakeEvent::create().value();
@@ -327,13 +327,13 @@ Round forwarded(const SystemClock& clock) {
   return *reinterpret_cast<const Round*>(shared.octets.data());
 }
 
-int run(const std::filesystem::path& repository, int repeats) {
+int run(const std::filesystem::path& file, int repeats) {
   const SystemClock clock;
   Series ours{"hirosco", {}};
   Series bare{"forwarder", {}};
   std::vector<double> our_rates, bare_rates, ratios;
   for (int i = 0; i < repeats; ++i) {
-    const Round mine = routed(repository, clock, {});
+    const Round mine = routed(file, clock, {});
     const Round other = forwarded(clock);
     if (mine.per_second <= 0 || other.per_second <= 0) return 1;
     ours.repeats.push_back(mine.round_trip_us);
@@ -352,13 +352,13 @@ int run(const std::filesystem::path& repository, int repeats) {
 }
 
 /// The live stream beside what comes down again (docs/adr/0140), in turns.
-int run_beside(const std::filesystem::path& repository, int repeats, int per_second) {
+int run_beside(const std::filesystem::path& file, int repeats, int per_second) {
   const SystemClock clock;
   Series alone{"alone", {}}, beside{"beside", {}};
   std::vector<double> rates, rates_beside, retrieved, ratios;
   for (int i = 0; i < repeats; ++i) {
-    const Round without = routed(repository, clock, {.per_second = per_second});
-    const Round with = routed(repository, clock, {.per_second = per_second, .retrieves = true});
+    const Round without = routed(file, clock, {.per_second = per_second});
+    const Round with = routed(file, clock, {.per_second = per_second, .retrieves = true});
     if (without.per_second <= 0 || with.retrieved_per_second <= 0) return 1;
     alone.repeats.push_back(without.round_trip_us);
     beside.repeats.push_back(with.round_trip_us);
@@ -382,8 +382,12 @@ int run_beside(const std::filesystem::path& repository, int repeats, int per_sec
 }  // namespace hirosco::bench
 
 int main(int argc, char** argv) {
-  const std::filesystem::path repository = argc > 1 ? argv[1] : ".";
+  if (argc < 2) {
+    std::fputs("bench_routing MISSION.xml [REPEATS [PACKETS_PER_SECOND]]\n", stderr);
+    return 2;
+  }
+  const std::filesystem::path file = argv[1];
   const int repeats = argc > 2 ? std::atoi(argv[2]) : 5;
-  if (argc > 3) return hirosco::bench::run_beside(repository, repeats, std::max(1, std::atoi(argv[3])));
-  return hirosco::bench::run(repository, repeats);
+  if (argc > 3) return hirosco::bench::run_beside(file, repeats, std::max(1, std::atoi(argv[3])));
+  return hirosco::bench::run(file, repeats);
 }

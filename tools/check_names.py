@@ -75,7 +75,7 @@ CODE = (".cpp", ".hpp", ".py", ".txt")
 OWN_WORD = re.compile(r'\bname="([^"]+)"')
 
 
-def homes(every, root=ROOT):
+def homes(root=ROOT):
     """The code of each folder of its own, without its own name and words: (path, text)."""
     for home in HOMES[1:]:
         for folder in sorted(path for path in (root / home).iterdir() if path.is_dir()):
@@ -98,13 +98,13 @@ if __name__ == "__main__":
     wrong = [f"planted and not seen: {text}" for path, text in planted.items() if text in CAUGHT and path not in seen]
     wrong += [f"seen and no name: {text}" for path, text in planted.items() if text in SPARED and path in seen]
     ours, every, words = dict(framework(names())), names(), words_too()
-    theirs = dict(homes(every))
+    theirs = dict(homes())
     with tempfile.TemporaryDirectory() as made:
         for path, text in {"subsystems/beam/beam.xml": '<Device name="LAMP"/>', "simulation/devices/lamp/lamp.cpp": "of the shed",
                            "subsystems/beam/beam.cpp": 'use_device("LAMP"); // beam', "subsystems/beam/lit.cpp": "class LampView"}.items():
             (pathlib.Path(made) / path).parent.mkdir(parents=True, exist_ok=True)
             (pathlib.Path(made) / path).write_text(text)
-        caught = {line.partition(":")[0] for line in in_homes(dict(homes(["lamp", "beam", "shed"], pathlib.Path(made))), ["lamp", "beam", "shed"], set())}
+        caught = {line.partition(":")[0] for line in in_homes(dict(homes(pathlib.Path(made))), ["lamp", "beam", "shed"], set())}
         if caught != {"subsystems/beam/lit.cpp", "simulation/devices/lamp/lamp.cpp"}:
             wrong.append(f"planted in folders of their own, and seen in {sorted(caught)}")
     wrong += [f"the glossary has a word that is no name: {word}" for word in words - set(every) - {"word", "---"}]

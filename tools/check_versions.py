@@ -57,7 +57,7 @@ sources = [path.read_text() for folder in ("hirosco", "supervisor", "ground") fo
            if not path.name.endswith("_test.cpp")]
 wrong += of_interfaces(read("docs/interfaces.md"), sources)
 # One that is said wrongly is seen, of each kind.
-for now, then in (("`page_version` ", "`page_version` 9"), ("`Journal::version` ", "`Journal::version` 9"), ("`application_id` ", "`application_id` 9")):
-    if len(list(of_interfaces(read("docs/interfaces.md").replace(now, then, 1), sources))) != 1:
-        wrong.append(f"planted and not seen: {then}")
+for written, planted in (("`page_version` ", "`page_version` 9"), ("`Journal::version` ", "`Journal::version` 9"), ("`application_id` ", "`application_id` 9")):
+    if len(list(of_interfaces(read("docs/interfaces.md").replace(written, planted, 1), sources))) != 1:
+        wrong.append(f"planted and not seen: {planted}")
 sys.exit("\n".join(wrong) or None)

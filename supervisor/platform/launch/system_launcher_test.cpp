@@ -249,8 +249,8 @@ TEST(SystemLauncherAdoption, ThePageThatItMakesSaysWhatItFoundBeforeAnyGuardHasW
   ::waitpid(child, nullptr, 0);
 }
 
-/// In a process of its own that has `left` descriptors besides those that it has inherited. 0: the one that rests was not adopted, was told as
-/// ended for a reason, and has gone.
+/// In a process of its own that has `left` descriptors besides those that it has inherited. 0: the one that rests was not adopted for a
+/// reason that was told, counted as dead only when it had gone, and has gone.
 int goes_on_short_of_descriptors(pid_t resting, int left) {
   descriptor::Mission mission;
   mission.subsystems.emplace_back().subsystem.name = "ARM";
