@@ -96,7 +96,7 @@ MujocoRobot::BodyTruth MujocoRobot::body(std::size_t index) const noexcept {
     if (contact.efc_address < 0) continue;
     const int one = model_->geom_bodyid[contact.geom[0]], other = model_->geom_bodyid[contact.geom[1]];
     const int by = one == id ? other : other == id ? one : -1;
-    if (by < 0 || by >= first_body() || model_->body_weldid[by] == 0) continue;
+    if (by < 0 || !is_of_robot(by) || model_->body_weldid[by] == 0) continue;
     std::array<mjtNum, 6> wrench{};
     mj_contactForce(model_.get(), data_.get(), i, wrench.data());
     truth.pressed_n += wrench[0];

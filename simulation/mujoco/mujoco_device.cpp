@@ -16,7 +16,8 @@
 namespace hirosco::simulation {
 namespace {
 
-constexpr const char* model_setting = "MODEL_FILE";
+constexpr std::string_view model_setting = "MODEL_FILE";
+constexpr std::string_view world_file_setting = "WORLD_FILE";
 /// What follows is the obstacle's name.
 constexpr std::string_view obstacle_word = "obstacle_";
 constexpr std::string_view body_word = "body_";
@@ -28,24 +29,26 @@ MujocoDevice::MujocoDevice(FlowFactory& flows, FlowAddress address, const Settin
     : SimulatedDevice{flows, std::move(address), settings}, bus_{settings.seed} {}
 
 Result<> MujocoDevice::make_world() {
-  const auto named = settings().files.find(model_setting);
-  if (named == settings().files.end())
+  const auto& files = settings().files;
+  const auto robot = files.find(std::string{model_setting}), scene = files.find(std::string{world_file_setting});
+  if (robot == files.end())
     return fail(ErrorCode::NotFound, "the descriptor names no URDF file: setting MODEL_FILE of the device");
-  const auto text = descriptor::file_system()(named->second);
-  if (!text) {
-    problem_ = fmt::format("{} {}", named->second, text.error().text);
-    return fail(text.error().code, problem_.c_str());
-  }
-  const std::filesystem::path folder = std::filesystem::path{named->second}.parent_path();
-  auto made = MujocoRobot::make(*text, [&](const std::string& file) -> std::expected<std::string, std::string> {
-    auto octets = descriptor::file_system()((folder / file).lexically_normal());
+  const auto read = [](const std::filesystem::path& file) -> std::expected<std::string, std::string> {
+    auto octets = descriptor::file_system()(file);
     if (!octets) return std::unexpected{octets.error().text};
     return std::move(*octets);
-  });
-  if (!made) {
-    problem_ = fmt::format("{}: {}", named->second, made.error());
-    return fail(ErrorCode::Malformed, problem_.c_str());
-  }
+  };
+  const auto& world = scene != files.end() ? scene->second : robot->second;
+  const MeshSource beside = [&](const std::string& file) {
+    return read((std::filesystem::path{world}.parent_path() / file).lexically_normal());
+  };
+  const auto urdf = read(robot->second);
+  if (!urdf) return refuse(ErrorCode::NotFound, fmt::format("{} {}", robot->second, urdf.error()));
+  const auto mjcf = scene != files.end() ? read(scene->second) : std::expected<std::string, std::string>{};
+  if (!mjcf) return refuse(ErrorCode::NotFound, fmt::format("{} {}", scene->second, mjcf.error()));
+  auto made =
+      scene != files.end() ? MujocoRobot::make_in_scene(*mjcf, *urdf, beside) : MujocoRobot::make(*urdf, beside);
+  if (!made) return refuse(ErrorCode::Malformed, fmt::format("{}: {}", world, made.error()));
   robot_.emplace(std::move(*made));
   std::vector<std::size_t> all(robot_->joints());
   std::iota(all.begin(), all.end(), std::size_t{0});
@@ -196,6 +199,12 @@ Result<> MujocoDevice::differ(const Words& words) {
 
 Result<> MujocoDevice::do_fault(const Words& words) {
   if (!robot_) return fail(ErrorCode::Unavailable, "it has no world yet");
+  if (words[0] == model_setting || words[0] == world_file_setting) {
+    HIROSCO_TRY(words.expect(2));
+    // As a <Setting> of the mission it was read when the world was made.
+    if (cycles() == 0 && settings().files.contains(std::string{words[0]})) return ok();
+    return fail(ErrorCode::NotPermitted, "files are read when the device starts: a <Setting> of its mission");
+  }
   if (words[0].starts_with(obstacle_word)) return stand_around(words);
   if (words[0].starts_with(body_word) || words[0].starts_with(pull_word)) return lie_around(words);
   if (words[0] == "base") {

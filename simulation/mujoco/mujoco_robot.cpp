@@ -27,7 +27,21 @@ constexpr double within_m = 0.005;
 std::expected<MujocoRobot, std::string> MujocoRobot::make(std::string_view urdf, const MeshSource& meshes) {
   auto spec = MujocoSpec::make(urdf, meshes);
   if (!spec) return std::unexpected{std::move(spec.error())};
-  MujocoRobot robot{std::move(*spec)};
+  return made_of(std::move(*spec));
+}
+
+std::expected<MujocoRobot, std::string> MujocoRobot::make_in_scene(std::string_view mjcf, std::string_view urdf,
+                                                                   const MeshSource& files) {
+  auto joints = MujocoSpec::driven_joints(urdf);
+  if (!joints) return std::unexpected{std::move(joints.error())};
+  auto spec = MujocoSpec::make_scene(mjcf, std::move(*joints), files);
+  if (!spec) return std::unexpected{std::move(spec.error())};
+  return made_of(std::move(*spec));
+}
+
+std::expected<MujocoRobot, std::string> MujocoRobot::made_of(MujocoSpec spec) {
+  MujocoRobot robot{std::move(spec)};
+  if (robot.spec_.is_scene()) robot.softness_s_.reset();
   for (const DrivenJoint& joint : robot.spec_.joints())
     robot.joints_.push_back({.name = joint.name, .effort = joint.effort});
   if (auto built = robot.build({}, {}); !built) return std::unexpected{std::move(built.error())};
@@ -43,7 +57,7 @@ std::expected<void, std::string> MujocoRobot::build(std::span<const Obstacle> ob
   MujocoData data{mj_makeData(&model)};
   if (data == nullptr) return std::unexpected{"MuJoCo has no memory for it"};
   const std::size_t of_base = spec_.floats() ? FloatingBase::dofs : 0;
-  if (static_cast<std::size_t>(model.nv) != joints_.size() + spec_.mimics() + of_base + 6 * bodies.size())
+  if (static_cast<std::size_t>(model.nv) != joints_.size() + spec_.further_dofs() + of_base + 6 * bodies.size())
     return std::unexpected{"MuJoCo has another number of joints than the file"};
   for (Joint& joint : joints_) {
     const int id = mj_name2id(&model, mjOBJ_JOINT, joint.name.c_str());
@@ -52,25 +66,35 @@ std::expected<void, std::string> MujocoRobot::build(std::span<const Obstacle> ob
     joint.dof = model.jnt_dofadr[id];
     joint.friction = model.dof_frictionloss[joint.dof];
     joint.damping = model.dof_damping[joint.dof];
-    model.dof_armature[joint.dof] = joint.rotor;
+    if (joint.rotor) model.dof_armature[joint.dof] = *joint.rotor;
     model.dof_solref[mjNREF * joint.dof] = MujocoSpec::friction_s;
     model.dof_solimp[mjNIMP * joint.dof] = model.dof_solimp[mjNIMP * joint.dof + 1] = friction_rigid;
-    model.jnt_solref[mjNREF * id] = MujocoSpec::end_s;
+    if (!spec_.is_scene()) model.jnt_solref[mjNREF * id] = MujocoSpec::end_s;
   }
   if (model_ != nullptr) std::ranges::copy_n(model_->opt.gravity, 3, model.opt.gravity);
-  for (int geom = 0; geom < model.ngeom; ++geom) model.geom_solref[mjNREF * geom] = softness_s_;
+  for (int geom = 0; softness_s_ && geom < model.ngeom; ++geom) model.geom_solref[mjNREF * geom] = *softness_s_;
   if (spec_.floats()) base_.find(model, spec_.root());
   model_ = std::move(*compiled);
   data_ = std::move(data);
   tip_ = std::max(0, mj_name2id(model_.get(), mjOBJ_BODY, MujocoSpec::payload_body));
   bodies_.assign(bodies.begin(), bodies.end());
   pulled_n_.resize(bodies_.size());
+  find_its_bodies();
   mass_.assign(model_->body_mass, model_->body_mass + first_body());
   inertia_.assign(model_->body_inertia, model_->body_inertia + 3 * first_body());
   for (Joint& joint : joints_) joint.brakes = Brakes::Closed;
   brake();
   change_inertia();
   return {};
+}
+
+void MujocoRobot::find_its_bodies() {
+  of_robot_.assign(static_cast<std::size_t>(model_->nbody), false);
+  for (int body = 1; body < first_body(); ++body) {
+    const auto moves_it = [&](const Joint& joint) { return model_->dof_bodyid[joint.dof] == body; };
+    of_robot_[static_cast<std::size_t>(body)] =
+        !spec_.is_scene() || is_of_robot(model_->body_parentid[body]) || std::ranges::any_of(joints_, moves_it);
+  }
 }
 
 /// What moves goes on where it is, as fast as it is.
@@ -261,13 +285,13 @@ void MujocoRobot::feel() noexcept {
     if (found != joints_.end()) found->torque += data_->efc_force[i];
   }
   touched_ = {};
-  const int first_loose = first_body();
   const auto of_robot = [&](int geom) {
-    return model_->geom_bodyid[geom] < first_loose && model_->body_weldid[model_->geom_bodyid[geom]] != 0;
+    return is_of_robot(model_->geom_bodyid[geom]) && model_->body_weldid[model_->geom_bodyid[geom]] != 0;
   };
+  const bool others_touch = spec_.is_scene() || !bodies_.empty();
   for (int i = 0; i < data_->ncon; ++i) {
     if (data_->contact[i].efc_address < 0) continue;
-    if (!bodies_.empty() && !of_robot(data_->contact[i].geom[0]) && !of_robot(data_->contact[i].geom[1])) continue;
+    if (others_touch && !of_robot(data_->contact[i].geom[0]) && !of_robot(data_->contact[i].geom[1])) continue;
     std::array<mjtNum, 6> wrench{};
     mj_contactForce(model_.get(), data_.get(), i, wrench.data());
     ++touched_.contacts;
@@ -278,6 +302,7 @@ void MujocoRobot::feel() noexcept {
 void MujocoRobot::change_inertia() noexcept {
   for (int body = 0; body < first_body(); ++body) {
     const auto i = static_cast<std::size_t>(body);
+    if (!is_of_robot(body)) continue;
     model_->body_mass[body] = mass_[i] * mass_factor_;
     for (std::size_t axis = 0; axis < 3; ++axis)
       model_->body_inertia[3 * i + axis] = inertia_[3 * i + axis] * inertia_factor_;
@@ -291,7 +316,7 @@ void MujocoRobot::change_inertia() noexcept {
   // own centre that is beyond all bounds, and so would be its contacts.
   const double heaviest_kg = heaviest_share * std::accumulate(mass_.begin(), mass_.end(), 0.0) * mass_factor_;
   for (int body = 0; body < first_body(); ++body)
-    if (model_->body_weldid[body] != 0 && heaviest_kg > 0)
+    if (is_of_robot(body) && model_->body_weldid[body] != 0 && heaviest_kg > 0)
       model_->body_invweight0[2 * body] = std::max(model_->body_invweight0[2 * body], 1 / heaviest_kg);
   std::ranges::copy(where, data_->qpos);
   std::ranges::copy(how_fast, data_->qvel);
@@ -316,7 +341,7 @@ void MujocoRobot::set_friction(double factor, double more) noexcept {
 }
 void MujocoRobot::set_rotors(std::span<const double> inertias) noexcept {
   for (std::size_t i = 0; i < std::min(inertias.size(), joints_.size()); ++i)
-    model_->dof_armature[joints_[i].dof] = joints_[i].rotor = inertias[i];
+    model_->dof_armature[joints_[i].dof] = *(joints_[i].rotor = inertias[i]);
   change_inertia();
 }
 void MujocoRobot::set_gravity(double x, double y, double z) noexcept {
@@ -326,7 +351,7 @@ void MujocoRobot::set_gravity(double x, double y, double z) noexcept {
 }
 void MujocoRobot::set_softness(double time_constant_s) noexcept {
   softness_s_ = time_constant_s;
-  for (int geom = 0; geom < model_->ngeom; ++geom) model_->geom_solref[mjNREF * geom] = softness_s_;
+  for (int geom = 0; geom < model_->ngeom; ++geom) model_->geom_solref[mjNREF * geom] = time_constant_s;
 }
 void MujocoRobot::push(double x, double y, double z) noexcept {
   mjtNum* force = data_->xfrc_applied + 6 * tip_;

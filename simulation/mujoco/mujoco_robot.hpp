@@ -41,6 +41,10 @@ class MujocoRobot {
   /// In words why there is none. `meshes`: without it shapes that are meshes are left out.
   [[nodiscard]] static std::expected<MujocoRobot, std::string> make(std::string_view urdf,
                                                                     const MeshSource& meshes = {});
+  /// In a world of an MJCF file; of the robot's URDF file its joints count, which the world has by the same names. In words why there is none.
+  [[nodiscard]] static std::expected<MujocoRobot, std::string> make_in_scene(std::string_view mjcf,
+                                                                             std::string_view urdf,
+                                                                             const MeshSource& files = {});
   /// What of the file's shapes does not touch, each in words.
   [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return spec_.left_out(); }
 
@@ -127,11 +131,15 @@ class MujocoRobot {
     int dof{0};
     double friction{0};  ///< of the file
     double damping{0};
-    double rotor{0};
+    std::optional<double> rotor{};  ///< empty: as the file says, which is 0 in a URDF file
     double torque{0};
     Brakes brakes{Brakes::Closed};
   };
   explicit MujocoRobot(MujocoSpec spec) noexcept : spec_{std::move(spec)} {}
+  [[nodiscard]] static std::expected<MujocoRobot, std::string> made_of(MujocoSpec spec);
+  /// What is behind one of its joints, or, where the world is its file's alone, everything that is no loose body.
+  [[nodiscard]] bool is_of_robot(int body) const noexcept { return of_robot_[static_cast<std::size_t>(body)]; }
+  void find_its_bodies();
   /// How what moves stands, so that it goes on in another model of the same robot.
   struct Standing {
     struct Body {
@@ -171,14 +179,15 @@ class MujocoRobot {
   FloatingBase base_;
   Touched touched_;
   std::vector<double> mass_, inertia_;  ///< of the file, by bodies
+  std::vector<bool> of_robot_;  ///< by bodies
   int tip_{0};
   double mass_factor_{1};
   double inertia_factor_{1};
   double friction_factor_{1};
   double more_friction_{0};
   double payload_kg_{0};
-  /// Joints of this world do not give way: what gears and skins do stands in here. MuJoCo's own.
-  double softness_s_{0.02};
+  /// Joints of this world do not give way: what gears and skins do stands in here. MuJoCo's own; none: each shape's, as its scene says.
+  std::optional<double> softness_s_{0.02};
 };
 
 }  // namespace hirosco::simulation

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "simulation/mujoco/mujoco_files.hpp"
 #include "simulation/mujoco/rigid_links.hpp"
 
 namespace hirosco::simulation {
@@ -70,6 +71,15 @@ void write(const Element& element, std::string& text) {
   const Element* limit = child_of(joint, "limit");
   const double effort = limit != nullptr ? number(*limit, "effort", 0) : 0;
   return effort > 0 ? effort : default_effort;
+}
+
+/// In the order of the file.
+[[nodiscard]] std::vector<DrivenJoint> driven_joints_of(const Element& robot) {
+  std::vector<DrivenJoint> joints;
+  for (const Element& element : robot.children)
+    if (element.name == "joint" && attribute(element, "type") != "fixed" && child_of(element, "mimic") == nullptr)
+      joints.push_back({.name = attribute(element, "name"), .effort = effort_of(element)});
+  return joints;
 }
 
 /// Who follows whom. It has no drive and no brake of its own.
@@ -147,23 +157,6 @@ void add_mesh(const std::string& name, const std::array<double, 3>& scale, mjSpe
   mesh.inertia = mjMESH_INERTIA_CONVEX;
 }
 
-/// Files that MuJoCo finds by name, without any that the computer has.
-class Files {
- public:
-  explicit Files(const std::map<std::string, std::string>& octets) {
-    mj_defaultVFS(&vfs_);
-    for (const auto& [name, content] : octets)
-      mj_addBufferVFS(&vfs_, name.c_str(), content.data(), static_cast<int>(content.size()));
-  }
-  ~Files() { mj_deleteVFS(&vfs_); }
-  Files(const Files&) = delete;
-  Files& operator=(const Files&) = delete;
-  [[nodiscard]] const mjVFS* get() const noexcept { return &vfs_; }
-
- private:
-  mjVFS vfs_{};
-};
-
 [[nodiscard]] std::string name_of(const mjModel& model, int body) {
   const char* name = mj_id2name(&model, mjOBJ_BODY, body);
   return name != nullptr ? name : "";
@@ -180,17 +173,17 @@ std::expected<MujocoSpec, std::string> MujocoSpec::make(std::string_view urdf, c
   const auto tree = xml::read_tree(urdf);
   if (!tree) return std::unexpected{"the URDF file: " + tree.error().reason};
   MujocoSpec made;
+  made.joints_ = driven_joints_of(*tree);
   std::vector<std::string> carried, carrying;
   std::vector<Mimic> mimics;
   for (const Element& element : tree->children) {
     if (element.name != "joint") continue;
     if (const Element* parent = child_of(element, "parent")) carrying.push_back(attribute(*parent, "link"));
     if (const Element* carries = child_of(element, "child")) carried.push_back(attribute(*carries, "link"));
-    if (attribute(element, "type") == "fixed") continue;
-    if (const Element* mimic = child_of(element, "mimic"))
-      mimics.push_back({attribute(element, "name"), attribute(*mimic, "joint"), number(*mimic, "multiplier", 1),
-                        number(*mimic, "offset", 0)});
-    else made.joints_.push_back({.name = attribute(element, "name"), .effort = effort_of(element)});
+    const Element* mimic = child_of(element, "mimic");
+    if (mimic == nullptr || attribute(element, "type") == "fixed") continue;
+    mimics.push_back({attribute(element, "name"), attribute(*mimic, "joint"), number(*mimic, "multiplier", 1),
+                      number(*mimic, "offset", 0)});
   }
   const auto leaf = std::ranges::find_if(
       carried, [&](const std::string& link) { return std::ranges::find(carrying, link) == carrying.end(); });
@@ -213,10 +206,16 @@ std::expected<MujocoSpec, std::string> MujocoSpec::make(std::string_view urdf, c
   spec.compiler.usethread = 0;
   if (leaf != carried.end()) static_cast<void>(made.hang_payload_on(*leaf));
   for (const Mimic& mimic : mimics) add(mimic, spec);
-  made.mimics_ = mimics.size();
+  made.further_dofs_ = made.equalities_ = mimics.size();
   made.add_shapes(*tree, meshes);
   if (auto done = made.leave_out_pairs(); !done) return std::unexpected{std::move(done.error())};
   return made;
+}
+
+std::expected<std::vector<DrivenJoint>, std::string> MujocoSpec::driven_joints(std::string_view urdf) {
+  const auto tree = xml::read_tree(urdf);
+  if (!tree) return std::unexpected{"the URDF file: " + tree.error().reason};
+  return driven_joints_of(*tree);
 }
 
 bool MujocoSpec::hang_payload_on(const std::string& link) {
@@ -232,6 +231,7 @@ bool MujocoSpec::hang_payload_on(const std::string& link) {
 
 std::expected<void, std::string> MujocoSpec::let_float() {
   if (floats_) return {};
+  if (is_scene_) return std::unexpected{"what floats in a scene its file says"};
   if (auto done = FloatingBase::add_to(*spec_, root_); !done) return done;
   floats_ = true;
   return {};
@@ -271,22 +271,22 @@ std::expected<std::string, std::string> MujocoSpec::take_mesh(const Shape& shape
   if (!meshes) return std::unexpected{shape.mesh + ": nobody reads files here"};
   auto octets = meshes(*file);
   if (!octets) return std::unexpected{shape.mesh + " " + octets.error()};
-  const std::string name = fmt::format("mesh_{}{}", meshes_.size(), file->substr(file->size() - 4));
+  const std::string name = fmt::format("mesh_{}{}", octets_.size(), file->substr(file->size() - 4));
   const std::map<std::string, std::string> alone{{name, *octets}};
   const std::unique_ptr<mjSpec, MujocoFree> trial{mj_makeSpec()};
   add_mesh(name, shape.sizes, *trial);
   add({.kind = ShapeKind::Mesh, .mesh = name}, link_friction, 0, *mjs_findBody(trial.get(), "world"));
-  if (!MujocoModel{mj_compile(trial.get(), Files{alone}.get())})
+  if (!MujocoModel{mj_compile(trial.get(), MujocoFiles{alone}.get())})
     return std::unexpected{fmt::format("{}: MuJoCo: {}", shape.mesh, one_line(mjs_getError(trial.get())))};
   add_mesh(name, shape.sizes, *spec_);
-  meshes_.emplace(name, std::move(*octets));
+  octets_.emplace(name, std::move(*octets));
   return name;
 }
 
 /// MuJoCo leaves out neighbours by itself, but for those of what stands.
 std::expected<void, std::string> MujocoSpec::leave_out_pairs() {
   // Itself, no copy: a copy drops without a word what leads nowhere.
-  const MujocoModel compiled{mj_compile(spec_.get(), Files{meshes_}.get())};
+  const MujocoModel compiled{mj_compile(spec_.get(), MujocoFiles{octets_}.get())};
   if (compiled == nullptr) return std::unexpected{std::string{"MuJoCo: "} + one_line(mjs_getError(spec_.get()))};
   const mjModel& model = *compiled;
   const MujocoData data{mj_makeData(&model)};
@@ -349,9 +349,10 @@ std::expected<MujocoModel, std::string> MujocoSpec::compile(std::span<const Obst
               obstacle_mark + obstacle.name);
   for (const LooseBody& body : bodies) add(body, *spec);
   if (!bodies.empty()) spec->option.noslip_iterations = no_slip_iterations;
-  MujocoModel model{mj_compile(spec.get(), Files{meshes_}.get())};
+  MujocoModel model{mj_compile(spec.get(), MujocoFiles{octets_}.get())};
   if (model == nullptr) return std::unexpected{std::string{"MuJoCo: "} + one_line(mjs_getError(spec.get()))};
-  if (static_cast<std::size_t>(model->neq) != mimics_ || static_cast<std::size_t>(model->nexclude) != pairs_left_out_)
+  if (static_cast<std::size_t>(model->neq) != equalities_ ||
+      static_cast<std::size_t>(model->nexclude) != pairs_left_out_)
     return std::unexpected{"MuJoCo lost some of the robot"};
   return model;
 }

@@ -46,9 +46,20 @@ class MujocoSpec {
   /// In words why there is none.
   [[nodiscard]] static std::expected<MujocoSpec, std::string> make(std::string_view urdf, const MeshSource& meshes);
 
-  /// In the order of the file.
+  /// Of an MJCF file, which says what stands, lies and hangs in the world (mujoco_scene.cpp). The robot is its joints of these names, each with what its
+  /// drive in the scene can do, or else with its `effort` here; tip is the body that the last of them moves. In words why there is none.
+  [[nodiscard]] static std::expected<MujocoSpec, std::string> make_scene(std::string_view mjcf,
+                                                                         std::vector<DrivenJoint> joints,
+                                                                         const MeshSource& files);
+  /// Those of a URDF file, in its order. In words why there are none.
+  [[nodiscard]] static std::expected<std::vector<DrivenJoint>, std::string> driven_joints(std::string_view urdf);
+
+  /// In the order of the URDF file.
   [[nodiscard]] const std::vector<DrivenJoint>& joints() const noexcept { return joints_; }
-  [[nodiscard]] std::size_t mimics() const noexcept { return mimics_; }
+  /// Of what moves besides them: what mimics them, and whatever else a scene has.
+  [[nodiscard]] std::size_t further_dofs() const noexcept { return further_dofs_; }
+  /// Its contacts and drives are as its file says, and not all that moves is the robot.
+  [[nodiscard]] bool is_scene() const noexcept { return is_scene_; }
   /// What pushes and hangs on it does so at the origin of this link; at first of the first one that carries nothing. False: there is no such link.
   [[nodiscard]] bool hang_payload_on(const std::string& link);
   /// From now on nothing holds the root link (floating_base.hpp). In words why not.
@@ -75,9 +86,11 @@ class MujocoSpec {
   std::vector<DrivenJoint> joints_;
   std::string root_;
   bool floats_{false};
-  std::size_t mimics_{0};
+  bool is_scene_{false};
+  std::size_t further_dofs_{0};
+  std::size_t equalities_{0};
   std::size_t pairs_left_out_{0};
-  std::map<std::string, std::string> meshes_;  ///< octets by the names that MuJoCo is told
+  std::map<std::string, std::string> octets_;  ///< of files, by the names that MuJoCo is told
   std::vector<std::string> left_out_;
 };
 

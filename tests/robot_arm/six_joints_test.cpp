@@ -3,7 +3,10 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <functional>
 #include <iostream>
+#include <memory>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -12,6 +15,8 @@
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "robotics/dynamics/dynamics.hpp"
 #include "robotics/urdf/robot.hpp"
+#include "simulation/devices/module.hpp"
+#include "simulation/mujoco/mujoco_device.hpp"
 #include "simulation/spacecraft/observed_flight.hpp"
 
 /// The mission six_joints on virtual time, judged by what its world tells, which shares nothing with the arm but a file.
@@ -26,13 +31,16 @@ constexpr Joints goal{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0};
 
 struct SixJoints : ::testing::Test {
   std::optional<simulation::Flight> flown;
+  std::function<void(descriptor::Mission&)> edit;  ///< of the mission, before it flies
+  simulation::DeviceCatalogue devices;  ///< in place of modules
 
   /// `differs`: how the world differs from the mission's own.
   void fly(const std::vector<std::string>& differs = {}, std::uint64_t seed = 1) {
     flown.emplace(
         simulation::Plan{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions/six_joints/mission.xml",
+                         .edit = edit,
                          .subsystems = {},
-                         .devices = {},
+                         .devices = devices,
                          .seed = seed});
     for (const std::string& line : differs) {
       const auto taken = arm().fault(line);
@@ -108,6 +116,47 @@ TEST_F(SixJoints, ReachesItsGoalsWithinAMilliradianHoweverTheWorldDiffersFromThe
     EXPECT_LE(most, 1e-3) << each.name;
     EXPECT_EQ(flown->inhibited("ARM"), 0u);
   }
+}
+
+/// The same arm as MuJoCo's own reader has it, among other things: a floor, and a crate that falls onto it. Its links touch
+/// nothing.
+std::string room() {
+  const std::filesystem::path file{HIROSCO_SOURCE_DIR "/subsystems/robot_arm/robot_arm.urdf"};
+  std::string text = descriptor::file_system()(file).value();
+  text.insert(text.find("<link"), R"(<mujoco><compiler fusestatic="false" discardvisual="true"/></mujoco>)");
+  std::array<char, 1000> why{};
+  const std::unique_ptr<mjSpec, simulation::MujocoFree> spec{
+      mj_parseXMLString(text.c_str(), nullptr, why.data(), why.size())};
+  EXPECT_NE(spec, nullptr) << why.data();
+  for (auto* each = mjs_firstElement(spec.get(), mjOBJ_GEOM); each != nullptr; each = mjs_nextElement(spec.get(), each))
+    mjs_asGeom(each)->contype = mjs_asGeom(each)->conaffinity = 0;
+  const simulation::MujocoModel compiled{mj_compile(spec.get(), nullptr)};
+  EXPECT_NE(compiled, nullptr) << mjs_getError(spec.get());
+  std::string scene(std::size_t{1} << 16, '\0');
+  EXPECT_EQ(mj_saveXMLString(spec.get(), scene.data(), static_cast<int>(scene.size()), why.data(), why.size()), 0)
+      << why.data();
+  scene.resize(scene.find('\0'));
+  scene.insert(scene.find("<worldbody>") + std::string_view{"<worldbody>"}.size(),
+               R"(<geom name="floor" type="plane" size="5 5 0.1" pos="0 0 -0.5"/>
+    <body name="crate" pos="1.5 1.5 1"><freejoint/><geom type="box" size="0.2 0.2 0.2" mass="5"/></body>)");
+  const std::string named = ::testing::TempDir() + "room.xml";
+  std::ofstream{named} << scene;
+  return named;
+}
+
+TEST_F(SixJoints, ReachesItsGoalsInAWorldOfAnMjcfFileThatTheMissionNames) {
+  devices["hirosco-sim-mujoco"] = simulation::make_device<simulation::MujocoDevice>;
+  edit = [](descriptor::Mission& mission) { mission.devices.front().settings.push_back({"WORLD_FILE", room(), {}}); };
+  fly();
+  for (const Joints& where : {goal, start}) {
+    const auto outcome = move_j(where);
+    EXPECT_TRUE(outcome.completed) << flown->story().text();
+    EXPECT_LE(off(where), 1e-3);
+  }
+  const auto& world = static_cast<const simulation::MujocoDevice&>(arm()).robot();
+  const int crate = mj_name2id(&world.model(), mjOBJ_BODY, "crate");
+  ASSERT_GE(crate, 0);
+  EXPECT_NEAR(world.data().xpos[3 * crate + 2], -0.3, 1e-2) << "it has fallen meanwhile";
 }
 
 TEST_F(SixJoints, GoesStraightWithinTwoMillimetres) {
