@@ -37,7 +37,7 @@ void show_field(const char* direction, const descriptor::Field& field) {
   fmt::print("\n");
 }
 
-void show_subsystem(const descriptor::Subsystem& subsystem) {
+void show_subsystem(const descriptor::SubsystemDescriptor& subsystem) {
   fmt::print("subsystem {} (APID {}): {} parameters, {} functions, {} events\n", subsystem.name, subsystem.id,
              subsystem.parameters.size(), subsystem.functions.size(), subsystem.events.size());
   for (const auto& configuration : subsystem.configurations)

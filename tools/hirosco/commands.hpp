@@ -232,7 +232,5 @@ int make_new(const NewOptions& options);
 [[nodiscard]] std::string did_you_mean(std::string_view text, const std::vector<std::string>& names);
 /// Names by which missions can be flown from here.
 [[nodiscard]] std::vector<std::string> known_missions();
-/// The inside of a JSON string: quotes and backslashes escaped, control characters and what is no UTF-8 as spaces.
-[[nodiscard]] std::string json_text(std::string_view text);
 
 }  // namespace hirosco::tools

@@ -27,9 +27,7 @@ namespace {
 class LogValues {
  public:
   explicit LogValues(const descriptor::Mission& mission) {
-    decoders_.emplace(mission.supervisor.id, pus::HousekeepingDecoder{mission.supervisor});
-    for (const auto& member : mission.subsystems)
-      decoders_.emplace(member.subsystem.id, pus::HousekeepingDecoder{member.subsystem});
+    for (const auto* member : mission.everybody()) decoders_.emplace(member->id, pus::HousekeepingDecoder{*member});
   }
   /// Empty: it is no housekeeping, or not of this mission.
   [[nodiscard]] std::vector<pus::HousekeepingValue> of(Octets packet) const {

@@ -11,7 +11,6 @@
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/utilities/nearest.hpp"
 #include "hirosco/utilities/os/installation.hpp"
-#include "hirosco/utilities/utf8.hpp"
 #include "tools/hirosco/commands.hpp"
 
 namespace hirosco::tools {
@@ -138,19 +137,6 @@ std::string instance_of_folder(const fs::path& folder) {
   const std::string name = folder.filename().string();
   const std::string begin = fmt::format("hirosco-{}-", ::getuid());
   return name.starts_with(begin) ? name.substr(begin.size()) : std::string{};
-}
-
-std::string json_text(std::string_view text) {
-  std::string quoted;
-  while (!text.empty()) {
-    const std::size_t octets = character_octets(text);
-    if (text.front() == '"' || text.front() == '\\') quoted += '\\';
-    // Without a sign: whether `char` has one is the processor's choice.
-    if (octets == 0 || static_cast<unsigned char>(text.front()) < ' ') quoted += ' ';
-    else quoted += text.substr(0, octets);
-    text.remove_prefix(octets == 0 ? 1 : octets);
-  }
-  return quoted;
 }
 
 }  // namespace hirosco::tools

@@ -7,19 +7,22 @@
 namespace hirosco::tools {
 namespace {
 
-// Octets of UTF-8 are negative where `char` has a sign, and are not where it has none: JSON is the same on both (RFC 8259, 7 and 8.1).
-TEST(JsonText, KeepsLettersBeyondAsciiOnEveryProcessor) {
-  EXPECT_EQ(json_text("/m/M\xC3\xBCnchen \xE2\x86\x92 \xF0\x9F\x9B\xB0"),
-            "/m/M\xC3\xBCnchen \xE2\x86\x92 \xF0\x9F\x9B\xB0");
+TEST(AFlightsFolder, TellsItsInstanceAgainAndNobodyElsesDoes) {
+  EXPECT_EQ(instance_of_folder(runtime_folder("night")), "night");
+  EXPECT_EQ(instance_of_folder("/somewhere/else"), "");
+  EXPECT_EQ(instance_of_folder(runtime_folder("night").parent_path() / "night"), "");
 }
 
-TEST(JsonText, EscapesQuotesAndBackslashes) { EXPECT_EQ(json_text(R"(say "no\yes")"), R"(say \"no\\yes\")"); }
+TEST(AnArchive, StandsBesideItsLogWhateverEitherIsCalled) {
+  EXPECT_EQ(archive_beside("log/orbiter.db"), "log/orbiter-ground.db");
+  EXPECT_EQ(archive_beside("log/orbiter.2.db"), "log/orbiter.2-ground.db");
+  EXPECT_EQ(archive_beside("orbiter"), "orbiter-ground.db");
+}
 
-TEST(JsonText, HasASpaceForAControlCharacterAndForWhatIsNoUtf8) {
-  EXPECT_EQ(json_text("a\nb\x1F"
-                      "c"),
-            "a b c");
-  EXPECT_EQ(json_text("lone \xBC, cut short \xE2\x86"), "lone  , cut short   ");
+TEST(AWrongName, IsAnsweredByTheNearestAndByNoneThatIsFar) {
+  EXPECT_EQ(did_you_mean("obiter", {"hello", "orbiter"}), "; did you mean 'orbiter'?");
+  EXPECT_EQ(did_you_mean("zzzzzzzz", {"hello", "orbiter"}), "");
+  EXPECT_EQ(did_you_mean("hello", {}), "");
 }
 
 }  // namespace

@@ -22,8 +22,7 @@ constexpr std::uint16_t all_states = 0x03FF;
 
 [[nodiscard]] std::string name_of(const Origin& origin, const descriptor::Mission& mission) {
   if (origin.is_ground()) return "ground";
-  if (origin.is_supervisor()) return mission.supervisor.name;
-  return mission.find_subsystem(origin.apid())->subsystem.name;
+  return mission.find_member(origin.apid())->name;
 }
 
 [[nodiscard]] std::string states_of(std::uint16_t states) {

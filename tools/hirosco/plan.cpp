@@ -20,7 +20,7 @@ namespace {
 
 /// Whose event it would be.
 struct Asked {
-  const descriptor::Subsystem* subsystem{nullptr};
+  const descriptor::SubsystemDescriptor* subsystem{nullptr};
   const descriptor::Event* event{nullptr};
 };
 
@@ -28,7 +28,7 @@ struct Asked {
 
 /// Those of the subsystem itself and, of one that the supervisor looks after, what that tells of it.
 [[nodiscard]] std::vector<const descriptor::Event*> events_of(const descriptor::Mission& mission,
-                                                              const descriptor::Subsystem& subsystem) {
+                                                              const descriptor::SubsystemDescriptor& subsystem) {
   std::vector<const descriptor::Event*> events;
   const bool own = &subsystem == &mission.supervisor;
   for (const descriptor::Event& event : subsystem.events)
@@ -45,8 +45,7 @@ struct Asked {
 [[nodiscard]] Asked find(const descriptor::Mission& mission, const std::string& words) {
   const auto colon = words.find(':');
   const std::string whose = words.substr(0, colon), name = colon == std::string::npos ? "" : words.substr(colon + 1);
-  std::vector<const descriptor::Subsystem*> all{&mission.supervisor};
-  for (const auto& member : mission.subsystems) all.push_back(&member.subsystem);
+  const auto all = mission.everybody();
   const auto subsystem = std::ranges::find_if(all, [&](const auto* each) { return same(each->name, whose); });
   if (subsystem == all.end()) {
     std::vector<std::string> names;

@@ -19,6 +19,7 @@
 #include "supervisor/keeper/kept_endnodes.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
+#include "tools/hirosco/json_line.hpp"
 #include "tools/hirosco/readiness.hpp"
 #include "tools/terminal/flight_screen.hpp"
 
@@ -55,9 +56,11 @@ void tell_children(const FlightEntry& flight, const descriptor::Mission& mission
 void introduce(const FlightEntry& flight, const RunOptions& options) {
   if (!flight.named() || options.quiet) return;
   if (options.json)
-    fmt::print("{{\"instance\":\"{}\",\"telemetry\":\"{}\",\"telecommand\":\"{}\",\"log\":\"{}\",\"folder\":\"{}\"}}\n",
-               flight.instance, flight.telemetry, flight.telecommand, json_text(flight.log.string()),
-               json_text(flight.folder.string()));
+    fmt::print("{}\n", json_line({{"instance", flight.instance},
+                                  {"telemetry", flight.telemetry},
+                                  {"telecommand", flight.telecommand},
+                                  {"log", flight.log.string()},
+                                  {"folder", flight.folder.string()}}));
   else
     fmt::print("instance {}: telemetry {}, telecommands {}, log {}\n", flight.instance, flight.telemetry,
                flight.telecommand, flight.log.string());

@@ -25,7 +25,7 @@ void add(std::vector<descriptor::Diagnostic>& found, const std::filesystem::path
 
 }  // namespace
 
-std::vector<descriptor::Diagnostic> script_problems(const descriptor::Subsystem& owner,
+std::vector<descriptor::Diagnostic> script_problems(const descriptor::SubsystemDescriptor& owner,
                                                     const descriptor::FileSource& source) {
   std::vector<descriptor::Diagnostic> found;
   for (const descriptor::ScriptFile& script : owner.scripts) {

@@ -13,6 +13,7 @@
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 #include "tools/hirosco/instance.hpp"
+#include "tools/hirosco/json_line.hpp"
 #include "tools/terminal/columns.hpp"
 #include "tools/terminal/heard_overview.hpp"
 #include "tools/terminal/terminal.hpp"
@@ -34,9 +35,7 @@ template <class Enough>
 [[nodiscard]] bool listen(const descriptor::Mission& mission, GroundConnection& link, Listened& listened,
                           Enough&& enough) {
   std::map<std::uint16_t, pus::HousekeepingDecoder> decoders;
-  decoders.emplace(mission.supervisor.id, pus::HousekeepingDecoder{mission.supervisor});
-  for (const auto& member : mission.subsystems)
-    decoders.emplace(member.subsystem.id, pus::HousekeepingDecoder{member.subsystem});
+  for (const auto* member : mission.everybody()) decoders.emplace(member->id, pus::HousekeepingDecoder{*member});
   const auto end = std::chrono::steady_clock::now() + listening;
   while (std::chrono::steady_clock::now() < end && !enough()) {
     const auto left = std::chrono::duration_cast<Duration>(end - std::chrono::steady_clock::now());
@@ -54,7 +53,7 @@ template <class Enough>
   return true;
 }
 
-void print_newest_text(const descriptor::Subsystem& subsystem, Listened& listened) {
+void print_newest_text(const descriptor::SubsystemDescriptor& subsystem, Listened& listened) {
   fmt::print("{} (APID {}): {} packets in {} s\n", subsystem.name, subsystem.id, listened.packets[subsystem.id],
              seconds(listening));
   for (const auto& [name, value] : listened.values[subsystem.id]) {
@@ -64,15 +63,14 @@ void print_newest_text(const descriptor::Subsystem& subsystem, Listened& listene
   }
 }
 
-void print_newest_json(const descriptor::Subsystem& subsystem, Listened& listened) {
-  fmt::print("{{\"subsystem\":\"{}\",\"apid\":{},\"packets\":{},\"values\":{{", subsystem.name, subsystem.id,
-             listened.packets[subsystem.id]);
-  bool first = true;
-  for (const auto& [name, value] : listened.values[subsystem.id]) {
-    fmt::print("{}\"{}\":{}", first ? "" : ",", name, value.json());
-    first = false;
-  }
-  fmt::print("}}}}\n");
+void print_newest_json(const descriptor::SubsystemDescriptor& subsystem, Listened& listened) {
+  nlohmann::ordered_json values = nlohmann::ordered_json::object();
+  for (const auto& [name, value] : listened.values[subsystem.id])
+    values[name] = nlohmann::ordered_json::parse(value.json());
+  fmt::print("{}\n", json_line({{"subsystem", subsystem.name},
+                                {"apid", subsystem.id},
+                                {"packets", listened.packets[subsystem.id]},
+                                {"values", std::move(values)}}));
 }
 
 /// Where a person reads it: no wider than 80 columns, and in letters that the terminal has.
@@ -108,11 +106,10 @@ void print_verdict(const descriptor::Mission& mission, const supervisor::Overvie
 }
 
 /// Null: there is none of this name, and those that there are were printed.
-[[nodiscard]] const descriptor::Subsystem* find_named(const descriptor::Mission& mission, const std::string& name) {
-  std::vector<const descriptor::Subsystem*> all{&mission.supervisor};
-  for (const auto& member : mission.subsystems) all.push_back(&member.subsystem);
+[[nodiscard]] const descriptor::SubsystemDescriptor* find_named(const descriptor::Mission& mission,
+                                                                const std::string& name) {
   std::vector<std::string> names;
-  for (const auto* each : all) {
+  for (const auto* each : mission.everybody()) {
     if (lower_case(each->name) == lower_case(name)) return each;
     names.push_back(each->name);
   }
@@ -128,7 +125,7 @@ int status(const StatusOptions& options) {
   const auto place = find_ground_link("status", connection);
   if (!place) return place.error();
   const descriptor::Mission& mission = place->mission;
-  const descriptor::Subsystem* only = nullptr;
+  const descriptor::SubsystemDescriptor* only = nullptr;
   if (!options.of.empty() && (only = find_named(mission, options.of)) == nullptr) return exit_usage;
   auto link = GroundConnection::open(place->host, place->port);
   if (!link) {
@@ -144,9 +141,8 @@ int status(const StatusOptions& options) {
   }
   if (everything) {
     const auto print = connection.json ? print_newest_json : print_newest_text;
-    if (only == nullptr || only == &mission.supervisor) print(mission.supervisor, listened);
-    for (const auto& member : mission.subsystems)
-      if (only == nullptr || only == &member.subsystem) print(member.subsystem, listened);
+    for (const auto* member : mission.everybody())
+      if (only == nullptr || only == member) print(*member, listened);
   }
   const auto overview = known();
   if (!overview) {

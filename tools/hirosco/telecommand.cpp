@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/requests.hpp"
@@ -18,6 +19,7 @@
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 #include "tools/hirosco/instance.hpp"
+#include "tools/hirosco/json_line.hpp"
 #include "tools/terminal/permitted.hpp"
 
 namespace hirosco::tools {
@@ -26,7 +28,7 @@ namespace {
 /// What the mission knows by name: a state, mode or configuration.
 [[nodiscard]] std::optional<Number> number_named(const std::string& text, const std::string& function,
                                                  const descriptor::Mission& mission,
-                                                 const descriptor::Subsystem& subsystem) {
+                                                 const descriptor::SubsystemDescriptor& subsystem) {
   const std::string wanted = lower_case(text);
   if (function == "SET_STATE")
     for (const auto& row : EnumTexts<descriptor::State>::table)
@@ -43,7 +45,8 @@ namespace {
   return std::nullopt;
 }
 
-[[nodiscard]] const descriptor::Subsystem* find_subsystem(const descriptor::Mission& mission, const std::string& name) {
+[[nodiscard]] const descriptor::SubsystemDescriptor* find_subsystem(const descriptor::Mission& mission,
+                                                                    const std::string& name) {
   const std::string wanted = lower_case(name);
   if (wanted == lower_case(mission.supervisor.name)) return &mission.supervisor;
   for (const auto& member : mission.subsystems)
@@ -66,7 +69,7 @@ struct Encoded {
 };
 
 [[nodiscard]] std::optional<Encoded> encode(const TelecommandOptions& options, const descriptor::Mission& mission,
-                                            const descriptor::Subsystem& subsystem) {
+                                            const descriptor::SubsystemDescriptor& subsystem) {
   const std::vector<descriptor::Function> functions = pus::requests_of(subsystem);
   const auto function = std::ranges::find_if(
       functions, [&](const auto& f) { return lower_case(f.name) == lower_case(options.function); });
@@ -108,7 +111,7 @@ struct Encoded {
 }
 
 /// By its name, the author's own by the one that the subsystem's descriptor gives it.
-[[nodiscard]] std::string failure_text(std::uint16_t code, const descriptor::Subsystem& subsystem) {
+[[nodiscard]] std::string failure_text(std::uint16_t code, const descriptor::SubsystemDescriptor& subsystem) {
   if (code < pus::first_own_failure_code)
     return fmt::format("{} ({})", to_text(static_cast<pus::FailureCode>(code)), code_text(code));
   const auto own = std::ranges::find(subsystem.failures, code, &descriptor::FailureName::code);
@@ -117,7 +120,7 @@ struct Encoded {
 
 /// Where a request that was refused by mode or state would be permitted; empty: refused for another reason.
 [[nodiscard]] std::string way_out(const pus::TelemetryView& report, const descriptor::Mission& mission,
-                                  const descriptor::Subsystem& subsystem, const Encoded& encoded) {
+                                  const descriptor::SubsystemDescriptor& subsystem, const Encoded& encoded) {
   OctetReader reader{report.source_data()};
   static_cast<void>(reader.get<std::uint32_t>());
   const auto code = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
@@ -132,7 +135,7 @@ struct Encoded {
 }
 
 /// Prints one verification report; true when it was the last of the request.
-[[nodiscard]] bool print_report(const pus::TelemetryView& report, const descriptor::Subsystem& subsystem,
+[[nodiscard]] bool print_report(const pus::TelemetryView& report, const descriptor::SubsystemDescriptor& subsystem,
                                 double after_ms, bool json, bool& success) {
   OctetReader reader{report.source_data()};
   static_cast<void>(reader.get<std::uint32_t>());
@@ -148,8 +151,10 @@ struct Encoded {
     if (const auto reason = pus::reason_in(reader.rest())) detail += ": " + words_of(*reason);
   }
   if (json)
-    fmt::print("{{\"report\":\"1,{}\",\"text\":\"{}{}\",\"from\":{},\"after_ms\":{:.2f}}}\n", subtype, names[subtype],
-               detail, report.apid(), after_ms);
+    fmt::print("{}\n", json_line({{"report", fmt::format("1,{}", subtype)},
+                                  {"text", names[subtype] + detail},
+                                  {"from", report.apid()},
+                                  {"after_ms", std::round(100 * after_ms) / 100}}));
   else fmt::print("{:9.2f} ms  TM[1,{}] {}{}\n", after_ms, subtype, names[subtype], detail);
   success = subtype == 7;
   return subtype == 7 || (failure && subtype != 6);
@@ -165,8 +170,7 @@ void print_problem(const pus::TelemetryView& report, bool json) {
                                  printable(problem->code), printable(problem->what));
   if (!problem->hint.empty()) text += " (" + printable(problem->hint) + ")";
   if (!json) return fmt::print("{}\n", text);
-  std::ranges::replace_if(text, [](char c) { return c == '"' || c == '\\'; }, '\'');
-  fmt::print("{{\"report\":\"129,10\",\"text\":\"{}\",\"from\":{}}}\n", text, report.apid());
+  fmt::print("{}\n", json_line({{"report", "129,10"}, {"text", text}, {"from", report.apid()}}));
 }
 
 /// What is against a change of mode that is refused, as `hirosco mode --preview` would say it.
@@ -177,7 +181,7 @@ void print_against(const pus::TelemetryView& report, bool json) {
   for (const std::string& each : preview->against) {
     const std::string text = pus::text_of(std::as_bytes(std::span{each}));
     if (json)
-      fmt::print("{{\"report\":\"129,5\",\"text\":\"impossible: {}\",\"from\":{}}}\n", json_text(text), report.apid());
+      fmt::print("{}\n", json_line({{"report", "129,5"}, {"text", "impossible: " + text}, {"from", report.apid()}}));
     else fmt::print("              impossible: {}\n", text);
   }
 }
