@@ -4,7 +4,8 @@
 // node development/server.mjs RECORDING|synthetic|hostile[:STATE] [PAGE [PORT]]: the page without a spacecraft. Answers as ground/api/README.md says,
 // from a recorded flight that it plays in a loop (development/record.mjs makes one) or from a made-up one; takes telecommands and completes
 // them. For work on the page's looks and tests of the page alone, with the token "development"; nothing here is part of what flies.
-// STATE is what is to be seen: well (nothing fails), stopped, stale (silent from 5 s on), observer, fresh (nothing yet), foreign (a mission without a page folder).
+// STATE is what is to be seen: well (nothing fails), stopped, stale (silent from 5 s on), observer, fresh (nothing yet), foreign (a mission without a page folder),
+// renewed (the first connection ends, and then the station is of another version).
 // Port 0 takes a free one; the URL is the first line of what it prints.
 import {createReadStream, existsSync, readdirSync, readFileSync, statSync} from 'node:fs';
 import {createServer} from 'node:http';
@@ -15,7 +16,7 @@ import {WebSocketServer} from 'ws';
 const [asked, page = join(dirname(fileURLToPath(import.meta.url)), '../dist'), port = '8090'] = process.argv.slice(2);
 const [recording, state = 'normal'] = (asked ?? '').split(':');
 if (!recording) {
-  console.error('usage: node development/server.mjs RECORDING|synthetic|hostile[:well|stopped|stale|observer|fresh|foreign] [PAGE [PORT]]');
+  console.error('usage: node development/server.mjs RECORDING|synthetic|hostile[:well|stopped|stale|observer|fresh|foreign|renewed] [PAGE [PORT]]');
   process.exit(2);
 }
 const sources = process.env.HIROSCO_SOURCES ?? join(dirname(fileURLToPath(import.meta.url)), '../../..');
@@ -263,7 +264,9 @@ let clients = 0;
 sockets.on('connection', (socket, request) => {
   socket.id = `c${++clients}`;
   socket.seat = new URL(request.url, 'http://x').searchParams.get('seat') ?? '';
-  socket.send(JSON.stringify({type: 'hello', t: now, version: 'development', client: socket.id, operator: state !== 'observer', archive_from: first_t, authority, flight: flight_of_now}));
+  const renewed = state === 'renewed' && clients > 1;
+  if (state === 'renewed' && !renewed) setTimeout(() => socket.close(), 1000);
+  socket.send(JSON.stringify({type: 'hello', t: now, version: renewed ? 'renewed' : 'development', client: socket.id, operator: state !== 'observer', archive_from: first_t, authority, flight: flight_of_now}));
   tell({type: 'present', ...present()});
   socket.on('close', () => tell({type: 'present', ...present()}));
   socket.on('message', (data) => {

@@ -36,6 +36,8 @@ export const flights = signal([]);
 /// {pages, operators, observers}: who has a page open at the station; null while it has not said. And which of them is this one.
 export const present = signal(null);
 export const own_client = signal('');
+/// The station was replaced by one of another version under this page: {page, station}.
+export const other_version = signal(null);
 /// [{name, text, t, who}]: telecommands that somebody keeps at the station, as lines of `hirosco tc`.
 export const kept_stacks = signal([]);
 /// Counts batches of values; a view that draws at telemetry rate reads it.
@@ -195,6 +197,7 @@ export const outcome_of = (command) => {
 };
 
 let mission_text = '';
+let own_version = null;
 let batches = 0;
 
 /// A key for what a browser lists; archive rows and messages of the same event must agree.
@@ -209,6 +212,9 @@ function take(list) {
   for (const message of list) {
     if (message.type !== 'hello' && message.type !== 'replay' && Boolean(message.replay) !== (replay.value !== null)) continue;
     if (message.type === 'hello') {
+      // This page came from the station that was there first.
+      own_version ??= message.version;
+      other_version.value = message.version === own_version ? null : {page: own_version, station: message.version};
       introduce(message.client);
       own_client.value = String(message.client ?? '');
       operator.value = message.operator !== false;

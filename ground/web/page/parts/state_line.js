@@ -6,7 +6,7 @@ import {state_name} from '../commanding.js';
 import {age_text, clock_text, state_text} from '../format.js';
 import {html} from '../html.js';
 import {fallen, risen, stop} from '../stop_story.js';
-import {calling, link, mission, mode_of, now_s, replay, status} from '../store.js';
+import {calling, link, mission, mode_of, now_s, other_version, replay, status} from '../store.js';
 import {is_wanted} from './link_graph.js';
 import {share_text} from './missed.js';
 import {changing, under_way} from './mode_menu.js';
@@ -28,7 +28,9 @@ function Well() {
 }
 
 function words() {
-  const {state, age_s} = link.value, now = under_way(), down = fallen.value;
+  const {state, age_s} = link.value, now = under_way(), down = fallen.value, other = other_version.value;
+  if (other) return html`<b data-test="state-head" class="amber_text">The ground station is of another version than this page</b><span>${other.station}, this page of ${other.page}</span>
+    <button data-test="load-again" onClick=${() => location.reload()}>Load the page again</button>`;
   if (now) return html`<b data-test="state-head">${now.name} is being brought up${now.all ? `: ${now.done} of ${now.all}` : ''}</b><span>${now.text}</span>
     ${now.all ? html`<progress max=${now.all} value=${now.done} aria-label=${`${now.done} of ${now.all} steps`} />` : null}`;
   if (changing.value?.failed) return html`<b data-test="state-head">${changing.value.name} was refused</b><span title=${changing.value.failed}>${changing.value.failed}</span>`;
