@@ -56,16 +56,19 @@ struct SupervisorParts final : OwnSubsystem::Author {
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
     telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
-    telecommands.answers(pus::st129::mode_question,
-                         [this](const pus::Request& asked, Octets data) { modes.preview(asked, data); });
-    telecommands.answers(pus::st129::plan_question,
-                         [this](const pus::Request& asked, Octets data) { reactions.preview(asked, data); });
-    telecommands.answers(pus::st129::subscribe,
-                         [this](const pus::Request& asked, Octets data) { subscriptions.begin(asked, data); });
-    telecommands.answers(pus::st129::unsubscribe,
-                         [this](const pus::Request& asked, Octets data) { subscriptions.end(asked, data); });
-    telecommands.answers(pus::st129::retrieve,
-                         [this](const pus::Request& asked, Octets data) { retrieval.begin(asked, data); });
+    supervision.answers(pus::st129::permission_question, [this](const pus::Request& asked, Octets data) {
+      telecommands.answer_permission(asked, data);
+    });
+    supervision.answers(pus::st129::mode_question,
+                        [this](const pus::Request& asked, Octets data) { modes.preview(asked, data); });
+    supervision.answers(pus::st129::plan_question,
+                        [this](const pus::Request& asked, Octets data) { reactions.preview(asked, data); });
+    supervision.answers(pus::st129::subscribe,
+                        [this](const pus::Request& asked, Octets data) { subscriptions.begin(asked, data); });
+    supervision.answers(pus::st129::unsubscribe,
+                        [this](const pus::Request& asked, Octets data) { subscriptions.end(asked, data); });
+    supervision.answers(pus::st129::retrieve,
+                        [this](const pus::Request& asked, Octets data) { retrieval.begin(asked, data); });
     telecommands.starts_with([this](std::uint16_t apid) { return processes.start(apid); });
   }
 
@@ -92,7 +95,9 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Traffic traffic;
   GroundRoute ground_route;
   // data handling
-  Telecommands telecommands{{craft, own, graph, power, unanswered, traffic, ground_route, commanded, stored}};
+  SupervisionService supervision{own};
+  Telecommands telecommands{
+      {craft, own, graph, power, unanswered, traffic, ground_route, commanded, stored, supervision}};
   LogWatch log_watch;
   OwnTelecommands own_telecommands;
   Replies replies{craft, unanswered};

@@ -37,8 +37,8 @@ descriptor::FileSource Inheritance::source() const {
 }
 
 void Inheritance::watch_this_thread() const noexcept {
-  page_->guarded.store(page_->starts.load(), std::memory_order_release);
-  static_cast<void>(hold_life(page_->guard_life));
+  // In this order: until it is held the word tells of the end of the guard before, which must not be taken for this one's.
+  if (hold_life(page_->guard_life)) page_->guarded.store(page_->starts.load(), std::memory_order_release);
 }
 
 void Inheritance::take_inhibits(const Clock& clock) const {

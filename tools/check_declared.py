@@ -171,7 +171,7 @@ def main():
         ("is no file", {}, changed("Subsystem/Hang", **{"in": "hirosco/descriptor/read/mission_test.cpp"})),
         ("outside hirosco/descriptor", {}, changed("Subsystem/Hang", **{"in": "hirosco/descriptor/read/read_subsystem.cpp"})),
         ("does not read", {}, changed("Subsystem/Hang", **{"in": "hirosco/xml/reader.cpp"})),
-        ("the model has no", {}, changed("Subsystem/Hang", honoured_by="Subsystem::colour")),
+        ("the model has no", {}, changed("Subsystem/Hang", honoured_by="SubsystemDescriptor::colour")),
         ("makes no E0999", {}, changed("Subsystem/Hang", honoured_by="E0999", **{"in": "hirosco/descriptor/read/read_modes.cpp"})),
     ]
     for wanted, other, table in planted:

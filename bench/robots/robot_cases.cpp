@@ -179,7 +179,7 @@ struct Known {
   std::string tip_name, fixed;
   std::vector<std::size_t> in_world;
 };
-[[nodiscard]] std::expected<Known, std::string> known(const descriptor::Subsystem& subsystem) {
+[[nodiscard]] std::expected<Known, std::string> known(const descriptor::SubsystemDescriptor& subsystem) {
   auto robot = robotics::urdf::read_named(subsystem, device_name);
   if (!robot) return std::unexpected{robot.error().text};
   const auto tip = robotics::urdf::named_tip(subsystem, device_name, *robot);

@@ -24,7 +24,7 @@ template <class Texts>
   return result;
 }
 
-[[nodiscard]] json functions_json(const Catalogue& catalogue, const descriptor::Subsystem& subsystem) {
+[[nodiscard]] json functions_json(const Catalogue& catalogue, const descriptor::SubsystemDescriptor& subsystem) {
   json list = json::array();
   for (const auto& function : catalogue.functions_of(subsystem)) {
     json arguments = json::array();
@@ -50,7 +50,7 @@ template <class Texts>
   return list;
 }
 
-[[nodiscard]] json housekeeping_json(const Catalogue& catalogue, const descriptor::Subsystem& subsystem) {
+[[nodiscard]] json housekeeping_json(const Catalogue& catalogue, const descriptor::SubsystemDescriptor& subsystem) {
   json list = json::array();
   for (const Report& report : catalogue.reports()) {
     if (report.apid != subsystem.id) continue;
@@ -72,7 +72,7 @@ template <class Texts>
   return list;
 }
 
-[[nodiscard]] json subsystem_json(const Catalogue& catalogue, const descriptor::Subsystem& subsystem) {
+[[nodiscard]] json subsystem_json(const Catalogue& catalogue, const descriptor::SubsystemDescriptor& subsystem) {
   json configurations = json::array();
   for (const auto& configuration : subsystem.configurations)
     configurations.push_back(

@@ -22,8 +22,6 @@ constexpr Duration command_limit = 600s;
 constexpr std::uint16_t count_modulo = 16'384;
 constexpr std::size_t longest_sender = 32;
 constexpr std::size_t most_open = 10'000;
-/// Of the supervisor's own telecommands (decision 27).
-constexpr std::uint16_t supervisor_source = 1;
 
 [[nodiscard]] std::string hex_of(Octets octets) {
   constexpr std::string_view digits = "0123456789ABCDEF";
@@ -159,7 +157,7 @@ void Commands::take_verdict(const Verdict& verdict, OnboardTime t) {
   auto found = open_.find(key);
   if (found == open_.end()) {
     // The supervisor's own are its business; of ours that have ended, nothing more is wanted.
-    if (verdict.destination == supervisor_source || verdict.destination == parts_.source) return;
+    if (verdict.destination == pus::supervisor_apid || verdict.destination == parts_.source) return;
     if (open_.size() >= most_open) return;
     found = open_.emplace(key, add_foreign(verdict, t)).first;
   }
@@ -208,8 +206,9 @@ void Commands::take_answer(const PermissionAnswer& answer) {
     const auto code = static_cast<pus::FailureCode>(answer.code);
     result["code"] = answer.code;
     std::string reason{to_text(code)};
+    if (reason == no_enumerator) reason = "code " + std::to_string(answer.code);
     if (code == pus::FailureCode::WrongMode) reason += " (" + parts_.model.mode() + ")";
-    result["reason"] = reason.empty() ? "code " + std::to_string(answer.code) : reason;
+    result["reason"] = std::move(reason);
   }
   question.done(std::move(result));
 }

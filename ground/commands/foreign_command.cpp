@@ -39,7 +39,7 @@ constexpr std::array senders{Senders{0x1000, 0x1000, "an exported database"},
   return named != texts.end() ? json(named->text) : json_value(value);
 }
 
-[[nodiscard]] json arguments_json(const Catalogue& catalogue, const descriptor::Subsystem& subsystem,
+[[nodiscard]] json arguments_json(const Catalogue& catalogue, const descriptor::SubsystemDescriptor& subsystem,
                                   const descriptor::Function& function, Octets data) {
   json arguments = json::object();
   const auto values_of = pus::decode_request(function, data);

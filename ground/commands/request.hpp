@@ -15,7 +15,7 @@ namespace hirosco::ground {
 
 /// What a telecommand asks for, as a client named it, ready for its packet.
 struct Request {
-  const descriptor::Subsystem* subsystem{};
+  const descriptor::SubsystemDescriptor* subsystem{};
   std::string function;
   std::uint8_t service{};
   std::uint8_t subtype{};

@@ -19,7 +19,7 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 namespace st129 = pus::st129;
 
-constexpr std::uint16_t us = 0x2000, supervisor = pus::supervisor_apid;
+constexpr std::uint16_t us = 0x2000;
 constexpr OnboardTime midday{std::chrono::seconds{2'145'916'900}};
 
 class AStationThatMissedSomething : public ::testing::Test {
@@ -40,7 +40,7 @@ class AStationThatMissedSomething : public ::testing::Test {
     return reading.value.value_or(descriptor::Mission{});
   }
   std::vector<std::byte> packet(std::uint8_t service, std::uint8_t subtype, Octets data, OnboardTime t,
-                                std::uint16_t destination = 0, std::uint16_t apid = supervisor) {
+                                std::uint16_t destination = 0, std::uint16_t apid = pus::supervisor_apid) {
     std::array<std::byte, pus::max_telemetry_octets> buffer;
     const auto made = pus::write_telemetry(buffer,
                                            {.apid = apid,
@@ -54,7 +54,7 @@ class AStationThatMissedSomething : public ::testing::Test {
   }
   /// A subsystem of the mission changed its state.
   std::vector<std::byte> state_changed(descriptor::State state, OnboardTime t) {
-    const descriptor::Subsystem& subsystem = *catalogue.subsystems().back();
+    const descriptor::SubsystemDescriptor& subsystem = *catalogue.subsystems().back();
     const auto event = std::ranges::find(subsystem.events, "STATE_CHANGED", &descriptor::Event::name);
     std::array<std::byte, 3> data{};
     OctetWriter{data}.put(event->id).put(static_cast<std::uint8_t>(state));

@@ -16,7 +16,7 @@ namespace {
   return field.values() == 1 ? name : name + "[" + std::to_string(i) + "]";
 }
 
-[[nodiscard]] const descriptor::Enumeration* enumeration_of(const descriptor::Subsystem& subsystem,
+[[nodiscard]] const descriptor::Enumeration* enumeration_of(const descriptor::SubsystemDescriptor& subsystem,
                                                             const descriptor::Field& field) {
   const auto found = std::ranges::find(subsystem.enumerations, field.enumeration, &descriptor::Enumeration::name);
   return field.enumeration.empty() || found == subsystem.enumerations.end() ? nullptr : &*found;
@@ -25,8 +25,7 @@ namespace {
 }  // namespace
 
 Catalogue::Catalogue(descriptor::Mission mission) : mission_{std::move(mission)} {
-  subsystems_.push_back(&mission_.supervisor);
-  for (const auto& member : mission_.subsystems) subsystems_.push_back(&member.subsystem);
+  subsystems_ = mission_.everybody();
   for (const auto* subsystem : subsystems_) add_columns(*subsystem);
   for (const auto* subsystem : subsystems_) {
     add_reports(*subsystem, nullptr, subsystem->housekeeping);
@@ -35,7 +34,7 @@ Catalogue::Catalogue(descriptor::Mission mission) : mission_{std::move(mission)}
   }
 }
 
-void Catalogue::add_columns(const descriptor::Subsystem& subsystem) {
+void Catalogue::add_columns(const descriptor::SubsystemDescriptor& subsystem) {
   const auto add = [&](const std::string& name, const descriptor::Field& field) {
     for (std::uint32_t i = 0; i < field.values(); ++i) {
       const std::string element = element_name(name, field, static_cast<std::uint16_t>(i));
@@ -54,7 +53,8 @@ void Catalogue::add_columns(const descriptor::Subsystem& subsystem) {
   }
 }
 
-void Catalogue::add_reports(const descriptor::Subsystem& subsystem, const descriptor::Configuration* configuration,
+void Catalogue::add_reports(const descriptor::SubsystemDescriptor& subsystem,
+                            const descriptor::Configuration* configuration,
                             const std::vector<descriptor::HousekeepingStructure>& structures) {
   const Duration cycle = configuration != nullptr           ? configuration->sampling
                          : subsystem.configurations.empty() ? Duration{0}
@@ -79,7 +79,7 @@ void Catalogue::add_reports(const descriptor::Subsystem& subsystem, const descri
   }
 }
 
-void Catalogue::add_places(const descriptor::Subsystem& subsystem,
+void Catalogue::add_places(const descriptor::SubsystemDescriptor& subsystem,
                            const std::vector<descriptor::ParameterRef>& references, Report& report,
                            std::size_t& offset) const {
   for (const auto& reference : references) {
@@ -96,13 +96,13 @@ void Catalogue::add_places(const descriptor::Subsystem& subsystem,
   }
 }
 
-const descriptor::Subsystem* Catalogue::find(std::uint16_t apid) const noexcept {
-  const auto found = std::ranges::find(subsystems_, apid, &descriptor::Subsystem::id);
+const descriptor::SubsystemDescriptor* Catalogue::find(std::uint16_t apid) const noexcept {
+  const auto found = std::ranges::find(subsystems_, apid, &descriptor::SubsystemDescriptor::id);
   return found != subsystems_.end() ? *found : nullptr;
 }
 
-const descriptor::Subsystem* Catalogue::find(std::string_view name) const noexcept {
-  const auto found = std::ranges::find(subsystems_, name, &descriptor::Subsystem::name);
+const descriptor::SubsystemDescriptor* Catalogue::find(std::string_view name) const noexcept {
+  const auto found = std::ranges::find(subsystems_, name, &descriptor::SubsystemDescriptor::name);
   return found != subsystems_.end() ? *found : nullptr;
 }
 
@@ -140,7 +140,7 @@ std::string Catalogue::words(const Place& place, Octets source_data) const {
   return printable_words(fixed_words(source_data.subspan(place.offset, column.text_octets)));
 }
 
-std::vector<descriptor::Function> Catalogue::functions_of(const descriptor::Subsystem& subsystem) const {
+std::vector<descriptor::Function> Catalogue::functions_of(const descriptor::SubsystemDescriptor& subsystem) const {
   std::vector<descriptor::Function> functions = pus::requests_of(subsystem);
   for (auto& function : functions) {
     if (function.name == "SET_STATE")
@@ -152,7 +152,7 @@ std::vector<descriptor::Function> Catalogue::functions_of(const descriptor::Subs
   return functions;
 }
 
-std::vector<descriptor::EnumerationText> Catalogue::texts_of(const descriptor::Subsystem& subsystem,
+std::vector<descriptor::EnumerationText> Catalogue::texts_of(const descriptor::SubsystemDescriptor& subsystem,
                                                              const descriptor::Function& function,
                                                              const descriptor::Field& argument) const {
   std::vector<descriptor::EnumerationText> texts;

@@ -55,9 +55,11 @@ class Catalogue {
 
   [[nodiscard]] const descriptor::Mission& mission() const noexcept { return mission_; }
   /// The supervisor first, then the mission's order.
-  [[nodiscard]] const std::vector<const descriptor::Subsystem*>& subsystems() const noexcept { return subsystems_; }
-  [[nodiscard]] const descriptor::Subsystem* find(std::uint16_t apid) const noexcept;
-  [[nodiscard]] const descriptor::Subsystem* find(std::string_view name) const noexcept;
+  [[nodiscard]] const std::vector<const descriptor::SubsystemDescriptor*>& subsystems() const noexcept {
+    return subsystems_;
+  }
+  [[nodiscard]] const descriptor::SubsystemDescriptor* find(std::uint16_t apid) const noexcept;
+  [[nodiscard]] const descriptor::SubsystemDescriptor* find(std::string_view name) const noexcept;
   /// "APID 77" when the mission has none.
   [[nodiscard]] std::string name_of(std::uint16_t apid) const;
 
@@ -73,14 +75,14 @@ class Catalogue {
   [[nodiscard]] std::string words(const Place& place, Octets source_data) const;
 
   /// Requests by name, as pus::requests_of() lists them.
-  [[nodiscard]] std::vector<descriptor::Function> functions_of(const descriptor::Subsystem& subsystem) const;
+  [[nodiscard]] std::vector<descriptor::Function> functions_of(const descriptor::SubsystemDescriptor& subsystem) const;
   /// What the values of an argument are called: by its enumeration, or states, configurations, modes, links.
   [[nodiscard]] std::vector<descriptor::EnumerationText> texts_of(
-      const descriptor::Subsystem& subsystem, const descriptor::Function& function,
+      const descriptor::SubsystemDescriptor& subsystem, const descriptor::Function& function,
       const descriptor::Function::Argument& argument) const {
     return argument.texts.empty() ? texts_of(subsystem, function, argument.field) : argument.texts;
   }
-  [[nodiscard]] std::vector<descriptor::EnumerationText> texts_of(const descriptor::Subsystem& subsystem,
+  [[nodiscard]] std::vector<descriptor::EnumerationText> texts_of(const descriptor::SubsystemDescriptor& subsystem,
                                                                   const descriptor::Function& function,
                                                                   const descriptor::Field& argument) const;
 
@@ -91,14 +93,14 @@ class Catalogue {
   [[nodiscard]] std::size_t supervisor_rows(std::string_view name) const;
 
  private:
-  void add_columns(const descriptor::Subsystem& subsystem);
-  void add_reports(const descriptor::Subsystem& subsystem, const descriptor::Configuration* configuration,
+  void add_columns(const descriptor::SubsystemDescriptor& subsystem);
+  void add_reports(const descriptor::SubsystemDescriptor& subsystem, const descriptor::Configuration* configuration,
                    const std::vector<descriptor::HousekeepingStructure>& structures);
-  void add_places(const descriptor::Subsystem& subsystem, const std::vector<descriptor::ParameterRef>& references,
-                  Report& report, std::size_t& offset) const;
+  void add_places(const descriptor::SubsystemDescriptor& subsystem,
+                  const std::vector<descriptor::ParameterRef>& references, Report& report, std::size_t& offset) const;
 
   descriptor::Mission mission_;
-  std::vector<const descriptor::Subsystem*> subsystems_;
+  std::vector<const descriptor::SubsystemDescriptor*> subsystems_;
   std::vector<Column> columns_;
   std::unordered_map<std::string, std::size_t> column_index_;
   std::vector<Report> reports_;

@@ -175,7 +175,7 @@ std::optional<LatencyHistogram> Model::latencies_of(std::uint8_t link, std::size
 void Model::take_overview(OnboardTime t, Heard& heard) {
   for (std::size_t i = 0; i < subsystem_rows_; ++i) {
     const auto apid = static_cast<std::uint16_t>(told(overview_.apid, i));
-    const auto found = std::ranges::find(catalogue_.subsystems(), apid, &descriptor::Subsystem::id);
+    const auto found = std::ranges::find(catalogue_.subsystems(), apid, &descriptor::SubsystemDescriptor::id);
     if (apid == 0 || found == catalogue_.subsystems().end()) continue;
     const auto place = static_cast<std::size_t>(found - catalogue_.subsystems().begin());
     SubsystemView& view = subsystems_[place];
@@ -261,7 +261,7 @@ void Model::take_event(const pus::TelemetryView& packet, Heard& heard) {
   event.name = std::to_string(event.id);
   if (!reader.good()) return;
   nlohmann::json values = nlohmann::json::object();
-  const auto found = std::ranges::find(catalogue_.subsystems(), packet.apid(), &descriptor::Subsystem::id);
+  const auto found = std::ranges::find(catalogue_.subsystems(), packet.apid(), &descriptor::SubsystemDescriptor::id);
   const bool known = found != catalogue_.subsystems().end();
   const auto described = known ? std::ranges::find((*found)->events, event.id, &descriptor::Event::id)
                                : std::vector<descriptor::Event>::const_iterator{};

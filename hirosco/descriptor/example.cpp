@@ -13,7 +13,7 @@ int main() {
         "  <ParamRef name=\"GOAL\" id=\"1\" type=\"DUBLE\"/>\n"
         "</Subsystem>\n"};
   };
-  const Reading<Subsystem> reading = read_subsystem("light.xml", source);
+  const Reading<SubsystemDescriptor> reading = read_subsystem("light.xml", source);
   for (const Diagnostic& problem : reading.problems) std::fputs(render(problem, source, false).c_str(), stdout);
   // light.xml:2:38: error: E0104: unknown parameter type 'DUBLE'
   //     2 |   <ParamRef name="GOAL" id="1" type="DUBLE"/>

@@ -21,7 +21,9 @@ inline FileSource text_source(std::string text) {
   return [text = std::move(text)](const std::filesystem::path&) -> Result<std::string> { return text; };
 }
 
-inline Reading<Subsystem> read_text(const std::string& text) { return read_subsystem("test.xml", text_source(text)); }
+inline Reading<SubsystemDescriptor> read_text(const std::string& text) {
+  return read_subsystem("test.xml", text_source(text));
+}
 
 inline std::string rendered(const std::vector<Diagnostic>& problems, const FileSource& source) {
   std::string all;

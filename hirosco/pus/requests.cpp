@@ -20,7 +20,8 @@ namespace {
 /// What fits one telecommand beside how many there are.
 constexpr std::size_t most_setting_octets = max_telecommand_octets - telecommand_overhead_octets - 1;
 
-[[nodiscard]] Function::Argument argument_of(const descriptor::Subsystem& subsystem, const descriptor::Field& field) {
+[[nodiscard]] Function::Argument argument_of(const descriptor::SubsystemDescriptor& subsystem,
+                                             const descriptor::Field& field) {
   Function::Argument argument;
   argument.field = field;
   if (field.type == Type::Bool)
@@ -30,7 +31,7 @@ constexpr std::size_t most_setting_octets = max_telecommand_octets - telecommand
   return argument;
 }
 
-void add_settings(const descriptor::Subsystem& subsystem, std::vector<Function>& requests) {
+void add_settings(const descriptor::SubsystemDescriptor& subsystem, std::vector<Function>& requests) {
   const auto add = [&](const descriptor::ParameterRef& place) {
     const descriptor::Parameter& parameter = subsystem.parameters[place.parameter];
     if (parameter.octets(place.member) + sizeof(std::uint32_t) > most_setting_octets) return;
@@ -90,7 +91,7 @@ void add_settings(const descriptor::Subsystem& subsystem, std::vector<Function>&
 
 }  // namespace
 
-std::vector<Function> requests_of(const descriptor::Subsystem& subsystem) {
+std::vector<Function> requests_of(const descriptor::SubsystemDescriptor& subsystem) {
   std::vector<Function> requests = common_functions();
   for (const ServiceKind* service : standard_services())
     for (const RequestKind& kind : service->requests) {

@@ -17,7 +17,7 @@ namespace hirosco::pus {
 /// SET_STATE, CONFIGURE, what the framework's services have words for (PING, SELF_TEST), the functions of the descriptor, the
 /// requests of its own services, and a setting for each writable parameter, `SET:GAINS`, and for what is in it, `SET:GAINS.P`:
 /// TC[20,3] with one parameter, whose values are the arguments.
-[[nodiscard]] std::vector<descriptor::Function> requests_of(const descriptor::Subsystem& subsystem);
+[[nodiscard]] std::vector<descriptor::Function> requests_of(const descriptor::SubsystemDescriptor& subsystem);
 
 /// Whether it takes the way of what is essential, past what waits; a ping asks about the ordinary one.
 [[nodiscard]] bool goes_alone(const descriptor::Function& request) noexcept;

@@ -87,8 +87,8 @@ TEST(Requests, AreReadBackAsCallsOfFunctionsToo) {
   EXPECT_EQ(decode_request(*request_named(requests, "SET_STATE"), *data), std::vector<Value>{5.0});
 }
 
-descriptor::Subsystem one_with_a_structure() {
-  descriptor::Subsystem subsystem;
+descriptor::SubsystemDescriptor one_with_a_structure() {
+  descriptor::SubsystemDescriptor subsystem;
   subsystem.id = 10;
   subsystem.enumerations = {{"COLOURS", {{0, "red"}, {1, "green"}}}};
   descriptor::Parameter lamp;

@@ -91,7 +91,7 @@ class Table : public ::testing::Test {
 
   testing::RecordingSink sink_;
   Verification verification_{sink_};
-  descriptor::Subsystem subsystem_;
+  descriptor::SubsystemDescriptor subsystem_;
   HousekeepingSampler sampler_;
   Nobody nobody_;
   HousekeepingService housekeeping_{subsystem_, sampler_, verification_, sink_};

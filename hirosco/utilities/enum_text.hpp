@@ -27,12 +27,14 @@ template <class E, std::size_t N>
   return table;
 }
 
-/// Text of an enumerator, "?" for a value outside the enumeration.  Realtime: bounded.
+inline constexpr std::string_view no_enumerator = "?";
+
+/// Text of an enumerator, no_enumerator for a value outside the enumeration.  Realtime: bounded.
 template <class E>
 [[nodiscard]] constexpr std::string_view to_text(E value) noexcept {
   for (const auto& row : EnumTexts<E>::table)
     if (row.value == value) return row.text;
-  return "?";
+  return no_enumerator;
 }
 
 /// Enumerator of a text; empty when no enumerator has it.  Realtime: bounded.

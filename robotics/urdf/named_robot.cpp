@@ -31,7 +31,8 @@ std::vector<std::string> listed_names(std::string_view text) {
   return names;
 }
 
-std::expected<NamedRobot, NotRead> read_named(const descriptor::Subsystem& subsystem, std::string_view device) {
+std::expected<NamedRobot, NotRead> read_named(const descriptor::SubsystemDescriptor& subsystem,
+                                              std::string_view device) {
   const auto named = descriptor::setting_of_all(subsystem, device, model_setting);
   if (!named) return not_read(named.error());
   const auto fixed = descriptor::setting_of_all(subsystem, device, fixed_setting);
@@ -58,7 +59,7 @@ std::expected<NamedRobot, NotRead> read_named(const descriptor::Subsystem& subsy
   return NamedRobot{file, std::move(*text), std::move(*reading.value), std::move(*model)};
 }
 
-std::expected<FrameId, NotRead> named_tip(const descriptor::Subsystem& subsystem, std::string_view device,
+std::expected<FrameId, NotRead> named_tip(const descriptor::SubsystemDescriptor& subsystem, std::string_view device,
                                           const NamedRobot& named) {
   const auto said = descriptor::setting_of_all(subsystem, device, tip_setting);
   if (!said) return not_read(said.error());

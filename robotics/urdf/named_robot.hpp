@@ -39,10 +39,10 @@ struct NotRead {
 [[nodiscard]] std::vector<std::string> listed_names(std::string_view text);
 
 /// The robot of the file that MODEL_FILE of `device` names in every configuration, without what its FIXED names.  Realtime: allocates.
-[[nodiscard]] std::expected<NamedRobot, NotRead> read_named(const descriptor::Subsystem& subsystem,
+[[nodiscard]] std::expected<NamedRobot, NotRead> read_named(const descriptor::SubsystemDescriptor& subsystem,
                                                             std::string_view device);
 /// The link that TIP of `device` names, or the one end that the robot has.  Realtime: allocates.
-[[nodiscard]] std::expected<FrameId, NotRead> named_tip(const descriptor::Subsystem& subsystem, std::string_view device,
-                                                        const NamedRobot& named);
+[[nodiscard]] std::expected<FrameId, NotRead> named_tip(const descriptor::SubsystemDescriptor& subsystem,
+                                                        std::string_view device, const NamedRobot& named);
 
 }  // namespace hirosco::robotics::urdf

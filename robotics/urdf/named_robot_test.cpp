@@ -29,8 +29,8 @@ using ::testing::HasSubstr;
 }
 
 /// ARM with these settings.
-[[nodiscard]] descriptor::Subsystem with_settings(const std::map<std::string, std::string>& settings) {
-  descriptor::Subsystem subsystem;
+[[nodiscard]] descriptor::SubsystemDescriptor with_settings(const std::map<std::string, std::string>& settings) {
+  descriptor::SubsystemDescriptor subsystem;
   subsystem.devices.resize(1);
   subsystem.devices[0].name = "ARM";
   descriptor::Configuration configuration;

@@ -67,20 +67,20 @@ void PlannedFlight::see_hangs_ended() {
 
 /// Sends a function with all acknowledgements and waits for its end.
 bool PlannedFlight::call(std::string_view subsystem, std::string_view name, std::optional<double> argument) {
-  const auto* member = mission_.find_subsystem(subsystem);
-  const descriptor::Subsystem& target = member != nullptr ? member->subsystem : mission_.supervisor;
+  const auto* target = mission_.find_member(subsystem);
+  if (target == nullptr) return false;
   const auto common = pus::common_functions();
   const auto built_in = std::ranges::find(common, name, &descriptor::Function::name);
-  const auto* function = built_in != common.end() ? &*built_in : target.find_function(name);
+  const auto* function = built_in != common.end() ? &*built_in : target->find_function(name);
   if (function == nullptr) return false;
   std::vector<double> values;
   if (argument) values.push_back(*argument);
   const auto data = pus::encode_call(*function, std::span<const double>{values});
-  if (!data || !send("ground", {.apid = target.id, .service = 8, .subtype = 1, .ack = 15}, *data)) return false;
+  if (!data || !send("ground", {.apid = target->id, .service = 8, .subtype = 1, .ack = 15}, *data)) return false;
   const std::uint32_t request = last_request_;
   constexpr Duration patience = 2s;
   run_until([&] { return verdicts_[request].over; }, patience);
-  trace_->say("called {} {} {} {}", target.name, name, argument.value_or(0),
+  trace_->say("called {} {} {} {}", target->name, name, argument.value_or(0),
               verdicts_[request].completed ? "completed" : "failed");
   return verdicts_[request].completed;
 }

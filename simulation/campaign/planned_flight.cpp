@@ -110,7 +110,8 @@ void PlannedFlight::run_until(Duration since_start) {
         },
         std::min(next_ping, end) - craft_->now()));
     look();
-    if (craft_->now() == next_ping) send(ground, {.apid = 1, .service = 17, .subtype = 1, .ack = 15}, {});
+    if (craft_->now() == next_ping)
+      send(ground, {.apid = mission_.supervisor.id, .service = 17, .subtype = 1, .ack = 15}, {});
   }
 }
 
@@ -212,7 +213,7 @@ bool PlannedFlight::flood(const std::vector<std::string>& words) {
   if (!count) return false;
   for (std::uint64_t i = 0; i < *count; ++i) {
     if (words[2] == "valid") {
-      send(words[1], {.apid = 1, .service = 17, .subtype = 1, .ack = 9}, {});
+      send(words[1], {.apid = mission_.supervisor.id, .service = 17, .subtype = 1, .ack = 9}, {});
     } else {
       constexpr std::array damaged{std::byte{0x18}, std::byte{0x01}, std::byte{0xC0}, std::byte{0x00}, std::byte{0x00},
                                    std::byte{0x06}, std::byte{0x2F}, std::byte{0x11}, std::byte{0x01}, std::byte{0x00},

@@ -98,7 +98,7 @@ struct Played {
 }
 
 /// Adds the files that a configuration's settings of it name. In words which two configurations do not agree about.
-[[nodiscard]] std::optional<std::string> add_files(const descriptor::Subsystem& subsystem,
+[[nodiscard]] std::optional<std::string> add_files(const descriptor::SubsystemDescriptor& subsystem,
                                                    const descriptor::DeviceUse& use,
                                                    std::map<std::string, std::string>& files) {
   for (const descriptor::Setting& setting : use.settings) {
@@ -111,8 +111,12 @@ struct Played {
   return std::nullopt;
 }
 
+[[nodiscard]] std::string file_beside(const std::filesystem::path& mission, const std::string& value) {
+  return value.starts_with('@') ? value : (mission.parent_path() / value).lexically_normal().string();
+}
+
 /// Empty `first`: no configuration uses it.
-[[nodiscard]] std::expected<Played, std::string> how_played(const descriptor::Subsystem& subsystem,
+[[nodiscard]] std::expected<Played, std::string> how_played(const descriptor::SubsystemDescriptor& subsystem,
                                                             const descriptor::Device& device) {
   Played played;
   played.device = &device;
@@ -146,7 +150,7 @@ std::expected<DeviceArguments, std::string> device_arguments(const descriptor::M
                                                              const descriptor::SimulatedDevice& device) {
   const auto* member = mission.find_subsystem(device.subsystem);
   if (member == nullptr) return std::unexpected{fmt::format("there is no subsystem {}", device.subsystem)};
-  const descriptor::Subsystem& subsystem = member->subsystem;
+  const descriptor::SubsystemDescriptor& subsystem = member->subsystem;
   std::vector<Played> endnodes;
   bool known = false;
   for (const descriptor::Device& each : subsystem.devices) {
@@ -179,6 +183,9 @@ std::expected<DeviceArguments, std::string> device_arguments(const descriptor::M
       if (its.name != device.device && its.part_of != device.device) continue;
       if (auto differ = add_files(subsystem, use, settings.files)) return std::unexpected{std::move(*differ)};
     }
+  // What the mission names is for the world alone, in place of what the subsystem has.
+  for (const descriptor::Setting& setting : device.settings)
+    if (descriptor::names_file(setting)) settings.files[setting.name] = file_beside(mission.file, setting.value);
   settings.cycle = main.cycle;
   settings.byte_order = endian_of(main.byte_order);
   settings.actuator = main.device->actuator;

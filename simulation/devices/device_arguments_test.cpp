@@ -72,7 +72,7 @@ TEST(DeviceArguments, TakesByteOrderPeriodStopAndSecondInhibitFromTheDescriptor)
 /// The joints with a camera beside them, each by several ways.
 descriptor::Mission several_endnodes() {
   auto mission = a_mission();
-  descriptor::Subsystem& arm = mission.subsystems[0].subsystem;
+  descriptor::SubsystemDescriptor& arm = mission.subsystems[0].subsystem;
   arm.devices[0].name = "JOINTS.DRIVE";
   arm.devices[0].part_of = "JOINTS";
   descriptor::Device camera;

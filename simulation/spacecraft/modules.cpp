@@ -21,7 +21,7 @@ Modules load_modules(const descriptor::Mission& mission) {
   return modules;
 }
 
-std::vector<Mistake> try_introduction(Subsystem& author, const descriptor::Subsystem& described) {
+std::vector<Mistake> try_introduction(Subsystem& author, const descriptor::SubsystemDescriptor& described) {
   const ManualClock clock;
   HeapMemory memory;
   LocalFlows flows;

@@ -20,6 +20,7 @@ struct Modules {
 [[nodiscard]] Modules load_modules(const descriptor::Mission& mission);
 
 /// What Software-Init will find of an author's mistakes against this descriptor, without a flight.
-[[nodiscard]] std::vector<Mistake> try_introduction(Subsystem& author, const descriptor::Subsystem& described);
+[[nodiscard]] std::vector<Mistake> try_introduction(Subsystem& author,
+                                                    const descriptor::SubsystemDescriptor& described);
 
 }  // namespace hirosco::simulation

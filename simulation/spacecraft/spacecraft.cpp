@@ -353,9 +353,9 @@ PermitPage* Spacecraft::permit(std::string_view name) noexcept {
 CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view name,
                                    const std::vector<Value>& arguments, Duration limit) {
   CommandOutcome outcome;
-  const auto* member = parts_.mission.find_subsystem(subsystem);
-  const descriptor::Subsystem& target = member != nullptr ? member->subsystem : parts_.mission.supervisor;
-  const std::vector<descriptor::Function> requests = pus::requests_of(target);
+  const auto* target = parts_.mission.find_member(subsystem);
+  if (target == nullptr) return outcome;
+  const std::vector<descriptor::Function> requests = pus::requests_of(*target);
   const auto request = std::ranges::find(requests, name, &descriptor::Function::name);
   if (request == requests.end()) return outcome;
   const std::vector<std::optional<Value>> given(arguments.begin(), arguments.end());
@@ -365,7 +365,7 @@ CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view 
   std::array<std::byte, max_packet_octets> buffer;
   sequence_ = static_cast<std::uint16_t>((sequence_ + 1) % modulo);
   const auto packet = pus::write_telecommand(buffer,
-                                             {.apid = target.id,
+                                             {.apid = target->id,
                                               .sequence_count = sequence_,
                                               .ack = pus::ack_all,
                                               .service = request->service,

@@ -18,7 +18,7 @@ struct ScriptPlayerTest : ::testing::Test {
   static std::string text_of(const char* file) {
     return descriptor::file_system()(std::filesystem::path{HIROSCO_SOURCE_DIR} / file).value();
   }
-  static descriptor::Subsystem described() {
+  static descriptor::SubsystemDescriptor described() {
     auto player = testing::read_descriptor(text_of("subsystems/script_player/script_player.xml"),
                                            {text_of("subsystems/hello/hello.xml")});
     player.file = HIROSCO_SOURCE_DIR "/subsystems/script_player/script_player.xml";

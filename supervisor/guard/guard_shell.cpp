@@ -11,6 +11,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -118,7 +119,11 @@ void GuardShell::run() {
 bool GuardShell::welcome(TimePoint now) {
   FileDescriptor socket{::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)};
   if (!socket) return errno == EAGAIN;
-  if (clients_.size() == most_clients) clients_.erase(clients_.begin());
+  if (clients_.size() == most_clients) {
+    // Who has asked waits for its answer; only where all have is one of them let go, the oldest.
+    const auto silent = std::ranges::find(clients_, 0U, &Client::stop);
+    clients_.erase(silent != clients_.end() ? silent : clients_.begin());
+  }
   clients_.push_back({std::move(socket), now + patience, 0});
   return true;
 }

@@ -38,12 +38,13 @@ void WatchedDevice::hear(TimePoint now) noexcept {
   std::array<std::byte, enable_frame_octets> frame;
   const auto received = flow->receive(frame);
   if (!received || received->flow != Flow::New) return;
-  if (const auto status = read_enable_status(Octets{frame}.first(std::min(received->octets, frame.size())))) {
-    last = *status;
-    heard = true;
-    heard_at = now;
-    silence_told = false;
-  }
+  const auto status = read_enable_status(Octets{frame}.first(std::min(received->octets, frame.size())));
+  other_version = !status && status.error().code == ErrorCode::Mismatch;
+  if (!status) return;
+  last = *status;
+  heard = true;
+  heard_at = now;
+  silence_told = false;
 }
 
 bool WatchedDevice::falls_silent(TimePoint since, TimePoint now) noexcept {

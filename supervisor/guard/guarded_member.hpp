@@ -39,10 +39,11 @@ struct GuardFinding {
     SupervisorStill,  ///< the supervisor's own loop stood still: everything was fenced
     StopAsked,  ///< somebody stopped everything by signal or local socket
     InhibitSilent,  ///< it may act, and the second inhibit of one of its devices does not answer
+    InhibitOfOtherVersion,  ///< as above, as it answers by frames of another version
   };
   Kind kind{};
   std::uint16_t apid{0};
-  std::uint16_t device{0};  ///< of InhibitSilent: place in its descriptor
+  std::uint16_t device{0};  ///< of an inhibit: place in its descriptor
   friend bool operator==(const GuardFinding&, const GuardFinding&) = default;
 };
 
@@ -58,6 +59,7 @@ struct WatchedDevice {
   bool heard{false};
   TimePoint heard_at{};
   bool silence_told{false};
+  bool other_version{false};  ///< of its newest answer: it counts as none
   std::uint32_t fenced_at_sequence{0};  ///< an answer to a later command knows of the newest stop
   std::optional<Duration> stopped;
   /// It has answered a command that came after the newest fence.
@@ -67,6 +69,9 @@ struct WatchedDevice {
   void hear(TimePoint now) noexcept;
   /// Once for each silence: it has not answered for `inhibit_silence`, counted from `since` at the earliest.
   [[nodiscard]] bool falls_silent(TimePoint since, TimePoint now) noexcept;
+  [[nodiscard]] GuardFinding::Kind silence() const noexcept {
+    return other_version ? GuardFinding::Kind::InhibitOfOtherVersion : GuardFinding::Kind::InhibitSilent;
+  }
   void tell(bool enabled, std::uint32_t epoch) noexcept;
 };
 

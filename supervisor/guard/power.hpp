@@ -30,6 +30,7 @@ class PowerSwitches {
     std::uint32_t sequence{0};
     std::uint32_t changed_at{0};  ///< an answer to a later command knows what it is to be now
     PowerStatus last{};
+    bool other_version{false};  ///< of its newest answer
   };
   std::vector<Switch> switches_;
   bool on_{false};

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <span>
+#include <utility>
 
 namespace hirosco::supervisor {
 namespace {
@@ -25,10 +26,12 @@ constexpr std::size_t noticed = kept_roles + 4;
   for (cmsghdr* part = CMSG_FIRSTHDR(&header); part != nullptr; part = CMSG_NXTHDR(&header, part)) {
     if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_RIGHTS) continue;
     const std::size_t here = (part->cmsg_len - CMSG_LEN(0)) / sizeof(int);
-    for (std::size_t i = 0; i < here && count < into.size(); ++i) {
+    for (std::size_t i = 0; i < here; ++i) {
       int number = -1;
       std::memcpy(&number, CMSG_DATA(part) + i * sizeof number, sizeof number);
-      into[count++].reset(number);
+      // The room for them is rounded up: one more may have come than is counted.
+      FileDescriptor owned{number};
+      if (count < into.size()) into[count++] = std::move(owned);
     }
   }
   return count;

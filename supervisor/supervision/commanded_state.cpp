@@ -50,7 +50,8 @@ constexpr std::size_t most_setting_octets = 800;
   return data;
 }
 
-[[nodiscard]] bool sets_a_protection(const descriptor::Function& function, const descriptor::Subsystem& subsystem) {
+[[nodiscard]] bool sets_a_protection(const descriptor::Function& function,
+                                     const descriptor::SubsystemDescriptor& subsystem) {
   return std::ranges::any_of(function.arguments, [&](const descriptor::Function::Argument& argument) {
     const std::string_view name = std::string_view{argument.of}.substr(0, argument.of.find('.'));
     const auto* parameter = subsystem.find_parameter(name);
@@ -80,7 +81,8 @@ void CommandedState::lower(State most) noexcept {
   if (rank(most) < rank(state_)) state_ = on_the_way_up(most);
 }
 
-bool CommandedState::concerns(const pus::TelecommandView& telecommand, const descriptor::Subsystem& subsystem) {
+bool CommandedState::concerns(const pus::TelecommandView& telecommand,
+                              const descriptor::SubsystemDescriptor& subsystem) {
   if (is_parameter_write(telecommand) || is_event_switch(telecommand) || is_definition(telecommand)) return true;
   const auto call = called_function(telecommand);
   if (!call) return false;
@@ -89,7 +91,8 @@ bool CommandedState::concerns(const pus::TelecommandView& telecommand, const des
   return function != nullptr && sets_a_protection(*function, subsystem);
 }
 
-Kept CommandedState::completed(const pus::TelecommandView& telecommand, const descriptor::Subsystem& subsystem) {
+Kept CommandedState::completed(const pus::TelecommandView& telecommand,
+                               const descriptor::SubsystemDescriptor& subsystem) {
   const Octets data = telecommand.application_data();
   if (is_parameter_write(telecommand)) set_parameters(data, subsystem);
   else if (is_event_switch(telecommand)) switch_events(data, telecommand.subtype() == EventReports::enable_reports);
@@ -119,7 +122,7 @@ void CommandedState::enter(State state) noexcept {
   protection_was_set_ = false;
 }
 
-void CommandedState::configure(std::uint8_t id, const descriptor::Subsystem& subsystem) {
+void CommandedState::configure(std::uint8_t id, const descriptor::SubsystemDescriptor& subsystem) {
   if (configuration_ == id) return;  // it was in force: nothing has happened
   configuration_ = id;
   structures_.clear();
@@ -133,7 +136,7 @@ void CommandedState::configure(std::uint8_t id, const descriptor::Subsystem& sub
   });
 }
 
-void CommandedState::set_parameters(Octets data, const descriptor::Subsystem& subsystem) {
+void CommandedState::set_parameters(Octets data, const descriptor::SubsystemDescriptor& subsystem) {
   OctetReader reader{data};
   const auto count = reader.get<std::uint8_t>();
   for (unsigned i = 0; i < count && reader.good(); ++i) {
@@ -158,7 +161,7 @@ void CommandedState::switch_events(Octets data, bool enabled) {
     else silent_events_.insert(id);
 }
 
-Kept CommandedState::define(std::uint8_t subtype, Octets data, const descriptor::Subsystem& subsystem) {
+Kept CommandedState::define(std::uint8_t subtype, Octets data, const descriptor::SubsystemDescriptor& subsystem) {
   if (subtype == Structures::create_structure || subtype == Structures::append_parameters) {
     const auto id = OctetReader{data}.get<std::uint16_t>();
     const bool creates = subtype == Structures::create_structure;
@@ -188,7 +191,7 @@ Kept CommandedState::define(std::uint8_t subtype, Octets data, const descriptor:
   return all ? Kept::Yes : Kept::NoRoom;
 }
 
-bool CommandedState::is_defined(std::uint16_t id, const descriptor::Subsystem& subsystem) const {
+bool CommandedState::is_defined(std::uint16_t id, const descriptor::SubsystemDescriptor& subsystem) const {
   const auto has = [id](const std::vector<descriptor::HousekeepingStructure>& all) {
     return std::ranges::find(all, id, &descriptor::HousekeepingStructure::id) != all.end();
   };
@@ -214,7 +217,8 @@ std::size_t CommandedState::definition_octets() const noexcept {
   return sum;
 }
 
-std::vector<SettingCommand> CommandedState::settings_for(State state, const descriptor::Subsystem& subsystem) const {
+std::vector<SettingCommand> CommandedState::settings_for(State state,
+                                                         const descriptor::SubsystemDescriptor& subsystem) const {
   std::vector<SettingCommand> all;
   for (const ParameterValue& set : parameters_) {
     const auto place = descriptor::find_parameter(subsystem, set.id);
@@ -255,7 +259,7 @@ std::vector<SettingCommand> CommandedState::settings_for(State state, const desc
   return all;
 }
 
-std::vector<std::string> CommandedState::out_of_reach(const descriptor::Subsystem& subsystem) const {
+std::vector<std::string> CommandedState::out_of_reach(const descriptor::SubsystemDescriptor& subsystem) const {
   std::vector<std::string> names;
   for (const ParameterValue& set : parameters_)
     if (const auto place = descriptor::find_parameter(subsystem, set.id)) {

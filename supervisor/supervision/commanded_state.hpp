@@ -42,9 +42,10 @@ class CommandedState {
   void lower(State most) noexcept;
 
   /// A request that this looks at at all: worth to be remembered until it is completed.
-  [[nodiscard]] static bool concerns(const pus::TelecommandView& telecommand, const descriptor::Subsystem& subsystem);
+  [[nodiscard]] static bool concerns(const pus::TelecommandView& telecommand,
+                                     const descriptor::SubsystemDescriptor& subsystem);
   /// It has reported TM[1,7].
-  Kept completed(const pus::TelecommandView& telecommand, const descriptor::Subsystem& subsystem);
+  Kept completed(const pus::TelecommandView& telecommand, const descriptor::SubsystemDescriptor& subsystem);
 
   /// All of it, for a supervisor that goes on for this one (docs/adr/0093).
   void note(OctetWriter& writer) const;
@@ -52,9 +53,10 @@ class CommandedState {
 
   /// What brings the settings back that can be set in `state`, Pre-Operational or Safe-Operational, and in no state before it on the
   /// way up; in the order in which they are to be sent.
-  [[nodiscard]] std::vector<SettingCommand> settings_for(State state, const descriptor::Subsystem& subsystem) const;
+  [[nodiscard]] std::vector<SettingCommand> settings_for(State state,
+                                                         const descriptor::SubsystemDescriptor& subsystem) const;
   /// Parameters that can be set in neither of the two: setting them might move something. Their names.
-  [[nodiscard]] std::vector<std::string> out_of_reach(const descriptor::Subsystem& subsystem) const;
+  [[nodiscard]] std::vector<std::string> out_of_reach(const descriptor::SubsystemDescriptor& subsystem) const;
 
  private:
   struct ParameterValue {
@@ -69,11 +71,11 @@ class CommandedState {
     std::optional<bool> periodic{};
   };
   void enter(State state) noexcept;
-  void configure(std::uint8_t id, const descriptor::Subsystem& subsystem);
-  void set_parameters(Octets data, const descriptor::Subsystem& subsystem);
+  void configure(std::uint8_t id, const descriptor::SubsystemDescriptor& subsystem);
+  void set_parameters(Octets data, const descriptor::SubsystemDescriptor& subsystem);
   void switch_events(Octets data, bool enabled);
-  Kept define(std::uint8_t subtype, Octets data, const descriptor::Subsystem& subsystem);
-  [[nodiscard]] bool is_defined(std::uint16_t structure, const descriptor::Subsystem& subsystem) const;
+  Kept define(std::uint8_t subtype, Octets data, const descriptor::SubsystemDescriptor& subsystem);
+  [[nodiscard]] bool is_defined(std::uint16_t structure, const descriptor::SubsystemDescriptor& subsystem) const;
   [[nodiscard]] Structure& structure(std::uint16_t id);
   [[nodiscard]] std::size_t definition_octets() const noexcept;
 

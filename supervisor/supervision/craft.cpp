@@ -39,13 +39,13 @@ Member* Craft::ground_link() {
 }
 
 std::string Craft::name_of(std::uint16_t apid) const {
-  if (apid == mission.supervisor.id) return mission.supervisor.name;
-  const auto* found = mission.find_subsystem(apid);
-  return found != nullptr ? found->subsystem.name : "APID " + std::to_string(apid);
+  const auto* found = mission.find_member(apid);
+  return found != nullptr ? found->name : "APID " + std::to_string(apid);
 }
 
 void Craft::tell(std::string_view line, std::uint16_t subject) {
-  static_cast<void>(log.append({.kind = LogKind::Action, .source = 1, .peer = subject, .packet = {}, .note = line}));
+  static_cast<void>(log.append(
+      {.kind = LogKind::Action, .source = mission.supervisor.id, .peer = subject, .packet = {}, .note = line}));
   observer.told(platform.clock.onboard(), line);
 }
 

@@ -8,7 +8,7 @@
 
 namespace hirosco::supervisor {
 
-OwnSubsystem::OwnSubsystem(const descriptor::Subsystem& described, const Platform& platform, Author& author)
+OwnSubsystem::OwnSubsystem(const descriptor::SubsystemDescriptor& described, const Platform& platform, Author& author)
     : author_{author},
       vital_{std::make_unique<VitalPage>()},
       permit_{std::make_unique<PermitPage>()},

@@ -26,7 +26,7 @@ class OwnSubsystem final : public Remembered, private Subsystem {
     virtual void provide(OwnSubsystem& own) = 0;
     virtual void show() noexcept = 0;
   };
-  OwnSubsystem(const descriptor::Subsystem& described, const Platform& platform, Author& author);
+  OwnSubsystem(const descriptor::SubsystemDescriptor& described, const Platform& platform, Author& author);
 
   using Subsystem::abort;
   using Subsystem::finish;

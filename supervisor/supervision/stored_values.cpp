@@ -26,7 +26,7 @@ using Parameters = pus::ParameterService;
 
 /// Id and value of each that a TC[20,3] or a TM[20,2] of this subsystem has.
 template <class Take>
-void each_value(const descriptor::Subsystem& subsystem, Octets data, Take take) {
+void each_value(const descriptor::SubsystemDescriptor& subsystem, Octets data, Take take) {
   OctetReader reader{data};
   for (auto count = reader.get<std::uint8_t>(); count > 0; --count) {
     const auto id = reader.get<std::uint32_t>();
@@ -40,13 +40,13 @@ void each_value(const descriptor::Subsystem& subsystem, Octets data, Take take) 
 }
 
 /// The parameter that an id is of, or is in.
-[[nodiscard]] std::uint32_t owner_of(const descriptor::Subsystem& subsystem, std::uint32_t id) {
+[[nodiscard]] std::uint32_t owner_of(const descriptor::SubsystemDescriptor& subsystem, std::uint32_t id) {
   const auto place = descriptor::find_parameter(subsystem, id);
   return place ? descriptor::identity_of(subsystem, {{}, place->parameter, std::nullopt, {}}).wire() : id;
 }
 
 /// A write takes effect at the next cycle boundary, and a function may have come between two of them.
-[[nodiscard]] Duration settling(const descriptor::Subsystem& subsystem) {
+[[nodiscard]] Duration settling(const descriptor::SubsystemDescriptor& subsystem) {
   Duration longest{};
   for (const auto& configuration : subsystem.configurations) longest = std::max(longest, configuration.sampling);
   return 2 * longest;
@@ -99,7 +99,7 @@ void StoredValues::begin(std::uint16_t apid, Subject& subject) {
 }
 
 void StoredValues::refuse(const Subject& subject, std::size_t copy, CopyFault fault) {
-  const descriptor::Subsystem& subsystem = subject.member->subsystem;
+  const descriptor::SubsystemDescriptor& subsystem = subject.member->subsystem;
   craft_.tell(fmt::format("copy {} of {}'s stored values is not used: {}", copy + 1, subsystem.name, to_text(fault)),
               subsystem.id);
   news_.push_back(
@@ -108,7 +108,7 @@ void StoredValues::refuse(const Subject& subject, std::size_t copy, CopyFault fa
 
 /// The persistent parameters that it sets, or has an argument of.
 StoredValues::Ids StoredValues::set_by(const pus::TelecommandView& telecommand, const Subject& subject) const {
-  const descriptor::Subsystem& subsystem = subject.member->subsystem;
+  const descriptor::SubsystemDescriptor& subsystem = subject.member->subsystem;
   Ids ids;
   if (is_write(telecommand)) {
     each_value(subsystem, telecommand.application_data(), [&](std::uint32_t id, Octets) {
@@ -219,7 +219,7 @@ void StoredValues::ask(std::uint16_t apid, Subject& subject) {
       Duration{0});
 }
 
-void StoredValues::redeclared(const descriptor::Subsystem& subsystem) {
+void StoredValues::redeclared(const descriptor::SubsystemDescriptor& subsystem) {
   if (const auto found = subjects_.find(subsystem.id); found != subjects_.end())
     found->second.values.redeclare(subsystem);
 }

@@ -43,7 +43,7 @@ class StoredValues final : public Hearer, public Watch {
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
   void watch(TimePoint now) override;
   /// Its descriptor was read again, and says this before anything was set.
-  void redeclared(const descriptor::Subsystem& subsystem);
+  void redeclared(const descriptor::SubsystemDescriptor& subsystem);
   /// Its process is gone. What a function had made of a value and nobody could ask for any more is what the descriptor says again.
   void ended(std::uint16_t apid);
 

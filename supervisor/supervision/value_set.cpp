@@ -35,7 +35,8 @@ class LayoutHash {
   std::uint64_t value_{0xCBF2'9CE4'8422'2325};
 };
 
-[[nodiscard]] std::uint32_t id_of(const descriptor::Subsystem& subsystem, const descriptor::Parameter& parameter) {
+[[nodiscard]] std::uint32_t id_of(const descriptor::SubsystemDescriptor& subsystem,
+                                  const descriptor::Parameter& parameter) {
   return ParameterId{subsystem.id, parameter.field.type, parameter.id}.wire();
 }
 
@@ -61,7 +62,7 @@ ValueSet::ValueSet(const descriptor::MissionSubsystem& declared) : declared_{dec
   layout_ = hash.value();
 }
 
-void ValueSet::redeclare(const descriptor::Subsystem& declared) {
+void ValueSet::redeclare(const descriptor::SubsystemDescriptor& declared) {
   for (const descriptor::Parameter& parameter : declared.parameters) {
     if (!parameter.persistent) continue;
     const std::uint32_t id = id_of(declared, parameter);

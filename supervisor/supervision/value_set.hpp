@@ -19,7 +19,7 @@ class ValueSet {
   explicit ValueSet(const descriptor::MissionSubsystem& declared);
 
   /// Ranges and initial values are these from now on; every value that was set is within its range (docs/adr/0095).
-  void redeclare(const descriptor::Subsystem& declared);
+  void redeclare(const descriptor::SubsystemDescriptor& declared);
 
   /// It has persistent parameters at all.
   [[nodiscard]] bool wanted() const noexcept { return !parameters_.empty(); }

@@ -31,8 +31,8 @@ DEFECTS = {
     # The stop was lifted when SET_STATE(Operational) was permitted, and what waited for the disk was forwarded whatever
     # had happened in between.
     "SF4": ("I4", [
-        (TELECOMMANDS, "  if (asks_only) return answer_question(incoming, *telecommand);",
-         "  if (asks_only) return answer_question(incoming, *telecommand);\n"
+        (TELECOMMANDS, "  std::string text = telecommand_text(*telecommand);",
+         "  std::string text = telecommand_text(*telecommand);\n"
          '  if (planted("SF4") && decision->releases_stop && apid != supervisor_apid)\n'
          "    static_cast<void>(craft_.guard.release(apid, craft_.guard.fences(apid)));"),
         (TELECOMMANDS, "if (craft_.guard.fences(next->apid) != next->fences) {",

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 SUPERVISION, CYCLE = "supervisor/supervision", "hirosco/subsystem/cycle/cycle.cpp"
 GATE = "hirosco/subsystem/cycle/actuator_gate.cpp"
-GUARD, MANIPULATOR = "supervisor/guard/guard.cpp", "subsystems/manipulator/manipulator.cpp"
+GUARD, WATCHING = "supervisor/guard/guard.cpp", "supervisor/guard/watching.cpp"
+MANIPULATOR = "subsystems/manipulator/manipulator.cpp"
 PERMISSION, LINK_ENDS = f"{SUPERVISION}/data_handling/permission.cpp", "hirosco/subsystem/service_loop/link_ends.cpp"
 RECEPTION, GROUND_LINK = f"{SUPERVISION}/data_handling/reception.cpp", "subsystems/communication/ground_link.cpp"
 TELECOMMANDS, RETRIEVAL = f"{SUPERVISION}/data_handling/telecommands.cpp", f"{SUPERVISION}/data_handling/retrieval.cpp"
@@ -66,15 +67,15 @@ DEFECTS = [
            "supervisor_test", "SlowRetrievalTest.AskedAnewTwiceWhileADiskStandsStillTheLateOneIsStillNobodys"),
     # --- the guard -------------------------------------------------------------------------------------------------------
     # All who share a processor with a cycle that loops for ever were told as hung, the first of them as the culprit.
-    Defect("SF2 culprit", GUARD, "GuardedMember& culprit = spinner(member);",
+    Defect("SF2 culprit", WATCHING, "GuardedMember& culprit = spinner(member);",
            "GuardedMember& culprit = PLANTED ? member : spinner(member);",
            "supervisor_test", "GuardTest.OfThoseThatStandStillTheOneThatHasTheProcessorIsTheCulprit"),
     # Who hung was told, and went on hanging.
-    Defect("SF2 nobody is ended", GUARD, "  member.killed = true;\n  if (member.grip) member",
+    Defect("SF2 nobody is ended", WATCHING, "  member.killed = true;\n  if (member.grip) member",
            "  member.killed = true;\n  if (member.grip && !PLANTED) member",
            "supervisor_test", "GuardTest.OneThatStandsStillIsFencedToldAndEndedAfterTheGrace"),
     # Nobody watched the service loop.
-    Defect("SF8 service loop stands", GUARD, "if (!member.doomed) observe_service(",
+    Defect("SF8 service loop stands", WATCHING, "if (!member.doomed) observe_service(",
            "if (!member.doomed && !PLANTED) observe_service(",
            "supervisor_test", "GuardTest.AServiceLoopThatStandsStillIsAHang"),
     # A supervisor that lives and does not step was in nobody's list.
@@ -85,7 +86,7 @@ DEFECTS = [
            "  permit->release();\n  if (PLANTED) {\n    permit->epoch.store(epoch);\n    permit->go.store(permission_word(epoch));\n  }",
            "supervisor_test", "GuardTest.EveryFenceReleaseAndNewProcessRaisesTheEpoch"),
     # Who overwrote its own vital page was passed over.
-    Defect("SF23 overwritten page", GUARD, "      doom(member, GuardFinding::Kind::PageDamaged, now);\n",
+    Defect("SF23 overwritten page", WATCHING, "      doom(member, GuardFinding::Kind::PageDamaged, now);\n",
            "      if (!PLANTED) doom(member, GuardFinding::Kind::PageDamaged, now);\n",
            "supervisor_test", "GuardTest.AVitalPageThatIsOverwrittenIsAHangWhateverIsWritten"),
 

@@ -122,9 +122,7 @@ void fly(Flight& flight) {
 
 void ask_by_name(Flight& flight) {
   if (!flight.commission()) throw std::runtime_error{"the mission was not commissioned"};
-  std::vector<const descriptor::Subsystem*> all{&flight.mission().supervisor};
-  for (const auto& member : flight.mission().subsystems) all.push_back(&member.subsystem);
-  for (const auto* subsystem : all)
+  for (const auto* subsystem : flight.mission().everybody())
     for (const auto& request : pus::requests_of(*subsystem)) {
       // What ends the flight, or lets nothing through any more.
       constexpr std::array left_out{"SHUTDOWN", "SAFE_ALL", "SET_STATE", "SET_MODE", "ENTER_MODE"};

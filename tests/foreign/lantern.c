@@ -309,9 +309,9 @@ static void read_lamp(void) {
   int news = 0;
   if (newest >= 0) {
     uint16_t sum = newest >= 2 ? (uint16_t)(kept[newest - 1] << 8 | kept[newest - 2]) : 0;
-    int good = newest >= 22 && kept[0] == 0x44 && kept[1] == 0x48 && kept[2] == 2 && newest == 22 + (kept[14] | kept[15] << 8) &&
-               sum == crc16(kept, (size_t)newest - 2);
-    if (!good) ++damaged_;
+    int intact = newest >= 22 && kept[0] == 0x44 && kept[1] == 0x48 && sum == crc16(kept, (size_t)newest - 2);
+    if (intact && kept[2] != 1 && kept[2] != 2) ++other_;
+    else if (!intact || kept[2] != 2 || newest != 22 + (kept[14] | kept[15] << 8)) ++damaged_;
     else if (newest != 26) ++wrong_;
     else {
       news = !heard_ || le32(kept + 8) != echoed_;
@@ -320,10 +320,15 @@ static void read_lamp(void) {
     }
   }
   int controls = state_ == 4 || state_ == 5;
-  if (news) heard_ = lamp_alive_ = 1, quiet_ = damaged_ = wrong_ = repeated_ = 0;
+  if (news) heard_ = lamp_alive_ = 1, quiet_ = damaged_ = wrong_ = repeated_ = other_ = 0;
   else if (heard_ || controls) ++quiet_;
   if (!news && quiet_ == silence_cycles && (lamp_alive_ || !heard_)) {
-    uint8_t why[13] = {(uint8_t)(damaged_ > wrong_ && damaged_ > repeated_ ? 3 : wrong_ > repeated_ ? 4 : repeated_ > 0 ? 5 : 1)};
+    uint32_t most = 0;
+    uint8_t why[13] = {1};  // nothing came
+    if (damaged_ > most) most = damaged_, why[0] = 3;
+    if (wrong_ > most) most = wrong_, why[0] = 4;
+    if (other_ > most) most = other_, why[0] = 10;
+    if (repeated_ > most) most = repeated_, why[0] = 5;
     put32(why + 1, quiet_), put32(why + 5, damaged_), put32(why + 9, wrong_);
     lamp_alive_ = 0;
     event(0xF100, why, 13);

@@ -33,7 +33,7 @@ static request way_request_;
 static link_end consumer_, producers_[max_links];
 static uint32_t age_, factor_;
 static int fresh_, was_stale_, heard_, lamp_alive_, told_lost_;
-static uint32_t quiet_, damaged_, wrong_, repeated_;
+static uint32_t quiet_, damaged_, wrong_, repeated_, other_;
 static double swing_[2];
 static struct {
   request from;
@@ -394,7 +394,7 @@ static void configure(const request* of, uint8_t id) {
     }
     configured_ = 1;
     structure_.on = 1, structure_.once_more = 0, structure_.interval = 20, structure_.phase = 0;
-    inhibited_ = silent_ = quiet_ = damaged_ = wrong_ = repeated_ = 0;
+    inhibited_ = silent_ = quiet_ = damaged_ = wrong_ = repeated_ = other_ = 0;
     heard_ = lamp_alive_ = told_lost_ = fresh_ = was_stale_ = 0;
     heartbeat_ = load64(permit_ + 32);
     store_checked(vital_ + 12, id);

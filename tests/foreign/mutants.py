@@ -90,6 +90,7 @@ MUTANTS = [
     (C, "state_ == 6 ? 2 : 0", "0", "device.stop"),
     (C, "      news = !heard_ || le32(kept + 8) != echoed_;", "      news = 1;", "device.silent"),
     (C, "sum == crc16(kept, (size_t)newest - 2)", "1", "device.silent"),
+    (C, "if (intact && kept[2] != 1 && kept[2] != 2) ++other_;\n    else if", "if", "device.silent"),
     (C, "  if (controls && !lamp_alive_) inhibit(device_bit);\n", "", "device.silent"),
     (C, "  if (state_ == 5 && (lost_ || (silent_ > silence_real && way_size_ == 0)))", "  if (0)", "permit.heartbeat"),
 ]

@@ -265,8 +265,9 @@ TEST(InterfacePages, CodesAndWords) {
                                  {of(descriptor::DeviceLoss::LetGo), "LetGo"},
                                  {of(descriptor::DeviceLoss::NotOpened), "NotOpened"},
                                  {of(descriptor::DeviceLoss::OldEpoch), "OldEpoch"},
-                                 {of(descriptor::DeviceLoss::NeverHeard), "NeverHeard"}});
-  descriptor::Subsystem bare;
+                                 {of(descriptor::DeviceLoss::NeverHeard), "NeverHeard"},
+                                 {of(descriptor::DeviceLoss::OtherVersion), "OtherVersion"}});
+  descriptor::SubsystemDescriptor bare;
   bare.devices.emplace_back().name = "NAME";
   descriptor::Configuration& used = bare.configurations.emplace_back();
   used.requires_.emplace_back().name = "NAME";

@@ -19,7 +19,8 @@ namespace {
 using descriptor::State;
 
 /// TC[5,6] of one event, by its name.
-std::vector<std::byte> silence(const descriptor::Subsystem& subsystem, std::string_view event, std::uint16_t count) {
+std::vector<std::byte> silence(const descriptor::SubsystemDescriptor& subsystem, std::string_view event,
+                               std::uint16_t count) {
   std::array<std::byte, 3> data{};
   OctetWriter{data}.put(std::uint8_t{1}).put(subsystem.find_event(event)->id);
   std::array<std::byte, 64> buffer;

@@ -50,7 +50,7 @@ Value permitted(const pus::Argument& argument) {
 }
 
 /// All that a ground may ask of it while it acts, but for changes of its state.
-void play_palette(Flight& flight, const descriptor::Subsystem& subsystem) {
+void play_palette(Flight& flight, const descriptor::SubsystemDescriptor& subsystem) {
   for (const descriptor::Function& request : pus::requests_of(subsystem)) {
     if (request.name == "SET_STATE" || request.name == "CONFIGURE") continue;
     std::vector<Value> arguments;

@@ -55,7 +55,7 @@ struct Reread : ::testing::Test {
            flight.set_state("JOYSTICK", State::Offline).completed;
   }
   [[nodiscard]] bool reread() { return flight.craft().command("SUPERVISOR", "REREAD", {Number{joystick}}).completed; }
-  [[nodiscard]] const descriptor::Subsystem& in_the_member() {
+  [[nodiscard]] const descriptor::SubsystemDescriptor& in_the_member() {
     return flight.craft().subsystem("JOYSTICK")->descriptor();
   }
   /// The descriptor in force when it is read, with another place of the device in its first configuration.

@@ -224,7 +224,7 @@ def stop(judged):
 def silent(judged):
     with_devices(judged)
     names = list(judged.described.devices)
-    for answer, reason in (("silent", 1), ("damaged", 3), ("repeated", 5)):
+    for answer, reason in (("silent", 1), ("damaged", 3), ("repeated", 5), ("of another version", 10)):
         for use in judged.configuration().devices:
             with judged.craft() as craft:
                 flown = Flown(judged, craft).operational()

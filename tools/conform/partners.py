@@ -74,7 +74,7 @@ class PlayedDevice:
             return
         answered = self.repeated if self.answer == "repeated" else sequence
         self.repeated = answered
-        status = struct.pack("<HBBIIHHI", 0x4844, 2, 0, epoch, answered, 0, len(self.input), 0) + self.input
+        status = struct.pack("<HBBIIHHI", 0x4844, 0x22 if self.answer == "of another version" else 2, 0, epoch, answered, 0, len(self.input), 0) + self.input
         status += struct.pack("<H", wire.crc(status) ^ (1 if self.answer == "damaged" else 0))
         if self.path:
             peer = self.path + ".subsystem"

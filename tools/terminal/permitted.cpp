@@ -28,7 +28,7 @@ std::string while_in(std::uint16_t states) {
   return "while it is " + text;
 }
 
-std::string permitted_where(const descriptor::Mission& mission, const descriptor::Subsystem& addressee,
+std::string permitted_where(const descriptor::Mission& mission, const descriptor::SubsystemDescriptor& addressee,
                             std::string_view request) {
   std::vector<std::pair<std::uint16_t, std::vector<std::string>>> alike;  // states, and the modes in which they permit
   for (const auto& mode : mission.modes)

@@ -11,8 +11,8 @@ namespace hirosco::terminal {
 
 /// Where the ground may ask this of a subsystem: "mode standalone while it is Operational; mode safe in any state". `request` as the
 /// table of permission has it: "MOVE_TO", "SET_STATE Operational". Empty: nowhere.
-[[nodiscard]] std::string permitted_where(const descriptor::Mission& mission, const descriptor::Subsystem& addressee,
-                                          std::string_view request);
+[[nodiscard]] std::string permitted_where(const descriptor::Mission& mission,
+                                          const descriptor::SubsystemDescriptor& addressee, std::string_view request);
 
 /// "while it is Safe-Operational or Operational", "in any state": bit n set is State n.
 [[nodiscard]] std::string while_in(std::uint16_t states);

@@ -78,7 +78,7 @@ class Table {
 
 class SubsystemPart {
  public:
-  SubsystemPart(std::string& out, const Catalogue& catalogue, const descriptor::Subsystem& subsystem)
+  SubsystemPart(std::string& out, const Catalogue& catalogue, const descriptor::SubsystemDescriptor& subsystem)
       : out_{out}, catalogue_{catalogue}, subsystem_{subsystem} {}
 
   void write() {
@@ -232,7 +232,7 @@ class SubsystemPart {
 
   std::string& out_;
   const Catalogue& catalogue_;
-  const descriptor::Subsystem& subsystem_;
+  const descriptor::SubsystemDescriptor& subsystem_;
   std::set<std::string> said_;
 };
 

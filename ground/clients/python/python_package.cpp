@@ -186,7 +186,7 @@ struct Value {
 /// The class of one subsystem: the table of its descriptor, and its methods.
 class SubsystemClass {
  public:
-  SubsystemClass(const Catalogue& catalogue, const descriptor::Subsystem& subsystem)
+  SubsystemClass(const Catalogue& catalogue, const descriptor::SubsystemDescriptor& subsystem)
       : catalogue_{catalogue}, subsystem_{subsystem}, names_{subsystem_names} {
     for (const auto& function : catalogue_.functions_of(subsystem_))
       if (function.sets == 0) add_function(function);  // parameters have methods of their own
@@ -381,7 +381,7 @@ class SubsystemClass {
   }
 
   const Catalogue& catalogue_;
-  const descriptor::Subsystem& subsystem_;
+  const descriptor::SubsystemDescriptor& subsystem_;
   PythonNames names_;
   std::string functions_, parameters_, layouts_, events_, reports_, methods_;
 };

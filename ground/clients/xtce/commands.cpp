@@ -107,7 +107,7 @@ struct Layout {
 class Commands {
  public:
   Commands(SpaceSystem& system, TypeSet& types, const PacketRoot& root, const Catalogue& catalogue,
-           const descriptor::Subsystem& subsystem, const std::string& telecommand, const std::string& failure)
+           const descriptor::SubsystemDescriptor& subsystem, const std::string& telecommand, const std::string& failure)
       : system_{system}, types_{types}, catalogue_{catalogue}, subsystem_{subsystem}, verifiers_{root, failure} {
     Element base{"MetaCommand", {{"abstract", "true"}}};
     base.children.push_back(
@@ -288,7 +288,7 @@ class Commands {
   SpaceSystem& system_;
   TypeSet& types_;
   const Catalogue& catalogue_;
-  const descriptor::Subsystem& subsystem_;
+  const descriptor::SubsystemDescriptor& subsystem_;
   Verifiers verifiers_;
   std::string base_;
   CommandPaths paths_;
@@ -321,7 +321,7 @@ std::string add_telecommand(SpaceSystem& system, TypeSet& types) {
 }
 
 CommandPaths add_commands(SpaceSystem& system, TypeSet& types, const PacketRoot& root, const Catalogue& catalogue,
-                          const descriptor::Subsystem& subsystem, const std::string& telecommand,
+                          const descriptor::SubsystemDescriptor& subsystem, const std::string& telecommand,
                           const std::string& failure) {
   Commands commands{system, types, root, catalogue, subsystem, telecommand, failure};
   commands.add_functions();

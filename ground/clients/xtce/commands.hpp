@@ -18,7 +18,7 @@ using CommandPaths = std::map<std::string, std::string, std::less<>>;
 /// Every request of a subsystem that somebody on ground may send, and a WRITE_NAME for each parameter that may be set. `telecommand`
 /// and `failure` are the paths of what they stand on and of the code that says why one has failed.
 [[nodiscard]] CommandPaths add_commands(SpaceSystem& system, TypeSet& types, const PacketRoot& root,
-                                        const Catalogue& catalogue, const descriptor::Subsystem& subsystem,
+                                        const Catalogue& catalogue, const descriptor::SubsystemDescriptor& subsystem,
                                         const std::string& telecommand, const std::string& failure);
 
 }  // namespace hirosco::ground

@@ -244,7 +244,7 @@ PacketRoot add_packet_root(SpaceSystem& system, TypeSet& types, const Catalogue&
 }
 
 std::string add_failure_of(SpaceSystem& system, TypeSet& types, const PacketRoot& root,
-                           const descriptor::Subsystem& subsystem) {
+                           const descriptor::SubsystemDescriptor& subsystem) {
   Texts codes = texts_of<pus::FailureCode>();
   for (const auto& own : subsystem.failures) codes.push_back({own.code, own.name});
   const std::string code =

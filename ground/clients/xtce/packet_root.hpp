@@ -40,6 +40,6 @@ struct PacketRoot {
 
 /// The code of whatever service 1 says has failed of a subsystem's requests, by its own names. Returns its parameter.
 [[nodiscard]] std::string add_failure_of(SpaceSystem& system, TypeSet& types, const PacketRoot& root,
-                                         const descriptor::Subsystem& subsystem);
+                                         const descriptor::SubsystemDescriptor& subsystem);
 
 }  // namespace hirosco::ground

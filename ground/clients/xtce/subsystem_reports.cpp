@@ -18,7 +18,7 @@ using descriptor::HousekeepingStructure;
 class SubsystemReports {
  public:
   SubsystemReports(SpaceSystem& system, TypeSet& types, const PacketRoot& root, const Catalogue& catalogue,
-                   const descriptor::Subsystem& subsystem)
+                   const descriptor::SubsystemDescriptor& subsystem)
       : system_{system}, types_{types}, root_{root}, catalogue_{catalogue}, subsystem_{subsystem} {}
 
   void add_parameters() {
@@ -161,7 +161,7 @@ class SubsystemReports {
   TypeSet& types_;
   const PacketRoot& root_;
   const Catalogue& catalogue_;
-  const descriptor::Subsystem& subsystem_;
+  const descriptor::SubsystemDescriptor& subsystem_;
   std::vector<std::vector<std::string>> paths_;  ///< of each parameter: its own, or those of its members
   std::set<std::pair<std::uint16_t, std::size_t>> known_;
 };
@@ -169,7 +169,7 @@ class SubsystemReports {
 }  // namespace
 
 EventArguments add_subsystem_reports(SpaceSystem& system, TypeSet& types, const PacketRoot& root,
-                                     const Catalogue& catalogue, const descriptor::Subsystem& subsystem) {
+                                     const Catalogue& catalogue, const descriptor::SubsystemDescriptor& subsystem) {
   SubsystemReports reports{system, types, root, catalogue, subsystem};
   reports.add_parameters();
   reports.add_housekeeping();

@@ -18,6 +18,7 @@ using EventArguments = std::map<std::uint16_t, std::vector<EventArgument>>;
 
 /// The parameters of a subsystem, its housekeeping structures, its events and the reports of its own services.
 [[nodiscard]] EventArguments add_subsystem_reports(SpaceSystem& system, TypeSet& types, const PacketRoot& root,
-                                                   const Catalogue& catalogue, const descriptor::Subsystem& subsystem);
+                                                   const Catalogue& catalogue,
+                                                   const descriptor::SubsystemDescriptor& subsystem);
 
 }  // namespace hirosco::ground

@@ -9,6 +9,10 @@ namespace {
 
 enum class Kind : std::uint8_t { Command = 1, Status = 2 };
 
+[[nodiscard]] bool is_device_kind(std::uint8_t found) noexcept {
+  return found == static_cast<std::uint8_t>(Kind::Command) || found == static_cast<std::uint8_t>(Kind::Status);
+}
+
 /// Both kinds share one layout; a field without meaning in a kind is sent as 0.
 struct Frame {
   std::uint8_t mode{0};
@@ -41,6 +45,11 @@ Result<Frame> read_frame(Octets octets, Kind kind) noexcept {
   if (const auto magic = reader.get<std::uint16_t>(); magic != device_frame_magic)
     return fail(ErrorCode::Malformed, "device frame magic", magic);
   const auto found_kind = reader.get<std::uint8_t>();
+  OctetReader sum{octets.last(2), std::endian::little};
+  const bool intact = sum.get<std::uint16_t>() == crc16(covered);
+  // Before its parts are read: what lies where is known of this version only.
+  if (intact && !is_device_kind(found_kind))
+    return fail(ErrorCode::Mismatch, "device frame of another version", found_kind);
   Frame frame;
   frame.mode = reader.get<std::uint8_t>();
   frame.epoch = reader.get<std::uint32_t>();
@@ -51,8 +60,7 @@ Result<Frame> read_frame(Octets octets, Kind kind) noexcept {
   if (payload_octets != octets.size() - device_frame_overhead_octets)
     return fail(ErrorCode::Malformed, "device frame length", length);
   frame.payload = reader.get(payload_octets);
-  if (const auto sum = reader.get<std::uint16_t>(); sum != crc16(covered))
-    return fail(ErrorCode::Malformed, "device frame checksum", sum);
+  if (!intact) return fail(ErrorCode::Malformed, "device frame checksum", reader.get<std::uint16_t>());
   // The kind is judged after the checksum: only an intact frame can tell that the two ends are swapped.
   if (found_kind != static_cast<std::uint8_t>(kind)) return fail(ErrorCode::Malformed, "device frame kind", found_kind);
   return frame;

@@ -13,6 +13,7 @@
 /// Little endian:  magic u16 | kind u8 | mode u8 | epoch u32 | sequence u32 | flags u16 | payload octets u16 |
 /// watchdog_us u32 | payload | CRC-16/CCITT-FALSE u16 over all before. The payload holds the endnode's fields packed
 /// without padding in the endnode's byte order; this codec does not look inside.
+/// The kinds are those of this version: a later one has others, so that who knows this one only refuses it by name.
 namespace hirosco {
 
 inline constexpr std::uint16_t device_frame_magic = 0x4844;  ///< "DH" in memory, 'HD' as a number
@@ -56,7 +57,8 @@ struct DeviceStatus {
 [[nodiscard]] Result<Octets> write_command(MutableOctets buffer, const DeviceCommand& command) noexcept;
 [[nodiscard]] Result<Octets> write_status(MutableOctets buffer, const DeviceStatus& status) noexcept;
 
-/// Reads exactly one frame. Malformed: length, magic, kind, mode or CRC is wrong; `value` tells the offending number.
+/// Reads exactly one frame. Malformed: length, magic, kind, mode or CRC is wrong; `value` tells the offending number. Mismatch: it is
+/// intact and of another version; `value` is its kind.
 /// Realtime: bounded, no allocation. Thread: any.
 [[nodiscard]] Result<DeviceCommand> read_command(Octets frame) noexcept;
 [[nodiscard]] Result<DeviceStatus> read_status(Octets frame) noexcept;

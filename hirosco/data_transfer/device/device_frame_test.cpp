@@ -82,6 +82,33 @@ TEST(DeviceFrame, RefusesTheOtherKind) {
   EXPECT_FALSE(read_command(write_status(buffer, {}).value()));
 }
 
+TEST(DeviceFrame, TellsAnIntactFrameOfAnotherVersionByItsKindWhateverElseItSays) {
+  const auto sealed = [](MutableOctets frame) {
+    OctetWriter sum{frame.last(2), std::endian::little};
+    sum.put(crc16(frame.first(frame.size() - 2)));
+    return Octets{frame};
+  };
+  for (const std::size_t size : {device_frame_overhead_octets, device_frame_overhead_octets + a_payload.size()}) {
+    Buffer buffer{};
+    ASSERT_TRUE(write_command(buffer, a_command()));
+    for (unsigned kind = 0; kind < 256; ++kind) {
+      buffer[2] = std::byte{static_cast<std::uint8_t>(kind)};
+      const auto read = read_command(sealed(MutableOctets{buffer}.first(size)));
+      const bool known = kind == 1 || kind == 2;
+      const bool whole = size > device_frame_overhead_octets;
+      ASSERT_EQ(read.has_value(), kind == 1 && whole) << kind;
+      if (read) continue;
+      EXPECT_EQ(read.error().code, known ? ErrorCode::Malformed : ErrorCode::Mismatch) << kind;
+      if (!known) {
+        EXPECT_EQ(read.error().value, kind);
+        buffer[5] ^= std::byte{1};
+        EXPECT_EQ(read_command(Octets{buffer}.first(size)).error().code, ErrorCode::Malformed) << "it is not intact";
+        buffer[5] ^= std::byte{1};
+      }
+    }
+  }
+}
+
 TEST(DeviceFrame, RefusesAModeThatDoesNotExist) {
   Buffer buffer{};
   DeviceCommand command = a_command();

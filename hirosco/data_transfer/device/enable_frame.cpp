@@ -10,6 +10,11 @@ namespace {
 // Apart in more than one bit from each other and from the kinds of a device frame.
 enum class EnableKind : std::uint8_t { Command = 0x33, Status = 0x4C };
 
+[[nodiscard]] bool is_enable_kind(std::uint8_t found) noexcept {
+  return found == static_cast<std::uint8_t>(EnableKind::Command) ||
+         found == static_cast<std::uint8_t>(EnableKind::Status);
+}
+
 struct EnableParts {
   std::uint8_t value{0};
   std::uint16_t flags{0};
@@ -41,6 +46,7 @@ Result<EnableParts> read_enable_frame(Octets octets, EnableKind kind, std::uint8
   frame.sequence = reader.get<std::uint32_t>();
   if (const auto sum = reader.get<std::uint16_t>(); sum != crc16(octets.first(enable_frame_octets - 2)))
     return fail(ErrorCode::Malformed, "enable frame checksum", sum);
+  if (!is_enable_kind(found_kind)) return fail(ErrorCode::Mismatch, "enable frame of another version", found_kind);
   if (found_kind != static_cast<std::uint8_t>(kind)) return fail(ErrorCode::Malformed, "enable frame kind", found_kind);
   if (frame.value > highest_value) return fail(ErrorCode::Malformed, "enable frame value", frame.value);
   return frame;

@@ -14,7 +14,7 @@
 /// younger than its limit says so and names the epoch of those frames; otherwise the device does its declared stop by
 /// itself. It answers every enable command, whatever the subsystem does.
 /// Little endian:  magic u16 | kind u8 | enabled or output u8 | flags u16 | epoch u32 | sequence u32 |
-/// CRC-16/CCITT-FALSE u16 over all before. Every frame has the same length.
+/// CRC-16/CCITT-FALSE u16 over all before. Every frame has the same length, in each version; the kinds are those of this one.
 namespace hirosco {
 
 inline constexpr std::uint16_t enable_frame_magic = 0x4845;  ///< "EH" in memory, 'HE' as a number
@@ -51,6 +51,7 @@ struct EnableStatus {
 [[nodiscard]] Result<Octets> write_enable_status(MutableOctets buffer, const EnableStatus& status) noexcept;
 
 /// Reads exactly one frame. Malformed: length, magic, CRC, kind, or a value that does not exist; `value` tells the number.
+/// Mismatch: it is intact and of another version; `value` is its kind.
 /// Realtime: bounded, no allocation. Thread: any.
 [[nodiscard]] Result<EnableCommand> read_enable_command(Octets frame) noexcept;
 [[nodiscard]] Result<EnableStatus> read_enable_status(Octets frame) noexcept;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
+#include "hirosco/utilities/crc16.hpp"
 #include "hirosco/utilities/testing/slice.hpp"
 
 namespace hirosco {
@@ -107,6 +108,24 @@ TEST(EnableFrame, RefusesASmallBuffer) {
   for (std::size_t length = 0; length < enable_frame_octets; ++length)
     EXPECT_EQ(write_enable_command(MutableOctets{buffer}.first(length), an_enable).error().code,
               ErrorCode::ResourceExhausted);
+}
+
+TEST(EnableFrame, TellsAnIntactFrameOfAnotherVersionByItsKind) {
+  EnableBuffer buffer{};
+  ASSERT_TRUE(write_enable_command(buffer, an_enable));
+  for (unsigned kind = 0; kind < 256; ++kind) {
+    buffer[2] = std::byte{static_cast<std::uint8_t>(kind)};
+    OctetWriter sum{MutableOctets{buffer}.last(2), std::endian::little};
+    sum.put(crc16(Octets{buffer}.first(buffer.size() - 2)));
+    const auto read = read_enable_command(buffer);
+    if (read) continue;
+    const bool known = kind == 0x33 || kind == 0x4C;
+    EXPECT_EQ(read.error().code, known ? ErrorCode::Malformed : ErrorCode::Mismatch) << kind;
+    EXPECT_EQ(read.error().value, kind);
+    buffer[5] ^= std::byte{1};
+    EXPECT_EQ(read_enable_command(buffer).error().code, ErrorCode::Malformed) << "it is not intact";
+    buffer[5] ^= std::byte{1};
+  }
 }
 
 }  // namespace

@@ -12,6 +12,11 @@ namespace {
 // Apart in more than one bit from each other and from the kinds of device and enable frames.
 enum class PowerKind : std::uint8_t { Command = 0x96, Status = 0xE9 };
 
+[[nodiscard]] bool is_power_kind(std::uint8_t found) noexcept {
+  return found == static_cast<std::uint8_t>(PowerKind::Command) ||
+         found == static_cast<std::uint8_t>(PowerKind::Status);
+}
+
 struct PowerParts {
   bool on{false};
   std::uint16_t off_after_ms{0};
@@ -41,6 +46,7 @@ Result<PowerParts> read_power_frame(Octets octets, PowerKind kind) noexcept {
   frame.sequence = reader.get<std::uint32_t>();
   if (const auto sum = reader.get<std::uint16_t>(); sum != crc16(octets.first(power_frame_octets - 2)))
     return fail(ErrorCode::Malformed, "power frame checksum", sum);
+  if (!is_power_kind(found_kind)) return fail(ErrorCode::Mismatch, "power frame of another version", found_kind);
   if (found_kind != static_cast<std::uint8_t>(kind)) return fail(ErrorCode::Malformed, "power frame kind", found_kind);
   if (on > 1) return fail(ErrorCode::Malformed, "power frame value", on);
   return frame;

@@ -13,7 +13,7 @@
 /// holds (adr 0079). The switch is on while the newest command says so and is younger than the time that it names; it answers
 /// every command. It has power of its own.
 /// Little endian:  magic u16 | kind u8 | on u8 | off after u16, ms | sequence u32 | CRC-16/CCITT-FALSE u16 over all before.
-/// Every frame has the same length; an answer has 0 for the time.
+/// Every frame has the same length, in each version, and the kinds are those of this one; an answer has 0 for the time.
 namespace hirosco {
 
 inline constexpr std::uint16_t power_frame_magic = 0x4850;  ///< "PH" in memory, 'HP' as a number
@@ -39,6 +39,7 @@ struct PowerStatus {
 [[nodiscard]] Result<Octets> write_power_status(MutableOctets buffer, const PowerStatus& status) noexcept;
 
 /// Reads exactly one frame. Malformed: length, magic, CRC, kind, or a value that does not exist; `value` tells the number.
+/// Mismatch: it is intact and of another version; `value` is its kind.
 /// Realtime: bounded, no allocation. Thread: any.
 [[nodiscard]] Result<PowerCommand> read_power_command(Octets frame) noexcept;
 [[nodiscard]] Result<PowerStatus> read_power_status(Octets frame) noexcept;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/data_transfer/device/enable_frame.hpp"
+#include "hirosco/utilities/crc16.hpp"
 #include "hirosco/utilities/testing/slice.hpp"
 
 namespace hirosco {
@@ -74,6 +75,24 @@ TEST(PowerFrame, NeedsATimeThatItCanSayAndRoom) {
   EXPECT_FALSE(read_power_command(Octets{buffer}.first(power_frame_octets - 1)));
   std::array<std::byte, enable_frame_octets> enable{};
   EXPECT_FALSE(read_power_command(write_enable_command(enable, {1, 1, 1}).value()));
+}
+
+TEST(PowerFrame, TellsAnIntactFrameOfAnotherVersionByItsKind) {
+  PowerBuffer buffer{};
+  ASSERT_TRUE(write_power_command(buffer, switch_on));
+  for (unsigned kind = 0; kind < 256; ++kind) {
+    buffer[2] = std::byte{static_cast<std::uint8_t>(kind)};
+    OctetWriter sum{MutableOctets{buffer}.last(2), std::endian::little};
+    sum.put(crc16(Octets{buffer}.first(buffer.size() - 2)));
+    const auto read = read_power_command(buffer);
+    if (read) continue;
+    const bool known = kind == 0x96 || kind == 0xE9;
+    EXPECT_EQ(read.error().code, known ? ErrorCode::Malformed : ErrorCode::Mismatch) << kind;
+    EXPECT_EQ(read.error().value, kind);
+    buffer[5] ^= std::byte{1};
+    EXPECT_EQ(read_power_command(buffer).error().code, ErrorCode::Malformed) << "it is not intact";
+    buffer[5] ^= std::byte{1};
+  }
 }
 
 }  // namespace

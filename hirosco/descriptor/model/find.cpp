@@ -18,44 +18,44 @@ auto find_in(const Range& range, const Key& key, Projection projection) noexcept
 
 }  // namespace
 
-const Parameter* Subsystem::find_parameter(std::string_view parameter) const noexcept {
+const Parameter* SubsystemDescriptor::find_parameter(std::string_view parameter) const noexcept {
   return find_in(parameters, parameter, [](const Parameter& p) -> std::string_view { return p.field.name; });
 }
-const Event* Subsystem::find_event(std::string_view event) const noexcept {
+const Event* SubsystemDescriptor::find_event(std::string_view event) const noexcept {
   return find_in(events, event, &Event::name);
 }
-const CustomService* Subsystem::find_service(std::uint8_t type) const noexcept {
+const CustomService* SubsystemDescriptor::find_service(std::uint8_t type) const noexcept {
   return find_in(services, type, &CustomService::type);
 }
-const CustomService* Subsystem::find_service(std::string_view service) const noexcept {
+const CustomService* SubsystemDescriptor::find_service(std::string_view service) const noexcept {
   return find_in(services, service, &CustomService::name);
 }
-const Function* Subsystem::find_request(std::uint8_t service, std::uint8_t subtype) const noexcept {
+const Function* SubsystemDescriptor::find_request(std::uint8_t service, std::uint8_t subtype) const noexcept {
   const CustomService* own = find_service(service);
   return own == nullptr ? nullptr : find_in(own->requests, subtype, &Function::subtype);
 }
 
-const Function* Subsystem::find_function(std::string_view function) const noexcept {
+const Function* SubsystemDescriptor::find_function(std::string_view function) const noexcept {
   return find_in(functions, function, &Function::name);
 }
-const Function* Subsystem::find_named(std::string_view request) const noexcept {
+const Function* SubsystemDescriptor::find_named(std::string_view request) const noexcept {
   if (const Function* function = find_function(request)) return function;
   for (const CustomService& service : services)
     if (const Function* found = find_in(service.requests, request, &Function::name)) return found;
   return nullptr;
 }
 
-bool Subsystem::offers(std::uint8_t type, const Configuration* in_force) const noexcept {
+bool SubsystemDescriptor::offers(std::uint8_t type, const Configuration* in_force) const noexcept {
   if (in_force != nullptr)
     if (const ServiceUse* use = find_in(in_force->services, type, &ServiceUse::type)) return use->offered;
   const ServiceUse* const use = find_in(service_uses, type, &ServiceUse::type);
   return use == nullptr || use->offered;
 }
-int Subsystem::loop_of(std::uint8_t type) const noexcept {
+int SubsystemDescriptor::loop_of(std::uint8_t type) const noexcept {
   const ServiceUse* const use = find_in(service_uses, type, &ServiceUse::type);
   return use == nullptr ? -1 : use->loop;
 }
-const Bumpless* Subsystem::bumpless_between(std::uint8_t one, std::uint8_t other) const noexcept {
+const Bumpless* SubsystemDescriptor::bumpless_between(std::uint8_t one, std::uint8_t other) const noexcept {
   if (one == other) return nullptr;
   const auto found = std::ranges::find_if(bumpless, [&](const Bumpless& each) {
     const auto has = [&](std::uint8_t sought) {
@@ -66,7 +66,7 @@ const Bumpless* Subsystem::bumpless_between(std::uint8_t one, std::uint8_t other
   return found == bumpless.end() ? nullptr : &*found;
 }
 
-std::string_view resolve(Commands& commands, const Subsystem& commanded) {
+std::string_view resolve(Commands& commands, const SubsystemDescriptor& commanded) {
   commands.apid = commanded.id;
   commands.file = commanded.file;
   commands.requests.clear();
@@ -80,7 +80,7 @@ std::string_view resolve(Commands& commands, const Subsystem& commanded) {
 
 namespace {
 
-[[nodiscard]] std::string_view resolve_parameter(Thing& thing, const Subsystem& other) {
+[[nodiscard]] std::string_view resolve_parameter(Thing& thing, const SubsystemDescriptor& other) {
   const auto place = find_place(other, thing.name);
   if (!place) return "it has no such parameter";
   if (thing.kind == Thing::Kind::Set && !other.parameters[place->parameter].writable())
@@ -91,7 +91,7 @@ namespace {
 }
 
 /// A structure of several configurations must be one and the same.
-[[nodiscard]] std::string_view resolve_structure(Thing& thing, const Subsystem& other) {
+[[nodiscard]] std::string_view resolve_structure(Thing& thing, const SubsystemDescriptor& other) {
   const auto fields = [&](const HousekeepingStructure& structure) {
     std::vector<Field> all;
     for (const ParameterRef& reference : structure.sampled_once)
@@ -120,7 +120,7 @@ namespace {
 
 }  // namespace
 
-NoThing resolve(std::vector<Thing>& things, const Subsystem& other) {
+NoThing resolve(std::vector<Thing>& things, const SubsystemDescriptor& other) {
   for (Thing& thing : things) {
     std::string_view why;
     if (thing.kind == Thing::Kind::Event) {
@@ -136,13 +136,28 @@ NoThing resolve(std::vector<Thing>& things, const Subsystem& other) {
   return {};
 }
 
-const Configuration* Subsystem::find_configuration(std::string_view configuration) const noexcept {
+const Configuration* SubsystemDescriptor::find_configuration(std::string_view configuration) const noexcept {
   return find_in(configurations, configuration, &Configuration::name);
 }
-const Configuration* Subsystem::find_configuration(std::uint8_t configuration) const noexcept {
+const Configuration* SubsystemDescriptor::find_configuration(std::uint8_t configuration) const noexcept {
   return find_in(configurations, configuration, &Configuration::id);
 }
 
+std::vector<const SubsystemDescriptor*> Mission::everybody() const {
+  std::vector<const SubsystemDescriptor*> all{&supervisor};
+  for (const MissionSubsystem& member : subsystems) all.push_back(&member.subsystem);
+  return all;
+}
+const SubsystemDescriptor* Mission::find_member(std::string_view member) const noexcept {
+  if (member == supervisor.name) return &supervisor;
+  const auto* found = find_subsystem(member);
+  return found != nullptr ? &found->subsystem : nullptr;
+}
+const SubsystemDescriptor* Mission::find_member(std::uint16_t apid) const noexcept {
+  if (apid == supervisor.id) return &supervisor;
+  const auto* found = find_subsystem(apid);
+  return found != nullptr ? &found->subsystem : nullptr;
+}
 const MissionSubsystem* Mission::find_subsystem(std::string_view subsystem) const noexcept {
   return find_in(subsystems, subsystem, [](const MissionSubsystem& m) -> std::string_view { return m.subsystem.name; });
 }
@@ -175,14 +190,14 @@ double cycle_share(const Mission& mission) noexcept {
   return share;
 }
 
-std::vector<std::string_view> actuators_without_enable(const Subsystem& subsystem) {
+std::vector<std::string_view> actuators_without_enable(const SubsystemDescriptor& subsystem) {
   std::vector<std::string_view> names;
   for (const Device& device : subsystem.devices)
     if (device.actuator && !device.enable) names.push_back(device.name);
   return names;
 }
 
-std::optional<ParameterRef> find_parameter(const Subsystem& subsystem, std::uint32_t wire) {
+std::optional<ParameterRef> find_parameter(const SubsystemDescriptor& subsystem, std::uint32_t wire) {
   const auto is = [&](Type type, std::uint8_t id) { return ParameterId{subsystem.id, type, id}.wire() == wire; };
   for (std::size_t i = 0; i < subsystem.parameters.size(); ++i) {
     const Parameter& parameter = subsystem.parameters[i];
@@ -196,7 +211,7 @@ std::optional<ParameterRef> find_parameter(const Subsystem& subsystem, std::uint
   return std::nullopt;
 }
 
-std::optional<ParameterRef> find_place(const Subsystem& subsystem, std::string_view name) {
+std::optional<ParameterRef> find_place(const SubsystemDescriptor& subsystem, std::string_view name) {
   const std::string_view owner = name.substr(0, name.find('.'));
   const Parameter* parameter = subsystem.find_parameter(owner);
   if (parameter == nullptr) return std::nullopt;
@@ -211,7 +226,8 @@ std::optional<ParameterRef> find_place(const Subsystem& subsystem, std::string_v
 namespace {
 
 /// Of the members of its parameter: first and one behind the last; a value without members is one.
-[[nodiscard]] std::pair<std::size_t, std::size_t> extent(const Subsystem& subsystem, const ParameterRef& reference) {
+[[nodiscard]] std::pair<std::size_t, std::size_t> extent(const SubsystemDescriptor& subsystem,
+                                                         const ParameterRef& reference) {
   const Parameter& parameter = subsystem.parameters.at(reference.parameter);
   if (parameter.members.empty()) return {0, 1};
   const auto members = parameter.members_at(reference.member);
@@ -221,28 +237,28 @@ namespace {
 
 }  // namespace
 
-bool covers(const Subsystem& subsystem, const ParameterRef& whole, const ParameterRef& part) {
+bool covers(const SubsystemDescriptor& subsystem, const ParameterRef& whole, const ParameterRef& part) {
   if (whole.parameter != part.parameter) return false;
   const auto [first, end] = extent(subsystem, whole);
   const auto [from, to] = extent(subsystem, part);
   return first <= from && to <= end;
 }
 
-bool overlap(const Subsystem& subsystem, const ParameterRef& one, const ParameterRef& other) {
+bool overlap(const SubsystemDescriptor& subsystem, const ParameterRef& one, const ParameterRef& other) {
   if (one.parameter != other.parameter) return false;
   const auto [first, end] = extent(subsystem, one);
   const auto [from, to] = extent(subsystem, other);
   return first < to && from < end;
 }
 
-ParameterId identity_of(const Subsystem& subsystem, const ParameterRef& reference) {
+ParameterId identity_of(const SubsystemDescriptor& subsystem, const ParameterRef& reference) {
   const Parameter& parameter = subsystem.parameters.at(reference.parameter);
   if (!reference.member) return {subsystem.id, parameter.field.type, parameter.id};
   const auto inner = parameter.identity_of(*reference.member);
   return {subsystem.id, inner.type, inner.id};
 }
 
-std::vector<Field> fields_of(const Subsystem& subsystem, const ParameterRef& reference) {
+std::vector<Field> fields_of(const SubsystemDescriptor& subsystem, const ParameterRef& reference) {
   const Parameter& parameter = subsystem.parameters.at(reference.parameter);
   if (parameter.field.type != Type::Struct) return {parameter.field};
   std::vector<Field> fields;

@@ -28,8 +28,8 @@ namespace {
 }
 
 /// Where the place stands in what the structure samples once; empty: nowhere.
-[[nodiscard]] std::optional<std::size_t> offset_in(const HousekeepingStructure& structure, const Subsystem& other,
-                                                   const ParameterRef& place) {
+[[nodiscard]] std::optional<std::size_t> offset_in(const HousekeepingStructure& structure,
+                                                   const SubsystemDescriptor& other, const ParameterRef& place) {
   std::size_t offset = 0;
   for (const ParameterRef& reference : structure.sampled_once) {
     const Parameter& parameter = other.parameters[reference.parameter];
@@ -41,7 +41,7 @@ namespace {
 }
 
 /// The longest time between two reports, in any configuration that has the structure.
-[[nodiscard]] Duration longest_interval(const Subsystem& other, std::uint16_t id) {
+[[nodiscard]] Duration longest_interval(const SubsystemDescriptor& other, std::uint16_t id) {
   Duration longest{};
   const auto look = [&](const std::vector<HousekeepingStructure>& structures, Duration cycle) {
     for (const HousekeepingStructure& each : structures)
@@ -55,7 +55,7 @@ namespace {
 }
 
 /// One of the structures that are heard. They are the same in every configuration: resolve(things) has refused others.
-[[nodiscard]] const HousekeepingStructure* find_structure(const Subsystem& other, std::string_view id) {
+[[nodiscard]] const HousekeepingStructure* find_structure(const SubsystemDescriptor& other, std::string_view id) {
   const auto in = [&](const std::vector<HousekeepingStructure>& structures) -> const HousekeepingStructure* {
     for (const HousekeepingStructure& each : structures)
       if (std::to_string(each.id) == id) return &each;
@@ -67,8 +67,8 @@ namespace {
   return nullptr;
 }
 
-[[nodiscard]] std::string resolve_one(const Subsystem& own, const Subscribes& heard, Foreign& foreign,
-                                      const Subsystem& other) {
+[[nodiscard]] std::string resolve_one(const SubsystemDescriptor& own, const Subscribes& heard, Foreign& foreign,
+                                      const SubsystemDescriptor& other) {
   const Parameter& parameter = own.parameters[foreign.parameter];
   const auto place = find_place(other, foreign.name);
   if (!place) return "it has no such parameter";
@@ -91,7 +91,7 @@ namespace {
 }
 
 /// Of its reports, with the id in front.
-[[nodiscard]] std::size_t octets_of(const HousekeepingStructure& structure, const Subsystem& subsystem) {
+[[nodiscard]] std::size_t octets_of(const HousekeepingStructure& structure, const SubsystemDescriptor& subsystem) {
   const auto octets = [&](const std::vector<ParameterRef>& references) {
     std::size_t sum = 0;
     for (const ParameterRef& each : references) sum += subsystem.parameters[each.parameter].octets(each.member);
@@ -103,8 +103,8 @@ namespace {
 }
 
 /// Null: this configuration does not report it by itself.
-[[nodiscard]] const HousekeepingStructure* find_enabled(const Subsystem& subsystem, const Configuration& configuration,
-                                                        std::uint16_t id) {
+[[nodiscard]] const HousekeepingStructure* find_enabled(const SubsystemDescriptor& subsystem,
+                                                        const Configuration& configuration, std::uint16_t id) {
   for (const auto* structures : {&subsystem.housekeeping, &configuration.housekeeping})
     for (const HousekeepingStructure& each : *structures)
       if (each.id == id && each.enabled) return &each;
@@ -112,7 +112,7 @@ namespace {
 }
 
 /// Where it stands, if it is the same and often enough in every configuration.
-[[nodiscard]] std::optional<ReportedAt> find_reported_in(const Subsystem& subsystem, std::uint16_t id,
+[[nodiscard]] std::optional<ReportedAt> find_reported_in(const SubsystemDescriptor& subsystem, std::uint16_t id,
                                                          const ParameterRef& place, Duration age) {
   std::optional<ReportedAt> found;
   for (const Configuration& configuration : subsystem.configurations) {
@@ -129,7 +129,7 @@ namespace {
 
 }  // namespace
 
-std::expected<ReportedAt, std::string> find_reported(const Subsystem& subsystem, const ParameterRef& place,
+std::expected<ReportedAt, std::string> find_reported(const SubsystemDescriptor& subsystem, const ParameterRef& place,
                                                      Duration age) {
   if (!subsystem.configurations.empty())
     for (const auto* structures : {&subsystem.housekeeping, &subsystem.configurations.front().housekeeping})
@@ -139,7 +139,7 @@ std::expected<ReportedAt, std::string> find_reported(const Subsystem& subsystem,
                          std::to_string(age / std::chrono::milliseconds{1}) + " ms"};
 }
 
-NoForeign resolve_foreign(const Subsystem& own, Subscribes& heard, const Subsystem& other) {
+NoForeign resolve_foreign(const SubsystemDescriptor& own, Subscribes& heard, const SubsystemDescriptor& other) {
   for (Foreign& foreign : heard.foreign)
     if (std::string why = resolve_one(own, heard, foreign, other); !why.empty()) return {&foreign, std::move(why)};
   return {};

@@ -18,7 +18,7 @@ constexpr const char* resources_enumeration = "FRAMEWORK.RESOURCES";
 constexpr const char* foreign_enumeration = "FRAMEWORK.FOREIGN";
 
 /// By their place among the parameters.
-void add_foreign_names(Subsystem& subsystem) {
+void add_foreign_names(SubsystemDescriptor& subsystem) {
   if (std::ranges::find(subsystem.enumerations, foreign_enumeration, &Enumeration::name) !=
       subsystem.enumerations.end())
     return;
@@ -30,7 +30,7 @@ void add_foreign_names(Subsystem& subsystem) {
 }
 
 template <class E>
-void add_enumeration(Subsystem& subsystem, const char* name) {
+void add_enumeration(SubsystemDescriptor& subsystem, const char* name) {
   if (std::ranges::find(subsystem.enumerations, name, &Enumeration::name) != subsystem.enumerations.end()) return;
   Enumeration enumeration{name, {}};
   for (const auto& row : EnumTexts<E>::table)
@@ -55,7 +55,7 @@ void add_enumeration(Subsystem& subsystem, const char* name) {
           std::move(text)};
 }
 
-[[nodiscard]] bool has_fall_backs(const Subsystem& subsystem, std::size_t device) {
+[[nodiscard]] bool has_fall_backs(const SubsystemDescriptor& subsystem, std::size_t device) {
   return std::ranges::any_of(subsystem.configurations, [&](const Configuration& configuration) {
     return std::ranges::any_of(configuration.devices,
                                [&](const DeviceUse& use) { return use.device == device && !use.fall_backs.empty(); });
@@ -70,7 +70,7 @@ void add_enumeration(Subsystem& subsystem, const char* name) {
 
 }  // namespace
 
-std::vector<std::string> required_sets(const Subsystem& subsystem) {
+std::vector<std::string> required_sets(const SubsystemDescriptor& subsystem) {
   std::vector<std::string> sets;
   for (const auto& configuration : subsystem.configurations)
     for (const auto& wanted : configuration.requires_)
@@ -78,7 +78,7 @@ std::vector<std::string> required_sets(const Subsystem& subsystem) {
   return sets;
 }
 
-void add_framework_events(Subsystem& subsystem) {
+void add_framework_events(SubsystemDescriptor& subsystem) {
   add_framework_parameters(subsystem);
   add_enumeration<DeviceLoss>(subsystem, losses_enumeration);
   add_enumeration<ErrorCode>(subsystem, errors_enumeration);

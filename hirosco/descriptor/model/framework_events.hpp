@@ -57,13 +57,14 @@ enum class DeviceLoss : std::uint8_t {
   NotOpened = 7,  ///< its data flow could not be opened
   OldEpoch = 8,   ///< it refuses ours: it obeys a higher epoch, of another flight
   NeverHeard = 9, ///< nothing good has come since its data flow was opened
+  OtherVersion = 10,  ///< frames of another version came: what it runs was built against another hirosco
 };
 
 /// Names of the sets that any configuration requires, each once, in the order of the descriptor.
-[[nodiscard]] std::vector<std::string> required_sets(const Subsystem& subsystem);
+[[nodiscard]] std::vector<std::string> required_sets(const SubsystemDescriptor& subsystem);
 /// Appends the framework's events and the enumerations that their arguments need, and its parameters
 /// (framework_parameters.hpp); those that are there stay as they are.
-void add_framework_events(Subsystem& subsystem);
+void add_framework_events(SubsystemDescriptor& subsystem);
 
 }  // namespace hirosco::descriptor
 
@@ -79,6 +80,7 @@ struct EnumTexts<descriptor::DeviceLoss> {
                                                                     {LetGo, "watchdog let go"},
                                                                     {NotOpened, "not opened"},
                                                                     {OldEpoch, "old epoch refused"},
-                                                                    {NeverHeard, "never heard"}});
+                                                                    {NeverHeard, "never heard"},
+                                                                    {OtherVersion, "frames of another version"}});
 };
 }  // namespace hirosco

@@ -85,7 +85,7 @@ std::vector<Parameter> output_parameters(const std::vector<Device>& devices) {
   return parameters;
 }
 
-void add_framework_parameters(Subsystem& subsystem) {
+void add_framework_parameters(SubsystemDescriptor& subsystem) {
   if (std::ranges::find(subsystem.enumerations, states_enumeration, &Enumeration::name) ==
       subsystem.enumerations.end()) {
     Enumeration states{states_enumeration, {}};
@@ -99,7 +99,7 @@ void add_framework_parameters(Subsystem& subsystem) {
     if (subsystem.find_parameter(parameter.field.name) == nullptr) subsystem.parameters.push_back(std::move(parameter));
 }
 
-std::vector<std::string> built_in_parameters(const Subsystem& subsystem) {
+std::vector<std::string> built_in_parameters(const SubsystemDescriptor& subsystem) {
   std::vector<std::string> names;
   for (const Parameter& parameter : framework_parameters()) names.push_back(parameter.field.name);
   for (const Device& device : subsystem.devices)

@@ -47,9 +47,9 @@ inline constexpr std::size_t most_actuators = 200;
 inline constexpr std::size_t most_output_fields = 200;
 
 /// Names of those that the framework writes: all of the above.
-[[nodiscard]] std::vector<std::string> built_in_parameters(const Subsystem& subsystem);
+[[nodiscard]] std::vector<std::string> built_in_parameters(const SubsystemDescriptor& subsystem);
 
 /// Appends all of them and STATES; those that are there stay as they are.
-void add_framework_parameters(Subsystem& subsystem);
+void add_framework_parameters(SubsystemDescriptor& subsystem);
 
 }  // namespace hirosco::descriptor

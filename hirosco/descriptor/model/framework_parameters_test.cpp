@@ -12,7 +12,7 @@ namespace hirosco::descriptor {
 namespace {
 using namespace testing;
 
-Reading<Subsystem> with(const std::string& body) {
+Reading<SubsystemDescriptor> with(const std::string& body) {
   return read_text("<Subsystem name=\"ARM\" id=\"10\">\n" + body + "\n</Subsystem>");
 }
 

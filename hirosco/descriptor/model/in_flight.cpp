@@ -179,7 +179,7 @@ class Comparison {
     unless(same_parts(flown.parts, parts), value.at, what + ": the structures within", layout_why);
     unless(flown.from == from && flown.age == age, value.at, what + ": whose value it has", code_why);
   }
-  void parameters(const Subsystem& flown, const Subsystem& fresh) {
+  void parameters(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh) {
     lists(
         flown.parameters, fresh.parameters, "parameter ", [](const Parameter& each) { return each.field.name; },
         [](const Parameter& each) { return each.field.at; }, layout_why,
@@ -247,20 +247,20 @@ class Comparison {
     unless(std::ranges::equal(flown.parameters, parameters_, same_reference), at, what + ": its parameters", link_why);
     fields(flown.fields, fields_, what, link_why);
   }
-  void use(const Subsystem& subsystem, const DeviceUse& flown, const DeviceUse& fresh, const std::string& whose) {
+  void use(const SubsystemDescriptor& of, const DeviceUse& flown, const DeviceUse& fresh, const std::string& whose) {
     [[maybe_unused]] const auto& [device_, silence, every, watchdog_us, watchdog_reduced_us, settings, endnode,
                                   fall_backs, at] = fresh;
-    const std::string what = whose + ": device " + subsystem.devices[device_].name;
+    const std::string what = whose + ": device " + of.devices[device_].name;
     unless(flown.device == device_, at, what + ": which it is", code_why);
     unless(flown.endnode.byte_order == endnode.byte_order, at, what + ": its byte order", layout_why);
     unless(std::ranges::equal(flown.settings, settings, {}, &Setting::name, &Setting::name), at,
            what + ": which settings it has", code_why);
-    unless(!subsystem.devices[device_].actuator ||
+    unless(!of.devices[device_].actuator ||
                (flown.watchdog_us == watchdog_us && flown.watchdog_reduced_us == watchdog_reduced_us),
            at, what + ": the watchdog of an actuator", safety_why);
     unless(flown.fall_backs.empty() == fall_backs.empty(), at, what + ": whether it has fall-backs", code_why);
   }
-  void configuration(const Subsystem& subsystem, const Configuration& flown, const Configuration& fresh) {
+  void configuration(const SubsystemDescriptor& subsystem, const Configuration& flown, const Configuration& fresh) {
     [[maybe_unused]] const auto& [name, id, priority, sampling, started_by, least, budget, spin, power_w, overruns,
                                   self_test, self_test_within, housekeeping, provides, requires_, devices, initial,
                                   services, at] = fresh;
@@ -288,7 +288,7 @@ class Comparison {
         [](const DeviceUse& each) { return each.at; }, code_why,
         [&](const DeviceUse& a, const DeviceUse& b) { use(subsystem, a, b, what); });
   }
-  void subsystem(const Subsystem& flown, const Subsystem& fresh) {
+  void subsystem(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh) {
     [[maybe_unused]] const auto& [name, id, description, file, text, enumerations, parameters_, events, functions_,
                                   services, failures, commands, subscribes, housekeeping, devices, power_switches,
                                   configurations, hang, resources, loops, uses, bumpless, scripts] = fresh;
@@ -356,7 +356,8 @@ class Comparison {
   }
 
   // --- what the configuration in force was made of ---------------------------------------------------------------------
-  void in_force(const Subsystem& flown, const Subsystem& fresh, const Configuration& now, const Configuration& then) {
+  void in_force(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh, const Configuration& now,
+                const Configuration& then) {
     const std::string what = "configuration " + now.name;
     unless(same_structures(flown.housekeeping, fresh.housekeeping), then.at, what + ": housekeeping of the subsystem",
            force_why);
@@ -423,13 +424,14 @@ void take_configuration(Configuration& flown, Configuration& fresh) {
 
 const char* const not_in_flight = "E0380";
 
-std::vector<Obstacle> obstacles(const Subsystem& flown, const Subsystem& fresh) {
+std::vector<Obstacle> obstacles(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh) {
   Comparison comparison;
   comparison.subsystem(flown, fresh);
   return comparison.take();
 }
 
-std::vector<Obstacle> obstacles_in_force(const Subsystem& flown, const Subsystem& fresh, std::uint8_t id) {
+std::vector<Obstacle> obstacles_in_force(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh,
+                                         std::uint8_t id) {
   Comparison comparison;
   const Configuration* now = flown.find_configuration(id);
   const Configuration* then = fresh.find_configuration(id);
@@ -437,7 +439,7 @@ std::vector<Obstacle> obstacles_in_force(const Subsystem& flown, const Subsystem
   return comparison.take();
 }
 
-void take_over(Subsystem& flown, Subsystem&& fresh) {
+void take_over(SubsystemDescriptor& flown, SubsystemDescriptor&& fresh) {
   flown.description = std::move(fresh.description);
   flown.text = std::move(fresh.text);
   for (std::size_t i = 0; i < flown.parameters.size(); ++i) {

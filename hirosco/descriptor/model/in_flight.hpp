@@ -28,14 +28,15 @@ struct Obstacle {
 };
 
 /// All that is different and may not be; empty: `fresh` can be taken. Both with what every subsystem has. Realtime: allocates.
-[[nodiscard]] std::vector<Obstacle> obstacles(const Subsystem& flown, const Subsystem& fresh);
+[[nodiscard]] std::vector<Obstacle> obstacles(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh);
 
 /// What the configuration with this id was made of and is different: it is in force, and has to be given back first.
 /// Realtime: allocates.
-[[nodiscard]] std::vector<Obstacle> obstacles_in_force(const Subsystem& flown, const Subsystem& fresh, std::uint8_t id);
+[[nodiscard]] std::vector<Obstacle> obstacles_in_force(const SubsystemDescriptor& flown,
+                                                       const SubsystemDescriptor& fresh, std::uint8_t id);
 
 /// Takes what may change, obstacles() being empty. No parameter, function, event, device, configuration or real-time set moves in memory:
 /// who refers to one goes on doing so. Realtime: allocates.
-void take_over(Subsystem& flown, Subsystem&& fresh);
+void take_over(SubsystemDescriptor& flown, SubsystemDescriptor&& fresh);
 
 }  // namespace hirosco::descriptor

@@ -53,10 +53,10 @@ const std::string flown_text = R"(<Subsystem name="PAN" id="9">
   </Configuration>
 </Subsystem>)";
 
-[[nodiscard]] Subsystem read(const std::string& text) {
+[[nodiscard]] SubsystemDescriptor read(const std::string& text) {
   auto reading = testing::read_text(text);
   EXPECT_TRUE(reading.value) << testing::rendered(reading.problems, testing::text_source(text));
-  return reading.value.value_or(Subsystem{});
+  return reading.value.value_or(SubsystemDescriptor{});
 }
 
 struct Edit {
@@ -151,7 +151,7 @@ TEST(InFlight, WhatMemoryThreadsLinksAndGuardWereMadeByIsRefusedByName) {
            {R"(<Requires name="IN" age="3">)", R"(<Requires name="IN" age="3" missing="hold">)",
             "required set IN: what is without it"},
            {R"(name="FAST" id="1")", R"(name="FAST" id="2")", "configuration FAST: its id"}}) {
-    const Subsystem fresh = read(changed(edit.from, edit.to, flown_text));
+    const SubsystemDescriptor fresh = read(changed(edit.from, edit.to, flown_text));
     EXPECT_THAT(all(obstacles(read(flown_text), fresh)), HasSubstr(edit.told)) << edit.from;
   }
 }
@@ -172,16 +172,16 @@ TEST(InFlight, WhatTheConfigurationInForceWasMadeOfWaits) {
            {R"(safe="0" maximum="1")", R"(safe="0" maximum="2")", "device LAMP: what it may be told"},
            {R"(age="3")", R"(age="5")", "required set IN: its age"},
            {R"(power_W="5")", R"(power_W="6")", "its limits or power"}}) {
-    const Subsystem fresh = read(changed(edit.from, edit.to, flown_text));
+    const SubsystemDescriptor fresh = read(changed(edit.from, edit.to, flown_text));
     EXPECT_THAT(all(obstacles_in_force(read(flown_text), fresh, 1)), HasSubstr(edit.told)) << edit.from;
     EXPECT_THAT(obstacles_in_force(read(flown_text), fresh, 7), IsEmpty()) << "of another one nobody asks";
   }
-  const Subsystem ranged = read(changed(R"(maximum="10")", R"(maximum="9")", flown_text));
+  const SubsystemDescriptor ranged = read(changed(R"(maximum="10")", R"(maximum="9")", flown_text));
   EXPECT_THAT(obstacles_in_force(read(flown_text), ranged, 1), IsEmpty());
 }
 
 TEST(InFlight, WhoReferredToAPartRefersToItStill) {
-  Subsystem flown = read(flown_text);
+  SubsystemDescriptor flown = read(flown_text);
   const Parameter* const gain = flown.find_parameter("GAIN");
   const Function* const turn = flown.find_function("TURN");
   const Configuration* const fast = flown.find_configuration("FAST");
@@ -205,7 +205,7 @@ TEST(InFlight, WhoReferredToAPartRefersToItStill) {
 
 // What take_over() leaves out would be accepted and have no effect.
 TEST(InFlight, WhatWasTakenIsAllThatWasDifferent) {
-  Subsystem flown = read(flown_text);
+  SubsystemDescriptor flown = read(flown_text);
   std::string text =
       changed(R"(<Device name="LAMP" silence="3">)", R"(<Device name="LAMP" silence="9" every="2">)", flown_text);
   text = changed(R"(power_W="5")", R"(power_W="6" overruns="9")", text);
@@ -213,7 +213,7 @@ TEST(InFlight, WhatWasTakenIsAllThatWasDifferent) {
   text = changed(R"(safe="0" maximum="1")", R"(safe="1" maximum="2")", text);
   text = changed(R"(value="red")", R"(value="blue")", text);
   text = changed(R"(interval="10")", R"(interval="20")", text);
-  const Subsystem fresh = read(text);
+  const SubsystemDescriptor fresh = read(text);
   EXPECT_THAT(obstacles_in_force(flown, fresh, 1), ::testing::SizeIs(5));
   take_over(flown, read(text));
   EXPECT_EQ(all(obstacles_in_force(flown, fresh, 1)), "");
@@ -223,7 +223,7 @@ TEST(InFlight, WhatWasTakenIsAllThatWasDifferent) {
 struct Evolution : ::testing::Test {
   const Mission flown = read_mission(testing::data / "mission.xml", file_system()).value.value();
   [[nodiscard]] Reading<Mission> with(const std::string& from, const std::string& to) const {
-    const Subsystem& subsystem = flown.find_subsystem("FLYWHEEL")->subsystem;
+    const SubsystemDescriptor& subsystem = flown.find_subsystem("FLYWHEEL")->subsystem;
     return read_again(flown, subsystem.file, changed(from, to, *subsystem.text), file_system());
   }
 };

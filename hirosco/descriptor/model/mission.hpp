@@ -28,17 +28,18 @@ struct Override {
 /// "NAME=1 2.5" or "NAME=words", as a launched subsystem is told.
 [[nodiscard]] std::string to_string(const Override& changed);
 /// The reverse, into `subsystem`. NotFound: no such parameter. OutOfRange: not as many values as it has, or no such ones.
-[[nodiscard]] Result<> apply_override(Subsystem& subsystem, std::string_view text);
+[[nodiscard]] Result<> apply_override(SubsystemDescriptor& subsystem, std::string_view text);
 
 /// What tells a launched subsystem to begin with all of `init`: one of the whole, or where a structure has words among its members one of each
 /// member, as words stand alone.
 [[nodiscard]] std::vector<Override> overrides_of(const Parameter& parameter);
 
-/// A device of this instance has another address than its subsystem's descriptor says, in every configuration.
-struct Readdressed {
+/// A device of this instance has another address, or other settings, than its subsystem's descriptor says, in every configuration.
+struct DeviceChange {
   std::string device;
   std::string address;  ///< empty = the descriptor's
   std::string enable;  ///< of the second inhibit; empty = the descriptor's
+  std::vector<Setting> settings{};  ///< in place of those that the descriptor gives it
 };
 
 /// Whom this instance commands, or hears, where it is not who has the name that its descriptor says.
@@ -52,9 +53,9 @@ struct Redirected {
 struct MissionSubsystem {
   std::string executable;  ///< name of the program, looked up beside the running one and then in PATH
   bool starts{true};  ///< with the flight; else when the ground asks for it
-  Subsystem subsystem;  ///< with what the mission changes applied: name, id, parameters, addresses
+  SubsystemDescriptor subsystem;  ///< with what the mission changes applied: name, id, parameters, addresses
   std::vector<Override> overrides;
-  std::vector<Readdressed> addresses;
+  std::vector<DeviceChange> devices;
   std::vector<Redirected> redirected;
   Location at;
   /// What the files that its devices' settings name bring along (brought_files()), when they were read last (docs/adr/0144).
@@ -64,17 +65,17 @@ struct MissionSubsystem {
 };
 
 /// What makes an instance of the descriptor in its file the subsystem of the mission, as words for its process: pairs
-/// "--as" "NAME:12", "--set" "PARAMETER=1 2.5", "--address" "DEVICE=address", "--enable" "DEVICE=address",
-/// "--commands" and "--subscribes" "NAME=12:FILE".
+/// "--as" "NAME:12", "--set" "PARAMETER=1 2.5", "--address" "DEVICE=address", "--enable" "DEVICE=address", "--setting"
+/// "DEVICE:NAME=value", "--commands" and "--subscribes" "NAME=12:FILE".
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsystem& member);
 /// Words of it that need the other's descriptor: "NAME=12:FILE".
 [[nodiscard]] constexpr bool needs_other(std::string_view word) noexcept {
   return word == "--commands" || word == "--subscribes";
 }
-/// One of them, into `subsystem`. NotFound: no such parameter or device, or it has no second inhibit; OutOfRange: the
+/// One of them, into `subsystem`. NotFound: no such parameter, device or setting, or it has no second inhibit; OutOfRange: the
 /// values do not fit; InvalidArgument: not of this form. All but "--commands" and "--subscribes", which need the other's
 /// descriptor.
-[[nodiscard]] Result<> apply_change(Subsystem& subsystem, std::string_view word, std::string_view text);
+[[nodiscard]] Result<> apply_change(SubsystemDescriptor& subsystem, std::string_view word, std::string_view text);
 
 /// A simulated device process standing in for hardware.
 struct SimulatedDevice {
@@ -210,7 +211,7 @@ struct Mission {
   std::string name;
   std::uint16_t id{};
   std::filesystem::path file;
-  Subsystem supervisor;
+  SubsystemDescriptor supervisor;
   DatabaseUse database;
   GroundAddresses ground;
   std::optional<double> power_budget_w;  ///< for the configurations in use; empty = not limited
@@ -232,6 +233,12 @@ struct Mission {
   /// The files that it was read from, as they were: what flies is judged by them, whatever the disk says by now (docs/adr/0095).
   std::map<std::filesystem::path, std::shared_ptr<const std::string>> texts{};
 
+  /// The supervisor, which is found like every other member, and then the subsystems in their order.
+  [[nodiscard]] std::vector<const SubsystemDescriptor*> everybody() const;
+  /// One of them; null: there is none.
+  [[nodiscard]] const SubsystemDescriptor* find_member(std::string_view member) const noexcept;
+  [[nodiscard]] const SubsystemDescriptor* find_member(std::uint16_t apid) const noexcept;
+  /// Of those that the supervisor starts and leads.
   [[nodiscard]] const MissionSubsystem* find_subsystem(std::string_view subsystem) const noexcept;
   [[nodiscard]] const MissionSubsystem* find_subsystem(std::uint16_t apid) const noexcept;
   [[nodiscard]] const Mode* find_mode(std::string_view mode) const noexcept;

@@ -126,27 +126,27 @@ inline constexpr std::size_t max_persistent_octets = 800;
 /// A parameter or one member of it, resolved: `CUR_VALUES` or `CUR_VALUES.POSITION`.
 struct ParameterRef {
   std::string text;  ///< as written
-  std::uint16_t parameter{};  ///< index into Subsystem::parameters
+  std::uint16_t parameter{};  ///< index into SubsystemDescriptor::parameters
   std::optional<std::uint16_t> member;  ///< index into Parameter::members and, behind these, Parameter::parts
   Location at;
 };
 
-struct Subsystem;
+struct SubsystemDescriptor;
 
 /// A parameter or what is in it, by its full name: `CUR_VALUES`, `CUR_VALUES.GAINS.P`.
-[[nodiscard]] std::optional<ParameterRef> find_place(const Subsystem& subsystem, std::string_view name);
+[[nodiscard]] std::optional<ParameterRef> find_place(const SubsystemDescriptor& subsystem, std::string_view name);
 /// What Software-Init begins with: `init`, or zeros and no words.
 [[nodiscard]] std::vector<Value> values_at_begin(const Parameter& parameter);
 /// Changes `init` of what a member's number stands for to as many values as that has.
 void begin_with(Parameter& parameter, std::optional<std::uint16_t> member, std::vector<Value> values);
 /// Whether one reference stands for all that another one does.
-[[nodiscard]] bool covers(const Subsystem& subsystem, const ParameterRef& whole, const ParameterRef& part);
+[[nodiscard]] bool covers(const SubsystemDescriptor& subsystem, const ParameterRef& whole, const ParameterRef& part);
 /// Whether there is something that both stand for.
-[[nodiscard]] bool overlap(const Subsystem& subsystem, const ParameterRef& one, const ParameterRef& other);
+[[nodiscard]] bool overlap(const SubsystemDescriptor& subsystem, const ParameterRef& one, const ParameterRef& other);
 /// Identity on the wire of what a reference stands for.
-[[nodiscard]] ParameterId identity_of(const Subsystem& subsystem, const ParameterRef& reference);
+[[nodiscard]] ParameterId identity_of(const SubsystemDescriptor& subsystem, const ParameterRef& reference);
 
 /// Fields a reference stands for, in wire order: one for a value or member, all members for a structure.
-[[nodiscard]] std::vector<Field> fields_of(const Subsystem& subsystem, const ParameterRef& reference);
+[[nodiscard]] std::vector<Field> fields_of(const SubsystemDescriptor& subsystem, const ParameterRef& reference);
 
 }  // namespace hirosco::descriptor

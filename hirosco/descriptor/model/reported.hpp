@@ -18,7 +18,7 @@ struct ReportedAt {
   std::size_t octets{0};  ///< of the whole report, with that id; one of another length is of another form
 };
 /// The same in every configuration, by a structure that comes at least each `age`; or in words why there is none.
-[[nodiscard]] std::expected<ReportedAt, std::string> find_reported(const Subsystem& subsystem,
+[[nodiscard]] std::expected<ReportedAt, std::string> find_reported(const SubsystemDescriptor& subsystem,
                                                                    const ParameterRef& place, Duration age);
 
 }  // namespace hirosco::descriptor

@@ -32,7 +32,7 @@ struct CycleResponse {
 
 /// A subsystem and what is in force of it; null: it does not cycle.
 struct InForce {
-  const Subsystem* subsystem{nullptr};
+  const SubsystemDescriptor* subsystem{nullptr};
   const Configuration* configuration{nullptr};
 };
 

@@ -40,7 +40,7 @@ struct ServiceLoop {
 struct ServiceUse {
   std::uint8_t type{};
   bool offered{true};
-  int loop{-1};  ///< index into Subsystem::service_loops; -1: the subsystem's service loop
+  int loop{-1};  ///< index into SubsystemDescriptor::service_loops; -1: the subsystem's service loop
   Location at{};
 };
 
@@ -62,7 +62,7 @@ struct Bumpless {
   std::vector<std::uint8_t> configurations;  ///< ids
   /// The largest difference of an actuator's output from one cycle to the next where the configuration changes.
   struct Step {
-    std::uint16_t device{};  ///< index into Subsystem::devices
+    std::uint16_t device{};  ///< index into SubsystemDescriptor::devices
     std::uint16_t output{};  ///< index into Device::output; each element of an array
     double most{0};  ///< in the unit of the output
   };

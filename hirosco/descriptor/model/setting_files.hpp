@@ -18,14 +18,14 @@ inline constexpr std::string_view file_setting_ending = "_FILE";
 [[nodiscard]] inline bool names_file(const Setting& setting) { return setting.name.ends_with(file_setting_ending); }
 
 /// Where it is: beside the descriptor, or with HIROSCO ("@hirosco/..."), which file_system() finds.  Realtime: allocates.
-[[nodiscard]] inline std::filesystem::path file_of(const Subsystem& subsystem, std::string_view value) {
+[[nodiscard]] inline std::filesystem::path file_of(const SubsystemDescriptor& subsystem, std::string_view value) {
   if (value.starts_with('@')) return value;
   return (subsystem.file.parent_path() / value).lexically_normal();
 }
 
 /// What every configuration that says this setting of that device says; empty: none says anything. Mismatch: they say different things, of what
 /// is one whatever the configuration.  Realtime: allocates.
-[[nodiscard]] inline Result<std::string> setting_of_all(const Subsystem& subsystem, std::string_view device,
+[[nodiscard]] inline Result<std::string> setting_of_all(const SubsystemDescriptor& subsystem, std::string_view device,
                                                         std::string_view name) {
   const std::string* found = nullptr;
   for (const auto& configuration : subsystem.configurations)

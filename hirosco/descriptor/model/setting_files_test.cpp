@@ -8,8 +8,8 @@ namespace hirosco::descriptor {
 namespace {
 
 /// ARM in two configurations, and LAMP, which says the same word of itself.
-[[nodiscard]] Subsystem with_models(const char* one, const char* other) {
-  Subsystem subsystem;
+[[nodiscard]] SubsystemDescriptor with_models(const char* one, const char* other) {
+  SubsystemDescriptor subsystem;
   subsystem.devices.resize(2);
   subsystem.devices[0].name = "LAMP";
   subsystem.devices[1].name = "ARM";

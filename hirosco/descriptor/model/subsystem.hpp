@@ -200,7 +200,7 @@ struct Setting {
 
 /// Settings and endnode of a device in one configuration.
 struct DeviceUse {
-  std::uint16_t device{};  ///< index into Subsystem::devices
+  std::uint16_t device{};  ///< index into SubsystemDescriptor::devices
   CycleLimit silence{
       3, 40};  ///< cycles without a valid frame until the device counts as lost, or its next fall-back is tried
   std::uint32_t every{1};  ///< cycles from one frame to the next
@@ -289,7 +289,7 @@ struct Commands {
 
 /// A parameter that has the value of one of another subsystem, heard by its housekeeping (adr 0103).
 struct Foreign {
-  std::uint16_t parameter{};  ///< index into Subsystem::parameters
+  std::uint16_t parameter{};  ///< index into SubsystemDescriptor::parameters
   std::string name;  ///< of the other's
   std::uint16_t structure{0};  ///< by which it is heard; like the next 0 before a mission says who the other is
   std::size_t offset{0};  ///< of the value, behind the id of the structure
@@ -312,7 +312,7 @@ struct ScriptFile {
   Location at;
 };
 
-struct Subsystem {
+struct SubsystemDescriptor {
   std::string name;
   std::uint16_t id{};  ///< APID
   std::string description;
@@ -358,26 +358,27 @@ struct Subsystem {
 };
 
 /// Says who is commanded. The first of the functions that it does not have; empty when it has all.
-[[nodiscard]] std::string_view resolve(Commands& commands, const Subsystem& commanded);
+[[nodiscard]] std::string_view resolve(Commands& commands, const SubsystemDescriptor& commanded);
 /// Says whose things these are. The first that cannot be had, and why in words; null: all can.
 struct NoThing {
   const Thing* thing{nullptr};
   std::string_view why{};
 };
-[[nodiscard]] NoThing resolve(std::vector<Thing>& things, const Subsystem& other);
+[[nodiscard]] NoThing resolve(std::vector<Thing>& things, const SubsystemDescriptor& other);
 /// Says by which of the structures that are heard, and where in it, each foreign parameter comes. The first that does not, and why in
 /// words.
 struct NoForeign {
   const Foreign* foreign{nullptr};
   std::string why{};
 };
-[[nodiscard]] NoForeign resolve_foreign(const Subsystem& own, Subscribes& heard, const Subsystem& other);
+[[nodiscard]] NoForeign resolve_foreign(const SubsystemDescriptor& own, Subscribes& heard,
+                                        const SubsystemDescriptor& other);
 
 /// Names of the actuator devices that have no second inhibit: nothing but their subsystem keeps them from moving.
-[[nodiscard]] std::vector<std::string_view> actuators_without_enable(const Subsystem& subsystem);
+[[nodiscard]] std::vector<std::string_view> actuators_without_enable(const SubsystemDescriptor& subsystem);
 
 /// A parameter, or a member, by ParameterId::wire().
-[[nodiscard]] std::optional<ParameterRef> find_parameter(const Subsystem& subsystem, std::uint32_t wire);
+[[nodiscard]] std::optional<ParameterRef> find_parameter(const SubsystemDescriptor& subsystem, std::uint32_t wire);
 
 }  // namespace hirosco::descriptor
 

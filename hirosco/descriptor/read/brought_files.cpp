@@ -24,7 +24,7 @@ const BringingFormat* bringing_format_of(const std::filesystem::path& file) {
   return found != bringing_formats.end() ? &*found : nullptr;
 }
 
-std::vector<std::filesystem::path> brought_files(const Subsystem& subsystem, const FileSource& source) {
+std::vector<std::filesystem::path> brought_files(const SubsystemDescriptor& subsystem, const FileSource& source) {
   std::vector<std::filesystem::path> bringing, brought;
   for (const Configuration& configuration : subsystem.configurations)
     for (const DeviceUse& use : configuration.devices)

@@ -24,6 +24,7 @@ struct BringingFormat {
 
 /// What the files that settings of its devices name bring along, each once, where `source` has them: one that it does not have is named by
 /// whoever needs it.  Realtime: allocates, and as `source`.
-[[nodiscard]] std::vector<std::filesystem::path> brought_files(const Subsystem& subsystem, const FileSource& source);
+[[nodiscard]] std::vector<std::filesystem::path> brought_files(const SubsystemDescriptor& subsystem,
+                                                               const FileSource& source);
 
 }  // namespace hirosco::descriptor

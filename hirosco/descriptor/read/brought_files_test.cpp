@@ -25,7 +25,7 @@ const std::string other_robot = "<robot><link><mesh filename='parts/c.stl'/></li
 }
 
 TEST(BroughtFiles, AreThoseThatTheFilesOfSettingsNameEachOnce) {
-  Subsystem arm;
+  SubsystemDescriptor arm;
   arm.file = "/missions/arm/arm.xml";
   arm.configurations.resize(2);
   for (Configuration& configuration : arm.configurations) {
@@ -43,7 +43,7 @@ TEST(BroughtFiles, AreThoseThatTheFilesOfSettingsNameEachOnce) {
 }
 
 TEST(BroughtFiles, AreNoneOfAFileThatIsNotThere) {
-  Subsystem arm;
+  SubsystemDescriptor arm;
   arm.configurations.resize(1);
   arm.configurations[0].devices.resize(1);
   arm.configurations[0].devices[0].settings = {{"MODEL_FILE", "r.urdf", {}}};

@@ -50,7 +50,7 @@ std::string bumpless_problem_of(const std::string& text) {
 }
 
 TEST(Bumpless, HoldsBothWaysBetweenTheNamedConfigurationsAndBoundsEachOutput) {
-  const Subsystem read = read_text(arm_with(good_bumpless)).value.value();
+  const SubsystemDescriptor read = read_text(arm_with(good_bumpless)).value.value();
   const Bumpless* between = read.bumpless_between(1, 2);
   ASSERT_NE(between, nullptr);
   EXPECT_EQ(between, read.bumpless_between(2, 1));

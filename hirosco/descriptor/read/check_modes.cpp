@@ -10,7 +10,7 @@ namespace hirosco::descriptor::detail {
 namespace {
 
 struct Commissioned {
-  const Subsystem* subsystem{nullptr};
+  const SubsystemDescriptor* subsystem{nullptr};
   const Configuration* configuration{nullptr};
 };
 
@@ -33,7 +33,7 @@ std::string describe(const Field& field) {
 
 }  // namespace
 
-std::string mismatch(const Subsystem& producer, const Provides& provides, const Requires& requires_,
+std::string mismatch(const SubsystemDescriptor& producer, const Provides& provides, const Requires& requires_,
                      std::optional<LinkMethod> method) {
   std::vector<Field> offered;
   for (const ParameterRef& reference : provides.parameters)

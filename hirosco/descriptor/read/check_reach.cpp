@@ -22,7 +22,8 @@ namespace {
   return false;
 }
 
-[[nodiscard]] bool may_be_udp(const MissionLink& link, const Subsystem& producer, const Subsystem& consumer) {
+[[nodiscard]] bool may_be_udp(const MissionLink& link, const SubsystemDescriptor& producer,
+                              const SubsystemDescriptor& consumer) {
   if (link.method) return *link.method == LinkMethod::Udp;
   for (const Configuration& one : producer.configurations)
     for (const Provides& provides : one.provides)

@@ -77,7 +77,7 @@ TEST(Commands, AMissionSaysWhoThatIsAndItsProcessIsToldTheSame) {
     EXPECT_EQ(commands.requests[0].service, 8);
     EXPECT_EQ(commands.requests[1].service, 200);
 
-    Subsystem launched = read_subsystem(data / "porter.xml", source).value.value();
+    SubsystemDescriptor launched = read_subsystem(data / "porter.xml", source).value.value();
     const auto changes = changes_of(*porter);
     const auto told = std::ranges::find(changes, "--commands", &std::pair<std::string, std::string>::first);
     ASSERT_NE(told, changes.end());
@@ -140,7 +140,7 @@ TEST(Subscribes, AMissionSaysWhoseAndItsProcessIsToldTheSame) {
     const Commands& commands = porter->subsystem.commands.at(0);
     EXPECT_EQ(commands.apid, 43) << "each element for itself";
     EXPECT_EQ(commands.things.at(0).id, (ParameterId{43, Type::Double, 1}.wire()));
-    Subsystem launched = *read_text(commanding(says)).value;
+    SubsystemDescriptor launched = *read_text(commanding(says)).value;
     for (const auto& [word, text] : changes_of(*porter)) {
       const auto applied =
           needs_other(word) ? apply_other(launched, word, text, source) : apply_change(launched, word, text);
@@ -173,7 +173,7 @@ TEST(Subscribes, OfAnotherFormOrWhatNobodyHasAreRefused) {
 
 TEST(Commands, WordsOfAnotherFormForAProcessAreRefused) {
   const auto source = with_porter(rings);
-  Subsystem porter = read_subsystem(data / "porter.xml", source).value.value();
+  SubsystemDescriptor porter = read_subsystem(data / "porter.xml", source).value.value();
   for (const char* text : {"", "BELL", "BELL=", "BELL=41", "BELL=x:bell.xml", "BELL=70000:bell.xml", ":41=bell.xml"})
     EXPECT_EQ(apply_commands(porter, text, source).error().code, ErrorCode::InvalidArgument) << text;
   for (const char* text : {"GONG=41:bell.xml", "BELL=41:none.xml", "BELL=41:porter.xml"})

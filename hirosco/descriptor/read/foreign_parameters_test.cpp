@@ -58,7 +58,7 @@ TEST(Foreign, HasItsPlaceInTheReportByWhichItIsHeard) {
         <ParamRef name="U" id="8" type="DOUBLE" unit="V"/><ParamRef name="I" id="9" type="DOUBLE" unit="A"/></StructRef>)"));
   const auto reading = read_mission(data / "mission.xml", source);
   ASSERT_TRUE(reading.value) << rendered(reading.problems, source);
-  const Subsystem& subsystem = reading.value->find_subsystem("HEATER")->subsystem;
+  const SubsystemDescriptor& subsystem = reading.value->find_subsystem("HEATER")->subsystem;
   const Subscribes& heard = subsystem.subscribes.front();
   ASSERT_EQ(heard.foreign.size(), 2u);
   // CHARGE has 8 octets, SWITCHED one: the heard_voltage stands behind them.

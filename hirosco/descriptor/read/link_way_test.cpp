@@ -73,7 +73,7 @@ TEST(LinkWay, IsRefusedWhereItLeadsNowhere) {
         changed("to=\"FLYWHEEL.PLATE_STATE\"", "to=\"FLYWHEEL.PLATE_STATE\" " + std::string{bad.attributes});
     const std::size_t line = text.find("<Link id=\"1\"");
     const std::size_t start = text.rfind('\n', line) + 1;
-    EXPECT_EQ(reading.problems[0].at.line, 22) << bad.attributes;
+    EXPECT_EQ(reading.problems[0].at.line, 23) << bad.attributes;
     EXPECT_EQ(static_cast<std::size_t>(reading.problems[0].at.column), text.find(bad.at, line) - start + 1)
         << bad.attributes;
   }

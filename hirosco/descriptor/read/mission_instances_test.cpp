@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "hirosco/descriptor/model/setting_files.hpp"
 #include "hirosco/descriptor/testing.hpp"
 
 /// What a mission changes in the descriptors of its subsystems.
@@ -34,11 +35,31 @@ TEST(MissionInstances, OfOneDescriptorHaveNameIdParametersAndAddressesOfTheirOwn
   for (const auto& configuration : left.subsystem.configurations)
     for (const auto& use : configuration.devices) EXPECT_EQ(use.endnode.address, "left");
   // Its process makes the same of the same file.
-  Subsystem launched = read_subsystem(data / "flywheel.xml", file_system()).value.value();
+  SubsystemDescriptor launched = read_subsystem(data / "flywheel.xml", file_system()).value.value();
   for (const auto& [word, text] : changes_of(left)) ASSERT_TRUE(apply_change(launched, word, text)) << word << text;
   EXPECT_EQ(launched.name, "LEFT");
   EXPECT_EQ(launched.id, 30);
   EXPECT_EQ(launched.configurations.front().devices.front().endnode.address, "left");
+}
+
+TEST(MissionInstances, HaveSettingsOfTheirDevicesOfTheirOwnWhichTheirProcessesMakeOfTheSameFile) {
+  const Mission mission = read_mission(data / "mission.xml", file_system()).value.value();
+  const auto stiffness = [](const SubsystemDescriptor& robot) {
+    const auto said = setting_of_all(robot, "PLATE", "STIFFNESS");
+    return said ? *said : "different ones";
+  };
+  const MissionSubsystem& robot = mission.subsystems.at(1);
+  SubsystemDescriptor launched = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  EXPECT_EQ(stiffness(launched), "4000");
+  EXPECT_EQ(stiffness(robot.subsystem), "4500");
+  for (const auto& [word, text] : changes_of(robot)) ASSERT_TRUE(apply_change(launched, word, text)) << word << text;
+  EXPECT_EQ(stiffness(launched), "4500");
+  ASSERT_TRUE(apply_change(launched, "--setting", "PLATE:STIFFNESS=a=b:c"));
+  EXPECT_EQ(stiffness(launched), "a=b:c") << "a value is what is behind the first equals sign";
+  for (const char* unknown : {"PLATE:STIFNESS=1", "PLATES:STIFFNESS=1"})
+    EXPECT_EQ(apply_change(launched, "--setting", unknown).error().code, ErrorCode::NotFound) << unknown;
+  for (const char* wrong : {"PLATE", "PLATE:STIFFNESS", "STIFFNESS=1:2"})
+    EXPECT_EQ(apply_change(launched, "--setting", wrong).error().code, ErrorCode::InvalidArgument) << wrong;
 }
 
 TEST(MissionInstances, ThatMeetAreRefused) {
@@ -61,7 +82,7 @@ TEST(MissionInstances, ThatMeetAreRefused) {
 }
 
 TEST(MissionInstances, ChangesOfAnotherFormAreRefused) {
-  Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  SubsystemDescriptor robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   for (const auto& [word, text] :
        {std::pair{"--as", "ARM"}, std::pair{"--as", ":12"}, std::pair{"--as", "ARM:x"}, std::pair{"--as", "ARM:70000"},
         std::pair{"--address", "PLATE"}, std::pair{"--address", "PLATE="}, std::pair{"--other", "PLATE=x"}})
@@ -71,7 +92,7 @@ TEST(MissionInstances, ChangesOfAnotherFormAreRefused) {
 
 TEST(MissionOverrides, ReachALaunchedSubsystemAsTheyWereRead) {
   const Mission mission = read_mission(data / "mission.xml", file_system()).value.value();
-  Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  SubsystemDescriptor robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   ASSERT_EQ(mission.subsystems.at(1).overrides.size(), 1U);
   EXPECT_EQ(to_string(mission.subsystems.at(1).overrides.at(0)), "DES_POSITION=-0.7 1.5");
   for (const Override& changed : {Override{"TORQUE_LIMIT", {0.1}}, Override{"DES_POSITION", {-1.0 / 3, 1e-300}}}) {

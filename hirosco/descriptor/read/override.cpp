@@ -34,7 +34,7 @@ std::string to_string(const Override& changed) {
   return text;
 }
 
-Result<> apply_override(Subsystem& subsystem, std::string_view text) {
+Result<> apply_override(SubsystemDescriptor& subsystem, std::string_view text) {
   const std::string_view name = text.substr(0, text.find('='));
   const auto place = find_place(subsystem, name);
   if (!place) return fail(ErrorCode::NotFound, "no such parameter");
@@ -84,9 +84,11 @@ std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsyst
   std::vector<std::pair<std::string, std::string>> changes{
       {"--as", fmt::format("{}:{}", member.subsystem.name, member.subsystem.id)}};
   for (const Override& changed : member.overrides) changes.emplace_back("--set", to_string(changed));
-  for (const Readdressed& device : member.addresses) {
+  for (const DeviceChange& device : member.devices) {
     if (!device.address.empty()) changes.emplace_back("--address", device.device + "=" + device.address);
     if (!device.enable.empty()) changes.emplace_back("--enable", device.device + "=" + device.enable);
+    for (const Setting& setting : device.settings)
+      changes.emplace_back("--setting", fmt::format("{}:{}={}", device.device, setting.name, setting.value));
   }
   for (const Commands& commands : member.subsystem.commands)
     if (commands.apid != 0) changes.emplace_back("--commands", to_string(commands));
@@ -97,7 +99,7 @@ std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsyst
 
 namespace {
 
-[[nodiscard]] Result<> rename(Subsystem& subsystem, std::string_view text) {
+[[nodiscard]] Result<> rename(SubsystemDescriptor& subsystem, std::string_view text) {
   const auto colon = text.rfind(':');
   if (colon == 0 || colon == text.npos) return fail(ErrorCode::InvalidArgument, "NAME:ID is wanted");
   const char* const end = text.data() + text.size();
@@ -109,11 +111,29 @@ namespace {
   return ok();
 }
 
+/// In each configuration that gives it: who gives it nowhere has no use for it.
+[[nodiscard]] Result<> set_setting(SubsystemDescriptor& subsystem, std::string_view text) {
+  const auto colon = text.find(':'), equals = text.find('=');
+  if (colon == text.npos || equals == text.npos || colon > equals)
+    return fail(ErrorCode::InvalidArgument, "DEVICE:NAME=VALUE is wanted");
+  const std::string_view device = text.substr(0, colon), name = text.substr(colon + 1, equals - colon - 1);
+  bool given = false;
+  for (Configuration& configuration : subsystem.configurations)
+    for (DeviceUse& use : configuration.devices)
+      for (Setting& setting : use.settings) {
+        if (subsystem.devices[use.device].name != device || setting.name != name) continue;
+        setting.value = text.substr(equals + 1);
+        given = true;
+      }
+  return given ? ok() : fail(ErrorCode::NotFound, "no configuration gives the device such a setting");
+}
+
 }  // namespace
 
-Result<> apply_change(Subsystem& subsystem, std::string_view word, std::string_view text) {
+Result<> apply_change(SubsystemDescriptor& subsystem, std::string_view word, std::string_view text) {
   if (word == "--as") return rename(subsystem, text);
   if (word == "--set") return apply_override(subsystem, text);
+  if (word == "--setting") return set_setting(subsystem, text);
   const auto equals = text.find('=');
   if (equals == text.npos || equals + 1 == text.size() || (word != "--address" && word != "--enable"))
     return fail(ErrorCode::InvalidArgument, "DEVICE=ADDRESS is wanted");

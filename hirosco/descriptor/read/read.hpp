@@ -45,15 +45,15 @@ struct Reading {
 };
 
 /// Reads and checks a subsystem descriptor. `name` is used in the diagnostics.  Realtime: allocates.
-[[nodiscard]] Reading<Subsystem> read_subsystem(const std::filesystem::path& file, const FileSource& source);
+[[nodiscard]] Reading<SubsystemDescriptor> read_subsystem(const std::filesystem::path& file, const FileSource& source);
 /// Reads and checks a mission with every subsystem it names (paths relative to the mission file), and looks up what files of their settings
 /// bring along.  Realtime: allocates.
 [[nodiscard]] Reading<Mission> read_mission(const std::filesystem::path& file, const FileSource& source);
 
 /// Another text of the descriptor of a subsystem that flies, with `changes` of it applied as its process was told them when it started
 /// (changes_of()); whom it commands stays as resolved.  Realtime: allocates.
-[[nodiscard]] Reading<Subsystem> read_again(const Subsystem& flown, std::string_view text,
-                                            const std::vector<std::pair<std::string, std::string>>& changes);
+[[nodiscard]] Reading<SubsystemDescriptor> read_again(const SubsystemDescriptor& flown, std::string_view text,
+                                                      const std::vector<std::pair<std::string, std::string>>& changes);
 /// The mission that flies with another text of one of its files, judged as a whole: the others are as they were when it was read. What files of
 /// other formats bring along is looked up in `disk` anew (brought_files.hpp).  Realtime: allocates, and as `disk`.
 [[nodiscard]] Reading<Mission> read_again(const Mission& flown, const std::filesystem::path& file, std::string text,
@@ -68,12 +68,13 @@ inline constexpr std::string_view manifest_extension = ".sha256";
 /// "NAME=12:FILE", as a launched subsystem is told whom it commands; and the reverse, into `subsystem`. NotFound: it commands
 /// none of that name, or who has the file has no such function; InvalidArgument: not of this form.
 [[nodiscard]] std::string to_string(const Commands& commands);
-[[nodiscard]] Result<> apply_commands(Subsystem& subsystem, std::string_view text, const FileSource& source);
+[[nodiscard]] Result<> apply_commands(SubsystemDescriptor& subsystem, std::string_view text, const FileSource& source);
 /// The same of whom it hears.
 [[nodiscard]] std::string to_string(const Subscribes& subscribes);
-[[nodiscard]] Result<> apply_subscribes(Subsystem& subsystem, std::string_view text, const FileSource& source);
+[[nodiscard]] Result<> apply_subscribes(SubsystemDescriptor& subsystem, std::string_view text,
+                                        const FileSource& source);
 /// Either of them, by its word (needs_other()).
-[[nodiscard]] Result<> apply_other(Subsystem& subsystem, std::string_view word, std::string_view text,
+[[nodiscard]] Result<> apply_other(SubsystemDescriptor& subsystem, std::string_view word, std::string_view text,
                                    const FileSource& source);
 
 /// file:line:col: error: E0104: …, the source line, a caret and the hint. Without the line where `source` is empty or has the file no more.

@@ -70,7 +70,7 @@ void MissionReader::read_device_network(const xml::Element& element) {
   mission_.device_networks.push_back(std::move(*network));
 }
 
-void MissionReader::check_endnodes(const Subsystem& subsystem) {
+void MissionReader::check_endnodes(const SubsystemDescriptor& subsystem) {
   Problems problems{subsystem.file};
   for (const Device& device : subsystem.devices)
     if (device.enable) check_endnode(*device.enable, subsystem.name, problems);

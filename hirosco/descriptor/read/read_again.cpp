@@ -19,9 +19,9 @@ void resolve_as(std::vector<Thing>& things, const std::vector<Thing>& known) {
 
 }  // namespace
 
-Reading<Subsystem> read_again(const Subsystem& flown, std::string_view text,
-                              const std::vector<std::pair<std::string, std::string>>& changes) {
-  Reading<Subsystem> reading = read_subsystem(
+Reading<SubsystemDescriptor> read_again(const SubsystemDescriptor& flown, std::string_view text,
+                                        const std::vector<std::pair<std::string, std::string>>& changes) {
+  Reading<SubsystemDescriptor> reading = read_subsystem(
       flown.file, [&](const std::filesystem::path&) -> Result<std::string> { return std::string{text}; });
   if (!reading.value) return reading;
   for (Commands& commands : reading.value->commands) {

@@ -98,7 +98,7 @@ void MissionReader::read_redirected(const xml::Element& element, MissionSubsyste
 void MissionReader::resolve_commands() {
   if (!whole()) return;
   for (const auto& [to, commanding] : redirections_)
-    if (const Subsystem* found = find(*to, to->value, false); found != nullptr && found->name == commanding)
+    if (const SubsystemDescriptor* found = find(*to, to->value, false); found != nullptr && found->name == commanding)
       problems_.add(*to, "E0304", fmt::format("'{}' cannot command or hear itself", commanding));
   for (MissionSubsystem& member : mission_.subsystems) {
     for (Commands& commands : member.subsystem.commands) resolve_one(member, commands);
@@ -154,7 +154,7 @@ void MissionReader::resolve_one(const MissionSubsystem& member, Subscribes& subs
   subsystem_problems_.push_back(problems.take());
 }
 
-void MissionReader::resolve_things(std::vector<Thing>& things, const Subsystem& other, const Location& at,
+void MissionReader::resolve_things(std::vector<Thing>& things, const SubsystemDescriptor& other, const Location& at,
                                    Problems& problems) {
   const NoThing missing = resolve(things, other);
   if (missing.thing == nullptr) return;
@@ -194,7 +194,7 @@ struct Other {
   }
   return fail(ErrorCode::InvalidArgument, "NAME=ID:FILE is wanted");
 }
-[[nodiscard]] Result<Subsystem> read_other(const Other& other, const FileSource& source) {
+[[nodiscard]] Result<SubsystemDescriptor> read_other(const Other& other, const FileSource& source) {
   auto reading = read_subsystem(other.file, source);
   if (!reading.value) return fail(ErrorCode::NotFound, "the descriptor of the other cannot be read");
   reading.value->id = other.id;
@@ -212,22 +212,22 @@ std::string to_string(const Subscribes& subscribes) {
   return as_word(subscribes.subsystem, subscribes.apid, subscribes.file);
 }
 
-Result<> apply_commands(Subsystem& subsystem, std::string_view text, const FileSource& source) {
+Result<> apply_commands(SubsystemDescriptor& subsystem, std::string_view text, const FileSource& source) {
   HIROSCO_TRY_LET(const Other other, take_apart(text));
   const auto named = std::ranges::find(subsystem.commands, other.name, &Commands::subsystem);
   if (named == subsystem.commands.end()) return fail(ErrorCode::NotFound, "it commands no such subsystem");
-  HIROSCO_TRY_LET(const Subsystem described, read_other(other, source));
+  HIROSCO_TRY_LET(const SubsystemDescriptor described, read_other(other, source));
   if (!resolve(*named, described).empty()) return fail(ErrorCode::NotFound, "who is commanded has no such function");
   if (resolve(named->things, described).thing != nullptr)
     return fail(ErrorCode::NotFound, "who is commanded has no such parameter, structure or event");
   return ok();
 }
 
-Result<> apply_subscribes(Subsystem& subsystem, std::string_view text, const FileSource& source) {
+Result<> apply_subscribes(SubsystemDescriptor& subsystem, std::string_view text, const FileSource& source) {
   HIROSCO_TRY_LET(const Other other, take_apart(text));
   const auto named = std::ranges::find(subsystem.subscribes, other.name, &Subscribes::subsystem);
   if (named == subsystem.subscribes.end()) return fail(ErrorCode::NotFound, "it hears no such subsystem");
-  HIROSCO_TRY_LET(const Subsystem described, read_other(other, source));
+  HIROSCO_TRY_LET(const SubsystemDescriptor described, read_other(other, source));
   named->apid = described.id;
   named->file = described.file;
   if (resolve(named->things, described).thing != nullptr)
@@ -237,7 +237,8 @@ Result<> apply_subscribes(Subsystem& subsystem, std::string_view text, const Fil
   return ok();
 }
 
-Result<> apply_other(Subsystem& subsystem, std::string_view word, std::string_view text, const FileSource& source) {
+Result<> apply_other(SubsystemDescriptor& subsystem, std::string_view word, std::string_view text,
+                     const FileSource& source) {
   return word == "--commands" ? apply_commands(subsystem, text, source) : apply_subscribes(subsystem, text, source);
 }
 

@@ -19,7 +19,7 @@ void MissionReader::read_shown(const xml::Element& element) {
   if (const auto* label = attributes.required("label")) shown.label = label->value;
   const auto* whose = attributes.required("subsystem");
   const auto* wanted = attributes.required("parameter");
-  const Subsystem* owner = whose == nullptr ? nullptr : find(*whose, whose->value, true);
+  const SubsystemDescriptor* owner = whose == nullptr ? nullptr : find(*whose, whose->value, true);
   if (owner == nullptr || wanted == nullptr) return;
   std::vector<std::string> names;
   for (const Parameter& parameter : owner->parameters) {

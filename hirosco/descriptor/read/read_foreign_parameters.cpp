@@ -68,8 +68,8 @@ void SubsystemReader::check_foreign() {
     }
 }
 
-void MissionReader::resolve_foreign_of(const MissionSubsystem& member, Subscribes& heard, const Subsystem& other,
-                                       Problems& problems) {
+void MissionReader::resolve_foreign_of(const MissionSubsystem& member, Subscribes& heard,
+                                       const SubsystemDescriptor& other, Problems& problems) {
   const NoForeign missing = resolve_foreign(member.subsystem, heard, other);
   if (missing.foreign == nullptr) return;
   const Parameter& parameter = member.subsystem.parameters[missing.foreign->parameter];

@@ -21,7 +21,7 @@ void MissionReader::read_interlock(const xml::Element& element, Interlock::Kind 
                     "Offline, PreOperational, SafeOperational, Operational, ErrorOperational or PostOperational");
   if (subsystem == nullptr || state == nullptr) return;
   interlock.subsystem = subsystem->value;
-  const Subsystem* found = find(*subsystem, interlock.subsystem, false);
+  const SubsystemDescriptor* found = find(*subsystem, interlock.subsystem, false);
   if (configuration != nullptr) interlock.configuration = configuration->value;
   if (found != nullptr && configuration != nullptr && found->find_configuration(interlock.configuration) == nullptr) {
     std::vector<std::string_view> known;

@@ -9,7 +9,7 @@
 namespace hirosco::descriptor::detail {
 
 /// What its loss does to the consumer, and whether the consumer's cycle does its part of that.
-void MissionReader::read_loss(Attributes& attributes, const Subsystem* consumer, MissionLink& link) {
+void MissionReader::read_loss(Attributes& attributes, const SubsystemDescriptor* consumer, MissionLink& link) {
   const xml::Element& element = attributes.element();
   link.on_loss = attributes.one_of("on_loss", OnLoss::Down);
   const auto* hold = attributes.optional("hold_ms");

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hirosco/descriptor/model/status_rows.hpp"
+#include "hirosco/descriptor/model/supervisor_apid.hpp"
 #include "hirosco/descriptor/read/brought_files.hpp"
 #include "hirosco/descriptor/read/detail/mission_reader.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
@@ -28,7 +29,6 @@ constexpr const char* without_postgresql = "install libpq-dev and configure anew
   return in_address || text.find("password") != std::string::npos;
 }
 
-constexpr std::uint16_t supervisor_id = 1;
 /// A mission stands in missions/NAME/, what it may name in the tree two folders above.
 constexpr int folders_above = 2;
 
@@ -127,8 +127,10 @@ void MissionReader::read_supervisor(const xml::Element& element) {
   Attributes attributes{element, problems_};
   if (auto subsystem = read_descriptor(attributes)) {
     const xml::Attribute& at = *element.find("descriptor");
-    if (subsystem->id != supervisor_id)
-      problems_.add(at, "E0303", fmt::format("the supervisor has id 1, '{}' has {}", subsystem->name, subsystem->id));
+    if (subsystem->id != supervisor_apid)
+      problems_.add(
+          at, "E0303",
+          fmt::format("the supervisor has id {}, '{}' has {}", supervisor_apid, subsystem->name, subsystem->id));
     subsystem_names_.add(subsystem->name, place(at.value_at), problems_, at.value.size());
     check_endnodes(*subsystem);
     const bool spins = std::ranges::any_of(subsystem->configurations,
@@ -193,7 +195,7 @@ void MissionReader::read_ground(const xml::Element& element) {
   if (const auto* subsystem = attributes.required("subsystem"); subsystem != nullptr) {
     mission_.ground.subsystem = subsystem->value;
     // A stop of everything spares it, so nothing that moves may be its own (hazard SF1).
-    if (const Subsystem* carries = find(*subsystem, subsystem->value, false); carries != nullptr)
+    if (const SubsystemDescriptor* carries = find(*subsystem, subsystem->value, false); carries != nullptr)
       if (const auto acts = std::ranges::find_if(carries->devices, &Device::actuator); acts != carries->devices.end())
         problems_.add(*subsystem, "E0329",
                       fmt::format("'{}' carries the ground link, which a stop spares, and has the actuator '{}'",
@@ -244,13 +246,13 @@ void MissionReader::read_member(const xml::Element& element) {
              {{"Set", [&](const xml::Element& child) { read_override(child, member, names); }, 255},
               {"Commands", [&](const auto& child) { read_redirected(child, member, Commands, commanded); }, 255},
               {"Subscribes", [&](const auto& child) { read_redirected(child, member, Subscribes, heard); }, 255},
-              {"Device", [&](const xml::Element& child) { read_readdressed(child, member, devices); }, 255}});
+              {"Device", [&](const xml::Element& child) { read_device_change(child, member, devices); }, 255}});
   check_endnodes(member.subsystem);
   mission_.subsystems.push_back(std::move(member));
 }
 
 void MissionReader::read_identity(Attributes& attributes, MissionSubsystem& member) {
-  Subsystem& subsystem = member.subsystem;
+  SubsystemDescriptor& subsystem = member.subsystem;
   const xml::Attribute& descriptor = *attributes.element().find("descriptor");
   const auto* named = attributes.optional("name");
   const auto* numbered = attributes.optional("id");
@@ -259,36 +261,62 @@ void MissionReader::read_identity(Attributes& attributes, MissionSubsystem& memb
   const xml::Attribute& name_at = named != nullptr ? *named : descriptor;
   const xml::Attribute& id_at = numbered != nullptr ? *numbered : descriptor;
   subsystem_names_.add(subsystem.name, place(name_at.value_at), problems_, name_at.value.size());
-  if (subsystem.id == supervisor_id)
-    problems_.add(id_at, "E0303", fmt::format("id 1 of '{}' is the supervisor's", subsystem.name));
+  if (subsystem.id == supervisor_apid)
+    problems_.add(id_at, "E0303", fmt::format("id {} of '{}' is the supervisor's", supervisor_apid, subsystem.name));
   else subsystem_ids_.add(std::to_string(subsystem.id), place(id_at.value_at), problems_, id_at.value.size());
 }
 
-/// Another address for a device of this instance: what it is and how it is carried stays the descriptor's.
-void MissionReader::read_readdressed(const xml::Element& element, MissionSubsystem& member, Unique& names) {
+/// Another address or other settings for a device of this instance: what it is and how it is carried stays the
+/// descriptor's.
+void MissionReader::read_device_change(const xml::Element& element, MissionSubsystem& member, Unique& names) {
   Attributes attributes{element, problems_};
-  no_children(element, problems_);
   const auto* name = attributes.required("name");
   const auto* address = attributes.optional("address");
   const auto* enable = attributes.optional("enable");
-  if (name == nullptr) return;
-  if (address == nullptr && enable == nullptr)
-    return problems_.add(element, "E0105", "<Device> of a mission's <Subsystem> needs 'address' or 'enable'");
+  if (name == nullptr) return no_children(element, problems_);
+  DeviceChange changed{name->value, address != nullptr ? address->value : "", enable != nullptr ? enable->value : ""};
   std::vector<std::string_view> known;
   for (const Device& device : member.subsystem.devices) known.push_back(device.name);
   names.add(name->value, place(name->value_at), problems_, name->value.size());
-  Readdressed changed{name->value, address != nullptr ? address->value : "", enable != nullptr ? enable->value : ""};
+  const bool exists = std::ranges::find(known, name->value) != known.end();
+  if (!exists)
+    problems_.add(*name, "E0312", fmt::format("'{}' has no device {}", member.subsystem.name, in_quotes(name->value)),
+                  did_you_mean(name->value, known));
+  Unique settings{"setting", "E0201"};
+  bool sets = false;
+  const auto read_one = [&](const xml::Element& child) {
+    sets = true;
+    if (exists) read_changed_setting(child, member, changed, settings);
+  };
+  each_child(element, problems_, {{"Setting", read_one, 256}});
+  if (address == nullptr && enable == nullptr && !sets)
+    return problems_.add(element, "E0105",
+                         "<Device> of a mission's <Subsystem> needs 'address', 'enable' or a <Setting>");
   for (const auto& [at, word] : {std::pair{address, "--address"}, std::pair{enable, "--enable"}}) {
-    if (at == nullptr) continue;
-    const auto applied = apply_change(member.subsystem, word, name->value + "=" + at->value);
-    if (applied) continue;
-    if (applied.error().code == ErrorCode::NotFound && std::ranges::find(known, name->value) == known.end())
-      return problems_.add(*name, "E0312",
-                           fmt::format("'{}' has no device {}", member.subsystem.name, in_quotes(name->value)),
-                           did_you_mean(name->value, known));
-    problems_.add(*at, "E0217", fmt::format("{}: {}", in_quotes(at->value), applied.error().text));
+    if (at == nullptr || !exists) continue;
+    if (const auto applied = apply_change(member.subsystem, word, name->value + "=" + at->value); !applied)
+      problems_.add(*at, "E0217", fmt::format("{}: {}", in_quotes(at->value), applied.error().text));
   }
-  member.addresses.push_back(std::move(changed));
+  member.devices.push_back(std::move(changed));
+}
+
+void MissionReader::read_changed_setting(const xml::Element& element, MissionSubsystem& member, DeviceChange& changed,
+                                         Unique& names) {
+  const std::size_t before = changed.settings.size();
+  read_setting(element, problems_, names, changed.settings);
+  if (changed.settings.size() == before) return;
+  const Setting& setting = changed.settings.back();
+  if (apply_change(member.subsystem, "--setting", fmt::format("{}:{}={}", changed.device, setting.name, setting.value)))
+    return;
+  std::vector<std::string_view> known;
+  for (const Configuration& configuration : member.subsystem.configurations)
+    for (const DeviceUse& use : configuration.devices)
+      if (member.subsystem.devices[use.device].name == changed.device)
+        for (const Setting& each : use.settings) known.push_back(each.name);
+  problems_.add(*element.find("name"), "E0351",
+                fmt::format("no configuration of '{}' gives '{}' a setting {}", member.subsystem.name, changed.device,
+                            in_quotes(setting.name)),
+                did_you_mean(setting.name, known));
 }
 
 void MissionReader::read_override(const xml::Element& element, MissionSubsystem& member, Unique& names) {
@@ -326,7 +354,7 @@ void MissionReader::read_override(const xml::Element& element, MissionSubsystem&
   member.overrides.push_back({name->value, std::move(*values)});
 }
 
-std::optional<Subsystem> MissionReader::read_descriptor(Attributes& attributes) {
+std::optional<SubsystemDescriptor> MissionReader::read_descriptor(Attributes& attributes) {
   const auto* at = attributes.required("descriptor");
   if (at == nullptr || !refuse_path(at->value, folders_above).empty()) {
     incomplete_ = true;
@@ -338,7 +366,7 @@ std::optional<Subsystem> MissionReader::read_descriptor(Attributes& attributes) 
   const bool shipped = is_shipped(at->value);
   const std::filesystem::path file =
       (shipped ? std::filesystem::path{at->value} : problems_.file().parent_path() / at->value).lexically_normal();
-  Reading<Subsystem> reading = read_subsystem(file, source_);
+  Reading<SubsystemDescriptor> reading = read_subsystem(file, source_);
   const bool unreadable = std::ranges::any_of(reading.problems, [](const Diagnostic& d) { return d.code == "E0001"; });
   if (unreadable)
     problems_.add(*at, "E0315", fmt::format("descriptor {} {}", in_quotes(at->value), reading.problems.front().message),
@@ -360,7 +388,7 @@ void MissionReader::read_simulated_device(const xml::Element& element) {
   const auto* played = attributes.required("device");
   if (subsystem != nullptr) device.subsystem = subsystem->value;
   if (played != nullptr) device.device = played->value;
-  const Subsystem* owner = subsystem == nullptr ? nullptr : find(*subsystem, subsystem->value, false);
+  const SubsystemDescriptor* owner = subsystem == nullptr ? nullptr : find(*subsystem, subsystem->value, false);
   if (owner != nullptr && played != nullptr) {
     std::vector<std::string_view> known;
     // A simulated device plays a whole one, with all its endnodes.
@@ -380,7 +408,7 @@ void MissionReader::read_simulated_device(const xml::Element& element) {
   mission_.devices.push_back(std::move(device));
 }
 
-const Subsystem* MissionReader::find(const xml::Attribute& at, std::string_view name, bool supervisor) {
+const SubsystemDescriptor* MissionReader::find(const xml::Attribute& at, std::string_view name, bool supervisor) {
   if (const auto* member = mission_.find_subsystem(name); member != nullptr) return &member->subsystem;
   if (supervisor && !name.empty() && mission_.supervisor.name == name) return &mission_.supervisor;
   if (!whole()) return nullptr;

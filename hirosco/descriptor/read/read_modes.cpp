@@ -33,8 +33,8 @@ void MissionReader::read_link(const xml::Element& element) {
   link.at = place(element.at);
   link.id = attributes.required_integer<std::uint8_t>("id", 1, 255);
   const std::size_t before = problems_.count();
-  const Subsystem* producer = read_end(attributes, "from", link.from, link.provides);
-  const Subsystem* consumer = read_end(attributes, "to", link.to, link.requires_);
+  const SubsystemDescriptor* producer = read_end(attributes, "from", link.from, link.provides);
+  const SubsystemDescriptor* consumer = read_end(attributes, "to", link.to, link.requires_);
   read_way(attributes, link);
   if (producer != nullptr && consumer != nullptr) check_link(element, *producer, *consumer, link);
   read_loss(attributes, consumer, link);
@@ -45,8 +45,8 @@ void MissionReader::read_link(const xml::Element& element) {
   mission_.links.push_back(std::move(link));
 }
 
-const Subsystem* MissionReader::read_end(Attributes& attributes, std::string_view name, std::string& subsystem,
-                                         std::string& set) {
+const SubsystemDescriptor* MissionReader::read_end(Attributes& attributes, std::string_view name,
+                                                   std::string& subsystem, std::string& set) {
   const auto* at = attributes.required(name);
   if (at == nullptr) return nullptr;
   const std::size_t dot = at->value.find('.');
@@ -59,8 +59,8 @@ const Subsystem* MissionReader::read_end(Attributes& attributes, std::string_vie
   return find(*at, subsystem, false);
 }
 
-void MissionReader::check_link(const xml::Element& element, const Subsystem& producer, const Subsystem& consumer,
-                               const MissionLink& link) {
+void MissionReader::check_link(const xml::Element& element, const SubsystemDescriptor& producer,
+                               const SubsystemDescriptor& consumer, const MissionLink& link) {
   std::vector<const Provides*> provides, provided;
   std::vector<const Requires*> requires_, required;
   for (const Configuration& configuration : producer.configurations)
@@ -167,7 +167,7 @@ void MissionReader::read_commission(const xml::Element& element, Mode& mode, Uni
   step.configuration = configuration->value;
   names.add(step.subsystem, place(subsystem->value_at), problems_, subsystem->value.size(),
             "one configuration for each subsystem of a mode");
-  const Subsystem* found = find(*subsystem, step.subsystem, false);
+  const SubsystemDescriptor* found = find(*subsystem, step.subsystem, false);
   if (found != nullptr && found->find_configuration(step.configuration) == nullptr) {
     std::vector<std::string_view> known;
     for (const Configuration& candidate : found->configurations) known.push_back(candidate.name);
@@ -231,15 +231,14 @@ void MissionReader::check_functions(const xml::Attribute& at, const Permit& perm
   if (!whole()) return;
   std::vector<std::string_view> known{"*"};
   known.insert(known.end(), common_functions.begin(), common_functions.end());
-  const auto add = [&](const Subsystem& subsystem) {
+  const auto add = [&](const SubsystemDescriptor& subsystem) {
     if (permit.subsystem == "*" || permit.subsystem == subsystem.name) {
       for (const Function& function : subsystem.functions) known.push_back(function.name);
       for (const CustomService& service : subsystem.services)
         for (const Function& request : service.requests) known.push_back(request.name);
     }
   };
-  add(mission_.supervisor);
-  for (const MissionSubsystem& member : mission_.subsystems) add(member.subsystem);
+  for (const SubsystemDescriptor* member : mission_.everybody()) add(*member);
   if (permit.subsystem == "*" || permit.subsystem == mission_.supervisor.name)
     known.insert(known.end(), supervisor_functions.begin(), supervisor_functions.end());
   for (const std::string& function : permit.functions)
@@ -254,13 +253,12 @@ void MissionReader::check_functions(const xml::Attribute& at, const Permit& perm
 void MissionReader::check_parameters(const xml::Attribute& at, const Permit& permit) {
   if (!whole()) return;
   std::vector<std::string_view> known{"*"}, fixed;
-  const auto add = [&](const Subsystem& subsystem) {
+  const auto add = [&](const SubsystemDescriptor& subsystem) {
     if (permit.subsystem != "*" && permit.subsystem != subsystem.name) return;
     for (const Parameter& parameter : subsystem.parameters)
       (parameter.writable() ? known : fixed).push_back(parameter.field.name);
   };
-  add(mission_.supervisor);
-  for (const MissionSubsystem& member : mission_.subsystems) add(member.subsystem);
+  for (const SubsystemDescriptor* member : mission_.everybody()) add(*member);
   const std::string whose = permit.subsystem == "*" ? "no subsystem has" : in_quotes(permit.subsystem) + " has no";
   for (const std::string& parameter : permit.parameters) {
     if (std::ranges::find(known, parameter) != known.end()) continue;

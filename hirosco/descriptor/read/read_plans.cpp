@@ -66,7 +66,7 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
   const auto* subsystem = attributes.optional("subsystem");
   const auto* event = attributes.optional("event");
   const auto* mode = attributes.optional("mode");
-  const Subsystem* found = subsystem == nullptr ? nullptr : find(*subsystem, subsystem->value, true);
+  const SubsystemDescriptor* found = subsystem == nullptr ? nullptr : find(*subsystem, subsystem->value, true);
   if (subsystem != nullptr) plan.subsystem = subsystem->value;
   if (mode != nullptr) {
     plan.mode = mode->value;
@@ -81,7 +81,7 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
   if (!whole() || (subsystem != nullptr && found == nullptr)) return;
   std::vector<std::string_view> known;
   bool fires = plan.severities.empty();
-  const auto add = [&](const Subsystem& candidate) {
+  const auto add = [&](const SubsystemDescriptor& candidate) {
     for (const Event& e : candidate.events) {
       const bool told_of_it = &candidate == &mission_.supervisor && is_about_subsystem(e.name);
       if (found != nullptr && found != &candidate && !told_of_it) continue;
@@ -90,8 +90,7 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
           fires || (e.name == plan.event && std::ranges::find(plan.severities, e.severity) != plan.severities.end());
     }
   };
-  add(mission_.supervisor);
-  for (const MissionSubsystem& member : mission_.subsystems) add(member.subsystem);
+  for (const SubsystemDescriptor* member : mission_.everybody()) add(*member);
   if (std::ranges::find(known, plan.event) == known.end())
     problems_.add(*event, "E0311",
                   found == nullptr ? fmt::format("no subsystem has an event {}", in_quotes(plan.event))

@@ -21,7 +21,7 @@ constexpr std::size_t max_scripts = 64;
 
 }  // namespace
 
-Subsystem SubsystemReader::read(const xml::Element& root) {
+SubsystemDescriptor SubsystemReader::read(const xml::Element& root) {
   read_head(root);
   std::vector<const xml::Element*> parameters, configurations, services_elements, custom_services, uses, bumpless;
   const auto later = [](std::vector<const xml::Element*>& list) {
@@ -250,7 +250,7 @@ void SubsystemReader::read_output(const xml::Element& element, Device& device, U
 
 }  // namespace detail
 
-Reading<Subsystem> read_subsystem(const std::filesystem::path& file, const FileSource& source) {
+Reading<SubsystemDescriptor> read_subsystem(const std::filesystem::path& file, const FileSource& source) {
   detail::Problems problems{file};
   std::shared_ptr<const std::string> text;
   const FileSource kept = [&](const std::filesystem::path& asked) {
@@ -259,9 +259,9 @@ Reading<Subsystem> read_subsystem(const std::filesystem::path& file, const FileS
     return content;
   };
   const auto root = detail::read_root(file, kept, "Subsystem", problems);
-  Reading<Subsystem> reading;
+  Reading<SubsystemDescriptor> reading;
   if (root) {
-    Subsystem subsystem = detail::SubsystemReader{problems}.read(*root);
+    SubsystemDescriptor subsystem = detail::SubsystemReader{problems}.read(*root);
     subsystem.file = file;
     subsystem.text = std::move(text);
     if (problems.count() == 0) reading.value = std::move(subsystem);

@@ -42,7 +42,7 @@ void expect_one_in_list(const std::string& text, const std::string& code, const 
 }
 
 TEST(ServiceList, SaysWhichLoopAServiceHasWithItsPeriodPriorityBudgetAndQueue) {
-  const Subsystem read = read_text(library_with(R"(<Service name="ST03" loop="SLOW"/>)")).value.value();
+  const SubsystemDescriptor read = read_text(library_with(R"(<Service name="ST03" loop="SLOW"/>)")).value.value();
   ASSERT_EQ(read.service_loops.size(), 1U);
   EXPECT_EQ(read.service_loops[0].period, 20ms);
   EXPECT_EQ(read.service_loops[0].priority, 12);
@@ -56,7 +56,7 @@ TEST(ServiceList, SaysWhichLoopAServiceHasWithItsPeriodPriorityBudgetAndQueue) {
 }
 
 TEST(ServiceList, OffersWhatTheSubsystemSaysAndEachConfigurationOtherwise) {
-  const Subsystem read =
+  const SubsystemDescriptor read =
       read_text(library_with(
                     R"(<Service name="ST20" offered="no"/>)",
                     R"(<Service name="BOOK" offered="no"/><Service name="ST20"/><Service name="ST05" offered="no"/>)"))

@@ -35,13 +35,13 @@ struct FromOutside {
   std::size_t count{0};
   std::string without_range;
 
-  void add(const Subsystem& subsystem, const std::string& where, const Field& field) {
+  void add(const SubsystemDescriptor& subsystem, const std::string& where, const Field& field) {
     if (field.type == Type::Text) return;  // it has its octets
     ++count;
     if (!field.minimum || !field.maximum || *field.minimum > *field.maximum)
       without_range += subsystem.name + " " + where + " " + field.name + "\n";
   }
-  void add(const Subsystem& subsystem) {
+  void add(const SubsystemDescriptor& subsystem) {
     for (const Function& function : subsystem.functions)
       for (const Function::Argument& argument : function.arguments) add(subsystem, function.name, argument.field);
     for (const Parameter& parameter : subsystem.parameters) {

@@ -37,13 +37,13 @@ Reading<Mission> flown_with(const std::string& flywheel, const std::string& meth
 TEST(StartedBy, NamesARequiredSetAndTheShortestDistance) {
   const auto reading = flown_with(R"(started_by="PLATE_STATE" least_us="250" budget_us="100")");
   ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
-  const Subsystem& flywheel = reading.value->find_subsystem("FLYWHEEL")->subsystem;
+  const SubsystemDescriptor& flywheel = reading.value->find_subsystem("FLYWHEEL")->subsystem;
   const Configuration& started = *flywheel.find_configuration("COUPLED");
   EXPECT_EQ(started.started_by, "PLATE_STATE");
   EXPECT_EQ(started.sampling, 500us);
   EXPECT_EQ(started.shortest(), 250us);
   for (const Requires& set : started.requires_) EXPECT_EQ(set.starts, set.name == "PLATE_STATE");
-  const Subsystem& other = reading.value->find_subsystem("CORONAGRAPH")->subsystem;
+  const SubsystemDescriptor& other = reading.value->find_subsystem("CORONAGRAPH")->subsystem;
   const Configuration& by_clock = *other.find_configuration("COUPLED");
   EXPECT_EQ(by_clock.shortest(), by_clock.sampling);
   for (const Requires& set : by_clock.requires_) EXPECT_FALSE(set.starts);

@@ -11,7 +11,7 @@
 namespace hirosco::descriptor {
 namespace {
 
-[[nodiscard]] std::string lengthen(Subsystem& supervisor, std::string_view structure, std::size_t rows) {
+[[nodiscard]] std::string lengthen(SubsystemDescriptor& supervisor, std::string_view structure, std::size_t rows) {
   const auto found = std::ranges::find_if(
       supervisor.parameters, [&](const Parameter& parameter) { return parameter.field.name == structure; });
   if (found == supervisor.parameters.end()) return {};
@@ -21,7 +21,7 @@ namespace {
   return {};
 }
 
-[[nodiscard]] std::size_t octets_of(const Subsystem& subsystem, const std::vector<ParameterRef>& references) {
+[[nodiscard]] std::size_t octets_of(const SubsystemDescriptor& subsystem, const std::vector<ParameterRef>& references) {
   std::size_t octets = 0;
   for (const ParameterRef& reference : references)
     for (const Field& field : fields_of(subsystem, reference)) octets += field.octets();
@@ -31,7 +31,7 @@ namespace {
 }  // namespace
 
 std::string give_everybody_a_row(Mission& mission) {
-  Subsystem& supervisor = mission.supervisor;
+  SubsystemDescriptor& supervisor = mission.supervisor;
   if (auto wrong = lengthen(supervisor, subsystem_rows, mission.subsystems.size() + 1); !wrong.empty()) return wrong;
   if (auto wrong = lengthen(supervisor, link_rows, mission.links.size()); !wrong.empty()) return wrong;
   if (auto wrong = lengthen(supervisor, link_quality_rows, mission.links.size()); !wrong.empty()) return wrong;

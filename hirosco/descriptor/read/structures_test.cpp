@@ -67,7 +67,7 @@ TEST(Structures, StandInStructuresByTheirWay) {
 TEST(Structures, AreReferredToWholeAndInPart) {
   const auto reading = read_text(with_structures(nested_controller));
   ASSERT_TRUE(reading.value);
-  const Subsystem& subsystem = *reading.value;
+  const SubsystemDescriptor& subsystem = *reading.value;
   const auto& sampled = subsystem.housekeeping.front().sampled_once;
   ASSERT_EQ(sampled.size(), 2u);
   EXPECT_THAT(field_names(fields_of(subsystem, sampled[0])),
@@ -95,7 +95,7 @@ TEST(Structures, AreReferredToWholeAndInPart) {
 TEST(Structures, BeginWithWhatAMissionOrAProcessIsToldInPart) {
   auto reading = read_text(with_structures(nested_controller));
   ASSERT_TRUE(reading.value);
-  Subsystem& subsystem = *reading.value;
+  SubsystemDescriptor& subsystem = *reading.value;
   EXPECT_TRUE(apply_override(subsystem, "CONTROLLER.GAINS=3 4"));
   EXPECT_TRUE(apply_override(subsystem, "CONTROLLER.JOINTS[1].ON=0"));
   EXPECT_EQ(subsystem.find_parameter("CONTROLLER")->init,

@@ -37,7 +37,7 @@ constexpr const char* listing_2 = R"(<HKService id="4711" interval="500">
 void expect_paper_model(const std::string& text, bool in_configuration) {
   const auto reading = read_text(text);
   ASSERT_TRUE(reading.value) << rendered(reading.problems, text_source(text));
-  const Subsystem& subsystem = *reading.value;
+  const SubsystemDescriptor& subsystem = *reading.value;
   ASSERT_EQ(subsystem.parameters.size(), 2U + framework_parameters().size());
   const Parameter& values = subsystem.parameters[0];
   EXPECT_EQ(values.field.name, "CUR_VALUES");
@@ -71,7 +71,7 @@ TEST(SubsystemDescriptor, AcceptsTheListingsOfThePaperInParametersAndConfigurati
 TEST(SubsystemDescriptor, FillsTheWholeModel) {
   const auto reading = read_subsystem(data / "coronagraph.xml", file_system());
   ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
-  const Subsystem& robot = *reading.value;
+  const SubsystemDescriptor& robot = *reading.value;
   EXPECT_EQ(robot.name, "CORONAGRAPH");
   EXPECT_EQ(robot.id, 10);
   EXPECT_EQ(robot.description, "Two-joint robot, torque controlled, flexible joints");
@@ -90,7 +90,7 @@ TEST(SubsystemDescriptor, FillsTheWholeModel) {
 }
 
 TEST(SubsystemDescriptor, FillsFunctionsOfAllScopes) {
-  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  const SubsystemDescriptor robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   ASSERT_EQ(robot.functions.size(), 4U);
   const Function* move = robot.find_function("MOVE_TO");
   EXPECT_TRUE(move->permitted_in(State::Operational));
@@ -108,7 +108,7 @@ TEST(SubsystemDescriptor, FillsFunctionsOfAllScopes) {
 }
 
 TEST(SubsystemDescriptor, AParameterIsWritableInTheStatesItNamesOnly) {
-  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  const SubsystemDescriptor robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   const Parameter& goal = *robot.find_parameter("DES_POSITION");
   EXPECT_EQ(goal.writable_states, 1U << 3 | 1U << 4);
   EXPECT_TRUE(goal.writable_in(State::SafeOperational));
@@ -119,7 +119,7 @@ TEST(SubsystemDescriptor, AParameterIsWritableInTheStatesItNamesOnly) {
 }
 
 TEST(SubsystemDescriptor, AnArgumentOfAParameterHasItsRange) {
-  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  const SubsystemDescriptor robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   const Function::Argument& limit = robot.find_function("SET_TORQUE_LIMIT")->arguments.at(0);
   EXPECT_EQ(limit.of, "TORQUE_LIMIT");
   EXPECT_EQ(limit.field.name, "LIMIT");
@@ -186,7 +186,7 @@ TEST(SubsystemDescriptor, ParametersAreSwitchesAndWordsAndNamesOfValues) {
     </Configuration></Subsystem>)";
   const auto reading = read_text(text);
   ASSERT_TRUE(reading.value) << rendered(reading.problems, text_source(text));
-  const Subsystem& subsystem = *reading.value;
+  const SubsystemDescriptor& subsystem = *reading.value;
   const auto init = [&](std::string_view name) { return subsystem.find_parameter(name)->init; };
   EXPECT_EQ(init("ON"), (std::vector<Value>{1}));
   EXPECT_EQ(init("SHUTTERS"), (std::vector<Value>{0, 1, 1}));
@@ -210,7 +210,7 @@ TEST(SubsystemDescriptor, ParametersAreSwitchesAndWordsAndNamesOfValues) {
 }
 
 TEST(SubsystemDescriptor, AnActuatorDeclaresItsStopAndItsSecondInhibit) {
-  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  const SubsystemDescriptor robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   const Device& device = robot.devices.at(0);
   EXPECT_EQ(device.stop, StopKind::Controlled);
   EXPECT_EQ(device.stop_within, 200ms);
@@ -219,17 +219,17 @@ TEST(SubsystemDescriptor, AnActuatorDeclaresItsStopAndItsSecondInhibit) {
   EXPECT_EQ(device.enable->address, "orbiter-robot-enable");
   EXPECT_EQ(device.enable->byte_order, ByteOrder::Little);
   EXPECT_TRUE(actuators_without_enable(robot).empty());
-  const Subsystem stick = read_subsystem(data / "flywheel.xml", file_system()).value.value();
+  const SubsystemDescriptor stick = read_subsystem(data / "flywheel.xml", file_system()).value.value();
   EXPECT_EQ(stick.devices.at(0).stop, StopKind::Drop);
   EXPECT_FALSE(stick.devices.at(0).enable);
   EXPECT_TRUE(actuators_without_enable(stick).empty()) << "it is no actuator";
-  Subsystem bare = robot;
+  SubsystemDescriptor bare = robot;
   bare.devices.at(0).enable.reset();
   EXPECT_EQ(actuators_without_enable(bare), std::vector<std::string_view>{"PLATE"});
 }
 
 TEST(SubsystemDescriptor, FillsTheConfiguration) {
-  const Subsystem robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
+  const SubsystemDescriptor robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   EXPECT_EQ(robot.find_configuration("STANDALONE")->overruns.reduced, 20U);
   const Configuration* coupled = robot.find_configuration(std::uint8_t{2});
   ASSERT_NE(coupled, nullptr);
@@ -412,7 +412,7 @@ TEST(SubsystemReader, ADeviceMayHaveSeveralEndnodesWithFallBacksAndAPowerSwitch)
     </Configuration>
   </Subsystem>)");
   ASSERT_TRUE(reading.value);
-  const Subsystem& read = *reading.value;
+  const SubsystemDescriptor& read = *reading.value;
   ASSERT_EQ(read.devices.size(), 3U);
   EXPECT_EQ(read.devices[0].name, "CAMERA.DRIVE");
   EXPECT_EQ(read.devices[0].part_of, "CAMERA");

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <expected>
 
+#include "hirosco/descriptor/model/supervisor_apid.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
@@ -15,13 +16,14 @@
 /// lives here: a view that exists is a whole, well-formed packet.
 namespace hirosco::pus {
 
+using descriptor::supervisor_apid;
+
 inline constexpr std::size_t primary_header_octets = 6;
 inline constexpr std::size_t telecommand_overhead_octets = 13;  ///< headers and error control
 inline constexpr std::size_t telemetry_overhead_octets = 22;  ///< headers, time and error control
 inline constexpr std::size_t max_telecommand_octets = 4096;
 inline constexpr std::size_t max_telemetry_octets = 4096;
 inline constexpr std::uint16_t idle_apid = 2047;
-inline constexpr std::uint16_t supervisor_apid = 1;  ///< also the source id of its own telecommands (decision 27)
 inline constexpr std::uint16_t sequence_counts = 16'384;  ///< of a packet: one after the last is 0
 
 /// Acknowledgement flags of a telecommand (pus-c tailoring 4.3).

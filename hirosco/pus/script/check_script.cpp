@@ -32,9 +32,9 @@ using descriptor::Thing;
                                        .hint = std::move(hint)}};
 }
 
-[[nodiscard]] std::unexpected<ScriptProblem> nobody(const ScriptLine& line, const descriptor::Subsystem& player,
-                                                    const char* does, const char* element,
-                                                    const std::vector<std::string_view>& known) {
+[[nodiscard]] std::unexpected<ScriptProblem> nobody(const ScriptLine& line,
+                                                    const descriptor::SubsystemDescriptor& player, const char* does,
+                                                    const char* element, const std::vector<std::string_view>& known) {
   std::string hint = near(line.subsystem, known);
   if (hint.empty())
     hint = "its descriptor says whom: <" + std::string{element} + " subsystem=\"" + line.subsystem + "\" .../>";
@@ -43,7 +43,7 @@ using descriptor::Thing;
 }
 
 [[nodiscard]] std::expected<const descriptor::Commands*, ScriptProblem> commanded_by(
-    const ScriptLine& line, const descriptor::Subsystem& player) {
+    const ScriptLine& line, const descriptor::SubsystemDescriptor& player) {
   std::vector<std::string_view> known;
   for (const descriptor::Commands& each : player.commands) {
     if (same(each.subsystem, line.subsystem)) return &each;
@@ -70,7 +70,7 @@ using descriptor::Thing;
 }  // namespace
 
 std::expected<descriptor::Function, ScriptProblem> request_of(const ScriptLine& line,
-                                                              const descriptor::Subsystem& player) {
+                                                              const descriptor::SubsystemDescriptor& player) {
   const auto commands = commanded_by(line, player);
   if (!commands) return std::unexpected{commands.error()};
   const descriptor::Commands& permits = **commands;
@@ -119,7 +119,8 @@ std::expected<std::vector<std::optional<Value>>, ScriptProblem> values_of(const 
   return std::move(*values);
 }
 
-std::expected<const Thing*, ScriptProblem> awaited_by(const ScriptLine& line, const descriptor::Subsystem& player) {
+std::expected<const Thing*, ScriptProblem> awaited_by(const ScriptLine& line,
+                                                      const descriptor::SubsystemDescriptor& player) {
   const bool event = line.kind == ScriptLine::Kind::Event;
   const auto kind = event ? Thing::Kind::Event : Thing::Kind::Read;
   const std::vector<Thing>* things = nullptr;
@@ -177,7 +178,7 @@ std::optional<double> number_of(const Thing& parameter, Octets big_endian) {
   }
 }
 
-std::vector<ScriptProblem> check_script(const Script& script, const descriptor::Subsystem& player) {
+std::vector<ScriptProblem> check_script(const Script& script, const descriptor::SubsystemDescriptor& player) {
   std::vector<ScriptProblem> problems;
   for (const ScriptLine& line : script.lines) {
     if (line.kind == ScriptLine::Kind::Until || line.kind == ScriptLine::Kind::Event) {

@@ -67,18 +67,19 @@ struct ScriptReading {
 
 /// What a telecommand's line asks for, as <Commands> of the descriptor of who plays it has it; without arguments where no mission has said
 /// yet who is commanded. A setting is named "SET:PARAMETER".  Realtime: allocates.
-[[nodiscard]] std::expected<descriptor::Function, ScriptProblem> request_of(const ScriptLine& line,
-                                                                            const descriptor::Subsystem& player);
+[[nodiscard]] std::expected<descriptor::Function, ScriptProblem> request_of(
+    const ScriptLine& line, const descriptor::SubsystemDescriptor& player);
 /// The values of its arguments, permitted ones.  Realtime: allocates.
 [[nodiscard]] std::expected<std::vector<std::optional<Value>>, ScriptProblem> values_of(
     const ScriptLine& line, const descriptor::Function& request);
 /// The parameter that an `until` waits for, in `reads` of <Commands>, or the event that an `event` does, in <Subscribes>.
-[[nodiscard]] std::expected<const descriptor::Thing*, ScriptProblem> awaited_by(const ScriptLine& line,
-                                                                                const descriptor::Subsystem& player);
+[[nodiscard]] std::expected<const descriptor::Thing*, ScriptProblem> awaited_by(
+    const ScriptLine& line, const descriptor::SubsystemDescriptor& player);
 /// The number in the octets of such a parameter, as it stands on the wire. Empty: it is none.
 [[nodiscard]] std::optional<double> number_of(const descriptor::Thing& parameter, Octets big_endian);
 
 /// All that is wrong with it for who plays it.  Realtime: allocates.
-[[nodiscard]] std::vector<ScriptProblem> check_script(const Script& script, const descriptor::Subsystem& player);
+[[nodiscard]] std::vector<ScriptProblem> check_script(const Script& script,
+                                                      const descriptor::SubsystemDescriptor& player);
 
 }  // namespace hirosco::pus

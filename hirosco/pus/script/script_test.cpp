@@ -100,7 +100,7 @@ TEST(Script, ComparesAsItIsWritten) {
 /// A player whose <Commands> and <Subscribes> a mission has resolved.
 struct ScriptOfAPlayer : ::testing::Test {
   using Thing = descriptor::Thing;
-  descriptor::Subsystem asker;
+  descriptor::SubsystemDescriptor asker;
 
   [[nodiscard]] static descriptor::Field field(const char* name, Type type) {
     descriptor::Field made;

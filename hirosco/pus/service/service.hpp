@@ -43,7 +43,7 @@ class SelfTest;
 class ServiceHome {
  public:
   virtual ~ServiceHome() = default;
-  [[nodiscard]] virtual const descriptor::Subsystem& descriptor() const noexcept = 0;
+  [[nodiscard]] virtual const descriptor::SubsystemDescriptor& descriptor() const noexcept = 0;
   [[nodiscard]] virtual descriptor::State state() const noexcept = 0;
   [[nodiscard]] virtual Verification& verification() noexcept = 0;
   [[nodiscard]] virtual TelemetrySink& telemetry() noexcept = 0;

@@ -14,7 +14,8 @@ namespace hirosco::pus {
 class ConfiguredHousekeeping final : public Service {
  public:
   /// `subsystem` outlives the service.
-  ConfiguredHousekeeping(const descriptor::Subsystem& subsystem, Verification& verification, TelemetrySink& sink)
+  ConfiguredHousekeeping(const descriptor::SubsystemDescriptor& subsystem, Verification& verification,
+                         TelemetrySink& sink)
       : subsystem_{subsystem}, verification_{verification}, sink_{sink} {}
   [[nodiscard]] const ServiceKind& kind() const noexcept override { return HousekeepingService::service_kind; }
   void handle(const TelecommandView& telecommand, const Request& request) override;
@@ -42,7 +43,7 @@ class ConfiguredHousekeeping final : public Service {
   };
   [[nodiscard]] Result<Halves> make(const descriptor::Configuration& configuration);
 
-  const descriptor::Subsystem& subsystem_;
+  const descriptor::SubsystemDescriptor& subsystem_;
   Verification& verification_;
   TelemetrySink& sink_;
   Halves current_;

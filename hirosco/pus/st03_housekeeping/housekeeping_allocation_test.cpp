@@ -19,7 +19,7 @@ struct Memory final : SampleSource, SampleSink {
 };
 
 TEST(HousekeepingCycle, NeverUsesTheHeapWhateverTheServiceAsksOfIt) {
-  descriptor::Subsystem subsystem;
+  descriptor::SubsystemDescriptor subsystem;
   subsystem.id = 2;
   subsystem.parameters.emplace_back().field.type = Type::Uint8;
   HousekeepingSampler sampler;

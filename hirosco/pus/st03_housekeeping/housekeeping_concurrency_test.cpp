@@ -55,7 +55,7 @@ void create(HousekeepingService& service, std::uint16_t id) {
 }
 
 TEST(HousekeepingHandOver, KeepsEveryReportWholeWhileStructuresComeAndGo) {
-  descriptor::Subsystem subsystem;
+  descriptor::SubsystemDescriptor subsystem;
   subsystem.id = 2;
   for (std::uint8_t i = 0; i < 7; ++i) {
     auto& parameter = subsystem.parameters.emplace_back();

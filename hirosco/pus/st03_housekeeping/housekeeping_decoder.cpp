@@ -66,7 +66,7 @@ std::string HousekeepingValue::json() const {
   return list.empty() ? "[]" : list + "]";
 }
 
-HousekeepingDecoder::HousekeepingDecoder(const descriptor::Subsystem& subsystem) {
+HousekeepingDecoder::HousekeepingDecoder(const descriptor::SubsystemDescriptor& subsystem) {
   const auto add = [&](const std::vector<descriptor::HousekeepingStructure>& structures) {
     for (const auto& structure : structures) {
       Layout layout;
@@ -84,7 +84,7 @@ HousekeepingDecoder::HousekeepingDecoder(const descriptor::Subsystem& subsystem)
 }
 
 std::vector<HousekeepingDecoder::Entry> HousekeepingDecoder::entries_of(
-    const descriptor::Subsystem& subsystem, const std::vector<descriptor::ParameterRef>& references) {
+    const descriptor::SubsystemDescriptor& subsystem, const std::vector<descriptor::ParameterRef>& references) {
   std::vector<Entry> entries;
   for (const auto& reference : references) {
     const auto& parameter = subsystem.parameters[reference.parameter];

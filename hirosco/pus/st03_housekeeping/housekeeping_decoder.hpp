@@ -29,7 +29,7 @@ struct HousekeepingValue {
 
 class HousekeepingDecoder {
  public:
-  explicit HousekeepingDecoder(const descriptor::Subsystem& subsystem);
+  explicit HousekeepingDecoder(const descriptor::SubsystemDescriptor& subsystem);
   /// Values in report order. NotFound: the descriptor has no such structure; Malformed: not of its length. A structure
   /// id that several configurations use is decoded by the one whose length fits.  Realtime: allocates.
   [[nodiscard]] Result<std::vector<HousekeepingValue>> decode(Octets source_data) const;
@@ -48,7 +48,7 @@ class HousekeepingDecoder {
     std::vector<Set> sets;
     std::size_t octets{0};
   };
-  [[nodiscard]] static std::vector<Entry> entries_of(const descriptor::Subsystem& subsystem,
+  [[nodiscard]] static std::vector<Entry> entries_of(const descriptor::SubsystemDescriptor& subsystem,
                                                      const std::vector<descriptor::ParameterRef>& references);
   std::multimap<std::uint16_t, Layout> layouts_;
 };

@@ -51,7 +51,7 @@ struct HousekeepingService::Definition {
   std::vector<Set> sets;
 };
 
-HousekeepingService::HousekeepingService(const descriptor::Subsystem& subsystem, HousekeepingSampler& sampler,
+HousekeepingService::HousekeepingService(const descriptor::SubsystemDescriptor& subsystem, HousekeepingSampler& sampler,
                                          Verification& verification, TelemetrySink& sink)
     : subsystem_{subsystem}, sampler_{sampler}, verification_{verification}, sink_{sink} {
   const auto add = [this](Type layout, std::uint8_t id, std::size_t parameter, int member, std::size_t octets) {

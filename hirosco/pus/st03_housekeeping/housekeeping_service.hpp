@@ -156,8 +156,8 @@ class HousekeepingService final : public Service {
   };
 
   /// `subsystem` gives the parameters; it and `sampler` outlive the service.
-  HousekeepingService(const descriptor::Subsystem& subsystem, HousekeepingSampler& sampler, Verification& verification,
-                      TelemetrySink& sink);
+  HousekeepingService(const descriptor::SubsystemDescriptor& subsystem, HousekeepingSampler& sampler,
+                      Verification& verification, TelemetrySink& sink);
 
   /// Adds predefined structures; one with an id that exists replaces it (a configuration overrides the subsystem).
   /// OutOfRange: interval and repetitions do not fit; ResourceExhausted: too many structures or too long a report;
@@ -202,7 +202,7 @@ class HousekeepingService final : public Service {
   /// Unknown identifiers and want of room in the command queue, for lists of structure ids.
   [[nodiscard]] Notice check_known(std::size_t index, std::uint16_t id, std::size_t commands_before) noexcept;
 
-  const descriptor::Subsystem& subsystem_;
+  const descriptor::SubsystemDescriptor& subsystem_;
   HousekeepingSampler& sampler_;
   Verification& verification_;
   TelemetrySink& sink_;

@@ -233,7 +233,7 @@ struct Many {
 }
 
 [[nodiscard]] Result<> load_many(const Many& many) {
-  descriptor::Subsystem subsystem;
+  descriptor::SubsystemDescriptor subsystem;
   subsystem.id = 2;
   subsystem.parameters.emplace_back().field = named("X", Type::Int8);
   const std::vector<ParameterRef> list(static_cast<std::size_t>(many.values), {"X", 0, {}, {}});

@@ -23,8 +23,8 @@ inline descriptor::Field named(const char* name, Type type) {
 }
 
 /// The paper's Listing 1, in subsystem 2.
-inline descriptor::Subsystem listing_1() {
-  descriptor::Subsystem subsystem;
+inline descriptor::SubsystemDescriptor listing_1() {
+  descriptor::SubsystemDescriptor subsystem;
   subsystem.id = 2;
   descriptor::Parameter current;
   current.field = named("CUR_VALUES", Type::Struct);
@@ -93,7 +93,7 @@ struct Cycle final : SampleSource, SampleSink {
 };
 
 struct Housekeeping : ::testing::Test {
-  descriptor::Subsystem subsystem{listing_1()};
+  descriptor::SubsystemDescriptor subsystem{listing_1()};
   HousekeepingSampler sampler;
   Cycle cycle{sampler};
   RecordingSink sink;

@@ -30,7 +30,7 @@ namespace {
 [[nodiscard]] bool is_wide(Type type) noexcept { return type == Type::Uint64 || type == Type::Int64; }
 
 /// "value,value", an enumeration and a switch by their words, a text in quotes.
-void append_values(std::string& text, const descriptor::Subsystem& subsystem, const descriptor::Field& field,
+void append_values(std::string& text, const descriptor::SubsystemDescriptor& subsystem, const descriptor::Field& field,
                    OctetReader& reader) {
   if (field.text) {
     const std::string words = text_of(reader.get(field.octets()));
@@ -63,7 +63,7 @@ void append_values(std::string& text, const descriptor::Subsystem& subsystem, co
 }
 
 /// "NAME=value unit"
-void append_field(std::string& text, const descriptor::Subsystem& subsystem, const descriptor::Field& field,
+void append_field(std::string& text, const descriptor::SubsystemDescriptor& subsystem, const descriptor::Field& field,
                   OctetReader& reader) {
   text.append(" ").append(field.name).append("=");
   append_values(text, subsystem, field, reader);
@@ -99,7 +99,7 @@ enum class Units : std::uint8_t { No, Yes };
 }
 
 /// " SET_STATE STATE=Operational" of the data of TC[8,1].
-[[nodiscard]] std::string call_text(const descriptor::Subsystem& subsystem, Octets data) {
+[[nodiscard]] std::string call_text(const descriptor::SubsystemDescriptor& subsystem, Octets data) {
   const auto common = common_functions();
   const auto call = decode_call(subsystem.functions, data, common);
   std::string text;
@@ -118,7 +118,7 @@ struct Known {
   std::string name;
   std::vector<descriptor::Field> fields;
 };
-[[nodiscard]] std::optional<Known> parameter_of(const descriptor::Subsystem& subsystem, std::uint32_t wire) {
+[[nodiscard]] std::optional<Known> parameter_of(const descriptor::SubsystemDescriptor& subsystem, std::uint32_t wire) {
   const auto found = descriptor::find_parameter(subsystem, wire);
   return found ? std::optional{Known{found->text, descriptor::fields_of(subsystem, *found)}} : std::nullopt;
 }
@@ -135,7 +135,8 @@ struct Known {
 /// The data of a standard service by their shape (service/service_kind.hpp).
 class ShapeWords {
  public:
-  ShapeWords(const descriptor::Subsystem& subsystem, OctetReader& reader) : subsystem_{subsystem}, reader_{reader} {}
+  ShapeWords(const descriptor::SubsystemDescriptor& subsystem, OctetReader& reader)
+      : subsystem_{subsystem}, reader_{reader} {}
   /// " STRUCTURES=4711,4712"
   [[nodiscard]] std::string parts(Shape shape) {
     std::string text;
@@ -208,17 +209,18 @@ class ShapeWords {
     return text;
   }
 
-  const descriptor::Subsystem& subsystem_;
+  const descriptor::SubsystemDescriptor& subsystem_;
   OctetReader& reader_;
   std::optional<Known> last_;
 };
 
-[[nodiscard]] std::string shape_text(Shape shape, const descriptor::Subsystem& subsystem, OctetReader& reader) {
+[[nodiscard]] std::string shape_text(Shape shape, const descriptor::SubsystemDescriptor& subsystem,
+                                     OctetReader& reader) {
   return ShapeWords{subsystem, reader}.parts(shape);
 }
 
 /// " PAGE NUMBER=3 VALUE=1.5,2" of a report that no rule above knows.
-[[nodiscard]] std::string report_text(const descriptor::Subsystem& subsystem, std::uint8_t service,
+[[nodiscard]] std::string report_text(const descriptor::SubsystemDescriptor& subsystem, std::uint8_t service,
                                       std::uint8_t subtype, OctetReader& reader) {
   std::string text;
   if (const auto* own = subsystem.find_service(service)) {
@@ -250,7 +252,7 @@ std::string text_of(Octets octets) {
   return text;
 }
 
-const descriptor::Subsystem* PacketDescriber::find(std::uint16_t apid) const {
+const descriptor::SubsystemDescriptor* PacketDescriber::find(std::uint16_t apid) const {
   if (apid == mission_->supervisor.id) return &mission_->supervisor;
   const auto* member = mission_->find_subsystem(apid);
   return member != nullptr ? &member->subsystem : nullptr;

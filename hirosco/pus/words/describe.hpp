@@ -28,7 +28,7 @@ class PacketDescriber {
   [[nodiscard]] std::string name_of(std::uint16_t apid) const;
 
  private:
-  [[nodiscard]] const descriptor::Subsystem* find(std::uint16_t apid) const;
+  [[nodiscard]] const descriptor::SubsystemDescriptor* find(std::uint16_t apid) const;
   [[nodiscard]] std::string refused_parameter(FailureCode code, Octets data) const;
   [[nodiscard]] std::string describe_telecommand(const TelecommandView& telecommand) const;
   [[nodiscard]] std::string describe_telemetry(const TelemetryView& telemetry) const;

@@ -187,7 +187,7 @@ class Subsystem {
   [[nodiscard]] Result<Quota::Held> acquire_port() noexcept;
   [[nodiscard]] Result<Quota::Held> acquire_file() noexcept;
   [[nodiscard]] State state() const noexcept;
-  [[nodiscard]] const descriptor::Subsystem& own_descriptor() const noexcept;
+  [[nodiscard]] const descriptor::SubsystemDescriptor& own_descriptor() const noexcept;
 
  private:
   friend class GenericSubsystem;

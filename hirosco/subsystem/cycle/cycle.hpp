@@ -72,7 +72,7 @@ class CycleLoop final : private pus::SampleSource, private pus::SampleSink {
  public:
   struct Parts {
     Subsystem& author;
-    const descriptor::Subsystem& descriptor;
+    const descriptor::SubsystemDescriptor& descriptor;
     const Clock& clock;
     Dictionary& dictionary;
     WriteQueue& writes;

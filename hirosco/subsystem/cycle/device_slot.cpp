@@ -165,7 +165,8 @@ void DeviceSlot::take_frame(Octets frame) noexcept {
   const bool fits = status && status->payload.size() == wire_octets(input_layout_);
   if (!fits) {
     ++port_->damaged_frames_;
-    return count(status ? since_good_.wrong_size : since_good_.damaged);
+    if (status) return count(since_good_.wrong_size);
+    return count(status.error().code == ErrorCode::Mismatch ? since_good_.other_version : since_good_.damaged);
   }
   decode(input_layout_, status->payload, port_->input_, order_);
   // A frame that answers no newer command is a repetition: a frozen device must not look alive.
@@ -199,6 +200,7 @@ DeviceSlot::Loss DeviceSlot::loss() const noexcept {
   };
   blame(loss.damaged, Damaged);
   blame(loss.wrong_size, WrongSize);
+  blame(loss.other_version, OtherVersion);
   blame(loss.let_go, LetGo);
   blame(loss.repeated, Repeated);
   blame(loss.refused, OldEpoch);
@@ -245,7 +247,8 @@ void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept
   if (due(mode, before)) send(mode, payload);
 }
 
-bool DeviceSlot::would_jump(const descriptor::Subsystem& subsystem, const descriptor::Bumpless& terms) noexcept {
+bool DeviceSlot::would_jump(const descriptor::SubsystemDescriptor& subsystem,
+                            const descriptor::Bumpless& terms) noexcept {
   if (!device_->actuator || !passed_) return false;
   port_->output_layout_.fit(port_->output_);
   encode(output_layout_, port_->output_, next_payload_, order_);

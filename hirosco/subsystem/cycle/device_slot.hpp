@@ -50,6 +50,7 @@ class DeviceSlot {
     std::uint32_t silent_cycles{0};
     std::uint32_t damaged{0};
     std::uint32_t wrong_size{0};
+    std::uint32_t other_version{0};
     std::uint32_t repeated{0};
     std::uint32_t let_go{0};
     std::uint32_t refused{0};
@@ -85,7 +86,8 @@ class DeviceSlot {
   void follow(Duration sampling) noexcept;
   /// Whether the author's output is further from what was put out in the cycle before than its step is wide. False where nothing of
   /// the author's was put out.
-  [[nodiscard]] bool would_jump(const descriptor::Subsystem& subsystem, const descriptor::Bumpless& terms) noexcept;
+  [[nodiscard]] bool would_jump(const descriptor::SubsystemDescriptor& subsystem,
+                                const descriptor::Bumpless& terms) noexcept;
 
  private:
   static constexpr std::uint32_t never = 1'000'000'000;

@@ -215,7 +215,7 @@ void LinkInputSlot::tell(LinkLatencies& page) noexcept {
   }
 }
 
-LinkOutputSlot::LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms,
+LinkOutputSlot::LinkOutputSlot(const descriptor::SubsystemDescriptor& subsystem, const descriptor::Provides& terms,
                                Dictionary& dictionary, LoanOutputPort* port)
     : terms_{&terms}, port_{port} {
   for (const descriptor::Field& field : terms.fields) fields_.push_back({field.name, field.type, field.count});

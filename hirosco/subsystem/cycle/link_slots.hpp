@@ -115,8 +115,8 @@ class LinkInputSlot {
 /// A lent set has a port: its samples are made in the memory that its links have in common.
 class LinkOutputSlot {
  public:
-  LinkOutputSlot(const descriptor::Subsystem& subsystem, const descriptor::Provides& terms, Dictionary& dictionary,
-                 LoanOutputPort* port = nullptr);
+  LinkOutputSlot(const descriptor::SubsystemDescriptor& subsystem, const descriptor::Provides& terms,
+                 Dictionary& dictionary, LoanOutputPort* port = nullptr);
   [[nodiscard]] const descriptor::Provides& terms() const noexcept { return *terms_; }
   [[nodiscard]] const std::vector<pus::st128::OfferedField>& fields() const noexcept { return fields_; }
   void attach(AttachedLink* link) noexcept;

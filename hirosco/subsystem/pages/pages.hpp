@@ -115,6 +115,7 @@ enum Power : std::uint32_t {
   power_off = 0,  ///< each switch has said that it is off; also of who has none
   power_on = 1,  ///< each switch has said that it is on
   power_changes = 2,  ///< neither
+  power_unknown_version = 3,  ///< one answers by frames of another version: what it says nobody here can read
 };
 
 /// The only value of PermitPage::go that lets actuators move under this epoch.

@@ -57,6 +57,7 @@ constexpr std::array known_options{ProgramOption{"--descriptor", "FILE"},
                                    ProgramOption{"--set", "PARAMETER=VALUES"},
                                    ProgramOption{"--address", "DEVICE=ADDRESS"},
                                    ProgramOption{"--enable", "DEVICE=ADDRESS"},
+                                   ProgramOption{"--setting", "DEVICE:NAME=VALUE"},
                                    ProgramOption{"--commands", "NAME=ID:FILE"},
                                    ProgramOption{"--subscribes", "NAME=ID:FILE"}};
 
@@ -126,8 +127,8 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     fmt::print(stderr,
                "{}: a subsystem is started by the supervisor (hirosco run MISSION), which passes\n"
                "  --descriptor FILE --channel FD --vital FD --permit FD [--as NAME:ID] [--set PARAMETER=VALUES]\n"
-               "  [--text FD] [--address DEVICE=ADDRESS] [--enable DEVICE=ADDRESS] [--commands NAME=ID:FILE]\n"
-               "  [--subscribes NAME=ID:FILE]\n",
+               "  [--text FD] [--address DEVICE=ADDRESS] [--enable DEVICE=ADDRESS] [--setting DEVICE:NAME=VALUE]\n"
+               "  [--commands NAME=ID:FILE] [--subscribes NAME=ID:FILE]\n",
                argv[0]);
     return exit_usage;
   }
@@ -166,7 +167,7 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     static_cast<void>(set_shared_priority(service_loop_priority));
   }
   auto meter = ProcessMeter::own();
-  const descriptor::Subsystem begun = *reading.value;
+  const descriptor::SubsystemDescriptor begun = *reading.value;
   const Platform platform{
       .clock = clock,
       .memory = memory,

@@ -101,7 +101,7 @@ TEST_F(BuiltApart, AWordThatItDoesNotKnowIsRefusedInOneLine) {
 
 TEST_F(BuiltApart, EveryWordByWhichASupervisorChangesADescriptorIsKnown) {
   for (const std::string& word :
-       std::vector<std::string>{"--as", "--set", "--address", "--enable", "--commands", "--subscribes"})
+       std::vector<std::string>{"--as", "--set", "--address", "--enable", "--setting", "--commands", "--subscribes"})
     EXPECT_EXIT(run([] { return std::make_unique<Idle>(); }, {word, "?"}), ::testing::ExitedWithCode(3),
                 "^started: " + word + " \\?: ");
 }

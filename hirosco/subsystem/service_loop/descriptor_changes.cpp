@@ -69,7 +69,7 @@ std::optional<FailureNotice> GenericSubsystem::judge(std::size_t octets, const M
 }
 
 /// Why it cannot be taken now; the words are kept here, as an error does not own them.
-std::optional<FailureNotice> GenericSubsystem::against(const descriptor::Subsystem& fresh) {
+std::optional<FailureNotice> GenericSubsystem::against(const descriptor::SubsystemDescriptor& fresh) {
   if (way_ || release_owed_) return FailureNotice{FailureCode::Busy};
   if (state_ != State::Offline && state_ != State::PreOperational) return wrong_state();
   auto found = descriptor::obstacles(descriptor_, fresh);
@@ -83,7 +83,7 @@ std::optional<FailureNotice> GenericSubsystem::against(const descriptor::Subsyst
 }
 
 /// A value that is there, and that a telecommand could not set any more: it is set first, or the range stays.
-std::optional<FailureNotice> GenericSubsystem::left_outside(const descriptor::Subsystem& fresh) {
+std::optional<FailureNotice> GenericSubsystem::left_outside(const descriptor::SubsystemDescriptor& fresh) {
   std::vector<std::byte> room;
   for (std::size_t index = 0; index < fresh.parameters.size(); ++index) {
     const descriptor::Parameter& parameter = fresh.parameters[index];
@@ -108,7 +108,7 @@ std::optional<FailureNotice> GenericSubsystem::left_outside(const descriptor::Su
 
 std::optional<FailureNotice> GenericSubsystem::take() {
   if (!coming_) return FailureNotice{FailureCode::WrongStatus};
-  descriptor::Subsystem fresh = std::move(*coming_);
+  descriptor::SubsystemDescriptor fresh = std::move(*coming_);
   coming_.reset();
   if (auto refused = against(fresh)) return refused;
   descriptor::take_over(descriptor_, std::move(fresh));

@@ -21,7 +21,7 @@ class ForeignParameters::Port final : public SubscriptionPort {
   std::vector<std::size_t> entries_;
 };
 
-ForeignParameters::ForeignParameters(const descriptor::Subsystem& described, Home home)
+ForeignParameters::ForeignParameters(const descriptor::SubsystemDescriptor& described, Home home)
     : descriptor_{described}, home_{std::move(home)} {}
 
 ForeignParameters::~ForeignParameters() = default;

@@ -28,7 +28,7 @@ class ForeignParameters {
     /// FOREIGN_UNKNOWN of this one.
     std::function<void(std::uint16_t parameter)> tell;
   };
-  ForeignParameters(const descriptor::Subsystem& described, Home home);
+  ForeignParameters(const descriptor::SubsystemDescriptor& described, Home home);
   ~ForeignParameters();
   ForeignParameters(const ForeignParameters&) = delete;
   ForeignParameters& operator=(const ForeignParameters&) = delete;
@@ -56,7 +56,7 @@ class ForeignParameters {
   class Port;
   [[nodiscard]] bool take(Entry& entry, Octets values);
 
-  const descriptor::Subsystem& descriptor_;
+  const descriptor::SubsystemDescriptor& descriptor_;
   Home home_;
   std::vector<Entry> entries_;
   std::vector<std::unique_ptr<Port>> ports_;

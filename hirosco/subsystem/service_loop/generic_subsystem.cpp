@@ -22,7 +22,7 @@ constexpr Duration busy_pace = 1ms;
 constexpr Duration idle_pace = 10ms;
 constexpr int messages_per_step = 64;
 
-[[nodiscard]] Dictionary make_dictionary(const descriptor::Subsystem& subsystem, std::string& problem) {
+[[nodiscard]] Dictionary make_dictionary(const descriptor::SubsystemDescriptor& subsystem, std::string& problem) {
   std::vector<ParameterSpec> specs;
   for (const auto& parameter : subsystem.parameters) {
     ParameterSpec spec{.name = parameter.field.name,
@@ -44,15 +44,16 @@ constexpr int messages_per_step = 64;
 }
 
 /// Whoever made the descriptor: the framework's events are there.
-[[nodiscard]] descriptor::Subsystem with_framework_events(descriptor::Subsystem subsystem) {
+[[nodiscard]] descriptor::SubsystemDescriptor with_framework_events(descriptor::SubsystemDescriptor subsystem) {
   descriptor::add_framework_events(subsystem);
   return subsystem;
 }
 
 }  // namespace
 
-GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::Subsystem descriptor, const Platform& platform,
-                                   Channel& channel, VitalPage& vital, const PermitPage& permit)
+GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescriptor descriptor,
+                                   const Platform& platform, Channel& channel, VitalPage& vital,
+                                   const PermitPage& permit)
     : author_{author},
       descriptor_{with_framework_events(std::move(descriptor))},
       platform_{platform},

@@ -61,7 +61,7 @@ struct Platform {
   std::function<std::optional<ProcessUsage>()> usage{};
   /// Reads another text of its descriptor, with what its mission changes applied (docs/adr/0095). Service loop only; null: it keeps
   /// the one that it began with.
-  std::function<descriptor::Reading<descriptor::Subsystem>(std::string_view text)> read_again{};
+  std::function<descriptor::Reading<descriptor::SubsystemDescriptor>(std::string_view text)> read_again{};
 };
 
 /// The descriptor in force, as housekeeping.
@@ -86,8 +86,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
                                private pus::ServiceHome {
  public:
   /// `vital` and `permit` are the mapped pages, at least as large as VitalPage and PermitPage and initialised.
-  GenericSubsystem(Subsystem& author, descriptor::Subsystem descriptor, const Platform& platform, Channel& channel,
-                   VitalPage& vital, const PermitPage& permit);
+  GenericSubsystem(Subsystem& author, descriptor::SubsystemDescriptor descriptor, const Platform& platform,
+                   Channel& channel, VitalPage& vital, const PermitPage& permit);
   ~GenericSubsystem() override;
 
   /// One step of the service loop; returns when the next is due at the latest.  Realtime: allocates. Thread: service.
@@ -140,7 +140,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   /// Offline again after the supervisor went away or said so: the process may end.
   [[nodiscard]] bool finished() const noexcept { return finished_; }
   [[nodiscard]] State state() const noexcept override { return state_; }
-  [[nodiscard]] const descriptor::Subsystem& descriptor() const noexcept override { return descriptor_; }
+  [[nodiscard]] const descriptor::SubsystemDescriptor& descriptor() const noexcept override { return descriptor_; }
 
   // --- for Subsystem ----------------------------------------------------------------------------------------------
   void publish(std::string_view name, ParameterCell& parameter);
@@ -212,8 +212,8 @@ class GenericSubsystem final : private pus::TelemetrySink,
     return notice_of(static_cast<std::uint16_t>(code), {why.code, why.text, why.value});
   }
 
-  [[nodiscard]] std::optional<pus::FailureNotice> against(const descriptor::Subsystem& fresh);
-  [[nodiscard]] std::optional<pus::FailureNotice> left_outside(const descriptor::Subsystem& fresh);
+  [[nodiscard]] std::optional<pus::FailureNotice> against(const descriptor::SubsystemDescriptor& fresh);
+  [[nodiscard]] std::optional<pus::FailureNotice> left_outside(const descriptor::SubsystemDescriptor& fresh);
   void tell_descriptor();
   void receive_messages();
   void dispatch(const Message& message);
@@ -289,7 +289,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   [[nodiscard]] ForeignParameters::Home foreign_home();
 
   Subsystem& author_;
-  descriptor::Subsystem descriptor_;
+  descriptor::SubsystemDescriptor descriptor_;
   Platform platform_;
   Channel& channel_;
   VitalPage& vital_;
@@ -318,7 +318,7 @@ class GenericSubsystem final : private pus::TelemetrySink,
   pus::ConfiguredHousekeeping housekeeping_service_;
   LinkService link_service_;
   pus::DescriptorService descriptor_service_;
-  std::optional<descriptor::Subsystem> coming_;  ///< judged, and not taken yet
+  std::optional<descriptor::SubsystemDescriptor> coming_;  ///< judged, and not taken yet
   Parameter<DescriptorInForce> descriptor_in_force_;
   std::uint16_t descriptor_changes_{0};
   SelfTests self_tests_;

@@ -72,7 +72,7 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   [[nodiscard]] bool has_reports() const noexcept { return out_.used() != 0; }
 
   // --- of its services -------------------------------------------------------------------------------------------------
-  [[nodiscard]] const descriptor::Subsystem& descriptor() const noexcept override {
+  [[nodiscard]] const descriptor::SubsystemDescriptor& descriptor() const noexcept override {
     return parts_.subsystem.descriptor();
   }
   [[nodiscard]] descriptor::State state() const noexcept override;

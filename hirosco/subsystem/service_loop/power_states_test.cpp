@@ -62,6 +62,18 @@ TEST_F(PowerStates, ADeviceThatIsNotSwitchedOnFailsHardwareInitInItsTimeAndSaysS
   EXPECT_THAT(rig.explanations.front(), HasSubstr("a device is not switched on"));
 }
 
+TEST_F(PowerStates, APowerSwitchOfAnotherVersionFailsHardwareInitAtOnceAndSaysSo) {
+  const auto up = rig.set_state(State::PreOperational);
+  rig.permit.powered = power_unknown_version;
+  rig.settle();
+  rig.permit.powered = power_off;
+  rig.settle();
+  EXPECT_EQ(rig.state(), State::Offline);
+  EXPECT_THAT(rig.outcome(up), ::testing::StartsWith("1 3 8:"));
+  ASSERT_FALSE(rig.explanations.empty());
+  EXPECT_THAT(rig.explanations.front(), HasSubstr("of another version: build both from one hirosco"));
+}
+
 TEST_F(PowerStates, OfflineIsReachedWhenTheSwitchesHaveSaidOff) {
   bring_up();
   const auto down = rig.set_state(State::Offline);

@@ -80,7 +80,7 @@ struct Service {
 }  // namespace
 
 /// A subsystem that was started again must not take answers to its predecessor for its own: it goes on counting elsewhere.
-Requester::Requester(const descriptor::Subsystem& described, Channel& channel, TimePoint now)
+Requester::Requester(const descriptor::SubsystemDescriptor& described, Channel& channel, TimePoint now)
     : descriptor_{described},
       channel_{channel},
       next_count_{static_cast<std::uint16_t>(

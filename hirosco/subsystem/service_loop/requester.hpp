@@ -27,7 +27,7 @@ class Requester {
   static constexpr std::size_t most_open = 16;
   static constexpr std::size_t most_a_second = 100;
 
-  Requester(const descriptor::Subsystem& described, Channel& channel, TimePoint now);
+  Requester(const descriptor::SubsystemDescriptor& described, Channel& channel, TimePoint now);
 
   /// Binds a request. What is wrong with it in words; empty when nothing is.
   [[nodiscard]] std::string use(const RequestPort& port, RequestHandler handler, Duration patience);
@@ -66,7 +66,7 @@ class Requester {
   void hear_answer(const pus::TelemetryView& report);
   void end(std::size_t place, RequestReport report);
 
-  const descriptor::Subsystem& descriptor_;
+  const descriptor::SubsystemDescriptor& descriptor_;
   Channel& channel_;
   std::deque<Bound> bound_;  ///< those of open requests stay where they are
   std::vector<Open> open_;  ///< the oldest first

@@ -255,7 +255,7 @@ TEST(OpenRequests, TakeWhateverTheOthersDescriptorDeclaresAndNothingElse) {
 TEST(Requests, OfAnotherLifeAreNumberedElsewhere) {
   const auto first_number = [](Duration born) {
     ChannelPair channel;
-    const descriptor::Subsystem porter = read_descriptor(porter_descriptor, {bell_descriptor});
+    const descriptor::SubsystemDescriptor porter = read_descriptor(porter_descriptor, {bell_descriptor});
     Requester requester{porter, channel.subsystem_end(), TimePoint{born}};
     const Request<> count_rings{"BELL", "COUNT_RINGS"};
     EXPECT_EQ(requester.use(count_rings, {}, std::chrono::seconds{1}), "");

@@ -134,6 +134,8 @@ Result<Step> GenericSubsystem::enter_transient(State next) {
     case State::SoftwareInit: return initialise_software();
     case State::HardwareInit:
       if (powered(power_on)) return author_.hardware_init();
+      if (powered(power_unknown_version))
+        return fail(ErrorCode::Mismatch, "a power switch is of another version: build both from one hirosco");
       if (power_takes_too_long()) return fail(ErrorCode::Timeout, "a device is not switched on");
       return again;
     case State::PostOperational: return leave_cycle();

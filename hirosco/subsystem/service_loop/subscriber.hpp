@@ -21,7 +21,8 @@ class Subscriber {
   /// One that was not answered is sent again after this time.
   static constexpr Duration patience = std::chrono::seconds{1};
 
-  Subscriber(const descriptor::Subsystem& described, Channel& channel) : descriptor_{described}, channel_{channel} {}
+  Subscriber(const descriptor::SubsystemDescriptor& described, Channel& channel)
+      : descriptor_{described}, channel_{channel} {}
 
   /// Binds a subscription. What is wrong with it in words; empty when nothing is.
   [[nodiscard]] std::string use(SubscriptionPort& port);
@@ -51,7 +52,7 @@ class Subscriber {
   void hear_verification(const pus::TelemetryView& report);
   bool hear_values(const pus::TelemetryView& report, pus::st129::Subscribed::What what);
 
-  const descriptor::Subsystem& descriptor_;
+  const descriptor::SubsystemDescriptor& descriptor_;
   Channel& channel_;
   std::vector<Bound> bound_;
   std::uint16_t next_count_{0};

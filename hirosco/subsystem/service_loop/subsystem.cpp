@@ -78,6 +78,6 @@ Result<> Subsystem::submit_ground_telecommand(std::uint16_t client, Octets packe
 }
 PoolResource& Subsystem::resources() noexcept { return framework_->resources(); }
 State Subsystem::state() const noexcept { return framework_->state(); }
-const descriptor::Subsystem& Subsystem::own_descriptor() const noexcept { return framework_->descriptor(); }
+const descriptor::SubsystemDescriptor& Subsystem::own_descriptor() const noexcept { return framework_->descriptor(); }
 
 }  // namespace hirosco

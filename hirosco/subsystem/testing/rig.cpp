@@ -21,7 +21,7 @@ std::string hex(Octets octets) {
   return text;
 }
 
-descriptor::Subsystem read_descriptor(const std::string& text) {
+descriptor::SubsystemDescriptor read_descriptor(const std::string& text) {
   const descriptor::FileSource source = [&](const std::filesystem::path&) { return Result<std::string>{text}; };
   auto reading = descriptor::read_subsystem("probe.xml", source);
   std::string problems;
@@ -30,10 +30,10 @@ descriptor::Subsystem read_descriptor(const std::string& text) {
   return std::move(*reading.value);
 }
 
-descriptor::Subsystem read_descriptor(const std::string& text, const std::vector<std::string>& commanded) {
-  descriptor::Subsystem commanding = read_descriptor(text);
+descriptor::SubsystemDescriptor read_descriptor(const std::string& text, const std::vector<std::string>& commanded) {
+  descriptor::SubsystemDescriptor commanding = read_descriptor(text);
   for (const std::string& other : commanded) {
-    const descriptor::Subsystem described = read_descriptor(other);
+    const descriptor::SubsystemDescriptor described = read_descriptor(other);
     const auto named = std::ranges::find(commanding.commands, described.name, &descriptor::Commands::subsystem);
     const auto heard = std::ranges::find(commanding.subscribes, described.name, &descriptor::Subscribes::subsystem);
     const bool commands = named != commanding.commands.end(), hears = heard != commanding.subscribes.end();
@@ -57,7 +57,7 @@ descriptor::Subsystem read_descriptor(const std::string& text, const std::vector
 Rig::Rig(Subsystem& author, const std::string& descriptor_text, bool realtime, bool wakes)
     : Rig{author, read_descriptor(descriptor_text), realtime, wakes} {}
 
-Rig::Rig(Subsystem& author, descriptor::Subsystem described, bool realtime, bool wakes)
+Rig::Rig(Subsystem& author, descriptor::SubsystemDescriptor described, bool realtime, bool wakes)
     : subsystem{
           author,
           std::move(described),

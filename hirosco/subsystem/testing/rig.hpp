@@ -60,7 +60,7 @@ class Rig {
 
   /// `wakes`: the test steps the service loop when the cycle has something to report (Platform::wakes).
   Rig(Subsystem& author, const std::string& descriptor_text, bool realtime = true, bool wakes = false);
-  Rig(Subsystem& author, descriptor::Subsystem described, bool realtime = true, bool wakes = false);
+  Rig(Subsystem& author, descriptor::SubsystemDescriptor described, bool realtime = true, bool wakes = false);
 
   // --- stepping -----------------------------------------------------------------------------------------------------
   /// One step of the service loop; collects what the subsystem sent. The supervisor's heart beats unless it is silent.
@@ -151,8 +151,9 @@ class Rig {
 };
 
 [[nodiscard]] std::string hex(Octets octets);
-[[nodiscard]] descriptor::Subsystem read_descriptor(const std::string& text);
+[[nodiscard]] descriptor::SubsystemDescriptor read_descriptor(const std::string& text);
 /// The same of one that commands, or hears, those who have the other descriptors, under the names that these have.
-[[nodiscard]] descriptor::Subsystem read_descriptor(const std::string& text, const std::vector<std::string>& commanded);
+[[nodiscard]] descriptor::SubsystemDescriptor read_descriptor(const std::string& text,
+                                                              const std::vector<std::string>& commanded);
 
 }  // namespace hirosco::testing

@@ -4,13 +4,18 @@
 
 #include <algorithm>
 
+#include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "supervisor/platform/storage/log_pieces.hpp"
 
 namespace hirosco::supervisor {
 
 void begin_log(ThreadedPacketLog& log) {
-  static_cast<void>(log.append({.kind = LogKind::Action, .source = 1, .peer = 1, .packet = {}, .note = "log begins"}));
+  static_cast<void>(log.append({.kind = LogKind::Action,
+                                .source = pus::supervisor_apid,
+                                .peer = pus::supervisor_apid,
+                                .packet = {},
+                                .note = "log begins"}));
 }
 
 std::optional<std::string> why_not_begun(ThreadedPacketLog& log, const Clock& clock, Duration limit) {

@@ -18,7 +18,7 @@ using testing::camera;
 struct ConfigurationPermission : ::testing::Test {
   descriptor::Mission mission = [] {
     descriptor::Mission made = testing::small_mission();
-    descriptor::Subsystem& subsystem = made.subsystems[0].subsystem;
+    descriptor::SubsystemDescriptor& subsystem = made.subsystems[0].subsystem;
     const auto add = [&](std::string name, std::uint8_t id, Duration sampling, Duration budget, double power_w) {
       descriptor::Configuration configuration;
       configuration.name = std::move(name);
@@ -50,7 +50,8 @@ struct ConfigurationPermission : ::testing::Test {
 
   auto decide_on(std::uint8_t service, std::uint8_t subtype, Octets data, State state, std::uint8_t configuration) {
     const auto packet = testing::telecommand(arm, service, subtype, data);
-    const descriptor::Subsystem &one = mission.subsystems[0].subsystem, &other = mission.subsystems[2].subsystem;
+    const descriptor::SubsystemDescriptor &one = mission.subsystems[0].subsystem,
+                                          &other = mission.subsystems[2].subsystem;
     const Situation situation{.mission = mission,
                               .mode = mission.modes[0],
                               .links = links,

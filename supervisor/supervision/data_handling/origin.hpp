@@ -20,6 +20,11 @@ class Origin {
   /// A member, by its channel.
   [[nodiscard]] static constexpr Origin subsystem(std::uint16_t apid) noexcept { return {Kind::Subsystem, apid, 0}; }
   [[nodiscard]] static constexpr Origin supervisor() noexcept { return {Kind::Supervisor, supervisor_apid, 0}; }
+  /// Who has this source id, of a telecommand that was found to own it.
+  [[nodiscard]] static Origin of(std::uint16_t source, const descriptor::Mission& mission) noexcept {
+    if (source == mission.supervisor.id) return supervisor();
+    return mission.find_subsystem(source) != nullptr ? subsystem(source) : ground();
+  }
 
   [[nodiscard]] constexpr bool is_ground() const noexcept { return kind_ == Kind::Ground; }
   [[nodiscard]] constexpr bool is_subsystem() const noexcept { return kind_ == Kind::Subsystem; }
@@ -31,7 +36,7 @@ class Origin {
   /// On board each has its own id and no other; the ground has all that are nobody's there, 0 among them.
   [[nodiscard]] bool owns(std::uint16_t source, const descriptor::Mission& mission) const noexcept {
     if (!is_ground()) return source == apid_;
-    return source != supervisor_apid && mission.find_subsystem(source) == nullptr;
+    return mission.find_member(source) == nullptr;
   }
 
  private:

@@ -27,11 +27,12 @@ std::string words_of(pus::FailureCode code, Octets data) {
 
 void OwnTelecommands::command(std::uint16_t apid, std::string_view name, std::optional<double> argument,
                               CommandDone done, std::optional<std::uint64_t> free_at) {
-  const auto* member = apid == supervisor_apid ? nullptr : craft_.mission.find_subsystem(apid);
-  const descriptor::Subsystem& subsystem = member != nullptr ? member->subsystem : craft_.mission.supervisor;
+  const descriptor::SubsystemDescriptor* subsystem = craft_.mission.find_member(apid);
   static const auto built_in = pus::common_functions();
   const auto common = std::ranges::find(built_in, name, &descriptor::Function::name);
-  const descriptor::Function* function = common != built_in.end() ? &*common : subsystem.find_function(name);
+  const descriptor::Function* function = common != built_in.end() ? &*common
+                                         : subsystem != nullptr   ? subsystem->find_function(name)
+                                                                  : nullptr;
   std::vector<double> values;
   if (argument) values.push_back(*argument);
   const auto data = function != nullptr ? pus::encode_call(*function, std::span<const double>{values})

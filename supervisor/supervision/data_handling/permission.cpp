@@ -24,12 +24,6 @@ using pus::FailureNotice;
 
 constexpr std::size_t name_octets = 16;
 
-[[nodiscard]] const descriptor::Subsystem* addressee(const descriptor::Mission& mission, std::uint16_t apid) {
-  if (apid == supervisor_apid) return &mission.supervisor;
-  const auto* found = mission.find_subsystem(apid);
-  return found != nullptr ? &found->subsystem : nullptr;
-}
-
 [[nodiscard]] bool listed(const std::vector<std::string>& names, std::string_view name) {
   return std::ranges::any_of(names, [&](const std::string& entry) { return entry == "*" || entry == name; });
 }
@@ -39,7 +33,7 @@ struct Asked {
   const pus::TelecommandView& telecommand;
   const Origin& origin;
   const Situation& situation;
-  const descriptor::Subsystem& subsystem;
+  const descriptor::SubsystemDescriptor& subsystem;
   std::optional<CalledFunction> call;
   /// The function called or the request of the subsystem's own service; null: none that the descriptor declares.
   const descriptor::Function* request{nullptr};
@@ -85,14 +79,14 @@ using Notice = std::optional<FailureNotice>;
   return std::nullopt;
 }
 
-[[nodiscard]] std::optional<std::uint8_t> absent_link(const descriptor::Subsystem& subsystem,
+[[nodiscard]] std::optional<std::uint8_t> absent_link(const descriptor::SubsystemDescriptor& subsystem,
                                                       const Situation& situation) {
   const auto* configuration = subsystem.find_configuration(situation.configuration);
   return configuration == nullptr ? std::nullopt : situation.links.absent_for(subsystem.id, *configuration);
 }
 
 /// Most that the addressee's configuration in force draws.
-[[nodiscard]] double demand_w(const descriptor::Subsystem& subsystem, const Situation& situation) {
+[[nodiscard]] double demand_w(const descriptor::SubsystemDescriptor& subsystem, const Situation& situation) {
   const auto* configuration = subsystem.find_configuration(situation.configuration);
   return configuration != nullptr ? configuration->power_w : 0;
 }
@@ -400,7 +394,7 @@ FailureNotice is_down() {
 
 std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telecommand, const Origin& origin,
                                                const Situation& situation) {
-  const descriptor::Subsystem* subsystem = addressee(situation.mission, telecommand.apid());
+  const descriptor::SubsystemDescriptor* subsystem = situation.mission.find_member(telecommand.apid());
   if (subsystem == nullptr) return std::unexpected{FailureNotice{FailureCode::UnknownApid}};
   Asked asked{telecommand, origin, situation, *subsystem, called_function(telecommand)};
   asked.request = asked.call ? subsystem->find_function(asked.call->name)

@@ -39,25 +39,27 @@ constexpr std::size_t called_name_octets = 16;
 }
 
 /// With none in force, and with each.
-[[nodiscard]] std::vector<const descriptor::Configuration*> all_configurations(const descriptor::Subsystem& subsystem) {
+[[nodiscard]] std::vector<const descriptor::Configuration*> all_configurations(
+    const descriptor::SubsystemDescriptor& subsystem) {
   std::vector<const descriptor::Configuration*> all{nullptr};
   for (const auto& each : subsystem.configurations) all.push_back(&each);
   return all;
 }
 
-[[nodiscard]] std::vector<std::string> refusing(const descriptor::Subsystem& subsystem, std::uint8_t service) {
+[[nodiscard]] std::vector<std::string> refusing(const descriptor::SubsystemDescriptor& subsystem,
+                                                std::uint8_t service) {
   std::vector<std::string> names;
   for (const auto* each : all_configurations(subsystem))
     if (!subsystem.offers(service, each)) names.push_back(each == nullptr ? "-" : each->name);
   return names;
 }
 
-[[nodiscard]] bool offered_everywhere(const descriptor::Subsystem& subsystem, std::uint8_t service) {
+[[nodiscard]] bool offered_everywhere(const descriptor::SubsystemDescriptor& subsystem, std::uint8_t service) {
   return refusing(subsystem, service).empty();
 }
 
 /// One that offers the service; 0: none, or none needs to be in force.
-[[nodiscard]] std::uint8_t offering(const descriptor::Subsystem& subsystem, std::uint8_t service) {
+[[nodiscard]] std::uint8_t offering(const descriptor::SubsystemDescriptor& subsystem, std::uint8_t service) {
   for (const auto* each : all_configurations(subsystem))
     if (subsystem.offers(service, each)) return each == nullptr ? std::uint8_t{0} : each->id;
   return 0;
@@ -68,7 +70,7 @@ class Table {
   Table(const descriptor::Mission& mission, const descriptor::Mode& mode)
       : mission_{mission}, mode_{mode}, links_{mission} {}
 
-  void ask_everything(const Origin& origin, const descriptor::Subsystem& addressee) {
+  void ask_everything(const Origin& origin, const descriptor::SubsystemDescriptor& addressee) {
     asked_.origin = origin;
     asked_.addressee = &addressee;
     for (const pus::ServiceKind* kind : pus::standard_services())
@@ -89,7 +91,7 @@ class Table {
 
  private:
   /// What one subsystem may ask the services of another about, thing by thing, and what it may hear.
-  void ask_declared(const Origin& origin, const descriptor::Subsystem& addressee) {
+  void ask_declared(const Origin& origin, const descriptor::SubsystemDescriptor& addressee) {
     const auto* sender = origin.is_subsystem() ? mission_.find_subsystem(origin.apid()) : nullptr;
     if (sender == nullptr) return;
     for (const descriptor::Commands& commands : sender->subsystem.commands)
@@ -181,15 +183,14 @@ class Table {
 
 std::vector<PermissionRow> permission_table(const descriptor::Mission& mission, const descriptor::Mode& mode) {
   std::vector<Origin> origins{Origin::ground(), Origin::supervisor()};
-  std::vector<const descriptor::Subsystem*> addressees{&mission.supervisor};
   for (const auto& member : mission.subsystems) {
-    addressees.push_back(&member.subsystem);
     if (!member.subsystem.commands.empty() || !member.subsystem.subscribes.empty())
       origins.push_back(Origin::subsystem(member.subsystem.id));
   }
   Table table{mission, mode};
   for (const Origin& origin : origins)
-    for (const descriptor::Subsystem* addressee : addressees) table.ask_everything(origin, *addressee);
+    for (const descriptor::SubsystemDescriptor* addressee : mission.everybody())
+      table.ask_everything(origin, *addressee);
   return std::move(table).take();
 }
 

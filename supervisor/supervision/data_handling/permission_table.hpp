@@ -15,7 +15,7 @@ namespace hirosco::supervisor {
 
 struct PermissionRow {
   Origin origin{Origin::ground()};
-  const descriptor::Subsystem* addressee{nullptr};
+  const descriptor::SubsystemDescriptor* addressee{nullptr};
   std::uint8_t service{};
   std::uint8_t subtype{};
   /// "MOVE_TO", "SET_STATE Operational", "set POS_SCALE", "TC[3,5] enable periodic generation"; what has a name of its own has that.

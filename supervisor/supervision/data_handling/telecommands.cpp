@@ -65,7 +65,14 @@ void Telecommands::take(const Incoming& incoming) {
   }
   if (decision->reserves_w > 0)
     parts_.power.ledger().reserve(apid, decision->reserves_w, request, craft_.now + WaitingForDisk::limit);
-  if (asks_only) return answer_question(incoming, *telecommand);
+  if (asks_only) {
+    static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandReceived,
+                                         .source = incoming.origin.apid(),
+                                         .peer = apid,
+                                         .packet = incoming.packet,
+                                         .note = "a question"}));
+    return parts_.supervision.handle(*telecommand, request);
+  }
   std::string text = telecommand_text(*telecommand);
   if (foreign) {
     // What is carried out all the same is reported to who said it, and is told.
@@ -209,42 +216,28 @@ std::vector<descriptor::InForce> Telecommands::in_force() const {
   std::vector<descriptor::InForce> all;
   for (const Member& member : std::as_const(craft_).members) {
     if (!member.alive()) continue;
-    const descriptor::Subsystem& subsystem = member.descriptor();
+    const descriptor::SubsystemDescriptor& subsystem = member.descriptor();
     all.push_back({&subsystem, subsystem.find_configuration(member.configuration())});
   }
   return all;
 }
 
-/// ST[129]: nothing is done but answered. Whoever asks is judged as the sender that it is.
-void Telecommands::answer_question(const Incoming& incoming, const pus::TelecommandView& question) {
-  const pus::Request request = pus::request_of(question);
-  const Octets asked = question.application_data();
-  if (const auto other = questions_.find(question.subtype()); other != questions_.end()) {
-    static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandReceived,
-                                         .source = incoming.origin.apid(),
-                                         .peer = supervisor_apid,
-                                         .packet = incoming.packet,
-                                         .note = "a question"}));
-    return other->second(request, asked);
-  }
+void Telecommands::answer_permission(const pus::Request& request, Octets asked) {
   const auto header = pus::read_primary_header(asked);
-  if (!header) return reject(incoming, request, FailureNotice{FailureCode::DataLength});
-  static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandReceived,
-                                       .source = incoming.origin.apid(),
-                                       .peer = supervisor_apid,
-                                       .packet = incoming.packet,
-                                       .note = "is it permitted?"}));
-  parts_.own.verification().accepted(request);
-  parts_.own.verification().started(request);
+  pus::Verification& verification = parts_.own.verification();
+  if (!header) return verification.rejected(request, FailureNotice{FailureCode::DataLength});
+  verification.accepted(request);
+  verification.started(request);
   const auto telecommand = pus::TelecommandView::parse(asked);
-  const auto decision = telecommand ? judge(*telecommand, incoming.origin) : std::unexpected{telecommand.error()};
+  const auto decision = telecommand ? judge(*telecommand, Origin::of(request.source, craft_.mission))
+                                    : std::unexpected{telecommand.error()};
   std::array<std::byte, 7> data;
   OctetWriter writer{data};
   writer.put(header->request_id);
   writer.put(static_cast<std::uint8_t>(decision ? 1 : 0));
   writer.put(static_cast<std::uint16_t>(decision ? 0 : static_cast<std::uint16_t>(decision.error().code())));
   parts_.own.telemetry().report(pus::st129::service_type, pus::st129::permission_answer, request.source, data);
-  parts_.own.verification().completed(request);
+  verification.completed(request);
 }
 
 void Telecommands::forward_durable() {

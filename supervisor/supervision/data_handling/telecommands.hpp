@@ -13,6 +13,7 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/ground_route.hpp"
 #include "supervisor/supervision/data_handling/permission.hpp"
+#include "supervisor/supervision/data_handling/supervision_service.hpp"
 #include "supervisor/supervision/data_handling/traffic.hpp"
 #include "supervisor/supervision/data_handling/unanswered.hpp"
 #include "supervisor/supervision/data_handling/waiting_for_disk.hpp"
@@ -52,6 +53,7 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
     GroundRoute& ground_route;
     CommandedStates& commanded;
     StoredValues& stored;
+    SupervisionService& supervision;
   };
   explicit Telecommands(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 
@@ -76,10 +78,8 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
   void at_once(std::string function, std::function<void(const pus::Request&)> carry_out) {
     at_once_.emplace(std::move(function), std::move(carry_out));
   }
-  /// A question of ST[129], by its subtype: who answers it reports on it. Nothing but the answer comes of it.
-  void answers(std::uint8_t subtype, std::function<void(const pus::Request&, Octets)> answer) {
-    questions_.emplace(subtype, std::move(answer));
-  }
+  /// TC[129,1]: would the telecommand that is its data be permitted now, from who asks?
+  void answer_permission(const pus::Request& request, Octets asked);
   /// Who starts a subsystem that is down, or says why it could not.
   void starts_with(std::function<Result<>(std::uint16_t apid)> start) { start_ = std::move(start); }
 
@@ -107,7 +107,6 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
   [[nodiscard]] Situation situation_of(std::uint16_t apid) const;
   [[nodiscard]] std::vector<descriptor::InForce> in_force() const;
   void take_damaged(const Incoming& incoming, const pus::FailureNotice& notice);
-  void answer_question(const Incoming& incoming, const pus::TelecommandView& question);
   void refuse(const WaitingForDisk::Telecommand& waited, pus::FailureCode why);
   void reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice);
   void forward(const Outgoing& outgoing);
@@ -117,7 +116,6 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
   Parts parts_;
   Craft& craft_;
   std::map<std::string, std::function<void(const pus::Request&)>, std::less<>> at_once_;
-  std::map<std::uint8_t, std::function<void(const pus::Request&, Octets)>> questions_;
   std::function<Result<>(std::uint16_t)> start_;
   WaitingForDisk waiting_;
   std::vector<std::pair<std::uint16_t, pus::Request>> never_left_;  ///< from the supervisor before

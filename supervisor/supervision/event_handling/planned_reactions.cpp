@@ -69,7 +69,7 @@ void each_event(const descriptor::Mission& mission, Visit&& visit) {
     if (!descriptor::is_about_subsystem(event.name) && !descriptor::is_unplanned(event.name))
       visit(RaisedEvent{mission.supervisor.name, event.name, event.severity, {}, {}, RaisedEvent::Origin::Supervisor});
   for (const descriptor::MissionSubsystem& member : mission.subsystems) {
-    const descriptor::Subsystem& subsystem = member.subsystem;
+    const descriptor::SubsystemDescriptor& subsystem = member.subsystem;
     for (const descriptor::Event& event : mission.supervisor.events)
       if (descriptor::is_about_subsystem(event.name) && subsystem.find_event(event.name) == nullptr)
         visit(RaisedEvent{subsystem.name, event.name, event.severity, {}, mission.supervisor.name});

@@ -27,8 +27,7 @@ constexpr std::string_view event_of_failure = "RECOVERY_FAILED";
 bool Reactions::take_event(std::uint16_t from, Octets message) {
   const auto event = pus::read_event_message(message);
   if (!event) return false;
-  const descriptor::Subsystem& subsystem =
-      from == supervisor_apid ? craft_.mission.supervisor : craft_.mission.find_subsystem(from)->subsystem;
+  const descriptor::SubsystemDescriptor& subsystem = *craft_.mission.find_member(from);
   const auto declared = std::ranges::find(subsystem.events, event->id, &descriptor::Event::id);
   const std::string name = declared != subsystem.events.end() ? declared->name : std::to_string(event->id);
   // Damage makes nothing harmless that the descriptor calls severe.
@@ -47,7 +46,7 @@ bool Reactions::take_event(std::uint16_t from, Octets message) {
 /// What we tell of a subsystem is answered where it is told: by the plan that names it or us, or the event, as severe as our
 /// descriptor calls it.
 Reaction Reactions::reaction_to(const Member& origin, std::string_view event, Severity& severity) const {
-  const descriptor::Subsystem& supervisor = craft_.mission.supervisor;
+  const descriptor::SubsystemDescriptor& supervisor = craft_.mission.supervisor;
   const bool ours = descriptor::is_about_subsystem(event) && origin.descriptor().find_event(event) == nullptr;
   const auto* declared = ours ? supervisor.find_event(event) : nullptr;
   if (declared != nullptr) severity = declared->severity;
@@ -195,7 +194,7 @@ void Reactions::preview(const pus::Request& asked, Octets data) {
 
 /// What the supervisor tells of a subsystem is asked about under that one's id, what it tells of itself under its own.
 const descriptor::Event* Reactions::find_event(std::uint16_t apid, std::uint16_t id) const {
-  const auto find_in = [&](const descriptor::Subsystem& subsystem) {
+  const auto find_in = [&](const descriptor::SubsystemDescriptor& subsystem) {
     const auto found = std::ranges::find(subsystem.events, id, &descriptor::Event::id);
     return found != subsystem.events.end() ? &*found : nullptr;
   };

@@ -22,7 +22,7 @@ void Commissioning::start(std::function<void()> failed) {
 }
 
 void Commissioning::start_itself(std::function<void(bool)> done) {
-  const descriptor::Subsystem& own = craft_.mission.supervisor;
+  const descriptor::SubsystemDescriptor& own = craft_.mission.supervisor;
   WayThere way;
   way.add(own, own.configurations.front(), {State::Offline}, State::Operational);
   itself_.start({.stages = way.stages(), .finished = [this, done = std::move(done)](const ProcedureEnd& end) {

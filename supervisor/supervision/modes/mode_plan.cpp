@@ -13,7 +13,7 @@ namespace hirosco::supervisor {
 
 using descriptor::State;
 
-void WayThere::add(const descriptor::Subsystem& subsystem, const descriptor::Configuration& configuration,
+void WayThere::add(const descriptor::SubsystemDescriptor& subsystem, const descriptor::Configuration& configuration,
                    const Present& from, State to) {
   // What a configuration holds, links and devices, is given back in Post-Operational: also from Pre-Operational it leads there.
   const bool holds = from.state == State::PreOperational && from.configuration != 0;
@@ -27,7 +27,7 @@ void WayThere::add(const descriptor::Subsystem& subsystem, const descriptor::Con
   if (to >= State::Operational) operational_.push_back(to_state(subsystem.id, State::Operational));
 }
 
-void WayThere::initialise(const descriptor::Subsystem& subsystem, const Present& from) {
+void WayThere::initialise(const descriptor::SubsystemDescriptor& subsystem, const Present& from) {
   if (from.state == State::Operational) stop_.push_back(to_state(subsystem.id, State::SafeOperational));
   if (from.state != State::PreOperational) pre_.push_back(to_state(subsystem.id, State::PreOperational));
 }
@@ -38,7 +38,7 @@ void WayThere::recall(std::uint16_t apid, State to) {
     recall_safe_.push_back(step("recall", apid, {static_cast<std::int64_t>(State::SafeOperational)}));
 }
 
-void WayThere::down(const descriptor::Subsystem& subsystem, const Present& from) {
+void WayThere::down(const descriptor::SubsystemDescriptor& subsystem, const Present& from) {
   if (from.state == State::Operational) stop_.push_back(to_state(subsystem.id, State::SafeOperational));
   pre_.push_back(to_state(subsystem.id, State::Offline));
 }
@@ -91,7 +91,7 @@ class Planner {
  private:
   /// Empty: it is left where it is, as the ground link in a mode that does not name it.
   [[nodiscard]] std::optional<Target> target_of(const Member& member) const {
-    const descriptor::Subsystem& subsystem = member.descriptor();
+    const descriptor::SubsystemDescriptor& subsystem = member.descriptor();
     const auto named = std::ranges::find(mode_.commission, subsystem.name, &descriptor::CommissionStep::subsystem);
     if (named != mode_.commission.end())
       return Target{subsystem.find_configuration(named->configuration), named->state};

@@ -23,14 +23,14 @@ struct Present {
 /// gives its links back: nobody loses a set that it acts on. A configuration that requires its self test runs it before Operational.
 class WayThere {
  public:
-  void add(const descriptor::Subsystem& subsystem, const descriptor::Configuration& configuration, const Present& from,
-           State to);
+  void add(const descriptor::SubsystemDescriptor& subsystem, const descriptor::Configuration& configuration,
+           const Present& from, State to);
   /// To Pre-Operational, where no configuration is in force.
-  void initialise(const descriptor::Subsystem& subsystem, const Present& from);
+  void initialise(const descriptor::SubsystemDescriptor& subsystem, const Present& from);
   /// What it was set to by telecommand, on its way to this state (docs/adr/0076).
   void recall(std::uint16_t apid, State to);
   /// To Offline.
-  void down(const descriptor::Subsystem& subsystem, const Present& from);
+  void down(const descriptor::SubsystemDescriptor& subsystem, const Present& from);
   /// A link of the mission; made between Pre-Operational and Safe-Operational (docs/adr/0021).
   void link(std::uint8_t id);
   /// Before somebody goes to Safe-Operational: until somebody measures what power there is, or for so long.

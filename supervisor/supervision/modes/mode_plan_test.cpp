@@ -15,7 +15,7 @@ using enum descriptor::State;
 struct WayThereTest : PartsTest {
   PlayedDesk desk;
   WayThere way;
-  const descriptor::Subsystem& subsystem = craft.mission.subsystems.front().subsystem;
+  const descriptor::SubsystemDescriptor& subsystem = craft.mission.subsystems.front().subsystem;
   const descriptor::Configuration& coupled = subsystem.configurations.front();
 
   std::vector<std::string> commands() {
@@ -76,7 +76,7 @@ TEST_F(WayThereTest, WhatAConfigurationHoldsIsGivenBackOnTheWayToThatOrAnother) 
 }
 
 TEST_F(WayThereTest, WhoControlsStopsBeforeAnybodyGivesItsLinksBack) {
-  const descriptor::Subsystem& other = craft.mission.subsystems[1].subsystem;
+  const descriptor::SubsystemDescriptor& other = craft.mission.subsystems[1].subsystem;
   way.add(subsystem, coupled, {Operational}, Operational);
   way.down(other, {Operational});
   EXPECT_THAT(commands(), ElementsAre("10 SET_STATE 4", "11 SET_STATE 4", "10 SET_STATE 3", "11 SET_STATE 0",

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/procedures/step_kinds.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
+#include "supervisor/supervision/testing/played_desk.hpp"
 
 /// What each kind of step of a recovery plan does, from the event to the octets. ARM tells BROKEN and LATE; ARM and HAND are joined by
 /// real-time links; CAMERA is the ground link in the others' tests, and not here.
@@ -184,6 +185,84 @@ TEST_F(PlanStepKinds, NotifyNetworkTellsItsMembersAndTakesNobodyDown) {
   EXPECT_TRUE(was_told("plan test: PARTNER_FAILED to HAND because of BROKEN of ARM"));
 }
 
+TEST_F(PlanStepKinds, NotifyNetworkWhereNobodyCanHearIsToldAndHoldsUpNobody) {
+  plan({{"notify_network", {0}, {}, {"PARTNER_FAILED"}}, to_be(SafeOperational)});
+  happens();
+  EXPECT_THAT(texts(hand), IsEmpty()) << "no link joins them";
+  EXPECT_TRUE(was_told("plan test: PARTNER_FAILED to nobody because of BROKEN of ARM"));
+  EXPECT_THAT(texts(arm), ElementsAre(to(SafeOperational)));
+}
+
+TEST_F(PlanStepKinds, ShutDownNetworkTakesDownAllThatLinksJoinToItByErrorOperationalAndNobodyElse) {
+  parts.graph.set_up(1, true);
+  plan({{"shut_down_network"}});
+  happens();
+  EXPECT_FALSE(guard.fenced(camera));
+  EXPECT_TRUE(was_told("plan test: network {ARM, HAND} to ErrorOperational and down"));
+  all_obey();
+  EXPECT_THAT(sent, ElementsAre("ARM SET_STATE 6", "HAND SET_STATE 6", "ARM SET_STATE 0", "HAND SET_STATE 0"));
+  for (const std::uint16_t apid : {arm, hand}) {
+    EXPECT_TRUE(guard.fenced(apid));
+    EXPECT_FALSE(craft.member(apid)->recovery.running());
+  }
+}
+
+TEST_F(PlanStepKinds, ShutDownNetworkLeavesTheGroundLinkThoughALinkJoinsIt) {
+  parts.graph.set_up(1, true);
+  craft.mission.ground.subsystem = "HAND";
+  plan({{"shut_down_network"}});
+  happens();
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_FALSE(guard.fenced(hand));
+  EXPECT_TRUE(was_told("plan test: network {ARM} to ErrorOperational and down"));
+}
+
+/// What was switched off by two telecommands, in Pre-Operational.
+struct Recalling : PlanStepKinds {
+  PlayedDesk desk;
+  std::string end;
+  void recall(State in) {
+    const ProcedureStep made = step("recall", arm, {static_cast<std::int64_t>(in)});
+    made.kind->run(made, means_with(desk),
+                   [this](bool success, const std::string& why) { end = success ? "done" : why; });
+  }
+  void want_two_settings() {
+    CommandedState commanded;
+    const std::array data{std::byte{2}, std::byte{0}, std::byte{4}, std::byte{0}, std::byte{5}};
+    const auto packet = telecommand(arm, 5, 6, data);
+    commanded.completed(pus::TelecommandView::parse(packet).value(), craft.member(arm)->descriptor());
+    parts.commanded.want(arm, commanded);
+  }
+};
+
+TEST_F(Recalling, SendsWhatIsWantedOneAfterTheOther) {
+  want_two_settings();
+  recall(PreOperational);
+  EXPECT_THAT(desk.sent, ElementsAre("10 TC[5,6] 0 ms"));
+  desk.answer(true);
+  EXPECT_EQ(desk.sent.size(), 2U);
+  EXPECT_EQ(end, "") << "the last has not answered";
+  desk.answer(true);
+  EXPECT_EQ(end, "done");
+}
+
+TEST_F(Recalling, EndsWithTheFirstThatIsRefused) {
+  want_two_settings();
+  recall(PreOperational);
+  desk.answer(false, "wrong state");
+  EXPECT_EQ(end, "wrong state");
+  EXPECT_EQ(desk.sent.size(), 1U);
+}
+
+TEST_F(Recalling, IsDoneAtOnceWhereThereIsNothingToSend) {
+  recall(PreOperational);
+  EXPECT_EQ(std::exchange(end, {}), "done") << "nothing is wanted of it";
+  want_two_settings();
+  recall(SafeOperational);
+  EXPECT_EQ(end, "done") << "nothing in that state";
+  EXPECT_THAT(desk.sent, IsEmpty());
+}
+
 TEST_F(PlanStepKinds, PowerIsTheCraftsBudget) {
   plan({{"power", {400}}});
   happens();
@@ -273,6 +352,61 @@ TEST_F(HandingOver, AStopOnTheWayUpEndsIt) {
     wait(30s);
     parts.own_telecommands.watch(clock.now());
   }
+}
+
+TEST_F(HandingOver, AGiverThatDoesNotActIsAskedForNothing) {
+  set(arm, SafeOperational);
+  happens();
+  all_obey();
+  EXPECT_THAT(sent,
+              ElementsAre("CAMERA SET_STATE 3", "CAMERA CONFIGURE 1", "CAMERA SET_STATE 4", "CAMERA SET_STATE 5"));
+  EXPECT_TRUE(guard.fenced(arm)) << "whatever it does next";
+}
+
+TEST_F(HandingOver, AReceiverThatIsThereAlreadyIsLeftAsItIs) {
+  set(camera, Operational);
+  happens();
+  all_obey();
+  EXPECT_THAT(sent, ElementsAre("ARM SET_STATE 4"));
+  EXPECT_TRUE(was_told("the task of ARM is with CAMERA"));
+}
+
+TEST_F(HandingOver, AReceiverThatRefusesAStepEndsIt) {
+  happens();
+  verify(arm, received(arm).front().request, 7);
+  const auto begun = received(camera);
+  ASSERT_EQ(begun.size(), 1U);
+  verify(camera, begun[0].request, 8, pus::FailureCode::ExecutionError);
+  EXPECT_TRUE(was_told("nobody takes over the task of ARM: CAMERA PreOperational: execution error"));
+  EXPECT_TRUE(was_told("escalating"));
+}
+
+TEST_F(HandingOver, WhatIsAgainstItIsSaidBeforeAnythingIsDone) {
+  const auto against = [this](std::uint16_t receiver) {
+    ProcedureStep made = step("hand_over", arm, {receiver, 1});
+    return made.kind->against(made, parts.means);
+  };
+  EXPECT_EQ(against(camera), "");
+  EXPECT_EQ(against(arm), "ARM has it");
+  craft.changing_to = craft.mode;
+  EXPECT_EQ(against(camera), "the mode changes");
+  craft.shutting_down = true;
+  EXPECT_EQ(against(camera), "the craft shuts down");
+  craft.shutting_down = false;
+  craft.changing_to = nullptr;
+  Member& member = *craft.member(camera);
+  member.recovery.plan_begins(Severity::Low);
+  EXPECT_EQ(against(camera), "CAMERA is in a recovery");
+  member.recovery.started();
+  member.closed_at = clock.now();
+  EXPECT_EQ(against(camera), "CAMERA is in a recovery");
+  member.closed_at.reset();
+  played[camera].vital->state = 77;
+  EXPECT_EQ(against(camera), "CAMERA does not say where it is");
+  set(camera, Offline);
+  guard.fence(camera);
+  EXPECT_EQ(against(camera), "CAMERA was stopped, and nobody has let it go since");
+  EXPECT_FALSE(guard.fenced(arm));
 }
 
 TEST_F(HandingOver, ItFailsWhereNobodyCanReceive) {

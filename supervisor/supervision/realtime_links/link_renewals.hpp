@@ -18,7 +18,7 @@ class LinkRenewals {
  public:
   /// What the pages of an end say now.
   struct End {
-    const descriptor::Subsystem* described{nullptr};
+    const descriptor::SubsystemDescriptor* described{nullptr};
     bool there{false};  ///< its process lives and it is not Offline
     bool settled{false};  ///< in a state in which links can be, and not on the way to another
     std::uint8_t configuration{0};  ///< in force; 0: none

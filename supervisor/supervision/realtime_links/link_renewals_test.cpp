@@ -23,7 +23,7 @@ namespace st128 = pus::st128;
 struct LinkRenewalsTest : ::testing::Test {
   LinkRenewals renewals;
   descriptor::MissionLink link;
-  descriptor::Subsystem hand_described, arm_described;
+  descriptor::SubsystemDescriptor hand_described, arm_described;
   LinkRenewals::End from, to;
 
   void SetUp() override {

@@ -21,7 +21,7 @@ void PowerHandling::provide() {
 }
 
 void PowerHandling::observe() {
-  const auto demand_w = [](const descriptor::Subsystem& subject, std::uint8_t id) {
+  const auto demand_w = [](const descriptor::SubsystemDescriptor& subject, std::uint8_t id) {
     const auto* configuration = subject.find_configuration(id);
     return configuration != nullptr ? configuration->power_w : 0;
   };

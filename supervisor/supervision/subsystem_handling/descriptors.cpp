@@ -33,7 +33,7 @@ namespace {
 }
 
 /// A value that begins its next Software-Init and that no telecommand could set any more.
-[[nodiscard]] const descriptor::Parameter* outside(const descriptor::Subsystem& fresh,
+[[nodiscard]] const descriptor::Parameter* outside(const descriptor::SubsystemDescriptor& fresh,
                                                    const descriptor::Override& kept) {
   const auto place = descriptor::find_place(fresh, kept.parameter);
   if (!place) return nullptr;

@@ -83,7 +83,7 @@ class Descriptors final : public Watch {
   std::uint32_t round_{0};  ///< answers to an earlier one count for nothing
   std::shared_ptr<const std::string> text_;
   std::map<std::filesystem::path, std::shared_ptr<const std::string>> texts_;  ///< all that the newest reading read
-  std::map<std::uint16_t, descriptor::Subsystem> declared_;  ///< the same before anything was set
+  std::map<std::uint16_t, descriptor::SubsystemDescriptor> declared_;  ///< the same before anything was set
   std::map<std::uint16_t, descriptor::MissionSubsystem> fresh_;  ///< by APID: who flies the file
   std::map<std::uint16_t, Asked> asked_;  ///< of them those whose process runs
 };

@@ -59,7 +59,7 @@ struct DescriptorsTest : PartsTest {
     return reading;
   }
   [[nodiscard]] DescriptorReading wider() const {
-    return another([](descriptor::Subsystem& subsystem) {
+    return another([](descriptor::SubsystemDescriptor& subsystem) {
       subsystem.parameters[0].field.maximum = Number{20};
       subsystem.text = std::make_shared<const std::string>("new");
     });
@@ -203,7 +203,7 @@ TEST_F(DescriptorsTest, EachProblemIsToldWithItsPlace) {
 }
 
 TEST_F(DescriptorsTest, WhatCannotChangeInFlightIsNamedOnceForAllWhoFlyIt) {
-  is_read(another([](descriptor::Subsystem& subsystem) {
+  is_read(another([](descriptor::SubsystemDescriptor& subsystem) {
     subsystem.parameters[0].field.type = Type::Float;
     subsystem.functions.pop_back();
   }));
@@ -215,7 +215,8 @@ TEST_F(DescriptorsTest, WhatCannotChangeInFlightIsNamedOnceForAllWhoFlyIt) {
 
 TEST_F(DescriptorsTest, AStoredValueStaysAndKeepsItsRangeFromLeavingIt) {
   for (auto& member : craft.mission.subsystems) member.overrides = {{"GAIN", {Number{9}}}};
-  is_read(another([](descriptor::Subsystem& subsystem) { subsystem.parameters[0].field.maximum = Number{8}; }));
+  is_read(
+      another([](descriptor::SubsystemDescriptor& subsystem) { subsystem.parameters[0].field.maximum = Number{8}; }));
   EXPECT_TRUE(was_told("the stored value of GAIN is outside its new range"));
   is_read(wider());
   answer(true);
@@ -262,7 +263,7 @@ TEST_F(DescriptorsTest, WhatFilesBringAlongIsTakenWithItAndAlsoWithTheTextInForc
   EXPECT_THAT(brought(hand), IsEmpty());
   EXPECT_THAT(brought(camera), IsEmpty()) << "its descriptor was not read";
   EXPECT_EQ(*craft.mission.texts.at("arm.urdf"), "a.stl");
-  DescriptorReading same = another([](descriptor::Subsystem&) {});
+  DescriptorReading same = another([](descriptor::SubsystemDescriptor&) {});
   is_read(bringing(std::move(same), "b.stl"));
   EXPECT_TRUE(was_told("the text is the one in force"));
   EXPECT_THAT(brought(arm), ElementsAre("b.stl"));
@@ -270,7 +271,7 @@ TEST_F(DescriptorsTest, WhatFilesBringAlongIsTakenWithItAndAlsoWithTheTextInForc
 }
 
 TEST_F(DescriptorsTest, TheTextInForceChangesNothing) {
-  DescriptorReading same = another([](descriptor::Subsystem&) {});
+  DescriptorReading same = another([](descriptor::SubsystemDescriptor&) {});
   same.text = std::make_shared<const std::string>("old");
   is_read(std::move(same));
   EXPECT_THAT(desk.sent, IsEmpty());

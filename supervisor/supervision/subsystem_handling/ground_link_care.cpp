@@ -33,7 +33,7 @@ const descriptor::CommissionStep* GroundLinkCare::wanted(const Member& link) con
   return nullptr;
 }
 
-const descriptor::Configuration& GroundLinkCare::able(const descriptor::Subsystem& link,
+const descriptor::Configuration& GroundLinkCare::able(const descriptor::SubsystemDescriptor& link,
                                                       const std::string& configuration) const {
   const auto& wished = *link.find_configuration(configuration);
   const auto can = [&](const descriptor::Configuration& one) { return !links_.absent_for(link.id, one); };
@@ -45,7 +45,7 @@ const descriptor::Configuration& GroundLinkCare::able(const descriptor::Subsyste
 void GroundLinkCare::restore(const Member& link) {
   const descriptor::CommissionStep* step = wanted(link);
   if (step == nullptr) return;
-  const descriptor::Subsystem& subsystem = link.descriptor();
+  const descriptor::SubsystemDescriptor& subsystem = link.descriptor();
   const auto& configuration = able(subsystem, step->configuration);
   WayThere way;
   way.add(subsystem, configuration, {link.state(), link.configuration()}, step->state);

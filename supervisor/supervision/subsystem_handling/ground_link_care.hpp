@@ -25,7 +25,7 @@ class GroundLinkCare final : public Watch {
  private:
   static constexpr Duration pause = std::chrono::seconds{1};
   [[nodiscard]] const descriptor::CommissionStep* wanted(const Member& link) const;
-  [[nodiscard]] const descriptor::Configuration& able(const descriptor::Subsystem& link,
+  [[nodiscard]] const descriptor::Configuration& able(const descriptor::SubsystemDescriptor& link,
                                                       const std::string& configuration) const;
 
   Craft& craft_;

@@ -23,7 +23,8 @@ void LinkLosses::lost(std::uint8_t id) {
   Member& consumer = consumer_of(link);
   // Who goes down anyway needs no word, nor who is told already.
   if (link.on_loss == OnLoss::Down || craft_.shutting_down || !consumer.alive() || consumer.recovery.running()) return;
-  if (holds_.contains(id) || fallbacks_.contains(consumer.apid())) return;
+  const auto before = fallbacks_.find(consumer.apid());
+  if (holds_.contains(id) || (before != fallbacks_.end() && before->second.runner.running())) return;
   own_.announce("LINK_LOST", {static_cast<double>(id), static_cast<double>(consumer.apid())});
   craft_.tell(fmt::format("{} has lost {} of {}: {}", link.to, link.requires_, link.from, to_text(link.on_loss)),
               consumer.apid());
@@ -64,10 +65,13 @@ void LinkLosses::fall_back(const descriptor::MissionLink& link, Member& consumer
   fallback.fences = own_fence;
   fallback.runner.start({.stages = way.stages(),
                          .finished =
-                             [this, &link, apid](const ProcedureEnd& end) {
+                             [this, &link, apid, own_fence](const ProcedureEnd& end) {
                                if (!craft_.member(apid)->alive() || craft_.shutting_down) return;
                                if (!end.success) return bring_down(link, end.text());
-                               craft_.tell(fmt::format("{} goes on in configuration {}", link.to, link.fallback), apid);
+                               const bool stopped_since = craft_.guard.fences(apid) != own_fence;
+                               craft_.tell(fmt::format("{} {} configuration {}", link.to,
+                                                       stopped_since ? "was stopped in" : "goes on in", link.fallback),
+                                           apid);
                              },
                          .begins =
                              [this, apid](std::size_t) {

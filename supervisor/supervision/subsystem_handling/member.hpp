@@ -23,7 +23,7 @@ class Member {
   void started(LaunchedSubsystem launched);
   void died();
 
-  [[nodiscard]] const descriptor::Subsystem& descriptor() const noexcept { return described_->subsystem; }
+  [[nodiscard]] const descriptor::SubsystemDescriptor& descriptor() const noexcept { return described_->subsystem; }
   [[nodiscard]] const descriptor::MissionSubsystem& described() const noexcept { return *described_; }
   [[nodiscard]] std::uint16_t apid() const noexcept { return described_->subsystem.id; }
   [[nodiscard]] bool alive() const noexcept { return launched_.port != nullptr; }

@@ -269,14 +269,14 @@ void Processes::hear_of(Member& subject, const GuardFinding& finding) {
     case Back: parts_.restoration.recovered(subject.apid()); return tell(" moves again");
     case Killed: return tell(" was ended: it did not come back or had not stopped in time");
     case Ended: return parts_.reception.give_up(subject);  // what it left unsaid is read when its process has gone
-    case InhibitSilent: {
+    case InhibitSilent:
+    case InhibitOfOtherVersion: {
       const auto& devices = subject.descriptor().devices;
       const std::string_view device =
           finding.device < devices.size() ? devices[finding.device].name : std::string_view{"?"};
-      tell(
-          fmt::format(": the second inhibit of its device {} does not answer: that it has heard a stop would "
-                      "be known of nobody",
-                      device));
+      tell(fmt::format(
+          ": the second inhibit of its device {} {}: that it has heard a stop would be known of nobody", device,
+          finding.kind == InhibitSilent ? "does not answer" : "is of another version, build both from one hirosco"));
       parts_.own.announce("INHIBIT_SILENT",
                           {static_cast<double>(subject.apid()), static_cast<double>(finding.device + 1)});
       return parts_.reactions.react(subject, "INHIBIT_SILENT", Severity::Medium);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "hirosco/data_transfer/device/enable_frame.hpp"
 #include "hirosco/descriptor/model/supervisor_events.hpp"
+#include "hirosco/utilities/crc16.hpp"
 #include "supervisor/platform/storage/testing/test_databases.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
@@ -415,7 +417,12 @@ TEST_F(ProcessesTest, OneWhoseDevicesTheGuardCannotInhibitDoesNotFlyUntilItCan) 
   EXPECT_TRUE(guard.release(hand, guard.fences(hand))) << "the guard has it";
 }
 
-TEST_F(ProcessesTest, WhoActsThoughASecondInhibitDoesNotAnswerIsToldOfWithItsDevice) {
+/// HAND acts for two seconds; the second inhibit of its MOTOR answers with these octets, or not at all.
+struct SecondInhibitTest : ProcessesTest {
+  void act(Octets answer);
+};
+
+void SecondInhibitTest::act(Octets answer) {
   descriptor::Device motor;
   motor.name = "MOTOR";
   motor.actuator = true;
@@ -427,12 +434,31 @@ TEST_F(ProcessesTest, WhoActsThoughASecondInhibitDoesNotAnswerIsToldOfWithItsDev
   start_all(Operational);
   played[hand].vital->configuration = subsystem.configurations[0].id;
   ASSERT_TRUE(guard.release(hand, guard.fences(hand)));
+  const auto plays = flows.open({motor.enable->transfer, motor.enable->address}, FlowSide::Device).value();
   for (const TimePoint end = clock.now() + 2s; clock.now() < end; clock.advance(Guard::period)) {
     for (auto& [apid, member] : played) ++member.vital->service_steps;
+    if (!answer.empty()) static_cast<void>(plays->send(answer));
     static_cast<void>(guard.step(clock.now()));
   }
   parts.processes.take_guard_findings();
+}
+
+TEST_F(SecondInhibitTest, WhoActsThoughItDoesNotAnswerIsToldOfWithItsDevice) {
+  act({});
   EXPECT_TRUE(was_told("HAND: the second inhibit of its device MOTOR does not answer"))
+      << ::testing::PrintToString(story);
+  EXPECT_TRUE(was_told("HAND to SafeOperational because of INHIBIT_SILENT")) << ::testing::PrintToString(story);
+}
+
+TEST_F(SecondInhibitTest, WhoseAnswersAreOfAnotherVersionIsToldOfByThatNameAndPlannedForAlike) {
+  std::array<std::byte, enable_frame_octets> frame{};
+  ASSERT_TRUE(write_enable_status(frame, {}));
+  frame[2] = std::byte{0x5A};
+  OctetWriter sum{MutableOctets{frame}.last(2), std::endian::little};
+  sum.put(crc16(Octets{frame}.first(frame.size() - 2)));
+  act(frame);
+  EXPECT_TRUE(
+      was_told("HAND: the second inhibit of its device MOTOR is of another version, build both from one hirosco"))
       << ::testing::PrintToString(story);
   EXPECT_TRUE(was_told("HAND to SafeOperational because of INHIBIT_SILENT")) << ::testing::PrintToString(story);
 }

@@ -93,7 +93,10 @@ std::string Restoration::against() const {
   if (craft_.shutting_down) return "shutdown";
   if (under_way_.running()) return "the mode changes";
   if (const auto apid = means_.commanded.overruled()) return craft_.name_of(*apid) + " was commanded otherwise";
-  if (!runner_.running()) return {};
+  return runner_.running() ? stopped() : std::string{};
+}
+
+std::string Restoration::stopped() const {
   for (const auto& [apid, commanded] : means_.commanded.wanted()) {
     if (craft_.member(apid)->recovery.running()) return "a recovery of " + craft_.name_of(apid);
     const auto fences = fences_.find(apid);
@@ -153,6 +156,8 @@ void Restoration::begin() {
 
 void Restoration::ended(const ProcedureEnd& end) {
   if (!end.success) return static_cast<void>(cancel(end.text()));
+  // Its last step was done, and somebody has stopped it since: it is not as commanded.
+  if (const std::string why = stopped(); !why.empty()) return static_cast<void>(cancel(why));
   craft_.tell(names() + ": as commanded", supervisor_apid);
   for (const auto& [apid, commanded] : means_.commanded.wanted())
     own_.announce("RESTORED", {static_cast<double>(apid), static_cast<double>(commanded.state())});

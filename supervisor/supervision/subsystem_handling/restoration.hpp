@@ -53,6 +53,8 @@ class Restoration final : public Watch, public Undertaking {
   [[nodiscard]] bool ready() const;
   /// Why it must not go on; empty: it may.
   [[nodiscard]] std::string against() const;
+  /// Of them; empty: nobody was since it began.
+  [[nodiscard]] std::string stopped() const;
   void begin();
   void ended(const ProcedureEnd& end);
   [[nodiscard]] std::string names() const;

@@ -31,7 +31,7 @@ constexpr std::uint16_t ground_apid = 20;
 
 /// What a computer of its own would hold: a whole subsystem, its pages, its end of the stream.
 struct FarComputer {
-  FarComputer(const descriptor::Subsystem& described, const Platform& platform, FileDescriptor stream)
+  FarComputer(const descriptor::SubsystemDescriptor& described, const Platform& platform, FileDescriptor stream)
       : port{std::move(stream), vital, permit}, engine{author, described, platform, port.channel(), vital, permit} {}
   void step(TimePoint now) {
     port.step(now);

@@ -19,8 +19,8 @@ namespace hirosco::descriptor::detail {
 /// What is wrong with a path that must stay inside, `above` folders up; empty when nothing is.
 [[nodiscard]] std::string_view refuse_path(std::string_view text, int above);
 /// Why the producer's set cannot feed the consumer's, by this method where there is one; empty when it can.
-[[nodiscard]] std::string mismatch(const Subsystem& producer, const Provides& provides, const Requires& requires_,
-                                   std::optional<LinkMethod> method);
+[[nodiscard]] std::string mismatch(const SubsystemDescriptor& producer, const Provides& provides,
+                                   const Requires& requires_, std::optional<LinkMethod> method);
 
 /// Somebody can be found in it; the others are passed through.
 [[nodiscard]] constexpr bool is_steady(State state) noexcept {
@@ -58,13 +58,15 @@ class MissionReader {
   /// Name and id of an instance, where they are not the descriptor's.
   void read_identity(Attributes& attributes, MissionSubsystem& member);
   void read_override(const xml::Element& element, MissionSubsystem& member, Unique& names);
-  void read_readdressed(const xml::Element& element, MissionSubsystem& member, Unique& names);
+  void read_device_change(const xml::Element& element, MissionSubsystem& member, Unique& names);
+  void read_changed_setting(const xml::Element& element, MissionSubsystem& member, DeviceChange& changed,
+                            Unique& names);
   void read_simulated_device(const xml::Element& element);
   /// The descriptor that the attribute names; reported when it cannot be taken.
-  [[nodiscard]] std::optional<Subsystem> read_descriptor(Attributes& attributes);
+  [[nodiscard]] std::optional<SubsystemDescriptor> read_descriptor(Attributes& attributes);
   // read_addresses.cpp
   void read_device_network(const xml::Element& element);
-  void check_endnodes(const Subsystem& subsystem);
+  void check_endnodes(const SubsystemDescriptor& subsystem);
   void check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems);
   // check_reach.cpp
   void note_sockets();
@@ -75,14 +77,14 @@ class MissionReader {
   // read_commands.cpp
   void read_redirected(const xml::Element& element, MissionSubsystem& member, Redirected::Kind kind, Unique& names);
   // read_foreign.cpp
-  void resolve_foreign_of(const MissionSubsystem& member, Subscribes& heard, const Subsystem& other,
+  void resolve_foreign_of(const MissionSubsystem& member, Subscribes& heard, const SubsystemDescriptor& other,
                           Problems& problems);
   void check_foreign_circles();
   /// Whom the members command and hear, once all are known.
   void resolve_commands();
   void resolve_one(const MissionSubsystem& member, Commands& commands);
   void resolve_one(const MissionSubsystem& member, Subscribes& subscribes);
-  static void resolve_things(std::vector<Thing>& things, const Subsystem& other, const Location& at,
+  static void resolve_things(std::vector<Thing>& things, const SubsystemDescriptor& other, const Location& at,
                              Problems& problems);
   /// Whom the mission means by that name; null: nobody, and it was reported.
   [[nodiscard]] const MissionSubsystem* find_other(const MissionSubsystem& member, const std::string& named,
@@ -95,12 +97,12 @@ class MissionReader {
   // read_modes.cpp
   void read_link(const xml::Element& element);
   /// "A.SET" split and its subsystem found.
-  [[nodiscard]] const Subsystem* read_end(Attributes& attributes, std::string_view name, std::string& subsystem,
-                                          std::string& set);
-  void check_link(const xml::Element& element, const Subsystem& producer, const Subsystem& consumer,
+  [[nodiscard]] const SubsystemDescriptor* read_end(Attributes& attributes, std::string_view name,
+                                                    std::string& subsystem, std::string& set);
+  void check_link(const xml::Element& element, const SubsystemDescriptor& producer, const SubsystemDescriptor& consumer,
                   const MissionLink& link);
   /// read_link_loss.cpp
-  void read_loss(Attributes& attributes, const Subsystem* consumer, MissionLink& link);
+  void read_loss(Attributes& attributes, const SubsystemDescriptor* consumer, MissionLink& link);
   // read_way.cpp
   void read_way(Attributes& attributes, MissionLink& link);
   [[nodiscard]] std::optional<InternetAddress> read_link_address(const xml::Attribute* at, const MissionLink& link,
@@ -155,7 +157,7 @@ class MissionReader {
   void check_parameters(const xml::Attribute& at, const Permit& permit);
 
   /// A subsystem of the mission, with `supervisor` also the supervisor; reported when there is none.
-  [[nodiscard]] const Subsystem* find(const xml::Attribute& at, std::string_view name, bool supervisor);
+  [[nodiscard]] const SubsystemDescriptor* find(const xml::Attribute& at, std::string_view name, bool supervisor);
   [[nodiscard]] bool whole() const noexcept { return !incomplete_; }
 
   Problems& problems_;

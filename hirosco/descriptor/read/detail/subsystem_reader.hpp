@@ -33,7 +33,7 @@ void read_setting(const xml::Element& element, Problems& problems, Unique& names
 class SubsystemReader {
  public:
   explicit SubsystemReader(Problems& problems) : problems_{problems} {}
-  [[nodiscard]] Subsystem read(const xml::Element& root);
+  [[nodiscard]] SubsystemDescriptor read(const xml::Element& root);
 
  private:
   /// What may stand once under <Subsystem> and once under each <Configuration>.
@@ -193,7 +193,7 @@ class SubsystemReader {
   };
 
   Problems& problems_;
-  Subsystem subsystem_;
+  SubsystemDescriptor subsystem_;
   Unique parameter_names_{"parameter name", "E0201"};
   Unique parameter_ids_{"parameter id", "E0203"};
   Unique enumeration_names_{"enumeration name", "E0201"};

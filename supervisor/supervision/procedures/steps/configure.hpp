@@ -16,8 +16,8 @@ inline constexpr StepKind configure{
     .text =
         [](const ProcedureStep& step, const descriptor::Mission& mission) {
           const auto id = static_cast<std::uint8_t>(step.values[0]);
-          const auto* member = mission.find_subsystem(step.subject);
-          const auto* one = (member != nullptr ? member->subsystem : mission.supervisor).find_configuration(id);
+          const auto* member = mission.find_member(step.subject);
+          const auto* one = member != nullptr ? member->find_configuration(id) : nullptr;
           return "configuration " + (one != nullptr ? one->name : std::to_string(id));
         },
     .run =
