@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""The shape of the house: no file over 500 lines, no class over 300, `supervisor.hpp` under 90, no circle of folders. Prints what
-breaks it, and breaks each rule once itself, to be caught."""
+"""The shape of the house: no file over 500 lines, no class over 300, `supervisor.hpp` under 90, no circle of folders, a test beside each
+file of the supervisor and the ground station. Prints what breaks it, and breaks each rule once itself, to be caught."""
 import collections, pathlib, re, sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -32,6 +32,41 @@ def too_long(texts):
             end = text.find("\n};", begin.start())
             if end > 0 and (lines := text.count("\n", begin.start(), end)) > LONGEST_CLASS:
                 yield f"{name}: {begin.group(1)} has {lines} lines, {LONGEST_CLASS} at most"
+
+
+# Where each file has its test beside it, and which have theirs elsewhere, or together.
+TESTED = ("supervisor/", "ground/")
+ELSEWHERE = {
+    "supervisor/flight_shell.cpp": "tests/endtoend/flight_test.py",
+    "supervisor/guard/stop_of_all.cpp": "supervisor/guard/guard_test.cpp",
+    "supervisor/platform/launch/stream_member_port.cpp": "supervisor/supervision/subsystem_handling/stream_member_test.cpp",
+    "supervisor/platform/storage/ascii_database.cpp": "supervisor/platform/storage/database_test.cpp",
+    "supervisor/platform/storage/sqlite_database.cpp": "supervisor/platform/storage/database_test.cpp",
+    "supervisor/platform/storage/postgresql_": "supervisor/platform/storage/postgresql_database_test.cpp",
+    "supervisor/platform/storage/value_disk.cpp": "supervisor/platform/storage/value_store_test.cpp",
+    "supervisor/supervision/procedures/steps/": "supervisor/supervision/procedures/plan_step_kinds_test.cpp",
+    "supervisor/supervisor.cpp": "tests/integration/commissioning_test.cpp",
+    "ground/api/schemas.cpp": "ground/api/openapi_test.cpp",
+    "ground/clients/xtce/": "ground/clients/xtce/xtce_test.cpp",
+    "ground/shell/": "tests/ground/ground_test.py",
+}
+
+
+def untested(texts):
+    used = set()
+    for name in texts:
+        if not name.startswith(TESTED) or not name.endswith(".cpp") or "/testing/" in name or name.endswith(("_test.cpp", "/main.cpp", "/example.cpp")):
+            continue
+        if name.removesuffix(".cpp") + "_test.cpp" in texts:
+            continue
+        row = next((row for row in ELSEWHERE if name.startswith(row)), None)
+        used.add(row)
+        if row is None:
+            yield f"{name}: no {name.removesuffix('.cpp').rsplit('/', 1)[1]}_test.cpp beside it"
+        elif ELSEWHERE[row] not in texts:
+            yield f"{name}: its test is to be {ELSEWHERE[row]}, which there is not"
+    if used:
+        yield from (f"check_shape.py: {row} has its test beside it, or is no more" for row in ELSEWHERE if row not in used)
 
 
 def folder(name):
@@ -66,13 +101,15 @@ def circles(texts):
 
 
 def problems(texts):
-    return list(too_long(texts)) + circles(texts)
+    return list(too_long(texts)) + circles(texts) + list(untested(texts))
 
 
 PLANTED = [({"hirosco/a.cpp": "\n" * 501}, "501 lines"), ({"supervisor/supervisor.hpp": "\n" * 91}, "91 lines"),
            ({"hirosco/a.hpp": "class Big final : Base {\n" + "  int a;\n" * 301 + "};\n"}, "Big has 30"),
            ({"hirosco/a/a.hpp": '#include "hirosco/b/b.hpp"\n', "hirosco/b/b.hpp": '#include "hirosco/c/c.hpp"\n',
-             "hirosco/c/c.hpp": '#include "hirosco/a/a.hpp"\n'}, "hirosco/a -> hirosco/b -> hirosco/c -> hirosco/a")]
+             "hirosco/c/c.hpp": '#include "hirosco/a/a.hpp"\n'}, "hirosco/a -> hirosco/b -> hirosco/c -> hirosco/a"),
+           ({"supervisor/a.cpp": ""}, "no a_test.cpp"), ({"ground/shell/a.cpp": ""}, "which there is not"),
+           ({"ground/a.cpp": "", "ground/a_test.cpp": "", "ground/shell/b.cpp": ""}, "has its test beside it, or is no more")]
 missed = [f"planted and not seen: {wanted}" for texts, wanted in PLANTED if not any(wanted in found for found in problems(texts))]
 ours = dict(files())
 sys.exit("\n".join(problems(ours) + missed) or ("no files" if not ours else None))
