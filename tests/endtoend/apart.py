@@ -32,8 +32,10 @@ def _raise_loopback():
 
 
 def set_apart():
-    """True: this process and all that it begins have networks, queues and shared memory of their own. False: that is not permitted, and
-    nothing has changed. A half of it is an error."""
+    """True: this process and all that it begins have networks, queues and shared memory of their own. False: that is not permitted, or
+    this is a chroot whose root is no mount, which nobody can make private, and nothing has changed. A half of it is an error."""
+    if not any(line.split()[4] == "/" for line in pathlib.Path("/proc/self/mountinfo").read_text().splitlines()):
+        return False
     try:
         _called("unshare", CLONE_NEWNS | CLONE_NEWIPC | CLONE_NEWNET)
     except OSError:
