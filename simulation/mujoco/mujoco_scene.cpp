@@ -31,11 +31,6 @@ struct FileAsset {
 };
 constexpr std::array file_assets{FileAsset{"mesh", "meshdir"}, FileAsset{"hfield", "texturedir"}};
 
-[[nodiscard]] std::string said_in(const Element& element, std::string_view name) {
-  const auto* found = element.find(name);
-  return found != nullptr ? found->value : std::string{};
-}
-
 /// Rewrites a scene so that it reads nothing but what it is handed.
 class Rewriting {
  public:
@@ -90,7 +85,7 @@ class Rewriting {
 
   /// Under a name of ours: what the file calls it may be the name of another one on this computer.
   [[nodiscard]] std::expected<void, std::string> hand_over(const Element& element, const FileAsset& asset) {
-    const std::filesystem::path named{said_in(element, "file")};
+    const std::filesystem::path named{element.find("file")->value};
     const auto said = folders_.find(std::string{asset.folder});
     const std::string folder = said != folders_.end() ? said->second : folders_["assetdir"];
     const std::filesystem::path file =
@@ -102,8 +97,8 @@ class Rewriting {
     if (!octets) return std::unexpected{file.string() + ": " + octets.error()};
     const std::string handed = fmt::format("asset_{}{}", octets_.size(), file.extension().string());
     octets_.insert_or_assign(handed, std::move(*octets));
-    const std::string name = said_in(element, "name");
-    say("name", name.empty() ? named.stem().string() : name);
+    const auto* name = element.find("name");
+    say("name", name == nullptr ? named.stem().string() : name->value);
     say("file", handed);
     return {};
   }

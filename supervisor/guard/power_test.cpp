@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/data_transfer/device/power_frame.hpp"
-#include "hirosco/utilities/crc16.hpp"
+#include "hirosco/data_transfer/device/testing/sealed.hpp"
 #include "supervisor/guard/testing/guard_rig.hpp"
 
 /// When the devices of a member have power, judged at the switch: the test plays it.
@@ -81,10 +81,7 @@ TEST_F(PowerTest, WhoAnswersByFramesOfAnotherVersionIsNotTakenForAnything) {
   EXPECT_EQ(said(), power_on);
   std::array<std::byte, power_frame_octets> frame{};
   ASSERT_TRUE(write_power_status(frame, {true, sequences.back()}));
-  frame[2] = std::byte{0x5A};
-  OctetWriter sum{MutableOctets{frame}.last(2), std::endian::little};
-  sum.put(crc16(Octets{frame}.first(frame.size() - 2)));
-  static_cast<void>(power->send(frame));
+  static_cast<void>(power->send(hirosco::testing::sealed_as(0x5A, frame)));
   run(Guard::period);
   EXPECT_EQ(said(), power_unknown_version);
   EXPECT_EQ(told_in(20ms), true);

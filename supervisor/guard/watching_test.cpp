@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/utilities/crc16.hpp"
+#include "hirosco/data_transfer/device/testing/sealed.hpp"
 #include "supervisor/guard/testing/guard_rig.hpp"
 
 /// What the guard counts as time, and whom it blames for a service loop that stands still.
@@ -85,10 +85,7 @@ TEST_F(Watching, ASecondInhibitThatAnswersByFramesOfAnotherVersionCountsAsSilent
   for (const TimePoint end = clock.now() + inhibit_silence + 2 * Guard::period; clock.now() < end;) {
     ASSERT_TRUE(write_enable_status(
         frame, {.output = DeviceOutput::Active, .flags = 0, .epoch = 0, .sequence = told.sequence}));
-    frame[2] = std::byte{0x5A};
-    OctetWriter sum{MutableOctets{frame}.last(2), std::endian::little};
-    sum.put(crc16(Octets{frame}.first(frame.size() - 2)));
-    static_cast<void>(motor->send(frame));
+    static_cast<void>(motor->send(hirosco::testing::sealed_as(0x5A, frame)));
     run(Guard::period, {arm, hand, camera}, std::nullopt);
   }
   EXPECT_THAT(kinds(arm), ElementsAre(Found::InhibitOfOtherVersion));

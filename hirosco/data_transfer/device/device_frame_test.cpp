@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hirosco/data_transfer/device/testing/sealed.hpp"
 #include "hirosco/utilities/crc16.hpp"
 
 namespace hirosco {
@@ -83,17 +84,12 @@ TEST(DeviceFrame, RefusesTheOtherKind) {
 }
 
 TEST(DeviceFrame, TellsAnIntactFrameOfAnotherVersionByItsKindWhateverElseItSays) {
-  const auto sealed = [](MutableOctets frame) {
-    OctetWriter sum{frame.last(2), std::endian::little};
-    sum.put(crc16(frame.first(frame.size() - 2)));
-    return Octets{frame};
-  };
   for (const std::size_t size : {device_frame_overhead_octets, device_frame_overhead_octets + a_payload.size()}) {
     Buffer buffer{};
     ASSERT_TRUE(write_command(buffer, a_command()));
     for (unsigned kind = 0; kind < 256; ++kind) {
-      buffer[2] = std::byte{static_cast<std::uint8_t>(kind)};
-      const auto read = read_command(sealed(MutableOctets{buffer}.first(size)));
+      const auto read =
+          read_command(testing::sealed_as(static_cast<std::uint8_t>(kind), MutableOctets{buffer}.first(size)));
       const bool known = kind == 1 || kind == 2;
       const bool whole = size > device_frame_overhead_octets;
       ASSERT_EQ(read.has_value(), kind == 1 && whole) << kind;

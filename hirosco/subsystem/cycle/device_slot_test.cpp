@@ -10,8 +10,8 @@
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
+#include "hirosco/data_transfer/device/testing/sealed.hpp"
 #include "hirosco/subsystem/cycle/layout_difference.hpp"
-#include "hirosco/utilities/crc16.hpp"
 
 /// One device: what counts as alive, and what is written, octet by octet.
 namespace hirosco {
@@ -322,11 +322,8 @@ TEST_F(MotorSlot, WhoAnswersByFramesOfAnotherVersionIsLostByThatName) {
   made.read(true);
   std::array<std::byte, 40> frame{};
   const std::size_t octets = write_status(frame, {.epoch = 0, .sequence = 2, .flags = 0, .payload = {}}).value().size();
-  frame[2] = std::byte{0x22};
-  OctetWriter sum{MutableOctets{frame}.subspan(octets - 2, 2), std::endian::little};
-  sum.put(crc16(Octets{frame}.first(octets - 2)));
   for (int i = 0; i < 3; ++i) {
-    static_cast<void>(motor->send(Octets{frame}.first(octets)));
+    static_cast<void>(motor->send(testing::sealed_as(0x22, MutableOctets{frame}.first(octets))));
     made.read(true);
   }
   EXPECT_FALSE(made.alive());

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "hirosco/data_transfer/device/enable_frame.hpp"
+#include "hirosco/data_transfer/device/testing/sealed.hpp"
 #include "hirosco/descriptor/model/supervisor_events.hpp"
-#include "hirosco/utilities/crc16.hpp"
 #include "supervisor/platform/storage/testing/test_databases.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
@@ -453,10 +453,7 @@ TEST_F(SecondInhibitTest, WhoActsThoughItDoesNotAnswerIsToldOfWithItsDevice) {
 TEST_F(SecondInhibitTest, WhoseAnswersAreOfAnotherVersionIsToldOfByThatNameAndPlannedForAlike) {
   std::array<std::byte, enable_frame_octets> frame{};
   ASSERT_TRUE(write_enable_status(frame, {}));
-  frame[2] = std::byte{0x5A};
-  OctetWriter sum{MutableOctets{frame}.last(2), std::endian::little};
-  sum.put(crc16(Octets{frame}.first(frame.size() - 2)));
-  act(frame);
+  act(hirosco::testing::sealed_as(0x5A, frame));
   EXPECT_TRUE(
       was_told("HAND: the second inhibit of its device MOTOR is of another version, build both from one hirosco"))
       << ::testing::PrintToString(story);
