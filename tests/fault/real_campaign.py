@@ -10,10 +10,12 @@ all that was said, which comes as the log has it (I14).
 
     real_campaign.py [--flights N] [--seed S] [--only K] [--keep FILE]    FILE: how far it is; goes on from there
     real_campaign.py --hundreds [N]      each of spinning, stopped, unplugged, killed (each subsystem) N times (100), and what it took
+    ... --evidence FOLDER                where the log of a flight with a violation is kept, with what was told
 """
 import argparse
 import pathlib
 import random
+import shutil
 import signal
 import sys
 import time
@@ -274,14 +276,26 @@ PER_FLIGHT = 10
 LATE_FLIGHTS = 3            # of one number, before a host that is late again and again counts as a failure
 
 
-def flown(mission, trial, again):
+def keep_evidence(craft, folder):
+    kept = folder / time.strftime("%Y%m%dT%H%M%S", time.gmtime())
+    shutil.copytree(craft.folder / "log", kept / "log")
+    (kept / "told.txt").write_text(craft.story(), encoding="utf-8")
+    print(f"  evidence: {kept}", flush=True)
+
+
+def flown(mission, trial, again, evidence=None):
     """Whether it flew without a violation; None: it could not be brought up because the host was late, which says nothing."""
     before = flight.segments()
     with punctual.Lateness() as host:
         try:
             with flight.Flight(mission, quiet=True) as craft:
                 told = craft
-                trial.fly(craft)
+                try:
+                    trial.fly(craft)
+                except (Violation, AssertionError):
+                    if evidence:
+                        keep_evidence(craft, evidence)
+                    raise
             expect(flight.segments() == before, "I7: shared memory was left behind")
             return True
         except (Violation, AssertionError) as problem:
@@ -295,7 +309,7 @@ def flown(mission, trial, again):
     return False
 
 
-def hundreds(mission, seed, times):
+def hundreds(mission, seed, times, evidence):
     """Each kind so many times, in flights of ten; the table of what it took."""
     violations, late, rows = 0, 0, []
     for kind, share in KINDS.items():
@@ -303,7 +317,7 @@ def hundreds(mission, seed, times):
         while done < wanted and number < 2 * wanted:
             trial = Trial(seed, number, kind, min(PER_FLIGHT, wanted - done))
             number += 1
-            outcome = flown(mission, trial, f"--hundreds {times} --seed {seed}")
+            outcome = flown(mission, trial, f"--hundreds {times} --seed {seed}", evidence)
             violations += outcome is False
             late += outcome is None
             done += trial.done
@@ -332,12 +346,13 @@ def main():
     parser.add_argument("--only", type=int)
     parser.add_argument("--keep", type=pathlib.Path, help="a line for each flight; those that are in it already are not flown again")
     parser.add_argument("--hundreds", type=int, nargs="?", const=100)
+    parser.add_argument("--evidence", type=pathlib.Path, help="the log of a flight with a violation is kept in this folder")
     options = parser.parse_args()
     if options.keep and (options.hundreds or options.only is not None):
         parser.error("--keep is of flights that are flown one after the other: not with --hundreds or --only")
     with flight.MissionCopy({**SPINNABLE, **RESTARTS}) as mission:
         if options.hundreds:
-            return 1 if hundreds(mission, options.seed, options.hundreds) else 0
+            return 1 if hundreds(mission, options.seed, options.hundreds, options.evidence) else 0
         numbers = [options.only] if options.only is not None else range(options.flights)
         failed, kept = 0, outcomes(options.keep, options.seed)
         for number in numbers:
@@ -347,7 +362,7 @@ def main():
             trial = Trial(options.seed, number)
             print(f"flight {number}: {' '.join(step.__name__ for step in trial.steps)}", flush=True)
             for _ in range(LATE_FLIGHTS):
-                outcome = flown(mission, trial, f"--seed {options.seed} --only {number}")
+                outcome = flown(mission, trial, f"--seed {options.seed} --only {number}", options.evidence)
                 if outcome is not None:
                     break
                 trial = Trial(options.seed, number)
