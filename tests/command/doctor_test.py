@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`hirosco doctor` on the computer that it stands on: what it says is what the system says to somebody else, what it gives to type
 mends what it found, and its exit code is that of its rows."""
+import functools
 import json
 import os
 import pathlib
@@ -10,6 +11,8 @@ import socket
 import subprocess
 import tempfile
 import unittest
+
+import ordinary_user
 
 HIROSCO = pathlib.Path(os.environ["HIROSCO_BIN"]) / "hirosco"
 NOBODY = 65534
@@ -23,9 +26,9 @@ class Doctor(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
         self.folder.chmod(0o777)
 
-    def looked(self, *words, before=(), **environment):
+    def looked(self, *words, before=(), program=HIROSCO, **environment):
         """The rows by their names, and the exit code."""
-        done = subprocess.run([*before, HIROSCO, "doctor", *words, "--json"], cwd=self.folder, capture_output=True, text=True,
+        done = subprocess.run([*before, program, "doctor", *words, "--json"], cwd=self.folder, capture_output=True, text=True,
                               check=False, env={**os.environ, "XDG_RUNTIME_DIR": str(self.folder), **environment})
         rows = [json.loads(line) for line in done.stdout.splitlines()]
         self.assertGreater(len(rows), 10, done.stderr)
@@ -76,7 +79,10 @@ class Doctor(unittest.TestCase):
 
     @unittest.skipUnless(os.getuid() == 0, "needs root, to become somebody else")
     def test_without_rights_it_names_the_limits_and_with_them_it_is_content(self):
-        told = self.looked("rokviss", before=("prlimit", "--rtprio=0", "--memlock=65536", *AS_NOBODY))
+        # Where root's home holds the repository nobody can read it.
+        user = self.enterContext(ordinary_user.ordinary_user())
+        asked = functools.partial(self.looked, str(user["mission"]), program=user["binaries"] / "hirosco")
+        told = asked(before=("prlimit", "--rtprio=0", "--memlock=65536", *AS_NOBODY))
         line = told["real-time rights"]["mends"]
         self.assertEqual(told["real-time rights"]["verdict"], "missing")
         self.assertRegex(line, r"nobody - rtprio \d+")
@@ -88,7 +94,7 @@ class Doctor(unittest.TestCase):
         if subprocess.run([*limits, "true"], capture_output=True, check=False).returncode != 0:
             rights = "+sys_nice,+ipc_lock"
             limits = (*AS_NOBODY[:4], f"--inh-caps={rights}", f"--ambient-caps={rights}")
-        told = self.looked("rokviss", before=limits)
+        told = asked(before=limits)
         self.assertEqual((told["real-time rights"]["verdict"], told["locked memory"]["verdict"]), ("ok", "ok"), told)
 
     def test_in_words_it_gives_the_line_to_type_below_what_it_found(self):
