@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/descriptor/read/detail/mission_reader.hpp"
+#include "hirosco/descriptor/read/detail/mission_parts.hpp"
 
 /// Which sockets a subsystem needs beside those of its devices, and that nobody's sandbox lets it in where the supervisor's side holds
 /// an endnode (docs/adr/0150).
@@ -74,25 +74,26 @@ namespace {
 
 }  // namespace
 
-void MissionReader::note_sockets() {
-  for (MissionSubsystem& member : mission_.subsystems) {
+void note_sockets(Mission& mission) {
+  for (MissionSubsystem& member : mission.subsystems) {
     const auto& name = member.subsystem.name;
-    member.carries_ground = name == mission_.ground.subsystem;
-    for (const MissionLink& link : mission_.links) {
+    member.carries_ground = name == mission.ground.subsystem;
+    for (const MissionLink& link : mission.links) {
       if (link.from != name && link.to != name) continue;
-      const auto *producer = mission_.find_subsystem(link.from), *consumer = mission_.find_subsystem(link.to);
+      const auto *producer = mission.find_subsystem(link.from), *consumer = mission.find_subsystem(link.to);
       if (producer != nullptr && consumer != nullptr && may_be_udp(link, producer->subsystem, consumer->subsystem))
         member.links_by_udp = true;
     }
   }
 }
 
-void MissionReader::check_reach() {
-  for (const MissionSubsystem& owner : mission_.subsystems) {
+void check_reach(MissionDraft& draft) {
+  for (const MissionSubsystem& owner : draft.mission.subsystems) {
     Problems problems{owner.subsystem.file};
     const auto check = [&](const Endnode& held, const std::string& what) {
-      const auto other = std::ranges::find_if(mission_.subsystems, [&](const auto& any) { return reaches(any, held); });
-      if (other == mission_.subsystems.end()) return;
+      const auto other =
+          std::ranges::find_if(draft.mission.subsystems, [&](const auto& any) { return reaches(any, held); });
+      if (other == draft.mission.subsystems.end()) return;
       problems.add(held.at, "E0349",
                    fmt::format("{} is reached by {}, and the sandbox of '{}' lets that in", what,
                                to_text(held.transfer), other->subsystem.name),
@@ -104,7 +105,7 @@ void MissionReader::check_reach() {
       if (device.enable) check(*device.enable, fmt::format("the second inhibit of '{}'", device.name));
     for (const PowerSwitch& power : owner.subsystem.power_switches)
       check(power.endnode, fmt::format("the power switch of '{}'", power.device));
-    if (problems.count() != 0) subsystem_problems_.push_back(problems.take());
+    if (problems.count() != 0) draft.subsystem_problems.push_back(problems.take());
   }
 }
 

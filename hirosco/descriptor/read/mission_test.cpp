@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "hirosco/descriptor/read/detail/mission_reader.hpp"
+#include "hirosco/descriptor/read/detail/mission_link_reader.hpp"
 #include "hirosco/descriptor/testing.hpp"
 #include "hirosco/utilities/testing/slice.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "hirosco/data_transfer/device/flow_means.hpp"
 #include "hirosco/data_transfer/device/serial_line.hpp"
-#include "hirosco/descriptor/read/detail/mission_reader.hpp"
-#include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
+#include "hirosco/descriptor/read/detail/device_addresses.hpp"
+#include "hirosco/descriptor/read/detail/device_reader.hpp"
 
 /// Where devices are: the form of their addresses, whose each is, and what a mission permits beyond this computer (docs/adr/0112).
 namespace hirosco::descriptor::detail {
@@ -52,7 +52,7 @@ std::string refuse_address(AddressForm form, const std::string& address) {
   return "";
 }
 
-void MissionReader::read_device_network(const xml::Element& element) {
+void DeviceAddresses::read_device_network(const xml::Element& element) {
   Attributes attributes{element, problems_};
   no_children(element, problems_);
   const auto* address = attributes.required("address");
@@ -70,7 +70,7 @@ void MissionReader::read_device_network(const xml::Element& element) {
   mission_.device_networks.push_back(std::move(*network));
 }
 
-void MissionReader::check_endnodes(const SubsystemDescriptor& subsystem) {
+void DeviceAddresses::check_endnodes(const SubsystemDescriptor& subsystem) {
   Problems problems{subsystem.file};
   for (const Device& device : subsystem.devices)
     if (device.enable) check_endnode(*device.enable, subsystem.name, problems);
@@ -80,7 +80,7 @@ void MissionReader::check_endnodes(const SubsystemDescriptor& subsystem) {
       check_endnode(use.endnode, subsystem.name, problems);
       for (const Endnode& other : use.fall_backs) check_endnode(other, subsystem.name, problems);
     }
-  if (problems.count() != 0) subsystem_problems_.push_back(problems.take());
+  if (problems.count() != 0) draft_.subsystem_problems.push_back(problems.take());
 }
 
 namespace {
@@ -99,7 +99,7 @@ void check_reach_of(const Endnode& endnode, const std::vector<DeviceNetwork>& pe
 
 }  // namespace
 
-void MissionReader::check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems) {
+void DeviceAddresses::check_endnode(const Endnode& endnode, const std::string& subsystem, Problems& problems) {
   const FlowMeans* means = find_flow_means(endnode.transfer);
   if (means == nullptr) return;
   // Of an instance, whose address the mission changes.

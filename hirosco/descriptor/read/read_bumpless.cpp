@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
+#include "hirosco/descriptor/read/detail/configuration_reader.hpp"
 
 /// Configurations between which a subsystem goes while it acts (docs/adr/0096): what is against it is said here, before any flight.
 namespace hirosco::descriptor::detail {
@@ -70,7 +70,7 @@ namespace {
 
 }  // namespace
 
-void SubsystemReader::read_bumpless(const xml::Element& element) {
+void BumplessReader::read(const xml::Element& element) {
   Attributes attributes{element, problems_};
   Bumpless bumpless;
   bumpless.at = place(element.at);
@@ -110,7 +110,7 @@ void SubsystemReader::read_bumpless(const xml::Element& element) {
   subsystem_.bumpless.push_back(std::move(bumpless));
 }
 
-void SubsystemReader::read_step(const xml::Element& element, Bumpless& bumpless, Unique& names) {
+void BumplessReader::read_step(const xml::Element& element, Bumpless& bumpless, Unique& names) {
   Attributes attributes{element, problems_};
   no_children(element, problems_);
   Bumpless::Step step;
@@ -138,7 +138,7 @@ void SubsystemReader::read_step(const xml::Element& element, Bumpless& bumpless,
 }
 
 /// What nobody bounds might jump.
-void SubsystemReader::check_steps(const xml::Element& element, const Bumpless& bumpless) {
+void BumplessReader::check_steps(const xml::Element& element, const Bumpless& bumpless) {
   if (bumpless.configurations.empty()) return;
   const auto configuration =
       std::ranges::find(subsystem_.configurations, bumpless.configurations.front(), &Configuration::id);

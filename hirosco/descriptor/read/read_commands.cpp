@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-#include "hirosco/descriptor/read/detail/mission_reader.hpp"
+#include "hirosco/descriptor/read/detail/other_members.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
 
 /// Whom a subsystem may command (adr 0062): what its descriptor says, who that is in a mission, and how its process is told.
@@ -29,50 +29,50 @@ void read_things(Attributes& attributes, std::string_view attribute, Thing::Kind
 
 }  // namespace
 
-void SubsystemReader::read_commands(const xml::Element& element) {
-  Attributes attributes{element, problems_};
-  no_children(element, problems_);
+void read_commands(const xml::Element& element, Problems& problems, Unique& commanded, std::vector<Commands>& all) {
+  Attributes attributes{element, problems};
+  no_children(element, problems);
   Commands commands;
   commands.at = place(element.at);
   commands.subsystem = attributes.name("subsystem");
   if (!commands.subsystem.empty())
-    commanded_.add(commands.subsystem, commands.at, problems_, element.name.size() + 1, "name all functions in one");
+    commanded.add(commands.subsystem, commands.at, problems, element.name.size() + 1, "name all functions in one");
   using enum Thing::Kind;
-  read_things(attributes, "sets", Set, problems_, commands.things);
-  read_things(attributes, "reads", Read, problems_, commands.things);
-  read_things(attributes, "housekeeping", Housekeeping, problems_, commands.things);
-  read_things(attributes, "events", Event, problems_, commands.things);
+  read_things(attributes, "sets", Set, problems, commands.things);
+  read_things(attributes, "reads", Read, problems, commands.things);
+  read_things(attributes, "housekeeping", Housekeeping, problems, commands.things);
+  read_things(attributes, "events", Event, problems, commands.things);
   const auto* functions = commands.things.empty() ? attributes.required("functions") : attributes.optional("functions");
   if (functions != nullptr) {
     Unique names{"function", "E0201"};
     for (const auto function : words(functions->value)) {
-      names.add(std::string{function}, place(functions->value_at), problems_, functions->value.size());
+      names.add(std::string{function}, place(functions->value_at), problems, functions->value.size());
       commands.functions.emplace_back(function);
     }
-    if (commands.functions.empty()) problems_.add(*functions, "E0109", "attribute 'functions' is empty");
+    if (commands.functions.empty()) problems.add(*functions, "E0109", "attribute 'functions' is empty");
   }
-  subsystem_.commands.push_back(std::move(commands));
+  all.push_back(std::move(commands));
 }
 
-void SubsystemReader::read_subscribes(const xml::Element& element) {
-  Attributes attributes{element, problems_};
-  no_children(element, problems_);
+void read_subscribes(const xml::Element& element, Problems& problems, Unique& heard, std::vector<Subscribes>& all) {
+  Attributes attributes{element, problems};
+  no_children(element, problems);
   Subscribes subscribes;
   subscribes.at = place(element.at);
   subscribes.subsystem = attributes.name("subsystem");
   if (!subscribes.subsystem.empty())
-    heard_.add(subscribes.subsystem, subscribes.at, problems_, element.name.size() + 1, "name all of it in one");
-  read_things(attributes, "housekeeping", Thing::Kind::Housekeeping, problems_, subscribes.things);
-  read_things(attributes, "events", Thing::Kind::Event, problems_, subscribes.things);
+    heard.add(subscribes.subsystem, subscribes.at, problems, element.name.size() + 1, "name all of it in one");
+  read_things(attributes, "housekeeping", Thing::Kind::Housekeeping, problems, subscribes.things);
+  read_things(attributes, "events", Thing::Kind::Event, problems, subscribes.things);
   if (attributes.optional("housekeeping") == nullptr && attributes.optional("events") == nullptr)
-    problems_.add(element, "E0105", "<Subscribes> needs 'housekeeping' or 'events'",
-                  "housekeeping=\"4800\" events=\"BURNT_OUT\"");
-  subsystem_.subscribes.push_back(std::move(subscribes));
+    problems.add(element, "E0105", "<Subscribes> needs 'housekeeping' or 'events'",
+                 "housekeeping=\"4800\" events=\"BURNT_OUT\"");
+  all.push_back(std::move(subscribes));
 }
 
 /// Another subsystem than the descriptor's word names is commanded, or heard, by this instance.
-void MissionReader::read_redirected(const xml::Element& element, MissionSubsystem& member, Redirected::Kind kind,
-                                    Unique& names) {
+void OtherMembers::read_redirected(const xml::Element& element, MissionSubsystem& member, Redirected::Kind kind,
+                                   Unique& names) {
   Attributes attributes{element, problems_};
   no_children(element, problems_);
   const auto* subsystem = attributes.required("subsystem");
@@ -95,20 +95,20 @@ void MissionReader::read_redirected(const xml::Element& element, MissionSubsyste
   redirections_.emplace_back(to, member.subsystem.name);
 }
 
-void MissionReader::resolve_commands() {
-  if (!whole()) return;
+void OtherMembers::resolve_commands() {
+  if (!draft_.whole) return;
   for (const auto& [to, commanding] : redirections_)
-    if (const SubsystemDescriptor* found = find(*to, to->value, false); found != nullptr && found->name == commanding)
+    if (const auto* found = draft_.find(*to, to->value, false); found != nullptr && found->name == commanding)
       problems_.add(*to, "E0304", fmt::format("'{}' cannot command or hear itself", commanding));
   for (MissionSubsystem& member : mission_.subsystems) {
     for (Commands& commands : member.subsystem.commands) resolve_one(member, commands);
     for (Subscribes& subscribes : member.subsystem.subscribes) resolve_one(member, subscribes);
   }
-  check_foreign_circles();
+  check_foreign_circles(draft_);
 }
 
-const MissionSubsystem* MissionReader::find_other(const MissionSubsystem& member, const std::string& named,
-                                                  Redirected::Kind kind) {
+const MissionSubsystem* OtherMembers::find_other(const MissionSubsystem& member, const std::string& named,
+                                                 Redirected::Kind kind) {
   const auto redirected = std::ranges::find_if(
       member.redirected, [&](const Redirected& each) { return each.kind == kind && each.subsystem == named; });
   const bool as_written = redirected == member.redirected.end();
@@ -126,7 +126,7 @@ const MissionSubsystem* MissionReader::find_other(const MissionSubsystem& member
   return nullptr;
 }
 
-void MissionReader::resolve_one(const MissionSubsystem& member, Commands& commands) {
+void OtherMembers::resolve_one(const MissionSubsystem& member, Commands& commands) {
   const MissionSubsystem* found = find_other(member, commands.subsystem, Redirected::Kind::Commands);
   if (found == nullptr) return;
   Problems problems{member.subsystem.file};
@@ -140,10 +140,10 @@ void MissionReader::resolve_one(const MissionSubsystem& member, Commands& comman
                  did_you_mean(missing, known), 9);
   }
   resolve_things(commands.things, found->subsystem, commands.at, problems);
-  subsystem_problems_.push_back(problems.take());
+  draft_.subsystem_problems.push_back(problems.take());
 }
 
-void MissionReader::resolve_one(const MissionSubsystem& member, Subscribes& subscribes) {
+void OtherMembers::resolve_one(const MissionSubsystem& member, Subscribes& subscribes) {
   const MissionSubsystem* found = find_other(member, subscribes.subsystem, Redirected::Kind::Subscribes);
   if (found == nullptr) return;
   subscribes.apid = found->subsystem.id;
@@ -151,11 +151,11 @@ void MissionReader::resolve_one(const MissionSubsystem& member, Subscribes& subs
   Problems problems{member.subsystem.file};
   resolve_things(subscribes.things, found->subsystem, subscribes.at, problems);
   if (problems.count() == 0) resolve_foreign_of(member, subscribes, found->subsystem, problems);
-  subsystem_problems_.push_back(problems.take());
+  draft_.subsystem_problems.push_back(problems.take());
 }
 
-void MissionReader::resolve_things(std::vector<Thing>& things, const SubsystemDescriptor& other, const Location& at,
-                                   Problems& problems) {
+void OtherMembers::resolve_things(std::vector<Thing>& things, const SubsystemDescriptor& other, const Location& at,
+                                  Problems& problems) {
   const NoThing missing = resolve(things, other);
   if (missing.thing == nullptr) return;
   std::vector<std::string_view> known;

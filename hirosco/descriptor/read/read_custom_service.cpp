@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
+#include "hirosco/descriptor/read/detail/function_reader.hpp"
 
 /// A subsystem's own PUS services (adr 0060).
 namespace hirosco::descriptor::detail {
@@ -19,7 +19,7 @@ constexpr std::size_t max_report_octets = 4096 - 22;
 
 }  // namespace
 
-void SubsystemReader::read_custom_service(const xml::Element& element) {
+void CustomServiceReader::read(const xml::Element& element) {
   Attributes attributes{element, problems_};
   CustomService service;
   service.at = place(element.at);
@@ -37,7 +37,7 @@ void SubsystemReader::read_custom_service(const xml::Element& element) {
   subsystem_.services.push_back(std::move(service));
 }
 
-void SubsystemReader::read_request(const xml::Element& element, CustomService& service, Unique& subtypes) {
+void CustomServiceReader::read_request(const xml::Element& element, CustomService& service, Unique& subtypes) {
   Attributes attributes{element, problems_};
   Function request;
   request.at = place(element.at);
@@ -50,31 +50,28 @@ void SubsystemReader::read_request(const xml::Element& element, CustomService& s
       read_states(attributes, "states",
                   {State::PreOperational, State::SafeOperational, State::Operational, State::ErrorOperational});
   Unique names{"argument name", "E0201"};
-  each_child(element, problems_,
-             {{"Argument", [&](const xml::Element& child) { read_argument(child, request, names); }, max_fields},
-              {"Description",
-               [&](const xml::Element& child) {
-                 no_children(child, problems_, true);
-                 request.description = child.text;
-               },
-               1}});
+  each_child(
+      element, problems_,
+      {{"Argument", [&](const xml::Element& child) { functions_.read_argument(child, request, names); }, max_fields},
+       {"Description",
+        [&](const xml::Element& child) {
+          no_children(child, problems_, true);
+          request.description = child.text;
+        },
+        1}});
   std::size_t octets = 0;
   for (const auto& argument : request.arguments) octets += argument.octets();
   if (octets > max_request_octets)
     problems_.add(element, "E0215", fmt::format("request '{}' takes {} octets", request.name, octets),
                   fmt::format("at most {}", max_request_octets));
   const std::size_t length = element.name.size() + 1;
-  // One name, one request: whoever commands a subsystem by name need not know by which service it is carried.
-  if (std::ranges::find(built_in_requests, request.name) != built_in_requests.end())
-    problems_.add(*element.find("name"), "E0213",
-                  fmt::format("'{}' is built in: every subsystem has it", request.name));
-  else if (!request.name.empty()) function_names_.add(request.name, request.at, problems_, length);
+  functions_.claim_name(element, request);
   if (request.subtype != 0) subtypes.add(std::to_string(request.subtype), request.at, problems_, length);
   service.requests.push_back(std::move(request));
 }
 
-void SubsystemReader::read_report(const xml::Element& element, CustomService& service, Unique& subtypes,
-                                  Unique& names) {
+void CustomServiceReader::read_report(const xml::Element& element, CustomService& service, Unique& subtypes,
+                                      Unique& names) {
   Attributes attributes{element, problems_};
   CustomService::Report report;
   const Location at = place(element.at);
@@ -85,7 +82,7 @@ void SubsystemReader::read_report(const xml::Element& element, CustomService& se
              {{"Field",
                [&](const xml::Element& child) {
                  std::vector<Field> one;
-                 read_plain_field(child, one, fields, Says::Report);
+                 fields_.read_plain(child, one, fields, Says::Report);
                  report.fields.push_back({.field = std::move(one.front()), .of = {}, .fallback = {}, .texts = {}});
                },
                max_fields}});

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "hirosco/descriptor/read/detail/mission_reader.hpp"
+#include "hirosco/descriptor/read/detail/other_members.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
 
 /// Parameters that have the value of another subsystem's (docs/adr/0103): what a descriptor says, and what a mission makes of it.
@@ -16,7 +16,7 @@ constexpr std::int64_t most_age_ms = 3'600'000;
 
 }  // namespace
 
-void SubsystemReader::read_from(Attributes& attributes, Parameter& parameter) {
+void ParameterReader::read_from(Attributes& attributes, Parameter& parameter) {
   const auto* from = attributes.optional("from");
   if (from == nullptr) {
     if (const auto* age = attributes.optional("age_ms"); age != nullptr)
@@ -41,7 +41,7 @@ void SubsystemReader::read_from(Attributes& attributes, Parameter& parameter) {
 }
 
 /// Once all is read: whose it is must be heard, and nobody else sets it.
-void SubsystemReader::check_foreign() {
+void ParameterReader::check_foreign() {
   for (const auto& [index, from] : foreign_) {
     const std::string subsystem = from->value.substr(0, from->value.find('.'));
     const auto heard = std::ranges::find(subsystem_.subscribes, subsystem, &Subscribes::subsystem);
@@ -68,8 +68,8 @@ void SubsystemReader::check_foreign() {
     }
 }
 
-void MissionReader::resolve_foreign_of(const MissionSubsystem& member, Subscribes& heard,
-                                       const SubsystemDescriptor& other, Problems& problems) {
+void resolve_foreign_of(const MissionSubsystem& member, Subscribes& heard, const SubsystemDescriptor& other,
+                        Problems& problems) {
   const NoForeign missing = resolve_foreign(member.subsystem, heard, other);
   if (missing.foreign == nullptr) return;
   const Parameter& parameter = member.subsystem.parameters[missing.foreign->parameter];
@@ -102,17 +102,17 @@ struct Source {
 }  // namespace
 
 /// Each way ends at somebody who makes the value, after at most as many steps as there are parameters.
-void MissionReader::check_foreign_circles() {
+void check_foreign_circles(MissionDraft& draft) {
   std::size_t most = 0;
-  for (const MissionSubsystem& member : mission_.subsystems) most += member.subsystem.parameters.size();
-  for (const MissionSubsystem& member : mission_.subsystems)
+  for (const MissionSubsystem& member : draft.mission.subsystems) most += member.subsystem.parameters.size();
+  for (const MissionSubsystem& member : draft.mission.subsystems)
     for (const Subscribes& heard : member.subsystem.subscribes)
       for (const Foreign& foreign : heard.foreign) {
         const Source begin{&member, foreign.parameter};
         Source at = begin;
         bool back = false;
         for (std::size_t step = 0; step < most && at.member != nullptr && !back; ++step) {
-          at = source_of(mission_, at);
+          at = source_of(draft.mission, at);
           back = at.member == begin.member && at.parameter == begin.parameter;
         }
         if (!back) continue;
@@ -121,7 +121,7 @@ void MissionReader::check_foreign_circles() {
         problems.add(field.at, "E0375",
                      fmt::format("the value of '{}' comes, by way of others, from itself", field.name),
                      "somebody has to make it", 8);
-        subsystem_problems_.push_back(problems.take());
+        draft.subsystem_problems.push_back(problems.take());
       }
 }
 

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "hirosco/descriptor/read/detail/mission_reader.hpp"
+#include "hirosco/descriptor/read/detail/mission_link_reader.hpp"
 
 namespace hirosco::descriptor::detail {
 
 /// What its loss does to the consumer, and whether the consumer's cycle does its part of that.
-void MissionReader::read_loss(Attributes& attributes, const SubsystemDescriptor* consumer, MissionLink& link) {
+void MissionLinkReader::read_loss(Attributes& attributes, const SubsystemDescriptor* consumer, MissionLink& link) {
   const xml::Element& element = attributes.element();
   link.on_loss = attributes.one_of("on_loss", OnLoss::Down);
   const auto* hold = attributes.optional("hold_ms");

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "hirosco/descriptor/read/detail/mission_reader.hpp"
+#include "hirosco/descriptor/read/detail/mission_parts.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 
 /// What a mission may start, line by line as sha256sum writes it (docs/adr/0089).
@@ -61,26 +61,26 @@ void read_line(std::string_view line, int number, Manifest& manifest, Problems& 
 
 }  // namespace
 
-void MissionReader::read_manifest(const xml::Element& element) {
-  Attributes attributes{element, problems_};
-  no_children(element, problems_);
+void read_manifest(const xml::Element& element, MissionDraft& draft, const FileSource& source) {
+  Attributes attributes{element, draft.problems};
+  no_children(element, draft.problems);
   const auto* path = attributes.required("path");
   if (path == nullptr) return;
   if (const auto wrong = refuse_path(path->value, 0); !wrong.empty())
-    return problems_.add(*path, "E0314", fmt::format("manifest path {} is not allowed", in_quotes(path->value)),
-                         std::string{wrong});
-  const auto file = problems_.file().parent_path() / path->value;
+    return draft.problems.add(*path, "E0314", fmt::format("manifest path {} is not allowed", in_quotes(path->value)),
+                              std::string{wrong});
+  const auto file = draft.problems.file().parent_path() / path->value;
   if (file.extension() != manifest_extension)
-    return problems_.add(*path, "E0360", fmt::format("{} is no manifest", in_quotes(path->value)),
-                         fmt::format("its name ends with {}", manifest_extension));
-  Reading<Manifest> reading = descriptor::read_manifest(file.lexically_normal(), source_);
+    return draft.problems.add(*path, "E0360", fmt::format("{} is no manifest", in_quotes(path->value)),
+                              fmt::format("its name ends with {}", manifest_extension));
+  Reading<Manifest> reading = descriptor::read_manifest(file.lexically_normal(), source);
   const bool unreadable = std::ranges::any_of(reading.problems, [](const Diagnostic& d) { return d.code == "E0360"; });
   if (unreadable)
-    problems_.add(*path, "E0360",
-                  fmt::format("manifest {} {}", in_quotes(path->value), reading.problems.front().message),
-                  "hirosco manifest MISSION --write makes it; the path is relative to the mission file");
-  else if (!reading.problems.empty()) subsystem_problems_.push_back(std::move(reading.problems));
-  mission_.manifest = std::move(reading.value);
+    draft.problems.add(*path, "E0360",
+                       fmt::format("manifest {} {}", in_quotes(path->value), reading.problems.front().message),
+                       "hirosco manifest MISSION --write makes it; the path is relative to the mission file");
+  else if (!reading.problems.empty()) draft.subsystem_problems.push_back(std::move(reading.problems));
+  draft.mission.manifest = std::move(reading.value);
 }
 
 }  // namespace detail

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include <charconv>
-#include <cmath>
+#include <algorithm>
 #include <utility>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
-#include "hirosco/descriptor/read/detail/mission_reader.hpp"
+#include "hirosco/descriptor/read/detail/mode_parts.hpp"
+#include "hirosco/descriptor/read/detail/plan_reader.hpp"
 
 /// The recovery plans of a mission: when, and what.
 namespace hirosco::descriptor::detail {
@@ -15,12 +15,63 @@ namespace {
 
 constexpr std::size_t most_steps = 16;
 
+/// A step that can answer none of the plan's events would be a promise that is never kept.
+void check_answers(const xml::Element& element, const Plan& plan, MissionDraft& draft) {
+  if (!draft.whole) return;
+  for (const PlanStep& step : plan.steps) {
+    const std::string_view only = find_plan_step(step.kind)->answers;
+    if (only.empty()) continue;
+    const auto* event = draft.mission.supervisor.find_event(only);
+    const bool named = plan.event.empty() || plan.event == only;
+    const bool severe = plan.severities.empty() || event == nullptr ||
+                        std::ranges::find(plan.severities, event->severity) != plan.severities.end();
+    if (!named || !severe)
+      draft.problems.add(element, "E0326",
+                         fmt::format("plan '{}' never does '{}': that answers {} only", plan.name, step.kind, only),
+                         fmt::format("it belongs to the plan for {}", only));
+  }
+}
+
+/// The steps of a plan that another one runs stand in that one's place, so that all that looks at a plan sees them.
+void expand_runs(const xml::Element& element, Mission& mission, Problems& problems) {
+  const auto is_run = [](const PlanStep& step) { return step.kind == step_that_runs_a_plan; };
+  for (std::size_t depth = 0; depth < most_steps; ++depth) {
+    bool any = false;
+    for (Plan& plan : mission.plans) {
+      const auto run = std::ranges::find_if(plan.steps, is_run);
+      if (run == plan.steps.end()) continue;
+      any = true;
+      const std::string name = run->words.empty() ? std::string{} : run->words.front();
+      const auto other = std::ranges::find(mission.plans, name, &Plan::name);
+      if (other == mission.plans.end()) {
+        std::vector<std::string_view> known;
+        for (const Plan& each : mission.plans) known.push_back(each.name);
+        problems.add(plan.at, "E0373", fmt::format("plan '{}' runs {}, which is no plan", plan.name, in_quotes(name)),
+                     did_you_mean(name, known));
+        plan.steps.erase(run);
+        continue;
+      }
+      const std::vector<PlanStep> steps = other->steps;
+      const auto at = plan.steps.erase(run);
+      plan.steps.insert(at, steps.begin(), steps.end());
+      if (plan.steps.size() <= most_steps) continue;
+      problems.add(plan.at, "E0373",
+                   fmt::format("plan '{}' has more than {} steps with those that it runs", plan.name, most_steps),
+                   "does it run itself?");
+      std::erase_if(plan.steps, is_run);
+      plan.steps.resize(std::min(plan.steps.size(), most_steps));
+    }
+    if (!any) return;
+  }
+  problems.add(element, "E0373", "plans run each other in a circle");
+}
+
 }  // namespace
 
-void MissionReader::read_recovery(const xml::Element& element) {
+void PlanReader::read_recovery(const xml::Element& element) {
   const Attributes none{element, problems_};
   each_child(element, problems_, {{"Plan", [this](const auto& child) { read_plan(child); }, 255}});
-  expand_runs(element);
+  expand_runs(element, mission_, problems_);
   // What the supervisor tells of plans has their names wherever it is read.
   auto& enumerations = mission_.supervisor.enumerations;
   const auto names = std::ranges::find(enumerations, plans_enumeration, &Enumeration::name);
@@ -29,7 +80,7 @@ void MissionReader::read_recovery(const xml::Element& element) {
     names->texts.push_back({static_cast<std::int64_t>(i + 1), mission_.plans[i].name});
 }
 
-void MissionReader::read_plan(const xml::Element& element) {
+void PlanReader::read_plan(const xml::Element& element) {
   Attributes attributes{element, problems_};
   Plan plan;
   plan.at = place(element.at);
@@ -49,8 +100,8 @@ void MissionReader::read_plan(const xml::Element& element) {
                  action = true;
                },
                most_steps}});
-  resolve_names(plan);
-  check_answers(element, plan);
+  step_names_.resolve_names(plan);
+  check_answers(element, plan, draft_);
   if (!condition) problems_.add(element, "E0106", "<Plan> needs a <When>");
   if (!action) problems_.add(element, "E0106", "<Plan> needs a <Do>");
   if (plan.name == "default")
@@ -59,14 +110,14 @@ void MissionReader::read_plan(const xml::Element& element) {
   mission_.plans.push_back(std::move(plan));
 }
 
-void MissionReader::read_when(const xml::Element& element, Plan& plan) {
+void PlanReader::read_when(const xml::Element& element, Plan& plan) {
   Attributes attributes{element, problems_};
   no_children(element, problems_);
   plan.severities = attributes.list_of<Severity>("severity", {});
   const auto* subsystem = attributes.optional("subsystem");
   const auto* event = attributes.optional("event");
   const auto* mode = attributes.optional("mode");
-  const SubsystemDescriptor* found = subsystem == nullptr ? nullptr : find(*subsystem, subsystem->value, true);
+  const SubsystemDescriptor* found = subsystem == nullptr ? nullptr : draft_.find(*subsystem, subsystem->value, true);
   if (subsystem != nullptr) plan.subsystem = subsystem->value;
   if (mode != nullptr) {
     plan.mode = mode->value;
@@ -78,7 +129,7 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
   }
   if (event == nullptr) return;
   plan.event = event->value;
-  if (!whole() || (subsystem != nullptr && found == nullptr)) return;
+  if (!draft_.whole || (subsystem != nullptr && found == nullptr)) return;
   std::vector<std::string_view> known;
   bool fires = plan.severities.empty();
   const auto add = [&](const SubsystemDescriptor& candidate) {
@@ -109,24 +160,7 @@ void MissionReader::read_when(const xml::Element& element, Plan& plan) {
                   "name the event that the other plan answers");
 }
 
-/// A step that can answer none of the plan's events would be a promise that is never kept.
-void MissionReader::check_answers(const xml::Element& element, const Plan& plan) {
-  if (!whole()) return;
-  for (const PlanStep& step : plan.steps) {
-    const std::string_view only = find_plan_step(step.kind)->answers;
-    if (only.empty()) continue;
-    const auto* event = mission_.supervisor.find_event(only);
-    const bool named = plan.event.empty() || plan.event == only;
-    const bool severe = plan.severities.empty() || event == nullptr ||
-                        std::ranges::find(plan.severities, event->severity) != plan.severities.end();
-    if (!named || !severe)
-      problems_.add(element, "E0326",
-                    fmt::format("plan '{}' never does '{}': that answers {} only", plan.name, step.kind, only),
-                    fmt::format("it belongs to the plan for {}", only));
-  }
-}
-
-void MissionReader::read_do(const xml::Element& element, Plan& plan) {
+void PlanReader::read_do(const xml::Element& element, Plan& plan) {
   Attributes attributes{element, problems_};
   no_children(element, problems_);
   const auto* action = attributes.required("action");
@@ -137,7 +171,7 @@ void MissionReader::read_do(const xml::Element& element, Plan& plan) {
     if (!word->names_subject)
       problems_.add(*whom, "E0317", fmt::format("the action '{}' takes no subsystem", word->name),
                     "it is for the subsystem whose event it is");
-    else if (find(*whom, whom->value, false) != nullptr) step.subsystem = whom->value;
+    else if (draft_.find(*whom, whom->value, false) != nullptr) step.subsystem = whom->value;
   }
   if (word != nullptr) {
     step.kind = action->value;
@@ -159,20 +193,21 @@ void MissionReader::read_do(const xml::Element& element, Plan& plan) {
 }
 
 /// What names something of somebody is looked up when the whole plan is read: it may say in <When> who that is.
-std::int64_t MissionReader::read_value(Attributes& attributes, const StepAttribute& described, std::size_t place,
-                                       PlanStep& step) {
+std::int64_t PlanReader::read_value(Attributes& attributes, const StepAttribute& described, std::size_t place,
+                                    PlanStep& step) {
   using enum StepAttribute::Kind;
   const auto fallback = described.otherwise.value_or(described.least);
   if (!described.otherwise && attributes.required(described.name) == nullptr) return fallback;
   switch (described.kind) {
     case SteadyState: {
-      const State state = read_steady_state(attributes, described.name, State::SafeOperational);
+      const State state = read_steady_state(attributes, described.name, State::SafeOperational, problems_);
       if (state == State::Operational)
         problems_.add(*attributes.optional(described.name), "E0370", "a plan lets nobody go who is stopped",
                       "Operational is commanded by the ground, a change of mode, or restart to=\"commanded\"");
       return static_cast<std::int64_t>(state);
     }
-    case SeenState: return static_cast<std::int64_t>(read_steady_state(attributes, described.name, State::Offline));
+    case SeenState:
+      return static_cast<std::int64_t>(read_steady_state(attributes, described.name, State::Offline, problems_));
     case Word: {
       const auto* at = attributes.optional(described.name);
       if (at == nullptr) return fallback;
@@ -190,158 +225,8 @@ std::int64_t MissionReader::read_value(Attributes& attributes, const StepAttribu
   if (at == nullptr) return fallback;
   step.words.resize(step.values.size() + 1);
   step.words.back() = at->value;
-  named_in_steps_.push_back({place, step.values.size(), at, described.kind});
+  step_names_.add({place, step.values.size(), at, described.kind});
   return fallback;
-}
-
-/// Of the plan that was just read, all names that its steps say.
-void MissionReader::resolve_names(Plan& plan) {
-  for (const NamedInStep& named : std::exchange(named_in_steps_, {}))
-    if (whole() && named.step < plan.steps.size()) resolve_name(plan, plan.steps[named.step], named);
-}
-
-void MissionReader::resolve_name(const Plan& plan, PlanStep& step, const NamedInStep& named) {
-  using enum StepAttribute::Kind;
-  const xml::Attribute& at = *named.at;
-  std::int64_t& value = step.values[named.attribute];
-  switch (named.kind) {
-    case Subsystem: {
-      if (const auto* found = find(at, at.value, false)) value = found->id;
-      else return;
-      // For the events of all there would be as many tasks, and one receiver.
-      if (step.kind == "hand_over" && mission_.find_subsystem(plan.subsystem) == nullptr)
-        problems_.add(at, "E0372", "the plan does not say whose task that is", "subsystem=\"...\" in <When>");
-      return;
-    }
-    case Link: {
-      std::uint8_t id = 0;
-      const auto read = std::from_chars(at.value.data(), at.value.data() + at.value.size(), id);
-      if (read.ec != std::errc{} || mission_.find_link(id) == nullptr)
-        problems_.add(at, "E0309", fmt::format("link {} is not defined", in_quotes(at.value)));
-      value = id;
-      return;
-    }
-    case Plan: return;  // when all are read
-    default: break;
-  }
-  // Whose function or configuration it is.
-  const bool of_receiver = step.kind == "hand_over";
-  const bool of_anybody = step.kind == "notify_network";
-  std::string whose = !step.subsystem.empty() ? step.subsystem : plan.subsystem;
-  if (of_receiver) whose = step.words.empty() ? std::string{} : step.words.front();
-  const MissionSubsystem* member = mission_.find_subsystem(whose);
-  if (member == nullptr && !of_anybody) {
-    if (!of_receiver)
-      problems_.add(at, "E0372", fmt::format("the plan does not say whose {} that is", at.name),
-                    "subsystem=\"...\" here or in <When>");
-    return;
-  }
-  if (named.kind == Configuration) {
-    const auto* found = member->subsystem.find_configuration(at.value);
-    std::vector<std::string_view> known;
-    for (const auto& each : member->subsystem.configurations) known.push_back(each.name);
-    if (found == nullptr)
-      problems_.add(at, "E0316", fmt::format("'{}' has no configuration {}", whose, in_quotes(at.value)),
-                    did_you_mean(at.value, known));
-    else value = found->id;
-    return;
-  }
-  if (named.kind == Function && of_anybody) return check_notice(at);
-  if (named.kind == Function) {
-    const auto& functions = member->subsystem.functions;
-    const auto found = std::ranges::find(functions, at.value, &descriptor::Function::name);
-    std::vector<std::string_view> known;
-    for (const auto& each : functions) known.push_back(each.name);
-    if (found == functions.end())
-      problems_.add(at, "E0310", fmt::format("'{}' has no function {}", whose, in_quotes(at.value)),
-                    did_you_mean(at.value, known));
-    value = found - functions.begin();
-    if (found != functions.end() && step.words.size() < 2) check_arguments(at, *found, step);
-  }
-  if (named.kind == Arguments && !step.words.empty())
-    if (const auto* function = member->subsystem.find_function(step.words.front()))
-      check_arguments(at, *function, step);
-}
-
-/// All of them are numbers, as many as declared, each in its range.
-void MissionReader::check_arguments(const xml::Attribute& at, const Function& function, PlanStep& step) {
-  const auto given = step.words.size() > 1 ? words(step.words[1]) : std::vector<std::string_view>{};
-  std::size_t wanted = 0;
-  for (const auto& argument : function.arguments) wanted += argument.field.values();
-  const auto refuse = [&](std::string_view why) {
-    problems_.add(at, "E0372", fmt::format("{} is not called like this: {}", function.name, why),
-                  "arguments=\"0.5 1\", in the order of its descriptor");
-  };
-  if (given.size() != wanted) return refuse(fmt::format("it takes {} numbers, these are {}", wanted, given.size()));
-  step.arguments.clear();
-  for (const auto& argument : function.arguments) {
-    const Field& field = argument.field;
-    if (field.type == Type::Text) return refuse("a plan gives no words");
-    for (std::uint32_t i = 0; i < field.values(); ++i) {
-      const std::string_view text = given[step.arguments.size()];
-      double number = 0;
-      const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-      const bool whole = field.type == Type::Float || field.type == Type::Double || std::trunc(number) == number;
-      if (read.ec != std::errc{} || read.ptr != text.data() + text.size() || !std::isfinite(number) || !whole)
-        return refuse(fmt::format("{} is no value of {}", in_quotes(text), field.name));
-      const bool below = field.minimum && number < field.minimum->real();
-      const bool above = field.maximum && number > field.maximum->real();
-      const auto is_it = [&](const EnumerationText& named) { return static_cast<double>(named.value) == number; };
-      const bool unnamed = !argument.texts.empty() && std::ranges::none_of(argument.texts, is_it);
-      if (below || above || unnamed) return refuse(fmt::format("{} is outside the range of {}", text, field.name));
-      step.arguments.push_back(number);
-    }
-  }
-  step.values[1] = static_cast<std::int64_t>(step.arguments.size());
-}
-
-/// A notice is a function without arguments, or with the APID of who has failed as its only one.
-void MissionReader::check_notice(const xml::Attribute& at) {
-  std::vector<std::string_view> known;
-  for (const MissionSubsystem& member : mission_.subsystems) {
-    for (const descriptor::Function& function : member.subsystem.functions) {
-      if (!is_notice(function)) continue;
-      if (function.name == at.value) return;
-      known.push_back(function.name);
-    }
-  }
-  problems_.add(
-      at, "E0310", fmt::format("nobody has a function {} for a notice", in_quotes(at.value)),
-      known.empty() ? "no argument, or one UINT16, which is told whose event it is" : did_you_mean(at.value, known));
-}
-
-/// The steps of a plan that another one runs stand in that one's place, so that all that looks at a plan sees them.
-void MissionReader::expand_runs(const xml::Element& element) {
-  const auto is_run = [](const PlanStep& step) { return step.kind == step_that_runs_a_plan; };
-  for (std::size_t depth = 0; depth < most_steps; ++depth) {
-    bool any = false;
-    for (Plan& plan : mission_.plans) {
-      const auto run = std::ranges::find_if(plan.steps, is_run);
-      if (run == plan.steps.end()) continue;
-      any = true;
-      const std::string name = run->words.empty() ? std::string{} : run->words.front();
-      const auto other = std::ranges::find(mission_.plans, name, &Plan::name);
-      if (other == mission_.plans.end()) {
-        std::vector<std::string_view> known;
-        for (const Plan& each : mission_.plans) known.push_back(each.name);
-        problems_.add(plan.at, "E0373", fmt::format("plan '{}' runs {}, which is no plan", plan.name, in_quotes(name)),
-                      did_you_mean(name, known));
-        plan.steps.erase(run);
-        continue;
-      }
-      const std::vector<PlanStep> steps = other->steps;
-      const auto at = plan.steps.erase(run);
-      plan.steps.insert(at, steps.begin(), steps.end());
-      if (plan.steps.size() <= most_steps) continue;
-      problems_.add(plan.at, "E0373",
-                    fmt::format("plan '{}' has more than {} steps with those that it runs", plan.name, most_steps),
-                    "does it run itself?");
-      std::erase_if(plan.steps, is_run);
-      plan.steps.resize(std::min(plan.steps.size(), most_steps));
-    }
-    if (!any) return;
-  }
-  problems_.add(element, "E0373", "plans run each other in a circle");
 }
 
 }  // namespace hirosco::descriptor::detail

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "hirosco/descriptor/read/detail/mission_reader.hpp"
+#include "hirosco/descriptor/read/detail/mission_parts.hpp"
 
 /// Electrical power of a mission: what there is at most, and who measures what there is now (docs/adr/0124).
 namespace hirosco::descriptor::detail {
@@ -12,45 +12,21 @@ namespace {
 
 constexpr std::int64_t most_measurement_age_ms = 3'600'000;
 
-}  // namespace
-
-void MissionReader::read_power(const xml::Element& element) {
-  Attributes attributes{element, problems_};
-  no_children(element, problems_);
-  if (attributes.required("budget_W") != nullptr) mission_.power_budget_w = attributes.watts("budget_W");
-  const auto* measured = attributes.optional("measured");
-  if (measured == nullptr) {
-    for (const char* name : {"age_ms", "least_W"})
-      if (const auto* at = attributes.optional(name))
-        problems_.add(place(at->at), "E0376", fmt::format("{} is for a budget that is measured", name),
-                      "measured=\"SUBSYSTEM.PARAMETER\" stands beside it", at->name.size());
-    return;
-  }
-  const std::chrono::milliseconds age{attributes.required_integer<std::int64_t>("age_ms", 1, most_measurement_age_ms)};
-  mission_.power_least_w = attributes.watts("least_W").value_or(0);
-  if (mission_.power_budget_w && mission_.power_least_w > *mission_.power_budget_w)
-    problems_.add(
-        *element.find("least_W"), "E0376",
-        fmt::format("{} W are more than the budget of {} W", mission_.power_least_w, *mission_.power_budget_w),
-        "budget_W is the most that there ever is");
-  if (age.count() > 0 && whole()) read_measured_power(*measured, age);
-}
-
-void MissionReader::read_measured_power(const xml::Attribute& measured, Duration age) {
+void read_measured_power(const xml::Attribute& measured, Duration age, Mission& mission, Problems& problems) {
   const auto dot = measured.value.find('.');
   if (dot == 0 || dot == std::string::npos || dot + 1 == measured.value.size())
-    return problems_.add(measured, "E0110", in_quotes(measured.value) + " names no parameter of a subsystem",
-                         "SUBSYSTEM.PARAMETER, as the mission calls the subsystem");
+    return problems.add(measured, "E0110", in_quotes(measured.value) + " names no parameter of a subsystem",
+                        "SUBSYSTEM.PARAMETER, as the mission calls the subsystem");
   const std::string name = measured.value.substr(0, dot), parameter = measured.value.substr(dot + 1);
-  const MissionSubsystem* member = mission_.find_subsystem(name);
+  const MissionSubsystem* member = mission.find_subsystem(name);
   if (member == nullptr) {
     std::vector<std::string_view> known;
-    for (const MissionSubsystem& each : mission_.subsystems) known.push_back(each.subsystem.name);
-    return problems_.add(measured, "E0304", fmt::format("subsystem {} is not in the mission", in_quotes(name)),
-                         did_you_mean(name, known));
+    for (const MissionSubsystem& each : mission.subsystems) known.push_back(each.subsystem.name);
+    return problems.add(measured, "E0304", fmt::format("subsystem {} is not in the mission", in_quotes(name)),
+                        did_you_mean(name, known));
   }
   const auto refuse = [&](const std::string& why, const std::string& hint) {
-    problems_.add(measured, "E0376", fmt::format("{} measures no budget: {}", in_quotes(measured.value), why), hint);
+    problems.add(measured, "E0376", fmt::format("{} measures no budget: {}", in_quotes(measured.value), why), hint);
   };
   const auto found = find_place(member->subsystem, parameter);
   if (!found) {
@@ -63,7 +39,31 @@ void MissionReader::read_measured_power(const xml::Attribute& measured, Duration
     return refuse("it is no single DOUBLE in W", "type=\"DOUBLE\" unit=\"W\"");
   const auto at = find_reported(member->subsystem, *found, age);
   if (!at) return refuse(at.error(), "add it to a structure of the subsystem, or raise age_ms");
-  mission_.power_measured = MeasuredPower{.name = measured.value, .age = age, .apid = member->subsystem.id, .at = *at};
+  mission.power_measured = MeasuredPower{.name = measured.value, .age = age, .apid = member->subsystem.id, .at = *at};
+}
+
+}  // namespace
+
+void read_power(const xml::Element& element, MissionDraft& draft) {
+  Attributes attributes{element, draft.problems};
+  no_children(element, draft.problems);
+  if (attributes.required("budget_W") != nullptr) draft.mission.power_budget_w = attributes.watts("budget_W");
+  const auto* measured = attributes.optional("measured");
+  if (measured == nullptr) {
+    for (const char* name : {"age_ms", "least_W"})
+      if (const auto* at = attributes.optional(name))
+        draft.problems.add(place(at->at), "E0376", fmt::format("{} is for a budget that is measured", name),
+                           "measured=\"SUBSYSTEM.PARAMETER\" stands beside it", at->name.size());
+    return;
+  }
+  const std::chrono::milliseconds age{attributes.required_integer<std::int64_t>("age_ms", 1, most_measurement_age_ms)};
+  draft.mission.power_least_w = attributes.watts("least_W").value_or(0);
+  if (draft.mission.power_budget_w && draft.mission.power_least_w > *draft.mission.power_budget_w)
+    draft.problems.add(*element.find("least_W"), "E0376",
+                       fmt::format("{} W are more than the budget of {} W", draft.mission.power_least_w,
+                                   *draft.mission.power_budget_w),
+                       "budget_W is the most that there ever is");
+  if (age.count() > 0 && draft.whole) read_measured_power(*measured, age, draft.mission, draft.problems);
 }
 
 }  // namespace hirosco::descriptor::detail

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "hirosco/descriptor/read/detail/mission_reader.hpp"
+#include "hirosco/descriptor/read/detail/mission_parts.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
 
 /// What a subsystem takes, and what a mission has of it (docs/adr/0080).
@@ -19,6 +19,23 @@ constexpr std::uint64_t most_pool_octets = std::uint64_t{1} << 31;
 constexpr std::int64_t least_descriptors = 24;
 /// What the framework itself starts: service loop and cycle.
 constexpr std::int64_t least_threads = 2;
+
+void read_pool(const xml::Element& element, std::vector<Pool>& pools, Problems& problems) {
+  Attributes attributes{element, problems};
+  no_children(element, problems);
+  Pool pool;
+  pool.block_octets = attributes.required_integer<std::uint32_t>("block", 16, largest_block);
+  pool.blocks = attributes.required_integer<std::uint32_t>("count", 1, most_blocks);
+  if (pool.block_octets == 0 || pool.blocks == 0) return;
+  // As large as they are in memory: two pools of one size would be one.
+  constexpr std::uint32_t grain = 16;
+  pool.block_octets = (pool.block_octets + grain - 1) / grain * grain;
+  const auto twice = std::ranges::find(pools, pool.block_octets, &Pool::block_octets);
+  if (twice != pools.end())
+    return problems.add(element, "E0240", fmt::format("a second pool of blocks of {} octets", pool.block_octets),
+                        "sizes are rounded up to 16 octets: make it one pool");
+  pools.push_back(pool);
+}
 
 }  // namespace
 
@@ -38,72 +55,55 @@ Amounts read_amounts(Attributes& attributes) {
   return amounts;
 }
 
-void SubsystemReader::read_resources(const xml::Element& element) {
-  Attributes attributes{element, problems_};
-  Resources& resources = subsystem_.resources;
+void read_resources(const xml::Element& element, Resources& resources, Problems& problems) {
+  Attributes attributes{element, problems};
   resources.most = read_amounts(attributes);
   resources.warning_percent = attributes.integer_or<std::uint32_t>("warning_percent", 1, 100, default_warning_percent);
-  each_child(element, problems_, {{"Pool", [this](const auto& pool) { read_pool(pool); }, most_pools}});
+  each_child(element, problems,
+             {{"Pool", [&](const auto& pool) { read_pool(pool, resources.pools, problems); }, most_pools}});
   std::ranges::sort(resources.pools, {}, &Pool::block_octets);
   std::uint64_t octets = 0;
   for (const Pool& pool : resources.pools) octets += std::uint64_t{pool.block_octets} * pool.blocks;
   const auto memory_kb = amount_of(resources.most, Resource::Memory);
   const std::uint64_t limit = memory_kb ? std::uint64_t{*memory_kb} * 1024 : most_pool_octets;
   if (octets > limit)
-    problems_.add(element, "E0240", fmt::format("the pools take {} octets together", octets),
-                  fmt::format("at most {}{}", limit, memory_kb ? ", the memory that it says" : ""));
+    problems.add(element, "E0240", fmt::format("the pools take {} octets together", octets),
+                 fmt::format("at most {}{}", limit, memory_kb ? ", the memory that it says" : ""));
 }
 
-void SubsystemReader::read_pool(const xml::Element& element) {
-  Attributes attributes{element, problems_};
-  no_children(element, problems_);
-  Pool pool;
-  pool.block_octets = attributes.required_integer<std::uint32_t>("block", 16, largest_block);
-  pool.blocks = attributes.required_integer<std::uint32_t>("count", 1, most_blocks);
-  if (pool.block_octets == 0 || pool.blocks == 0) return;
-  // As large as they are in memory: two pools of one size would be one.
-  constexpr std::uint32_t grain = 16;
-  pool.block_octets = (pool.block_octets + grain - 1) / grain * grain;
-  const auto twice = std::ranges::find(subsystem_.resources.pools, pool.block_octets, &Pool::block_octets);
-  if (twice != subsystem_.resources.pools.end())
-    return problems_.add(element, "E0240", fmt::format("a second pool of blocks of {} octets", pool.block_octets),
-                         "sizes are rounded up to 16 octets: make it one pool");
-  subsystem_.resources.pools.push_back(pool);
+void read_resources(const xml::Element& element, Mission& mission, Problems& problems) {
+  Attributes attributes{element, problems};
+  no_children(element, problems);
+  mission.budget = read_amounts(attributes);
 }
 
-void MissionReader::read_resources(const xml::Element& element) {
-  Attributes attributes{element, problems_};
-  no_children(element, problems_);
-  mission_.budget = read_amounts(attributes);
-}
-
-void MissionReader::read_isolation(const xml::Element& element) {
-  Attributes attributes{element, problems_};
-  no_children(element, problems_);
-  mission_.isolation_required = attributes.yes("required", false);
+void read_isolation(const xml::Element& element, Mission& mission, Problems& problems) {
+  Attributes attributes{element, problems};
+  no_children(element, problems);
+  mission.isolation_required = attributes.yes("required", false);
 }
 
 /// Whoever says nothing would take from what is promised to the others.
-void MissionReader::check_resources(const xml::Element& element) {
+void check_resources(const xml::Element& element, const Mission& mission, Problems& problems) {
   for (std::size_t i = 0; i < counted_resources; ++i) {
     const auto resource = static_cast<Resource>(i);
-    const auto budget = amount_of(mission_.budget, resource);
+    const auto budget = amount_of(mission.budget, resource);
     if (!budget) continue;
     std::uint64_t sum = 0;
-    for (const MissionSubsystem& member : mission_.subsystems) {
+    for (const MissionSubsystem& member : mission.subsystems) {
       const auto most = amount_of(member.subsystem.resources.most, resource);
       sum += most.value_or(0);
       if (!most)
-        problems_.add(element, "E0350",
-                      fmt::format("the mission limits {}, and '{}' does not say how much it takes", to_text(resource),
-                                  member.subsystem.name),
-                      "say it in <Resources> of its descriptor");
+        problems.add(element, "E0350",
+                     fmt::format("the mission limits {}, and '{}' does not say how much it takes", to_text(resource),
+                                 member.subsystem.name),
+                     "say it in <Resources> of its descriptor");
     }
     if (sum > *budget)
-      problems_.warn(place(element.at), "E0410",
-                     fmt::format("all subsystems together take {}{} of {}, the mission has {}{}", sum,
-                                 unit_of(resource), to_text(resource), *budget, unit_of(resource)),
-                     "whoever is started last is refused", element.name.size() + 1);
+      problems.warn(place(element.at), "E0410",
+                    fmt::format("all subsystems together take {}{} of {}, the mission has {}{}", sum, unit_of(resource),
+                                to_text(resource), *budget, unit_of(resource)),
+                    "whoever is started last is refused", element.name.size() + 1);
   }
 }
 

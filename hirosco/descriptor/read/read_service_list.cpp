@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
+#include "hirosco/descriptor/read/detail/service_reader.hpp"
 
 /// Which services a subsystem offers and in which loops they run (docs/adr/0096).
 namespace hirosco::descriptor::detail {
@@ -17,7 +17,7 @@ constexpr std::uint8_t housekeeping_service = 3;
 
 }  // namespace
 
-void SubsystemReader::read_service_loop(const xml::Element& element) {
+void ServiceListReader::read_service_loop(const xml::Element& element) {
   Attributes attributes{element, problems_};
   no_children(element, problems_);
   ServiceLoop loop;
@@ -37,8 +37,8 @@ void SubsystemReader::read_service_loop(const xml::Element& element) {
   subsystem_.service_loops.push_back(std::move(loop));
 }
 
-void SubsystemReader::read_service(const xml::Element& element, std::vector<ServiceUse>& uses, Unique& names,
-                                   bool of_configuration) {
+void ServiceListReader::read_service(const xml::Element& element, std::vector<ServiceUse>& uses, Unique& names,
+                                     bool of_configuration) {
   Attributes attributes{element, problems_};
   no_children(element, problems_);
   ServiceUse use;
@@ -77,7 +77,7 @@ void SubsystemReader::read_service(const xml::Element& element, std::vector<Serv
   uses.push_back(use);
 }
 
-void SubsystemReader::check_service_list(const xml::Element& root) {
+void ServiceListReader::check(const xml::Element& root) {
   for (std::size_t i = 0; i < subsystem_.service_loops.size(); ++i)
     if (std::ranges::find(subsystem_.service_uses, static_cast<int>(i), &ServiceUse::loop) ==
         subsystem_.service_uses.end())
@@ -95,7 +95,7 @@ void SubsystemReader::check_service_list(const xml::Element& root) {
 }
 
 /// What a configuration reports by a service that it does not have would be reported by nobody.
-void SubsystemReader::check_housekeeping_offered(const xml::Element& element, const Configuration& configuration) {
+void ServiceListReader::check_housekeeping_offered(const xml::Element& element, const Configuration& configuration) {
   if (subsystem_.offers(housekeeping_service, &configuration)) return;
   const auto own = std::ranges::find(element.children, "HKService", &xml::Element::name);
   if (own == element.children.end()) return;

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
+#include "hirosco/descriptor/read/detail/parameter_reader.hpp"
 
 /// Structured parameters: members, structures within, arrays of structures (docs/adr/0103).
 namespace hirosco::descriptor::detail {
@@ -17,29 +17,50 @@ constexpr int most_levels = 4;
 constexpr std::int64_t most_elements = 64;
 constexpr std::size_t most_members = 256;
 
-}  // namespace
-
 /// What was read of one structure: names are their way from it.
-struct SubsystemReader::Inside {
+struct Inside {
   std::vector<Parameter::Member> members;
   std::vector<Parameter::Part> parts;
   std::vector<std::pair<std::size_t, const xml::Attribute*>> init;  ///< of which member
 };
 
-void SubsystemReader::read_structure(const xml::Element& element) {
-  if (read_built_in(element)) return;
+/// Reads what stands in a structure.
+class StructureReader {
+ public:
+  StructureReader(Problems& problems, FieldReader& fields, Unique& parameter_ids)
+      : problems_{problems}, fields_{fields}, parameter_ids_{parameter_ids} {}
+  [[nodiscard]] std::uint8_t read_structure_id(Attributes& attributes);
+  [[nodiscard]] Inside read_inside(const xml::Element& element, int level);
+  void expect_ranges(const xml::Element& structure);
+
+ private:
+  void read_member(const xml::Element& element, Inside& structure, Unique& names);
+  void read_within(const xml::Element& element, Inside& outer, Unique& names, int level);
+  void add_elements(Attributes& attributes, const std::string& name, std::size_t elements, const Inside& inner,
+                    Inside& outer);
+
+  Problems& problems_;
+  FieldReader& fields_;
+  Unique& parameter_ids_;
+};
+
+}  // namespace
+
+void ParameterReader::read_structure(const xml::Element& element) {
+  if (built_in_.read(element)) return;
   Attributes attributes{element, problems_};
   Parameter parameter;
   parameter.field.name = attributes.name();
   parameter.field.type = Type::Struct;
   parameter.field.at = place(element.at);
-  parameter.id = read_structure_id(attributes);
+  StructureReader structure{problems_, fields_, parameter_ids_};
+  parameter.id = structure.read_structure_id(attributes);
   read_access(attributes, parameter);
-  claim_parameter_id(attributes, Type::Struct, parameter.id);
+  claim_parameter_id(attributes, Type::Struct, parameter.id, parameter_ids_, problems_);
   if (!parameter.field.name.empty())
     parameter_names_.add(parameter.field.name, place(element.at), problems_, element.name.size() + 1);
-  Inside inside = read_inside(element, 1);
-  if (parameter.writable()) expect_ranges(element);
+  Inside inside = structure.read_inside(element, 1);
+  if (parameter.writable()) structure.expect_ranges(element);
   parameter.members = std::move(inside.members);
   parameter.parts = std::move(inside.parts);
   for (const auto& [member, at] : inside.init)
@@ -49,13 +70,13 @@ void SubsystemReader::read_structure(const xml::Element& element) {
   subsystem_.parameters.push_back(std::move(parameter));
 }
 
-std::uint8_t SubsystemReader::read_structure_id(Attributes& attributes) {
+std::uint8_t StructureReader::read_structure_id(Attributes& attributes) {
   if (const auto* type = attributes.optional("type"); type != nullptr && type->value != "STRUCT")
     problems_.add(*type, "E0104", "the type of a <StructRef> is 'STRUCT', not " + in_quotes(type->value));
   return attributes.required_integer<std::uint8_t>("id", 0, 255);
 }
 
-SubsystemReader::Inside SubsystemReader::read_inside(const xml::Element& element, int level) {
+Inside StructureReader::read_inside(const xml::Element& element, int level) {
   Inside inside;
   Unique names{"member name", "E0201"};
   each_child(element, problems_,
@@ -66,21 +87,21 @@ SubsystemReader::Inside SubsystemReader::read_inside(const xml::Element& element
   return inside;
 }
 
-void SubsystemReader::read_member(const xml::Element& element, Inside& structure, Unique& names) {
+void StructureReader::read_member(const xml::Element& element, Inside& structure, Unique& names) {
   Attributes attributes{element, problems_};
   Parameter::Member member;
-  member.field = read_field(attributes, Says::WordsAndRange);
+  member.field = fields_.read(attributes, Says::WordsAndRange);
   member.id = attributes.required_integer<std::uint8_t>("id", 0, 255);
   if (const auto* init = attributes.optional("init"); init != nullptr)
     structure.init.emplace_back(structure.members.size(), init);
-  claim_parameter_id(attributes, member.field.type, member.id);
+  claim_parameter_id(attributes, member.field.type, member.id, parameter_ids_, problems_);
   no_children(element, problems_);
   if (!member.field.name.empty()) names.add(member.field.name, place(element.at), problems_, element.name.size() + 1);
   structure.members.push_back(std::move(member));
 }
 
 /// A structure within, or an array of them.
-void SubsystemReader::read_within(const xml::Element& element, Inside& outer, Unique& names, int level) {
+void StructureReader::read_within(const xml::Element& element, Inside& outer, Unique& names, int level) {
   if (level > most_levels)
     return problems_.add(element, "E0256", fmt::format("structures stand in each other more than {} deep", most_levels),
                          "give it a parameter of its own");
@@ -88,7 +109,7 @@ void SubsystemReader::read_within(const xml::Element& element, Inside& outer, Un
   const std::string name = attributes.name();
   const std::uint8_t id = read_structure_id(attributes);
   const auto elements = attributes.integer_or<std::size_t>("count", 1, most_elements, 1);
-  claim_parameter_id(attributes, Type::Struct, id);
+  claim_parameter_id(attributes, Type::Struct, id, parameter_ids_, problems_);
   if (!name.empty()) names.add(name, place(element.at), problems_, element.name.size() + 1);
   Inside inner = read_inside(element, level);
   inner.parts.insert(inner.parts.begin(), {.name = {},
@@ -104,7 +125,7 @@ void SubsystemReader::read_within(const xml::Element& element, Inside& outer, Un
 }
 
 /// Ids of the elements of an array go on, type by type, behind the highest of the element before.
-void SubsystemReader::add_elements(Attributes& attributes, const std::string& name, std::size_t elements,
+void StructureReader::add_elements(Attributes& attributes, const std::string& name, std::size_t elements,
                                    const Inside& inner, Inside& outer) {
   struct Ids {
     unsigned lowest{255};
@@ -153,10 +174,10 @@ void SubsystemReader::add_elements(Attributes& attributes, const std::string& na
 }
 
 /// Each number of a structure that is set from outside has its range, at any depth.
-void SubsystemReader::expect_ranges(const xml::Element& structure) {
+void StructureReader::expect_ranges(const xml::Element& structure) {
   for (const xml::Element& child : structure.children)
     if (child.name == "StructRef") expect_ranges(child);
-    else expect_range(child, "member");
+    else expect_range(child, problems_, "member");
 }
 
 }  // namespace hirosco::descriptor::detail

@@ -13,6 +13,8 @@
 namespace hirosco::descriptor::detail {
 namespace {
 
+constexpr std::int64_t max_cycles = 1'000'000;
+
 [[nodiscard]] std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r\n");
   return first == text.npos ? std::string_view{} : text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
@@ -142,6 +144,23 @@ std::vector<double> read_numbers(Problems& problems, Attributes& attributes, std
     numbers.push_back(number.real());
   }
   return numbers;
+}
+
+std::uint16_t read_states(Attributes& attributes, std::string_view name, std::vector<State> fallback) {
+  unsigned states = 0;
+  for (const State state : attributes.list_of<State>(name, std::move(fallback)))
+    states |= 1U << static_cast<unsigned>(state);
+  return static_cast<std::uint16_t>(states);
+}
+
+CycleLimit read_limit(Attributes& attributes, std::string_view realtime, std::string_view reduced,
+                      CycleLimit fallback) {
+  CycleLimit limit;
+  limit.realtime = attributes.integer_or<std::uint32_t>(realtime, 1, max_cycles, fallback.realtime);
+  // A limit that was raised for real time is not to be tighter without it.
+  limit.reduced =
+      attributes.integer_or<std::uint32_t>(reduced, 1, max_cycles, std::max(fallback.reduced, limit.realtime));
+  return limit;
 }
 
 }  // namespace hirosco::descriptor::detail

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "hirosco/data_transfer/link/internet_address.hpp"
-#include "hirosco/descriptor/read/detail/mission_reader.hpp"
+#include "hirosco/descriptor/read/detail/mission_link_reader.hpp"
 
 /// How a mission wants a link to travel, and from where to where.
 namespace hirosco::descriptor::detail {
 
-void MissionReader::read_way(Attributes& attributes, MissionLink& link) {
+void MissionLinkReader::read_way(Attributes& attributes, MissionLink& link) {
   if (const auto* method = attributes.optional("method")) {
     link.method = attributes.word<LinkMethod>(*method, method->value);
     if (link.method && std::ranges::find(standard_link_mechanisms(), *link.method, &LinkMechanism::method) ==
@@ -34,8 +34,8 @@ void MissionReader::read_way(Attributes& attributes, MissionLink& link) {
         "127.0.0.1");
 }
 
-std::optional<InternetAddress> MissionReader::read_link_address(const xml::Attribute* at, const MissionLink& link,
-                                                                std::string& into) {
+std::optional<InternetAddress> MissionLinkReader::read_link_address(const xml::Attribute* at, const MissionLink& link,
+                                                                    std::string& into) {
   if (at == nullptr) return std::nullopt;
   if (link.method != LinkMethod::Udp) {
     problems_.add(*at, "E0343", fmt::format("'{}' of a link that may travel in memory", at->name),

@@ -226,5 +226,10 @@ bool check_value(Problems& problems, const xml::Attribute& at, const Field& fiel
 /// As many numbers as `field` has, which a double must hold exactly; empty when the attribute is absent or reported.
 [[nodiscard]] std::vector<double> read_numbers(Problems& problems, Attributes& attributes, std::string_view name,
                                                const Field& field);
+/// States as a mask: bit n set for State n.
+[[nodiscard]] std::uint16_t read_states(Attributes& attributes, std::string_view name, std::vector<State> fallback);
+/// Cycles, by the attribute for real-time scheduling and the one without it.
+[[nodiscard]] CycleLimit read_limit(Attributes& attributes, std::string_view realtime, std::string_view reduced,
+                                    CycleLimit fallback);
 
 }  // namespace hirosco::descriptor::detail

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "hirosco/data_transfer/link/internet_address.hpp"
+#include "hirosco/descriptor/read/detail/mission_draft.hpp"
+
+namespace hirosco::descriptor::detail {
+
+/// Why the producer's set cannot feed the consumer's, by this method where there is one; empty when it can.
+[[nodiscard]] std::string mismatch(const SubsystemDescriptor& producer, const Provides& provides,
+                                   const Requires& requires_, std::optional<LinkMethod> method);
+
+/// Reads <Links>: which sets are joined, how they travel, and what the loss of one does.
+class MissionLinkReader {
+ public:
+  explicit MissionLinkReader(MissionDraft& draft) : draft_{draft}, problems_{draft.problems}, mission_{draft.mission} {}
+  void read_links(const xml::Element& element);
+
+ private:
+  void read_link(const xml::Element& element);
+  /// "A.SET" split and its subsystem found.
+  [[nodiscard]] const SubsystemDescriptor* read_end(Attributes& attributes, std::string_view name,
+                                                    std::string& subsystem, std::string& set);
+  void check_link(const xml::Element& element, const SubsystemDescriptor& producer, const SubsystemDescriptor& consumer,
+                  const MissionLink& link);
+  // read_link_loss.cpp
+  void read_loss(Attributes& attributes, const SubsystemDescriptor* consumer, MissionLink& link);
+  // read_way.cpp
+  void read_way(Attributes& attributes, MissionLink& link);
+  [[nodiscard]] std::optional<InternetAddress> read_link_address(const xml::Attribute* at, const MissionLink& link,
+                                                                 std::string& into);
+
+  MissionDraft& draft_;
+  Problems& problems_;
+  Mission& mission_;
+  Unique link_ids_{"link id", "E0202"};
+  Unique link_addresses_{"address of a link", "E0313"};
+};
+
+}  // namespace hirosco::descriptor::detail

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "hirosco/descriptor/read/detail/mission_draft.hpp"
+
+/// Parts of a mission that are read, or checked, each by itself.
+namespace hirosco::descriptor::detail {
+
+/// What is wrong with a path that must stay inside, `above` folders up; empty when nothing is.
+[[nodiscard]] std::string_view refuse_path(std::string_view text, int above);
+
+/// What electrical power there is.
+void read_power(const xml::Element& element, MissionDraft& draft);
+/// What all subsystems together may take.
+void read_resources(const xml::Element& element, Mission& mission, Problems& problems);
+/// And whether what they say they take fits into it.
+void check_resources(const xml::Element& element, const Mission& mission, Problems& problems);
+/// Whether subsystems fly where this computer cannot isolate them.
+void read_isolation(const xml::Element& element, Mission& mission, Problems& problems);
+/// What may be started.
+void read_manifest(const xml::Element& element, MissionDraft& draft, const FileSource& source);
+/// All <SimulatedDevice> of the mission.
+void read_simulated_devices(const std::vector<const xml::Element*>& elements, MissionDraft& draft);
+/// What the live line of a terminal shows.
+void read_console(const xml::Element& element, MissionDraft& draft);
+
+/// Which sockets each subsystem needs beside those of its devices.
+void note_sockets(Mission& mission);
+/// Nobody's sandbox lets it in where the supervisor's side holds an endnode.
+void check_reach(MissionDraft& draft);
+
+}  // namespace hirosco::descriptor::detail

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "hirosco/descriptor/read/detail/mission_link_reader.hpp"
+
+/// Which sets a mission joins, and whether they fit.
+namespace hirosco::descriptor::detail {
+namespace {
+
+template <class Set>
+std::vector<std::string_view> names_of(const std::vector<const Set*>& sets) {
+  std::vector<std::string_view> names;
+  for (const Set* set : sets) names.push_back(set->name);
+  return names;
+}
+
+template <class E>
+bool share(const std::vector<E>& ours, const std::vector<E>& theirs) {
+  return std::ranges::any_of(ours, [&](E e) { return std::ranges::find(theirs, e) != theirs.end(); });
+}
+
+std::string describe(const Field& field) {
+  return fmt::format("{}{}{}", to_text(field.type), field.count == 1 ? "" : fmt::format("[{}]", field.count),
+                     field.unit.empty() ? "" : " " + field.unit);
+}
+
+}  // namespace
+
+std::string mismatch(const SubsystemDescriptor& producer, const Provides& provides, const Requires& requires_,
+                     std::optional<LinkMethod> method) {
+  std::vector<Field> offered;
+  for (const ParameterRef& reference : provides.parameters)
+    std::ranges::move(fields_of(producer, reference), std::back_inserter(offered));
+  const bool lent = provides.terms.lent() && requires_.terms.lent();
+  if (provides.terms.lent()) offered = provides.fields;
+  for (const Field& wanted : requires_.fields) {
+    const auto found = std::ranges::find(offered, wanted.name, &Field::name);
+    if (found == offered.end()) return fmt::format("field '{}' is not in the provided set", wanted.name);
+    if (found->type != wanted.type || found->count != wanted.count || found->unit != wanted.unit)
+      return fmt::format("field '{}': {} against {}", wanted.name, describe(*found), describe(wanted));
+  }
+  if (lent && !std::ranges::equal(offered, requires_.fields, {}, &Field::name, &Field::name))
+    return "a lent set has the same fields in the same order at both ends";
+  if (!share(provides.terms.methods, requires_.terms.methods)) return "no common method";
+  if (!share(provides.terms.byte_orders, requires_.terms.byte_orders)) return "no common byte order";
+  if (!share(provides.terms.kinds, requires_.terms.kinds)) return "no common kind";
+  std::size_t octets = 0;
+  for (const Field& field : offered) octets += field.octets();
+  if (method) {
+    const bool known = std::ranges::find(provides.terms.methods, *method) != provides.terms.methods.end() &&
+                       std::ranges::find(requires_.terms.methods, *method) != requires_.terms.methods.end();
+    if (!known) return fmt::format("not both ends have method '{}'", to_text(*method));
+    const LinkMechanism* mechanism = find_link_mechanism(standard_link_mechanisms(), *method, requires_.kind());
+    if (mechanism == nullptr)
+      return fmt::format("'{}' does not carry '{}'", to_text(*method), to_text(requires_.kind()));
+    if (requires_.starts && !mechanism->wakes())
+      return fmt::format("its samples start a cycle, and '{}' wakes nobody", to_text(*method));
+    if (octets > mechanism->max_payload())
+      return fmt::format("a sample of {} octets is more than the {} of '{}'", octets, mechanism->max_payload(),
+                         to_text(*method));
+  }
+  if (requires_.depth == 0) return {};
+  if (octets * requires_.depth > max_queue_octets)
+    return fmt::format("{} samples of {} octets are more than {}", requires_.depth, octets, max_queue_octets);
+  return {};
+}
+
+void MissionLinkReader::read_links(const xml::Element& element) {
+  const Attributes none{element, problems_};
+  each_child(element, problems_, {{"Link", [this](const auto& child) { read_link(child); }, 255}});
+}
+
+void MissionLinkReader::read_link(const xml::Element& element) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  MissionLink link;
+  link.at = place(element.at);
+  link.id = attributes.required_integer<std::uint8_t>("id", 1, 255);
+  const std::size_t before = problems_.count();
+  const SubsystemDescriptor* producer = read_end(attributes, "from", link.from, link.provides);
+  const SubsystemDescriptor* consumer = read_end(attributes, "to", link.to, link.requires_);
+  read_way(attributes, link);
+  if (producer != nullptr && consumer != nullptr) check_link(element, *producer, *consumer, link);
+  read_loss(attributes, consumer, link);
+  if (link.id != 0)
+    link_ids_.add(std::to_string(link.id), place(element.find("id")->value_at), problems_,
+                  element.find("id")->value.size());
+  if (problems_.count() != before) ++draft_.doubtful_links;
+  mission_.links.push_back(std::move(link));
+}
+
+const SubsystemDescriptor* MissionLinkReader::read_end(Attributes& attributes, std::string_view name,
+                                                       std::string& subsystem, std::string& set) {
+  const auto* at = attributes.required(name);
+  if (at == nullptr) return nullptr;
+  const std::size_t dot = at->value.find('.');
+  if (dot == std::string::npos || dot == 0 || dot + 1 == at->value.size()) {
+    problems_.add(*at, "E0110", in_quotes(at->value) + " does not name a set", "SUBSYSTEM.SET is needed");
+    return nullptr;
+  }
+  subsystem = at->value.substr(0, dot);
+  set = at->value.substr(dot + 1);
+  return draft_.find(*at, subsystem, false);
+}
+
+void MissionLinkReader::check_link(const xml::Element& element, const SubsystemDescriptor& producer,
+                                   const SubsystemDescriptor& consumer, const MissionLink& link) {
+  std::vector<const Provides*> provides, provided;
+  std::vector<const Requires*> requires_, required;
+  for (const Configuration& configuration : producer.configurations)
+    for (const Provides& set : configuration.provides)
+      (set.name == link.provides ? provides : provided).push_back(&set);
+  for (const Configuration& configuration : consumer.configurations)
+    for (const Requires& set : configuration.requires_)
+      (set.name == link.requires_ ? requires_ : required).push_back(&set);
+  if (provides.empty())
+    problems_.add(*element.find("from"), "E0307",
+                  fmt::format("no configuration of '{}' provides {}", link.from, in_quotes(link.provides)),
+                  did_you_mean(link.provides, names_of(provided)));
+  if (requires_.empty())
+    problems_.add(*element.find("to"), "E0307",
+                  fmt::format("no configuration of '{}' requires {}", link.to, in_quotes(link.requires_)),
+                  did_you_mean(link.requires_, names_of(required)));
+  if (link.from == link.to) problems_.add(*element.find("to"), "E0308", "a link joins two subsystems");
+  // A configuration may change a set; one pair that fits is enough, the handshake decides at run time.
+  std::string why;
+  for (const Requires* wanted : requires_)
+    for (const Provides* offered : provides) {
+      std::string reason = !wanted->from.empty() && wanted->from != link.from
+                               ? fmt::format("'{}' is required from '{}'", wanted->name, wanted->from)
+                               : mismatch(producer, *offered, *wanted, link.method);
+      if (reason.empty()) return;
+      if (why.empty()) why = std::move(reason);
+    }
+  if (!why.empty()) problems_.add(element, "E0308", fmt::format("link {} does not fit: {}", link.id, why));
+}
+
+}  // namespace hirosco::descriptor::detail

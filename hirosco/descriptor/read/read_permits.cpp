@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "hirosco/descriptor/read/detail/mode_parts.hpp"
+
+/// What a mode lets through.
+namespace hirosco::descriptor::detail {
+namespace {
+
+/// Built in: in every subsystem, and in the supervisor besides (decision 10).
+constexpr std::array<std::string_view, 2> common_functions{"SET_STATE", "CONFIGURE"};
+constexpr std::array<std::string_view, 12> supervisor_functions{
+    "SET_MODE", "ENTER_MODE", "LINK",      "UNLINK", "SET_DATABASE", "SET_POWER_BUDGET",
+    "REPLACE",  "CONFIRM",    "TAKE_BACK", "REREAD", "SAFE_ALL",     "SHUTDOWN"};
+
+void check_functions(const xml::Attribute& at, const Permit& permit, MissionDraft& draft) {
+  if (!draft.whole) return;
+  std::vector<std::string_view> known{"*"};
+  known.insert(known.end(), common_functions.begin(), common_functions.end());
+  const auto add = [&](const SubsystemDescriptor& subsystem) {
+    if (permit.subsystem == "*" || permit.subsystem == subsystem.name) {
+      for (const Function& function : subsystem.functions) known.push_back(function.name);
+      for (const CustomService& service : subsystem.services)
+        for (const Function& request : service.requests) known.push_back(request.name);
+    }
+  };
+  for (const SubsystemDescriptor* member : draft.mission.everybody()) add(*member);
+  if (permit.subsystem == "*" || permit.subsystem == draft.mission.supervisor.name)
+    known.insert(known.end(), supervisor_functions.begin(), supervisor_functions.end());
+  for (const std::string& function : permit.functions)
+    if (std::ranges::find(known, function) == known.end())
+      draft.problems.add(at, "E0310",
+                         permit.subsystem == "*"
+                             ? fmt::format("no subsystem has a function {}", in_quotes(function))
+                             : fmt::format("'{}' has no function {}", permit.subsystem, in_quotes(function)),
+                         did_you_mean(function, known));
+}
+
+void check_parameters(const xml::Attribute& at, const Permit& permit, MissionDraft& draft) {
+  if (!draft.whole) return;
+  std::vector<std::string_view> known{"*"}, fixed;
+  const auto add = [&](const SubsystemDescriptor& subsystem) {
+    if (permit.subsystem != "*" && permit.subsystem != subsystem.name) return;
+    for (const Parameter& parameter : subsystem.parameters)
+      (parameter.writable() ? known : fixed).push_back(parameter.field.name);
+  };
+  for (const SubsystemDescriptor* member : draft.mission.everybody()) add(*member);
+  const std::string whose = permit.subsystem == "*" ? "no subsystem has" : in_quotes(permit.subsystem) + " has no";
+  for (const std::string& parameter : permit.parameters) {
+    if (std::ranges::find(known, parameter) != known.end()) continue;
+    const bool exists = std::ranges::find(fixed, parameter) != fixed.end();
+    draft.problems.add(
+        at, "E0320",
+        exists ? fmt::format("parameter {} is never writable", in_quotes(parameter))
+               : fmt::format("{} parameter {}", whose, in_quotes(parameter)),
+        exists ? "its descriptor says in which states it is: writable=\"...\"" : did_you_mean(parameter, known));
+  }
+}
+
+}  // namespace
+
+void read_permit(const xml::Element& element, Mode& mode, MissionDraft& draft) {
+  Attributes attributes{element, draft.problems};
+  no_children(element, draft.problems);
+  Permit permit;
+  permit.at = place(element.at);
+  const auto* subsystem = attributes.required("subsystem");
+  const auto* functions = attributes.optional("functions");
+  const auto* services = attributes.optional("services");
+  const auto* parameters = attributes.optional("parameters");
+  if (functions == nullptr && services == nullptr && parameters == nullptr)
+    draft.problems.add(element, "E0105", "<Permit> needs the attribute 'functions', 'services' or 'parameters'");
+  if (functions != nullptr) {
+    for (const auto function : words(functions->value)) permit.functions.emplace_back(function);
+    if (permit.functions.empty()) draft.problems.add(*functions, "E0109", "attribute 'functions' is empty");
+  }
+  if (services != nullptr) {
+    for (const auto word : words(services->value)) {
+      const auto service = to_integer(word);
+      if (!service) draft.problems.add(*services, "E0111", in_quotes(word) + " is not a whole number");
+      else if (*service < 1 || *service > 255)
+        draft.problems.add(*services, "E0112", fmt::format("service {} is out of range", *service), "1 to 255");
+      else permit.services.push_back(static_cast<std::uint8_t>(*service));
+    }
+    if (words(services->value).empty()) draft.problems.add(*services, "E0109", "attribute 'services' is empty");
+  }
+  if (parameters != nullptr) {
+    for (const auto parameter : words(parameters->value)) permit.parameters.emplace_back(parameter);
+    if (permit.parameters.empty()) draft.problems.add(*parameters, "E0109", "attribute 'parameters' is empty");
+  }
+  if (subsystem == nullptr) return;
+  permit.subsystem = subsystem->value;
+  const bool known = permit.subsystem == "*" || draft.find(*subsystem, permit.subsystem, true) != nullptr;
+  if (known && functions != nullptr) check_functions(*functions, permit, draft);
+  if (known && parameters != nullptr) check_parameters(*parameters, permit, draft);
+  mode.permits.push_back(std::move(permit));
+}
+
+}  // namespace hirosco::descriptor::detail
