@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""The shape of the house: no file over 500 lines, no class over 300, `supervisor.hpp` under 90, no circle of folders, a test beside each
-file of the supervisor and the ground station. Prints what breaks it, and breaks each rule once itself, to be caught."""
+"""The shape of the house: no file over 500 lines, no class over 300, with its members in whatever files over 650, `supervisor.hpp` under
+90, no circle of folders, a test beside each file of the supervisor and the ground station. Prints what breaks it, and breaks each rule once itself, to be caught."""
 import collections, pathlib, re, sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PARTS = ("hirosco", "robotics", "supervisor", "subsystems", "simulation", "missions", "ground", "tools", "tests", "bench")
-LONGEST_FILE, LONGEST_CLASS = 500, 300
+LONGEST_FILE, LONGEST_CLASS, LONGEST_WHOLE = 500, 300, 650
 OTHERS = {"supervisor/supervisor.hpp": 90}
 CODE = (".cpp", ".hpp", ".py", ".js", ".mjs")
 CLASS = re.compile(r"^(?:template <.*> *)?(?:class|struct) (?:\[\[\w+\]\] )?(\w+)[^;(]*\{", re.M)
+MEMBER = re.compile(r"^(?:[A-Za-z_\[][^\n;#/]*?[ *&])?(?:\w+::)*?(\w+)::~?(?:operator)?\w+\(", re.M)
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"([^">]+)"', re.M)
 
 
@@ -32,6 +33,22 @@ def too_long(texts):
             end = text.find("\n};", begin.start())
             if end > 0 and (lines := text.count("\n", begin.start(), end)) > LONGEST_CLASS:
                 yield f"{name}: {begin.group(1)} has {lines} lines, {LONGEST_CLASS} at most"
+
+
+def too_large(texts):
+    """Of a class, what stands between its braces and each member that stands elsewhere."""
+    lines = collections.Counter()
+    for name, text in texts.items():
+        if not name.endswith((".hpp", ".cpp")) or "_test." in name:
+            continue
+        for begin in [*CLASS.finditer(text), *MEMBER.finditer(text)]:
+            end = text.find("\n}", begin.start())
+            first = text[begin.start():].split("\n", 1)[0]
+            whole = end < 0 or first.rstrip().endswith(("}", ";"))
+            lines[begin[1]] += 1 if whole else text.count("\n", begin.start(), end) + 1
+    for name, count in lines.items():
+        if count > LONGEST_WHOLE:
+            yield f"{name} has {count} lines with its members, {LONGEST_WHOLE} at most"
 
 
 # Where each file has its test beside it, and which have theirs elsewhere, or together.
@@ -101,11 +118,14 @@ def circles(texts):
 
 
 def problems(texts):
-    return list(too_long(texts)) + circles(texts) + list(untested(texts))
+    return list(too_long(texts)) + list(too_large(texts)) + circles(texts) + list(untested(texts))
 
 
 PLANTED = [({"hirosco/a.cpp": "\n" * 501}, "501 lines"), ({"supervisor/supervisor.hpp": "\n" * 91}, "91 lines"),
            ({"hirosco/a.hpp": "class Big final : Base {\n" + "  int a;\n" * 301 + "};\n"}, "Big has 30"),
+           ({"hirosco/a.hpp": "class Spread {\n" + "  int a;\n" * 250 + "};\n",
+             "hirosco/a.cpp": "int Spread::a() {\n" + "  b();\n" * 250 + "}\n",
+             "hirosco/b.cpp": "Spread::~Spread() {\n" + "  b();\n" * 250 + "}\n"}, "Spread has 7"),
            ({"hirosco/a/a.hpp": '#include "hirosco/b/b.hpp"\n', "hirosco/b/b.hpp": '#include "hirosco/c/c.hpp"\n',
              "hirosco/c/c.hpp": '#include "hirosco/a/a.hpp"\n'}, "hirosco/a -> hirosco/b -> hirosco/c -> hirosco/a"),
            ({"supervisor/a.cpp": ""}, "no a_test.cpp"), ({"ground/shell/a.cpp": ""}, "which there is not"),

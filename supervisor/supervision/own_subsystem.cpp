@@ -15,7 +15,7 @@ OwnSubsystem::OwnSubsystem(const descriptor::SubsystemDescriptor& described, con
       runner_{*this, described, platform, channels_.subsystem_end(), *vital_, *permit_} {}
 
 Result<Step> OwnSubsystem::software_init() {
-  runner_.uses_all_events();
+  runner_.introduction().uses_all_events();
   author_.provide(*this);
   return done;
 }

@@ -46,7 +46,7 @@ class OwnSubsystem final : public Remembered, private Subsystem {
 
   /// An event of its descriptor by name.
   void announce(std::string_view event, std::initializer_list<double> arguments = {}) {
-    runner_.announce(event, arguments);
+    runner_.reports().announce(event, arguments);
   }
   [[nodiscard]] pus::Verification& verification() noexcept { return runner_.verification(); }
   [[nodiscard]] pus::TelemetrySink& telemetry() noexcept { return runner_.telemetry(); }

@@ -46,7 +46,7 @@ DEFECTS = {
          '<When severity="high"/><Do action="set_state" state="SafeOperational"/>')]),
     # Recovery heard events as reports: one whose report was off was not heard.
     "SF6": ("I4", [
-        ("hirosco/subsystem/service_loop/cycle_reports.cpp", "if (octets) backlog_.send(channel_, {.kind = MessageKind::Event",
+        ("hirosco/subsystem/service_loop/reports.cpp", "if (octets) backlog_.send(channel_, {.kind = MessageKind::Event",
          'if (octets && (!planted("SF6") || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event'),
         # And ground could switch that of a loss off.
         (f"{SUPERVISION}/data_handling/permission.cpp", "    if (event->safety || (asked", '    if ((event->safety && !planted("SF6")) || (asked')]),

@@ -175,7 +175,7 @@ DEFECTS = [
     Defect("R38 silenced loss", PERMISSION, "    if (event->safety || (asked", "    if ((event->safety && !PLANTED) || (asked",
            "supervisor_test", "SafetyMark.NobodySwitchesOffWhatSafetyRestsOnInWhateverModeAndState"),
     # Recovery heard events as reports: one whose report was off was not heard.
-    Defect("SF6 heard as a report", "hirosco/subsystem/service_loop/cycle_reports.cpp",
+    Defect("SF6 heard as a report", "hirosco/subsystem/service_loop/reports.cpp",
            "if (octets) backlog_.send(channel_, {.kind = MessageKind::Event",
            "if (octets && (!PLANTED || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event",
            "subsystem_test", "Events.ReachTheSupervisorThoughTheirReportIsSwitchedOff"),
@@ -224,8 +224,8 @@ DEFECTS = [
     Defect("second link into a set", LINK_ENDS, 'return has_another ? "the set', 'return has_another && !PLANTED ? "the set',
            "subsystem_test", "Links.ASecondOneIntoARequiredSetIsRefusedAndDetachingItLeavesTheFirst"),
     # Links were made in Operational.
-    Defect("link in Operational", LINK_ENDS, "if (settled && state_ != State::PreOperational)",
-           "if (settled && state_ != State::PreOperational && !PLANTED)",
+    Defect("link in Operational", LINK_ENDS, "if (settled && parts_.at.state != State::PreOperational)",
+           "if (settled && parts_.at.state != State::PreOperational && !PLANTED)",
            "subsystem_test", "Links.IntoASetThatIsNeededAreMadeInPreOperationalOnly"),
     # The ninth consumer of a set was attached and never got a sample.
     Defect("ninth consumer", "hirosco/subsystem/cycle/link_slots.cpp",
@@ -235,17 +235,17 @@ DEFECTS = [
            "subsystem_test", "Links.AsManyConsumersOfASetAsThereAreLinksGetItsSamples"),
     # A failed Post-Operational reached Offline with configuration, plan and flows in place.
     Defect("failed way down keeps all", "hirosco/subsystem/service_loop/state_machine.cpp",
-           "if (at == State::PostOperational && configuration_ != nullptr) {",
-           "if (at == State::PostOperational && configuration_ != nullptr && !PLANTED) {",
+           "if (at == State::PostOperational && at_.configuration != nullptr) {",
+           "if (at == State::PostOperational && at_.configuration != nullptr && !PLANTED) {",
            "subsystem_test", "FailedPostOperational.GivesBackConfigurationPlanAndFlowsWhenTheCycleHasComeToRest"),
     # Arguments were narrowed to the handler's types without a word.
-    Defect("narrowed arguments", "hirosco/subsystem/service_loop/software_init.cpp",
+    Defect("narrowed arguments", "hirosco/subsystem/service_loop/introduction.cpp",
            "handler.takes, found->arguments))\n    mistake(std::move(problem));",
            "handler.takes, found->arguments))\n    if (!PLANTED) mistake(std::move(problem));",
            "subsystem_test", "AuthorsMistakes.AHandlerThatWouldNarrowAnArgumentIsNotTaken"),
     # What was wrong with the parameters of a descriptor that is built in code was told to a member not yet made.
-    Defect("twice in a dictionary", "hirosco/subsystem/service_loop/software_init.cpp", "if (!dictionary_problem_.empty()) mistake(",
-           "if (!dictionary_problem_.empty() && !PLANTED) mistake(",
+    Defect("twice in a dictionary", "hirosco/subsystem/service_loop/introduction.cpp", "if (!parts_.values.problem().empty()) mistake(",
+           "if (!parts_.values.problem().empty() && !PLANTED) mistake(",
            "subsystem_test", "AuthorsMistakes.OfADescriptorBuiltInCodeAreToldAndCrashNothing"),
     # An author's reason became "node failed".
     Defect("reason of a node", CYCLE, "const AuthorsError failure{result.error()};",
@@ -260,7 +260,7 @@ DEFECTS = [
            "  if (!PLANTED) blame(loss.damaged, Damaged);",
            "subsystem_test", "Devices.ALostDeviceSaysWhetherItWasSilentDamagedOfTheWrongSizeOrRepeatedItself"),
     # A write was completed that the next cycle overwrote.
-    Defect("overwritten parameter", "hirosco/subsystem/service_loop/generic_subsystem.cpp", "cycle_.writes_itself(place->index))",
+    Defect("overwritten parameter", "hirosco/subsystem/service_loop/parameter_values.cpp", "cycle_.writes_itself(place->index))",
            "cycle_.writes_itself(place->index) && !PLANTED)",
            "subsystem_test", "ParameterWrites.ThatTheNextCycleWouldOverwriteAreRefused"),
 
@@ -385,11 +385,11 @@ DEFECTS = [
            "descriptor_test", "ShippedMissions.EveryNumberFromOutsideHasARange"),
     # What was declared in one configuration held in all, without a word.
     Defect("function of one configuration", "hirosco/descriptor/read/read_services.cpp",
-           "if (!services.of_configuration || configurations_ < 2) return;",
-           "if (!services.of_configuration || configurations_ < 2 || PLANTED) return;",
+           "if (services.configurations < 2) return;",
+           "if (services.configurations < 2 || PLANTED) return;",
            "descriptor_test", "SubsystemErrors.*"),
     # A function passed `check` that no telecommand can call.
-    Defect("more than a call holds", "hirosco/descriptor/read/read_services.cpp", "if (octets > max_argument_octets)",
+    Defect("more than a call holds", "hirosco/descriptor/read/read_functions.cpp", "if (octets > max_argument_octets)",
            "if (octets > max_argument_octets && !PLANTED)",
            "descriptor_test", "SubsystemErrors.*"),
     # `check` took a period of which somebody else is declared hung.

@@ -12,7 +12,7 @@
 
 namespace hirosco::pus {
 
-/// What ST[20] needs of the parameters; ranges, states and protections are judged by who implements it (`GenericSubsystem::check_write()`). Ids are ParameterId::wire(); values are big-endian as on the wire.
+/// What ST[20] needs of the parameters; ranges, states and protections are judged by who implements it (`ParameterValues::check_write()`). Ids are ParameterId::wire(); values are big-endian as on the wire.
 /// Thread: the service loop.
 struct ParameterAccess {
   struct Write {

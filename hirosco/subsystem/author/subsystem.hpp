@@ -190,7 +190,12 @@ class Subsystem {
   [[nodiscard]] const descriptor::SubsystemDescriptor& own_descriptor() const noexcept;
 
  private:
+  // Who calls the nodes.
   friend class GenericSubsystem;
+  friend class Incoming;
+  friend class Introduction;
+  friend class Configurations;
+  friend class StateMachine;
   friend class CycleLoop;
   friend class GroundLink;  // and nobody else: who holds a ground link cannot forget what it has to say of a stop
   void bind_function(std::string_view name, BoundHandler handler);

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 // Safety module: states (docs/safety/modules.csv).
+#include "hirosco/subsystem/service_loop/bumpless.hpp"
+
 #include <utility>
 
 #include "hirosco/descriptor/model/framework_events.hpp"
-#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 
-/// CONFIGURE while the subsystem acts, between configurations that its descriptor declares compatible (docs/adr/0096).
 namespace hirosco {
 namespace {
 
@@ -14,79 +14,83 @@ constexpr Duration reconfiguration_limit = 10s;
 
 }  // namespace
 
-std::expected<void, pus::FailureNotice> GenericSubsystem::command_bumpless(const descriptor::Configuration& wanted,
-                                                                           const pus::Request& request) {
+std::expected<void, pus::FailureNotice> Bumpless::command(const descriptor::Configuration& wanted,
+                                                          const pus::Request& request) {
   // One that the cycle has not confirmed is still its own.
-  if (reconfiguration_ != nullptr || self_tests_.running())
+  if (change_ != nullptr || parts_.self_tests.running())
     return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
   // The guard and the second inhibit: who may not move does not go on moving by other values. The cycle looks again.
-  const bool permitted = permit_->stop.load(std::memory_order_acquire) == 0 &&
-                         permit_->permits(permit_->epoch.load(std::memory_order_acquire));
-  if (state_ == State::Operational && (!permitted || vital_.inhibited.load(std::memory_order_relaxed) != 0))
+  const PermitPage& permit = parts_.permit.page();
+  const bool permitted =
+      permit.stop.load(std::memory_order_acquire) == 0 && permit.permits(permit.epoch.load(std::memory_order_acquire));
+  if (parts_.at.state == State::Operational &&
+      (!permitted || parts_.vital.inhibited.load(std::memory_order_relaxed) != 0))
     return std::unexpected{pus::FailureNotice{pus::FailureCode::NotPermittedNow}.with(std::uint8_t{0})};
-  const descriptor::Bumpless& terms = *descriptor_.bumpless_between(configuration_->id, wanted.id);
-  auto prepared = std::make_unique<Reconfiguration>(Reconfiguration::make(*configuration_, wanted, terms, dictionary_));
+  const descriptor::Bumpless& terms = *parts_.descriptor.bumpless_between(parts_.at.configuration->id, wanted.id);
+  auto prepared = std::make_unique<Reconfiguration>(
+      Reconfiguration::make(*parts_.at.configuration, wanted, terms, parts_.values.dictionary()));
   const auto refuse = [&](const Failure& why) -> std::expected<void, pus::FailureNotice> {
-    verification_.started(request);
-    raise_failure(descriptor::framework_event::configuration_failed, wanted.id, why);
-    verification_.completion_failed(
+    parts_.reports.verification().started(request);
+    parts_.reports.raise_failure(descriptor::framework_event::configuration_failed, wanted.id, why);
+    parts_.reports.verification().completion_failed(
         request, pus::FailureNotice{pus::FailureCode::ExecutionError}.because({why.code, why.number, why.text}));
     return {};
   };
   {
-    const LoopsAtRest at_rest{loops_};
-    if (descriptor_.offers(housekeeping_service_.type(), &wanted)) {
-      if (const auto made = housekeeping_service_.prepare(wanted); !made) {
-        housekeeping_service_.drop_prepared();
+    const LoopsAtRest at_rest{parts_.loops.all()};
+    if (parts_.descriptor.offers(parts_.housekeeping.type(), &wanted)) {
+      if (const auto made = parts_.housekeeping.prepare(wanted); !made) {
+        parts_.housekeeping.drop_prepared();
         return refuse({made.error().code, made.error().text, made.error().value});
       }
-    } else housekeeping_service_.prepare_nothing();
-    prepared->sampler = housekeeping_service_.prepared_sampler();
+    } else parts_.housekeeping.prepare_nothing();
+    prepared->sampler = parts_.housekeeping.prepared_sampler();
   }
-  reconfiguration_ = std::move(prepared);
-  if (!push({.kind = CommandKind::Reconfigure, .request = request, .reconfiguration = reconfiguration_.get()})) {
-    reconfiguration_.reset();
-    const LoopsAtRest at_rest{loops_};
-    housekeeping_service_.drop_prepared();
+  change_ = std::move(prepared);
+  if (!parts_.rings.commands.try_push(
+          {.kind = CommandKind::Reconfigure, .request = request, .reconfiguration = change_.get()})) {
+    change_.reset();
+    const LoopsAtRest at_rest{parts_.loops.all()};
+    parts_.housekeeping.drop_prepared();
     return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
   }
-  verification_.started(request);
-  reconfiguration_request_ = request;
-  reconfiguration_deadline_ = platform_.clock.now() + reconfiguration_limit;
+  parts_.reports.verification().started(request);
+  request_ = request;
+  deadline_ = parts_.platform.clock.now() + reconfiguration_limit;
   return {};
 }
 
-void GenericSubsystem::reconfigured(std::uint8_t id, const std::optional<Failure>& why) {
-  if (reconfiguration_ == nullptr || reconfiguration_->to->id != id) return;
+void Bumpless::ended(std::uint8_t id, const std::optional<Failure>& why) {
+  if (change_ == nullptr || change_->to->id != id) return;
   // An output that jumped has failed its node; what the cycle counts by is the new configuration all the same.
-  const bool taken = &cycle_.in_force() == reconfiguration_->to;
+  const bool taken = &parts_.cycle.in_force() == change_->to;
   {
-    const LoopsAtRest at_rest{loops_};
-    if (taken) housekeeping_service_.take_prepared();
-    else housekeeping_service_.drop_prepared();
+    const LoopsAtRest at_rest{parts_.loops.all()};
+    if (taken) parts_.housekeeping.take_prepared();
+    else parts_.housekeeping.drop_prepared();
   }
   if (taken) {
-    configuration_ = reconfiguration_->to;
-    self_tests_.applied(configuration_->id);
+    parts_.at.configuration = change_->to;
+    parts_.self_tests.applied(parts_.at.configuration->id);
   }
-  reconfiguration_.reset();
+  change_.reset();
   if (why) {
-    if (platform_.explain)
-      platform_.explain(descriptor_.name + ": CONFIGURE " + descriptor_.find_configuration(id)->name +
-                        " failed: " + why->text);
-    raise_failure(descriptor::framework_event::configuration_failed, id, *why);
+    if (parts_.platform.explain)
+      parts_.platform.explain(parts_.descriptor.name + ": CONFIGURE " + parts_.descriptor.find_configuration(id)->name +
+                              " failed: " + why->text);
+    parts_.reports.raise_failure(descriptor::framework_event::configuration_failed, id, *why);
   }
-  const auto request = std::exchange(reconfiguration_request_, std::nullopt);
+  const auto request = std::exchange(request_, std::nullopt);
   if (!request) return;
-  if (!why) return verification_.completed(*request);
-  verification_.completion_failed(
+  if (!why) return parts_.reports.verification().completed(*request);
+  parts_.reports.verification().completion_failed(
       *request, pus::FailureNotice{pus::FailureCode::ExecutionError}.because({why->code, why->number, why->text}));
 }
 
 /// Who asked hears an end. What the cycle may have taken stays until it says so, or rests.
-void GenericSubsystem::give_up_reconfiguration(pus::FailureCode code) {
-  if (const auto request = std::exchange(reconfiguration_request_, std::nullopt))
-    verification_.completion_failed(*request, pus::FailureNotice{code});
+void Bumpless::give_up(pus::FailureCode code) {
+  if (const auto request = std::exchange(request_, std::nullopt))
+    parts_.reports.verification().completion_failed(*request, pus::FailureNotice{code});
 }
 
 }  // namespace hirosco

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include "hirosco/subsystem/service_loop/descriptor_changes.hpp"
+
 #include <array>
 #include <string>
 #include <utility>
@@ -10,10 +12,8 @@
 #include "hirosco/descriptor/model/in_flight.hpp"
 #include "hirosco/descriptor/model/wire_values.hpp"
 #include "hirosco/parameter/number.hpp"
-#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 #include "hirosco/utilities/crc32.hpp"
 
-/// Another text of the descriptor in the same process (docs/adr/0095): judged, then taken in one piece or not at all.
 namespace hirosco {
 namespace {
 
@@ -46,7 +46,7 @@ using Refused = std::optional<FailureNotice>;
 
 }  // namespace
 
-std::optional<FailureNotice> GenericSubsystem::judge(std::size_t octets, const MemoryHandle& text) {
+std::optional<FailureNotice> DescriptorChanges::judge(std::size_t octets, const MemoryHandle& text) {
   coming_.reset();
   if (!platform_.read_again) return refuse(FailureCode::NotPermittedNow, "nobody reads descriptors here");
   if (!text) return refuse(FailureCode::IllegalField, "no text came beside it");
@@ -69,12 +69,12 @@ std::optional<FailureNotice> GenericSubsystem::judge(std::size_t octets, const M
 }
 
 /// Why it cannot be taken now; the words are kept here, as an error does not own them.
-std::optional<FailureNotice> GenericSubsystem::against(const descriptor::SubsystemDescriptor& fresh) {
-  if (way_ || release_owed_) return FailureNotice{FailureCode::Busy};
-  if (state_ != State::Offline && state_ != State::PreOperational) return wrong_state();
+std::optional<FailureNotice> DescriptorChanges::against(const descriptor::SubsystemDescriptor& fresh) {
+  if (at_.way || at_.release_owed) return FailureNotice{FailureCode::Busy};
+  if (at_.state != State::Offline && at_.state != State::PreOperational) return at_.wrong_state();
   auto found = descriptor::obstacles(descriptor_, fresh);
-  if (found.empty() && configuration_ != nullptr)
-    found = descriptor::obstacles_in_force(descriptor_, fresh, configuration_->id);
+  if (found.empty() && at_.configuration != nullptr)
+    found = descriptor::obstacles_in_force(descriptor_, fresh, at_.configuration->id);
   if (!found.empty()) {
     refusal_ = found.front().what + ": " + std::string{found.front().why};
     return refuse(FailureCode::NotPermittedNow, refusal_.c_str(), found.front().at.line);
@@ -83,7 +83,7 @@ std::optional<FailureNotice> GenericSubsystem::against(const descriptor::Subsyst
 }
 
 /// A value that is there, and that a telecommand could not set any more: it is set first, or the range stays.
-std::optional<FailureNotice> GenericSubsystem::left_outside(const descriptor::SubsystemDescriptor& fresh) {
+std::optional<FailureNotice> DescriptorChanges::left_outside(const descriptor::SubsystemDescriptor& fresh) {
   std::vector<std::byte> room;
   for (std::size_t index = 0; index < fresh.parameters.size(); ++index) {
     const descriptor::Parameter& parameter = fresh.parameters[index];
@@ -91,10 +91,10 @@ std::optional<FailureNotice> GenericSubsystem::left_outside(const descriptor::Su
       refusal_ = "the value of " + parameter.field.name + " is outside its new range: set it before";
       return refuse(FailureCode::NotPermittedNow, refusal_.c_str(), parameter.field.at.line);
     };
-    if (parameter.persistent && !within(parameter, dictionary_.spec(index).init)) return outside();
-    if (!parameter.writable() || !initialised_) continue;
+    if (parameter.persistent && !within(parameter, values_.dictionary().spec(index).init)) return outside();
+    if (!parameter.writable() || !values_.initialised()) continue;
     room.resize(parameter.octets());
-    if (dictionary_.snapshot_encode(index, -1, room) != room.size()) return FailureNotice{FailureCode::Busy};
+    if (values_.dictionary().snapshot_encode(index, -1, room) != room.size()) return FailureNotice{FailureCode::Busy};
     OctetReader reader{room};
     const auto fits = [&](const descriptor::Field& field) {
       return descriptor::values_within(field, reader.get(field.octets())).has_value();
@@ -106,33 +106,30 @@ std::optional<FailureNotice> GenericSubsystem::left_outside(const descriptor::Su
   return std::nullopt;
 }
 
-std::optional<FailureNotice> GenericSubsystem::take() {
+std::optional<FailureNotice> DescriptorChanges::take() {
   if (!coming_) return FailureNotice{FailureCode::WrongStatus};
   descriptor::SubsystemDescriptor fresh = std::move(*coming_);
   coming_.reset();
   if (auto refused = against(fresh)) return refused;
   descriptor::take_over(descriptor_, std::move(fresh));
-  ++descriptor_changes_;
+  ++changes_;
   // What a persistent parameter was left with outlives its descriptor.
   for (std::size_t index = 0; index < descriptor_.parameters.size(); ++index)
     if (const auto& parameter = descriptor_.parameters[index]; !parameter.persistent)
-      dictionary_.begin_with(index, descriptor::values_at_begin(parameter));
-  tell_descriptor();
+      values_.dictionary().begin_with(index, descriptor::values_at_begin(parameter));
+  tell();
   return std::nullopt;
 }
 
-/// Which text is in force, as housekeeping: from Software-Init on, and at once where that was already.
-void GenericSubsystem::tell_descriptor() {
-  const auto index = dictionary_.index_of(descriptor::framework_parameter::descriptor);
+void DescriptorChanges::tell() {
+  const auto index = values_.dictionary().index_of(descriptor::framework_parameter::descriptor);
   if (!index || !descriptor_.text) return;
   const std::uint32_t hash = crc32(std::as_bytes(std::span{*descriptor_.text}));
-  dictionary_.begin_with(*index, {Number{hash}, Number{descriptor_changes_}});
-  if (!initialised_) return;
+  values_.dictionary().begin_with(*index, {Number{hash}, Number{changes_}});
+  if (!values_.initialised()) return;
   std::array<std::byte, 6> data;
-  OctetWriter{data}.put(hash).put(descriptor_changes_);
-  const ParameterWrite write{*index, -1, data};
-  if (!writes_.enqueue(dictionary_, {&write, 1})) return;
-  if (!wanted_.load(std::memory_order_relaxed) && cycle_rests()) writes_.apply(dictionary_);
+  OctetWriter{data}.put(hash).put(changes_);
+  values_.set(*index, data);
 }
 
 }  // namespace hirosco

@@ -28,27 +28,33 @@ Outcome::Outcome(const Result<>& result) noexcept
       code{result ? pus::FailureCode{} : failure_code(result.error().code)},
       reason{result ? Error{} : result.error()} {}
 
-void Subsystem::provide(CustomService& service) { framework_->provide(service); }
-void Subsystem::publish(std::string_view name, ParameterCell& parameter) { framework_->publish(name, parameter); }
-void Subsystem::require_link(std::string_view set, LinkInputPort& port) { framework_->require_link(set, port); }
-void Subsystem::lend_link(std::string_view set, LoanOutputPort& port) { framework_->lend_link(set, port); }
-void Subsystem::use_event(EventPort& event) { framework_->use_event(event); }
+void Subsystem::provide(CustomService& service) { framework_->introduction().provide(service); }
+void Subsystem::publish(std::string_view name, ParameterCell& parameter) {
+  framework_->introduction().publish(name, parameter);
+}
+void Subsystem::require_link(std::string_view set, LinkInputPort& port) {
+  framework_->introduction().require_link(set, port);
+}
+void Subsystem::lend_link(std::string_view set, LoanOutputPort& port) {
+  framework_->introduction().lend_link(set, port);
+}
+void Subsystem::use_event(EventPort& event) { framework_->introduction().use_event(event); }
 void Subsystem::use_request(RequestPort& request, RequestHandler handler, Duration patience) {
-  framework_->use_request(request, std::move(handler), patience);
+  framework_->introduction().use_request(request, std::move(handler), patience);
 }
 void Subsystem::use_device(std::string_view name, DevicePortBase& port,
                            std::initializer_list<std::string_view> settings) {
-  framework_->use_device(name, port, settings);
+  framework_->introduction().use_device(name, port, settings);
 }
 void Subsystem::bind_function(std::string_view name, BoundHandler handler) {
-  framework_->bind_function(name, std::move(handler));
+  framework_->introduction().bind_function(name, std::move(handler));
 }
 
 void Subsystem::raise_encoded(std::uint16_t event, Octets auxiliary) noexcept {
   framework_->cycle().raise_encoded(event, auxiliary);
 }
 void Subsystem::raise_encoded_in_service(const EventPort& event, Octets auxiliary) {
-  framework_->raise_named(event.name(), auxiliary);
+  framework_->reports().raise_named(event.name(), auxiliary);
 }
 void Subsystem::inhibit_actuators() noexcept { framework_->cycle().inhibit(inhibited_by_author); }
 
@@ -67,16 +73,16 @@ Result<std::uint32_t> Subsystem::send_request(const RequestPort& asked, pus::Giv
 Result<Quota::Held> Subsystem::acquire_port() noexcept { return framework_->meter().ports().take(); }
 Result<Quota::Held> Subsystem::acquire_file() noexcept { return framework_->meter().files().take(); }
 
-void Subsystem::bind_subscription(SubscriptionPort& heard) { framework_->use_subscription(heard); }
+void Subsystem::bind_subscription(SubscriptionPort& heard) { framework_->introduction().use_subscription(heard); }
 Result<> Subsystem::set_subscription(SubscriptionPort& heard, bool wanted) {
-  return framework_->set_subscription(heard, wanted);
+  return framework_->subscriber().set(heard, wanted);
 }
 std::uint32_t Subsystem::newest_stop() const noexcept { return framework_->newest_stop(); }
 
 Result<> Subsystem::submit_ground_telecommand(std::uint16_t client, Octets packet, std::uint32_t known_stop) {
   return framework_->submit_ground_telecommand(client, packet, known_stop);
 }
-PoolResource& Subsystem::resources() noexcept { return framework_->resources(); }
+PoolResource& Subsystem::resources() noexcept { return framework_->meter().pools(); }
 State Subsystem::state() const noexcept { return framework_->state(); }
 const descriptor::SubsystemDescriptor& Subsystem::own_descriptor() const noexcept { return framework_->descriptor(); }
 

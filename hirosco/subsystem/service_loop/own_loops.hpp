@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "hirosco/subsystem/service_loop/own_loop.hpp"
+#include "hirosco/subsystem/service_loop/parameter_values.hpp"
+#include "hirosco/subsystem/service_loop/reports.hpp"
+
+namespace hirosco {
+
+/// The loops of services of its own that a subsystem has (adr 0096), as its service loop sees them.
+/// Thread: the service loop, where nothing else is said.
+class OwnLoops {
+ public:
+  struct Parts {
+    const descriptor::SubsystemDescriptor& descriptor;
+    pus::ServiceHome& subsystem;
+    const VitalPage& vital;
+    const PermitPage& permit;
+    const Clock& clock;
+    ParameterValues& values;
+    LoopMeter& meter;
+  };
+  explicit OwnLoops(const Parts& parts);
+
+  [[nodiscard]] const std::vector<std::unique_ptr<OwnLoop>>& all() const noexcept { return loops_; }
+  /// The one that the service of this type is in; null: it is in none.
+  [[nodiscard]] OwnLoop* of(std::uint8_t type) noexcept;
+  /// Where the service of this type is at home: in one of them, or with the subsystem.
+  [[nodiscard]] pus::ServiceHome& home_of(std::uint8_t type) noexcept;
+  /// Another supervisor's page counts from now on.
+  void take_permit(const PermitPage& page) noexcept;
+  /// One has said what tell() has not told yet.  Realtime: wait-free. Thread: any.
+  [[nodiscard]] bool has_reports() const noexcept;
+  /// What their services have said.
+  void tell(Reports& reports);
+  [[nodiscard]] std::uint64_t lost() const noexcept;
+  /// False while one of them stands still within a step: then the supervisor's guard sees the service loop stand still.
+  [[nodiscard]] bool move(TimePoint now, Reports& reports);
+
+ private:
+  const descriptor::SubsystemDescriptor& descriptor_;
+  pus::ServiceHome& subsystem_;
+  std::vector<std::unique_ptr<OwnLoop>> loops_;
+  TimePoint looked_at_;
+};
+
+}  // namespace hirosco
