@@ -63,12 +63,12 @@ if(NOT HIROSCO_COMPILE STREQUAL "one")
   target_compile_options(hirosco_options INTERFACE
     $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-subobject-linkage>>
     $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-free-nonheap-object>>
-    # clang tells of a name in the anonymous namespace of another file; `tools/tidy` compiles each file for itself.
-    $<$<CXX_COMPILER_ID:Clang>:$<BUILD_INTERFACE:-Wno-shadow>>)
+    # They tell of a name in the anonymous namespace of another file; `tools/tidy` compiles each file for itself.
+    $<BUILD_INTERFACE:-Wno-shadow>)
 endif()
 if(HIROSCO_COMPILE STREQUAL "all")
-  # So does g++ here, which sees overlong strings where there are none besides, as in tests. Smaller pieces keep these words.
-  target_compile_options(hirosco_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-shadow>>
+  # g++ sees overlong strings where there are none here, as in tests. Smaller pieces keep these words.
+  target_compile_options(hirosco_options INTERFACE
     $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-array-bounds>> $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-restrict>>
     $<$<CXX_COMPILER_ID:GNU>:$<BUILD_INTERFACE:-Wno-stringop-overflow>>)
 endif()

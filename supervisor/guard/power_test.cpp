@@ -225,11 +225,11 @@ struct DiedBefore : PowerTest {
   }
   /// Its guard's steps, answered by the motor; how often the switch was told anything.
   int told_by_next(Duration span, DeviceOutput output) {
-    int told = 0;
+    int times = 0;
     for (const TimePoint end = clock.now() + span; clock.now() < end; clock.advance(Guard::period)) {
       static_cast<void>(next.step(clock.now()));
       if (const auto command = hear()) {
-        ++told;
+        ++times;
         EXPECT_FALSE(command->on);
       }
       std::array<std::byte, enable_frame_octets> frame;
@@ -240,7 +240,7 @@ struct DiedBefore : PowerTest {
       static_cast<void>(motor->send(
           *write_enable_status(frame, {.output = output, .flags = 0, .epoch = 0, .sequence = command.sequence})));
     }
-    return told;
+    return times;
   }
   std::unique_ptr<descriptor::MissionSubsystem> held;
   Guard next{{.clock = clock, .flows = flows, .first_epoch = 5000, .on_finding = {}}};

@@ -185,7 +185,7 @@ DEFECTS = [
            "subsystem_test", "SupervisorGone.TheCycleItselfInhibitsTheActuatorsInItsOwnCyclesThoughTheServiceLoopIsStuck"),
     # In real time no sample started a cycle: the thread slept by the clock.
     Defect("no sample starts a cycle", "hirosco/subsystem/process/loops.cpp", "rest_until(planned, subsystem_.cycle_wait(), clock_);",
-           "if (PLANTED) sleep_until(planned); else rest_until(planned, subsystem_.cycle_wait(), clock_);",
+           "PLANTED ? (sleep_until(planned), std::optional<Duration>{}) : rest_until(planned, subsystem_.cycle_wait(), clock_);",
            "subsystem_concurrency_test", "CycleThreads.BeginACycleWithTheSampleThatStartsIt"),
     # One more than can be known to be under way left, and nobody told of it when its addressee died.
     Defect("more than can be told", TELECOMMANDS, "if (parts_.unanswered.full() && !essential && !to_itself)",
@@ -235,8 +235,8 @@ DEFECTS = [
            "subsystem_test", "Links.AsManyConsumersOfASetAsThereAreLinksGetItsSamples"),
     # A failed Post-Operational reached Offline with configuration, plan and flows in place.
     Defect("failed way down keeps all", "hirosco/subsystem/service_loop/state_machine.cpp",
-           "if (at == State::PostOperational && at_.configuration != nullptr) {",
-           "if (at == State::PostOperational && at_.configuration != nullptr && !PLANTED) {",
+           "if (failed == State::PostOperational && at_.configuration != nullptr) {",
+           "if (failed == State::PostOperational && at_.configuration != nullptr && !PLANTED) {",
            "subsystem_test", "FailedPostOperational.GivesBackConfigurationPlanAndFlowsWhenTheCycleHasComeToRest"),
     # Arguments were narrowed to the handler's types without a word.
     Defect("narrowed arguments", "hirosco/subsystem/service_loop/introduction.cpp",

@@ -16,7 +16,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 const std::string coronagraph = file_system()(testing::data / "coronagraph.xml").value();
-const std::string robot = "<robot><link><mesh filename='parts/a.stl'/><mesh filename='../b.stl'/></link></robot>";
+const std::string robot_text = "<robot><link><mesh filename='parts/a.stl'/><mesh filename='../b.stl'/></link></robot>";
 const std::string other_robot = "<robot><link><mesh filename='parts/c.stl'/></link></robot>";
 
 /// Its device says more.
@@ -36,7 +36,7 @@ TEST(BroughtFiles, AreThoseThatTheFilesOfSettingsNameEachOnce) {
   std::vector<std::string> asked;
   const auto source = [&](const std::filesystem::path& file) -> Result<std::string> {
     asked.push_back(file.string());
-    return robot;
+    return robot_text;
   };
   EXPECT_THAT(brought_files(arm, source), ElementsAre("/missions/robots/parts/a.stl"));
   EXPECT_THAT(asked, ElementsAre("/missions/robots/r.urdf")) << "nobody knows what a map names";
@@ -53,12 +53,13 @@ TEST(BroughtFiles, AreNoneOfAFileThatIsNotThere) {
 TEST(BroughtFiles, AreLookedUpWithTheMissionAndAnewWhenADescriptorIsReadAgain) {
   const auto text = coronagraph_with(R"(<Setting name="MODEL_FILE" value="r.urdf"/>)");
   const Mission flown =
-      read_mission(testing::data / "mission.xml", testing::overlay({{"coronagraph.xml", text}, {"r.urdf", robot}}))
+      read_mission(testing::data / "mission.xml", testing::overlay({{"coronagraph.xml", text}, {"r.urdf", robot_text}}))
           .value.value();
   const auto of = [](const Mission& mission) { return mission.find_subsystem("CORONAGRAPH")->brought; };
   EXPECT_THAT(of(flown), ElementsAre(testing::data / "parts/a.stl"));
   EXPECT_THAT(flown.find_subsystem("FLYWHEEL")->brought, IsEmpty());
-  EXPECT_EQ(*flown.texts.at(testing::data / "r.urdf"), robot) << "who goes on for a supervisor asks no disk for it";
+  EXPECT_EQ(*flown.texts.at(testing::data / "r.urdf"), robot_text)
+      << "who goes on for a supervisor asks no disk for it";
   const auto again = read_again(flown, testing::data / "coronagraph.xml", text,
                                 testing::overlay({{"r.urdf", other_robot}, {"mission.xml", "is not asked for"}}));
   ASSERT_TRUE(again.value) << testing::rendered(again.problems, file_system());

@@ -2,123 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include "hirosco/descriptor/model/response_time.hpp"
-#include "hirosco/descriptor/read/detail/mission_link_reader.hpp"
 #include "hirosco/descriptor/read/detail/mode_parts.hpp"
 
-/// What a mode needs to be flown as it is written: links, power, processor.
+/// What modes need of each other, looked at when all are known; what each needs by itself: check_mode.cpp.
 namespace hirosco::descriptor::detail {
-namespace {
 
-struct Commissioned {
-  const SubsystemDescriptor* subsystem{nullptr};
-  const Configuration* configuration{nullptr};
-};
-
-Commissioned commissioned_in(const Mission& mission, const Mode& mode, std::string_view subsystem) {
-  const auto step = std::ranges::find(mode.commission, subsystem, &CommissionStep::subsystem);
-  const auto* member = step == mode.commission.end() ? nullptr : mission.find_subsystem(subsystem);
-  if (member == nullptr) return {};
-  return {&member->subsystem, member->subsystem.find_configuration(step->configuration)};
-}
-
-/// Why a mode cannot bring it up; empty when it can.
-std::string refuse_link(const Mission& mission, const Mode& mode, const MissionLink& link) {
-  const auto consumer = commissioned_in(mission, mode, link.to), producer = commissioned_in(mission, mode, link.from);
-  for (const auto& [end, name] : {std::pair{&producer, &link.from}, {&consumer, &link.to}})
-    if (end->configuration == nullptr) return fmt::format("the mode does not commission '{}'", *name);
-  const auto provided = std::ranges::find(producer.configuration->provides, link.provides, &Provides::name);
-  if (provided == producer.configuration->provides.end())
-    return fmt::format("configuration '{}' of '{}' does not provide '{}'", producer.configuration->name, link.from,
-                       link.provides);
-  const auto required = std::ranges::find(consumer.configuration->requires_, link.requires_, &Requires::name);
-  if (required == consumer.configuration->requires_.end())
-    return fmt::format("configuration '{}' of '{}' does not require '{}'", consumer.configuration->name, link.to,
-                       link.requires_);
-  if (!required->from.empty() && required->from != link.from)
-    return fmt::format("'{}' is required from '{}'", required->name, required->from);
-  return mismatch(*producer.subsystem, *provided, *required, link.method);
-}
-
-}  // namespace
-
-void check_power(const xml::Element& element, const Mode& mode, const Mission& mission, Problems& problems) {
-  if (!mission.power_budget_w) return;
-  const auto& own = mission.supervisor.configurations;
-  double sum_w = own.empty() ? 0 : own.front().power_w;
-  for (const CommissionStep& step : mode.commission) {
-    const auto* member = mission.find_subsystem(step.subsystem);
-    const auto* configuration = member == nullptr ? nullptr : member->subsystem.find_configuration(step.configuration);
-    if (configuration != nullptr && step.state != State::PreOperational) sum_w += configuration->power_w;
-  }
-  if (sum_w <= *mission.power_budget_w) return;
-  problems.add(
-      element, "E0318",
-      fmt::format("mode {} commissions {} W, the budget is {} W", in_quotes(mode.name), sum_w, *mission.power_budget_w),
-      "the sum of power_W of its configurations and the supervisor's; Pre-Operational does not count");
-}
-
-void check_cycles(const xml::Element& element, const Mode& mode, const Mission& mission, Problems& problems) {
-  const double share = cycle_share(mission, mode);
-  if (share > 1)
-    return problems.add(
-        element, "E0324",
-        fmt::format("the cycles of mode {} take {:.0f} % of a processor", in_quotes(mode.name), 100 * share),
-        "all cycles share one: the sum of budget_us / sampling_us is at most 1, or of budget_us / least_us where "
-        "samples start the cycle");
-  for (const CycleResponse& cycle : cycle_responses(mission, mode)) {
-    if (cycle.longest) continue;
-    problems.add(
-        element, "E0331",
-        fmt::format("in mode {} a {} of {} {} may not end within its {} us", in_quotes(mode.name),
-                    cycle.loop != nullptr ? "step of the loop" : "cycle", cycle.subsystem, in_quotes(cycle.name()),
-                    cycle.period() / 1us),
-        "others go before it: lower a budget_us, or give the shorter sampling_us (least_us) the higher priority; "
-        "`hirosco check --show` tells what each takes");
+void check_from(const xml::Element& modes, const Mission& mission, Problems& problems) {
+  std::vector<std::string_view> known;
+  for (const Mode& candidate : mission.modes) known.push_back(candidate.name);
+  for (const xml::Element& element : modes.children) {
+    const auto* at = element.find("from");
+    if (at == nullptr) continue;
+    if (words(at->value).empty()) problems.add(*at, "E0109", "attribute 'from' is empty");
+    for (const auto word : words(at->value))
+      if (mission.find_mode(word) == nullptr)
+        problems.add(*at, "E0305", fmt::format("mode {} is not defined", in_quotes(word)), did_you_mean(word, known));
   }
 }
 
-void check_required(const Mode& mode, const Mission& mission, Problems& problems) {
-  for (const CommissionStep& step : mode.commission) {
-    const auto [subsystem, configuration] = commissioned_in(mission, mode, step.subsystem);
-    if (configuration == nullptr || step.state == State::PreOperational) continue;
-    for (const Requires& set : configuration->requires_) {
-      const auto into_set = [&](const MissionLink& link) {
-        return link.to == step.subsystem && link.requires_ == set.name;
-      };
-      const bool established = std::ranges::any_of(mode.establish, [&](std::uint8_t id) {
-        const auto* link = mission.find_link(id);
-        return link != nullptr && into_set(*link);
-      });
-      if (established || !set.required) continue;
-      const auto known = std::ranges::find_if(mission.links, into_set);
-      problems.add(step.at, "E0321",
-                   fmt::format("mode {} brings up no link into '{}.{}', which configuration '{}' requires",
-                               in_quotes(mode.name), step.subsystem, set.name, step.configuration),
-                   known == mission.links.end() ? fmt::format("add a <Link> to it, and <Establish> it here")
-                                                : fmt::format("add <Establish link=\"{}\"/>", known->id),
-                   11);
-    }
-  }
-}
-
-void check_established(const xml::Element& element, const Mode& mode, const Mission& mission, Problems& problems) {
-  std::map<std::string, std::uint8_t> filled;
-  for (const xml::Element& child : element.children) {
-    const auto* at = child.name == "Establish" ? child.find("link") : nullptr;
-    const auto id = at == nullptr ? std::nullopt : to_integer(at->value);
-    const auto* link = id && *id >= 1 && *id <= 255 ? mission.find_link(static_cast<std::uint8_t>(*id)) : nullptr;
-    if (link == nullptr) continue;
-    if (std::string why = refuse_link(mission, mode, *link); !why.empty()) {
-      problems.add(*at, "E0322", fmt::format("link {} cannot come up: {}", link->id, why),
-                   "commission both ends with the sets that it joins, or leave it out");
-      continue;
-    }
-    const auto [before, first] = filled.try_emplace(link->to + "." + link->requires_, link->id);
-    if (!first && before->second != link->id)
-      problems.add(*at, "E0323", fmt::format("links {} and {} both fill '{}'", before->second, link->id, before->first),
-                   "one link into each required set");
-  }
+void check_start(const xml::Attribute& start, const Mode& mode, const Mission& mission, Problems& problems) {
+  for (const std::string& why : against_start(mission, mode))
+    problems.add(start, "E0330", fmt::format("mode {} cannot be the first: {}", in_quotes(mode.name), why),
+                 "commissioning begins in the initial mode, with every subsystem Offline");
 }
 
 }  // namespace hirosco::descriptor::detail

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "hirosco/descriptor/read/detail/mission_parts.hpp"
 

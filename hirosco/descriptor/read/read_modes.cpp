@@ -52,6 +52,7 @@ void ModeReader::read_mode(const xml::Element& element) {
   if (!mode.name.empty()) mode_names_.add(mode.name, mode.at, problems_, length);
   mode_ids_.add(std::to_string(mode.id), mode.at, problems_, length, "a mode without id has its number in the file");
   check_power(element, mode, mission_, problems_);
+  // Only what was read without a problem is judged.
   if (draft_.whole && problems_.count() == before && draft_.doubtful_links == 0) {
     check_cycles(element, mode, mission_, problems_);
     check_required(mode, mission_, problems_);

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include <algorithm>
-
 #include "hirosco/descriptor/read/detail/mission_parts.hpp"
 
 /// Electrical power of a mission: what there is at most, and who measures what there is now (docs/adr/0124).

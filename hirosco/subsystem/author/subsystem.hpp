@@ -190,7 +190,7 @@ class Subsystem {
   [[nodiscard]] const descriptor::SubsystemDescriptor& own_descriptor() const noexcept;
 
  private:
-  // Who calls the nodes.
+  // Who calls what an author overrides, from the service loop and from the cycle.
   friend class GenericSubsystem;
   friend class Incoming;
   friend class Introduction;

@@ -30,7 +30,7 @@ void CycleLoop::check_permit() noexcept {
 }
 
 /// Once a cycle, and in the cycle: a service loop that is stuck or starved must not keep the actuators going when nobody is
-/// left to stop them. The state follows in the service loop: `watch_supervisor()` of `service_loop/generic_subsystem.cpp`.
+/// left to stop them. The state follows in the service loop: `react_to_silence()` of `service_loop/state_machine.cpp`.
 void CycleLoop::listen_to_supervisor(bool counts) noexcept {
   const std::uint64_t heartbeat = permit().heartbeat.load(std::memory_order_acquire);
   if (std::exchange(heartbeat_, heartbeat) != heartbeat) {

@@ -320,10 +320,10 @@ TEST_F(MotorSlot, WhoAnswersByFramesOfAnotherVersionIsLostByThatName) {
   DeviceSlot made = slot();
   say(1);
   made.read(true);
-  std::array<std::byte, 40> frame{};
-  const std::size_t octets = write_status(frame, {.epoch = 0, .sequence = 2, .flags = 0, .payload = {}}).value().size();
+  std::array<std::byte, 40> answer{};
+  const std::size_t octets = write_status(answer, {.epoch = 0, .sequence = 2, .flags = 0, .payload = {}}).value().size();
   for (int i = 0; i < 3; ++i) {
-    static_cast<void>(motor->send(testing::sealed_as(0x22, MutableOctets{frame}.first(octets))));
+    static_cast<void>(motor->send(testing::sealed_as(0x22, MutableOctets{answer}.first(octets))));
     made.read(true);
   }
   EXPECT_FALSE(made.alive());

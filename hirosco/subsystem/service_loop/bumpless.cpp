@@ -87,6 +87,10 @@ void Bumpless::ended(std::uint8_t id, const std::optional<Failure>& why) {
       *request, pus::FailureNotice{pus::FailureCode::ExecutionError}.because({why->code, why->number, why->text}));
 }
 
+void Bumpless::step(TimePoint now) {
+  if (request_ && now > deadline_) give_up(pus::FailureCode::Timeout);
+}
+
 /// Who asked hears an end. What the cycle may have taken stays until it says so, or rests.
 void Bumpless::give_up(pus::FailureCode code) {
   if (const auto request = std::exchange(request_, std::nullopt))

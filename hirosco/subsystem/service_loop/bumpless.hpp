@@ -40,13 +40,12 @@ class Bumpless {
   };
   explicit Bumpless(const Parts& parts) : parts_{parts} {}
 
+  /// A notice: refused, nothing was begun. Else it has begun and ends by its own report, of a failure, too, and perhaps at once.
   std::expected<void, pus::FailureNotice> command(const descriptor::Configuration& wanted, const pus::Request& request);
   /// How the cycle has taken it.
   void ended(std::uint8_t id, const std::optional<Failure>& why);
   /// A cycle that hangs confirms nothing: the request ends all the same, and the next command is heard.
-  void step(TimePoint now) {
-    if (request_ && now > deadline_) give_up(pus::FailureCode::Timeout);
-  }
+  void step(TimePoint now);
   void give_up(pus::FailureCode code);
   /// The cycle rests.
   void release() noexcept { change_.reset(); }

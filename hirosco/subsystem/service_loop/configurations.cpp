@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <utility>
 
 #include "hirosco/data_transfer/device/flow_means.hpp"
@@ -137,6 +138,7 @@ std::optional<Failure> Configurations::plan_links(const descriptor::Configuratio
   for (const auto& provided : configuration.provides) {
     // Software-Init has refused a lent set without its place, or with one of another layout.
     LoanOutputPort* const port = provided.terms.lent() ? parts_.introduction.lent_port(provided.name) : nullptr;
+    assert(port != nullptr || !provided.terms.lent());
     plan.outputs.emplace_back(parts_.descriptor, provided, parts_.values.dictionary(), port);
   }
   return std::nullopt;

@@ -41,6 +41,7 @@ class Configurations {
   };
   explicit Configurations(const Parts& parts) : parts_{parts} {}
 
+  /// A notice: refused, nothing was begun. Else it has begun and ends by its own report, of a failure, too, and perhaps at once.
   std::expected<void, pus::FailureNotice> command(std::uint8_t id, const pus::Request& request);
   /// What the service loop holds of it: links are told as gone, calls get their final report. The cycle may still use it.
   void end();

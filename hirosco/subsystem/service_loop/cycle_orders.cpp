@@ -21,11 +21,11 @@ bool CycleOrders::rests() const noexcept {
   return !wanted() && parked_ticket_.load(std::memory_order_acquire) == rest_ticket_.load(std::memory_order_relaxed);
 }
 
-CycleOrders::Demand CycleOrders::demand() const noexcept {
-  Demand demand{.wanted = wanted_.load(std::memory_order_acquire)};
-  demand.ticket = rest_ticket_.load(std::memory_order_acquire);
-  if (demand.wanted) demand.generation = generation_;
-  return demand;
+CycleOrders::Order CycleOrders::order() const noexcept {
+  Order order{.wanted = wanted_.load(std::memory_order_acquire)};
+  order.ticket = rest_ticket_.load(std::memory_order_acquire);
+  if (order.wanted) order.generation = generation_;
+  return order;
 }
 
 void CycleOrders::parked(std::uint32_t ticket) noexcept {

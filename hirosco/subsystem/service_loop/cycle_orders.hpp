@@ -5,9 +5,7 @@
 #include <atomic>
 #include <cstdint>
 
-#include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
-#include "hirosco/utilities/time.hpp"
 
 namespace hirosco {
 
@@ -25,17 +23,15 @@ class CycleOrders {
   [[nodiscard]] bool rests() const noexcept;
 
   // --- the cycle's thread ----------------------------------------------------------------------------------------------
-  struct Demand {
+  struct Order {
     bool wanted{false};
-    Duration period{};
-    int priority{0};
     std::uint32_t generation{0};  ///< rises with every new configuration
     /// Of the newest order to rest: goes back with parked(), also when the cycle was wanted and called off again
     /// before its thread could see it.
     std::uint32_t ticket{0};
   };
-  /// Realtime: wait-free. Thread: any.
-  [[nodiscard]] Demand demand() const noexcept;
+  /// The service loop may look, too.  Realtime: wait-free.
+  [[nodiscard]] Order order() const noexcept;
   /// It has seen that no cycle is wanted and rests.  Realtime: wait-free.
   void parked(std::uint32_t ticket) noexcept;
 

@@ -16,7 +16,7 @@ struct Ordered : ::testing::Test {
 
 TEST_F(Ordered, ACycleThatNobodyWantedRests) {
   EXPECT_TRUE(orders.rests());
-  EXPECT_FALSE(orders.demand().wanted);
+  EXPECT_FALSE(orders.order().wanted);
 }
 
 TEST_F(Ordered, OneThatWasCalledOffRestsOnlyWhenItsThreadHasSaidSo) {
@@ -26,7 +26,7 @@ TEST_F(Ordered, OneThatWasCalledOffRestsOnlyWhenItsThreadHasSaidSo) {
   orders.rest();
   EXPECT_FALSE(orders.rests()) << "it may be within a cycle";
   EXPECT_TRUE(watched()) << "one that spins after the order is still to be found";
-  orders.parked(orders.demand().ticket);
+  orders.parked(orders.order().ticket);
   EXPECT_TRUE(orders.rests());
   EXPECT_FALSE(watched());
 }
@@ -34,37 +34,37 @@ TEST_F(Ordered, OneThatWasCalledOffRestsOnlyWhenItsThreadHasSaidSo) {
 TEST_F(Ordered, ALateAnswerToAnEarlierOrderIsNoneToTheNewest) {
   orders.want();
   orders.rest();
-  const auto earlier = orders.demand().ticket;
+  const auto earlier = orders.order().ticket;
   orders.parked(earlier);
   orders.want();
   orders.rest();
   orders.parked(earlier);
   EXPECT_FALSE(orders.rests());
-  orders.parked(orders.demand().ticket);
+  orders.parked(orders.order().ticket);
   EXPECT_TRUE(orders.rests());
 }
 
 TEST_F(Ordered, AnAnswerThatIsRepeatedDoesNotHideTheCycleThatHasBegunSince) {
   orders.want();
   orders.rest();
-  const auto ticket = orders.demand().ticket;
+  const auto ticket = orders.order().ticket;
   orders.parked(ticket);
   orders.want();
   orders.parked(ticket);
   EXPECT_TRUE(watched());
-  EXPECT_TRUE(orders.demand().wanted);
+  EXPECT_TRUE(orders.order().wanted);
 }
 
 TEST_F(Ordered, EachConfigurationIsAGenerationAndAnOrderToRestIsCountedOnce) {
   orders.want();
-  const auto first = orders.demand();
+  const auto first = orders.order();
   orders.rest();
-  const auto ordered = orders.demand().ticket;
+  const auto ordered = orders.order().ticket;
   orders.rest();
-  EXPECT_EQ(orders.demand().ticket, ordered);
+  EXPECT_EQ(orders.order().ticket, ordered);
   EXPECT_NE(ordered, first.ticket);
   orders.want();
-  EXPECT_GT(orders.demand().generation, first.generation);
+  EXPECT_GT(orders.order().generation, first.generation);
 }
 
 }  // namespace

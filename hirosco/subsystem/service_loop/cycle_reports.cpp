@@ -58,11 +58,14 @@ void CycleReports::take_one(const CycleReport& head, Octets payload) {
     case ReportKind::Progressed: parts_.reports.verification().progressed(head.request, head.index); break;
     case ReportKind::Finished: parts_.calls.completed(head.request); break;
     case ReportKind::Aborted:
-      parts_.calls.failed(head.request, parts_.reports.notice_of(head.index, failure_in(payload)));
+      // What nobody waits for is not put into words: they take from the heap.
+      if (parts_.calls.has(head.request))
+        parts_.calls.failed(head.request, parts_.reports.notice_of(head.index, failure_in(payload)));
       break;
     case ReportKind::StateEntered: parts_.states.cycle_entered(static_cast<State>(head.index)); break;
     case ReportKind::EntryRefused:
-      parts_.states.cycle_refused(static_cast<State>(head.index), failure_in(payload));
+      if (parts_.states.awaits(static_cast<State>(head.index)))
+        parts_.states.cycle_refused(static_cast<State>(head.index), failure_in(payload));
       break;
     case ReportKind::NodeFailed: parts_.states.node_failed(static_cast<State>(head.index), failure_in(payload)); break;
     case ReportKind::InputDetached:

@@ -68,7 +68,7 @@ std::optional<FailureNotice> DescriptorChanges::judge(std::size_t octets, const 
   return std::nullopt;
 }
 
-/// Why it cannot be taken now; the words are kept here, as an error does not own them.
+/// Why it cannot be taken now.
 std::optional<FailureNotice> DescriptorChanges::against(const descriptor::SubsystemDescriptor& fresh) {
   if (at_.way || at_.release_owed) return FailureNotice{FailureCode::Busy};
   if (at_.state != State::Offline && at_.state != State::PreOperational) return at_.wrong_state();
@@ -76,8 +76,8 @@ std::optional<FailureNotice> DescriptorChanges::against(const descriptor::Subsys
   if (found.empty() && at_.configuration != nullptr)
     found = descriptor::obstacles_in_force(descriptor_, fresh, at_.configuration->id);
   if (!found.empty()) {
-    refusal_ = found.front().what + ": " + std::string{found.front().why};
-    return refuse(FailureCode::NotPermittedNow, refusal_.c_str(), found.front().at.line);
+    const std::string words = found.front().what + ": " + std::string{found.front().why};
+    return refuse(FailureCode::NotPermittedNow, words.c_str(), found.front().at.line);
   }
   return left_outside(fresh);
 }
@@ -88,8 +88,8 @@ std::optional<FailureNotice> DescriptorChanges::left_outside(const descriptor::S
   for (std::size_t index = 0; index < fresh.parameters.size(); ++index) {
     const descriptor::Parameter& parameter = fresh.parameters[index];
     const auto outside = [&] {
-      refusal_ = "the value of " + parameter.field.name + " is outside its new range: set it before";
-      return refuse(FailureCode::NotPermittedNow, refusal_.c_str(), parameter.field.at.line);
+      const std::string words = "the value of " + parameter.field.name + " is outside its new range: set it before";
+      return refuse(FailureCode::NotPermittedNow, words.c_str(), parameter.field.at.line);
     };
     if (parameter.persistent && !within(parameter, values_.dictionary().spec(index).init)) return outside();
     if (!parameter.writable() || !values_.initialised()) continue;

@@ -48,7 +48,6 @@ class DescriptorChanges final : public pus::DescriptorOwner {
   std::optional<descriptor::SubsystemDescriptor> coming_;  ///< judged, and not taken yet
   Parameter<DescriptorInForce> in_force_;
   std::uint16_t changes_{0};
-  std::string refusal_;  ///< of a notice, which does not own its words
 };
 
 }  // namespace hirosco

@@ -36,12 +36,12 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescr
       orders_{vital},
       reports_{descriptor_, platform_.clock, channel_, vital},
       resources_{descriptor_.resources},
+      permit_{{platform_.memory, channel_, cycle_, orders_, loops_}, permit, platform_.clock.now()},
       values_{descriptor_, at_, orders_, cycle_},
       loop_meter_{descriptor_.service_loops},
       loops_{{descriptor_, *this, vital, permit, platform_.clock, values_, loop_meter_}},
       cycle_{{author, descriptor_, platform_.clock, values_.dictionary(), values_.writes(), rings_, vital, permit,
               platform_.realtime, platform_.precise, resources_, loop_meter_}},
-      permit_{{platform_.memory, channel_, cycle_, orders_, loops_}, permit, platform_.clock.now()},
       links_{{platform_, at_, cycle_, rings_, resources_, reports_}},
       descriptor_changes_{descriptor_, platform_, at_, values_},
       self_tests_{verification(), reports_, platform_.clock},
@@ -59,7 +59,7 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescr
                })},
       introduction_{{author, descriptor_, *this, values_, cycle_, resources_, loops_, services_, requester_,
                      subscriber_, foreign_, descriptor_changes_.in_force()}},
-      calls_{verification(), std::decay_t<decltype(rings_.commands)>::capacity()},
+      calls_{verification()},
       bumpless_{{descriptor_, platform_, at_, values_, cycle_, rings_, vital, permit_, loops_, housekeeping_service_,
                  self_tests_, reports_}},
       configurations_{{author, descriptor_, platform_, at_, values_, cycle_, rings_, orders_, vital, resources_,
@@ -85,8 +85,8 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescr
 
 GenericSubsystem::~GenericSubsystem() { author_.framework_ = nullptr; }
 
-CycleOrders::Demand GenericSubsystem::cycle_demand() const noexcept {
-  CycleOrders::Demand demand = orders_.demand();
+GenericSubsystem::Demand GenericSubsystem::cycle_demand() const noexcept {
+  Demand demand{{orders_.order()}};
   if (!demand.wanted) return demand;
   // The cycle's own: it changes at a boundary between two cycles (adr 0096).
   const descriptor::Configuration& in_force = cycle_.in_force();
@@ -126,7 +126,7 @@ TimePoint GenericSubsystem::step_services(TimePoint now) {
   incoming_.receive();
   permit_.confirm();
   permit_.watch(now);
-  states_.watch_supervisor();
+  states_.react_to_silence();
   states_.release_late();
   bumpless_.step(now);
   states_.advance(now);
@@ -147,6 +147,21 @@ TimePoint GenericSubsystem::step_services(TimePoint now) {
   return now + (busy ? busy_pace : std::clamp(author_.service_wake().pace, busy_pace, idle_pace));
 }
 
+/// An event once for each crossing of the level that the descriptor says.
+void GenericSubsystem::look_at_resources(TimePoint now) {
+  if (now < look_at_resources_at_) return;
+  look_at_resources_at_ = now + ResourceMeter::look_every;
+  if (platform_.usage)
+    if (const auto usage = platform_.usage()) resources_.note(*usage);
+  resources_.note_held();
+  resources_.tell_crossings([this](const ResourceMeter::Crossing& found) {
+    const std::array<double, 5> arguments{static_cast<double>(found.resource), static_cast<double>(found.block_octets),
+                                          static_cast<double>(found.used), static_cast<double>(found.limit),
+                                          static_cast<double>(found.times)};
+    reports_.raise(descriptor::framework_event::resource_warning, arguments);
+  });
+}
+
 // --- functions ---------------------------------------------------------------------------------------------------------
 
 std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::FunctionCall& call,
@@ -160,7 +175,8 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::Func
     return std::unexpected{pus::FailureNotice{pus::FailureCode::ExecutionError}};
   CycleCommand command{.kind = CommandKind::Function, .index = call.function, .request = request};
   command.arguments = call.arguments;
-  if (!rings_.commands.try_push(command)) return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
+  if (!calls_.have_room(rings_.commands.size()) || !rings_.commands.try_push(command))
+    return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
   return {};
 }
 
@@ -190,21 +206,6 @@ Result<std::uint32_t> GenericSubsystem::send_request(const RequestPort& asked, p
 Result<> GenericSubsystem::raise(std::string_view event, Octets auxiliary) {
   reports_.raise_named(event, auxiliary);
   return ok();
-}
-
-/// An event once for each crossing of the level that the descriptor says.
-void GenericSubsystem::look_at_resources(TimePoint now) {
-  if (now < look_at_resources_at_) return;
-  look_at_resources_at_ = now + ResourceMeter::look_every;
-  if (platform_.usage)
-    if (const auto usage = platform_.usage()) resources_.note(*usage);
-  resources_.note_held();
-  resources_.tell_crossings([this](const ResourceMeter::Crossing& found) {
-    const std::array<double, 5> arguments{static_cast<double>(found.resource), static_cast<double>(found.block_octets),
-                                          static_cast<double>(found.used), static_cast<double>(found.limit),
-                                          static_cast<double>(found.times)};
-    reports_.raise(descriptor::framework_event::resource_warning, arguments);
-  });
 }
 
 }  // namespace hirosco

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -19,10 +18,11 @@
 #include "hirosco/subsystem/service_loop/incoming.hpp"
 #include "hirosco/subsystem/service_loop/state_machine.hpp"
 
-/// The active part of the component framework (paper 4.1 and 4.2): standard behaviour of every subsystem around one
-/// author's class. Two steps, driven from outside: service_step() and, while cycle_demand() asks for it, cycle_step().
 namespace hirosco {
 
+/// The active part of the component framework (paper 4.1 and 4.2): standard behaviour of every subsystem around one
+/// author's class. Driven from outside: by service_step(), while cycle_demand() asks for it by cycle_step(), and by own_loop_step()
+/// where its descriptor has loops of services of their own.
 class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfTest, private pus::ServiceHome {
  public:
   /// `vital` and `permit` are the mapped pages, at least as large as VitalPage and PermitPage and initialised.
@@ -50,8 +50,12 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
   /// One step that was due at `planned`; returns when the next is due.  Realtime: allocates. Thread: that loop's.
   TimePoint own_loop_step(std::size_t loop, TimePoint planned) { return loops_.all()[loop]->step(planned); }
 
-  /// What the cycle thread is to do.  Realtime: wait-free. Thread: any.
-  [[nodiscard]] CycleOrders::Demand cycle_demand() const noexcept;
+  /// What the cycle thread is to do.  Realtime: wait-free. Thread: the cycle's, or the service loop's.
+  struct Demand : CycleOrders::Order {
+    Duration period{};
+    int priority{0};
+  };
+  [[nodiscard]] Demand cycle_demand() const noexcept;
   /// One cycle; call only while cycle_demand().wanted.  Realtime: bounded, no allocation. Thread: cycle.
   /// `spun_from`: of the thread, its processor time when it began to spin until this cycle; empty: it has not.
   TimePoint cycle_step(TimePoint planned, std::optional<Duration> spun_from = {}) noexcept {
@@ -117,11 +121,11 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
   Reports reports_;
   ResourceMeter resources_;
   TimePoint look_at_resources_at_{};
+  PermitPages permit_;  ///< before all that looks at a page
   ParameterValues values_;
   LoopMeter loop_meter_;
   OwnLoops loops_;
   CycleLoop cycle_;
-  PermitPages permit_;
   LinkEnds links_;
   DescriptorChanges descriptor_changes_;
   SelfTests self_tests_;

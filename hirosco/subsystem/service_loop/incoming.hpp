@@ -32,7 +32,7 @@ class Incoming {
   };
   explicit Incoming(const Parts& parts) : parts_{parts} {}
 
-  /// Takes what has come, as much as one step has time for.
+  /// Takes what has come, 64 messages at most, while the answers to it have room.
   void receive();
 
  private:

@@ -204,7 +204,8 @@ void Introduction::check() {
 void Introduction::forget() {
   parts_.subscriber.forget();
   parts_.foreign.forget();
-  parts_.requester.forget();  // first: who waits may still end what it was asked itself
+  // Before their services are released: who waits may still end what it was asked itself.
+  parts_.requester.forget();
   const LoopsAtRest at_rest{parts_.loops.all()};
   parts_.values.dictionary().unpublish_all();
   for (CustomService* service : own_services_) service->release();

@@ -27,7 +27,7 @@ struct Mistake {
   friend bool operator==(const Mistake& a, const Mistake& b) { return a.text == b.text && a.at == b.at; }
 };
 
-/// How an author introduces its parts in Software-Init, compared with the descriptor: every difference is collected, so
+/// How an author introduces its parts in software_init() and offline(), compared with the descriptor: every difference is collected, so
 /// that one look tells all of them.  Thread: the service loop.
 class Introduction {
  public:
@@ -61,7 +61,8 @@ class Introduction {
   void uses_all_events() noexcept { uses_all_events_ = true; }
 
   // --- by the framework ----------------------------------------------------------------------------------------------
-  /// One round of Software-Init.
+  /// One round of Software-Init: calls software_init(), and after its last publishes what is the framework's and looks for what was
+  /// forgotten.
   [[nodiscard]] Result<Step> step();
   /// All that Software-Init finds, tried in Offline before any flight. Nothing is kept of it.
   [[nodiscard]] std::vector<Mistake> try_all();

@@ -30,6 +30,8 @@ class LinkEnds final : private LinkServiceOwner {
   };
   explicit LinkEnds(const Parts& parts)
       : parts_{parts}, service_{parts_.reports.verification(), parts_.reports, *this} {}
+  LinkEnds(const LinkEnds&) = delete;
+  LinkEnds& operator=(const LinkEnds&) = delete;
 
   /// ST[128], by which the supervisor makes and takes them.
   [[nodiscard]] LinkService& service() noexcept { return service_; }

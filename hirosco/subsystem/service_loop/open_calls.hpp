@@ -10,11 +10,16 @@
 
 namespace hirosco {
 
-/// Functions that run in the cycle: each gets exactly one final report.  Thread: the service loop.
+/// Functions that were handed to the cycle: each gets exactly one final report.  Thread: the service loop.
 class OpenCalls {
  public:
-  /// `most` can be under way: none grows it then.
-  OpenCalls(pus::Verification& verification, std::size_t most) : verification_{verification} { open_.reserve(most); }
+  /// So many run at once, at most: none takes from the heap then.
+  static constexpr std::size_t most = 64;
+
+  explicit OpenCalls(pus::Verification& verification) : verification_{verification} { open_.reserve(most); }
+
+  /// Whether another one may run beside those that do and `handed_over`, which the cycle has not begun.
+  [[nodiscard]] bool have_room(std::size_t handed_over) const noexcept { return open_.size() + handed_over < most; }
 
   void started(const pus::Request& request) {
     open_.push_back(request);
@@ -24,6 +29,7 @@ class OpenCalls {
   void completed(const pus::Request& request) {
     if (close(request)) verification_.completed(request);
   }
+  [[nodiscard]] bool has(const pus::Request& request) const noexcept { return find(request) != open_.end(); }
   void failed(const pus::Request& request, const pus::FailureNotice& why) {
     if (close(request)) verification_.completion_failed(request, why);
   }
@@ -34,9 +40,12 @@ class OpenCalls {
   }
 
  private:
-  bool close(const pus::Request& request) {
-    const auto found = std::ranges::find_if(
+  [[nodiscard]] std::vector<pus::Request>::const_iterator find(const pus::Request& request) const noexcept {
+    return std::ranges::find_if(
         open_, [&](const pus::Request& open) { return open.id == request.id && open.source == request.source; });
+  }
+  bool close(const pus::Request& request) {
+    const auto found = find(request);
     if (found == open_.end()) return false;
     open_.erase(found);
     return true;

@@ -26,7 +26,7 @@ struct Calls : ::testing::Test {
   static constexpr std::uint8_t all_stages = 0b1111;
   ReportedStages told;
   pus::Verification verification{told};
-  OpenCalls calls{verification, 4};
+  OpenCalls calls{verification};
   pus::Request first{.id = 1, .source = 7, .ack = all_stages}, second{.id = 1, .source = 8, .ack = all_stages};
 };
 
@@ -55,6 +55,14 @@ TEST_F(Calls, ThatAreForgottenFailEach) {
   told.reports.clear();
   calls.abort_all();
   EXPECT_THAT(told.reports, IsEmpty());
+}
+
+TEST_F(Calls, AreBoundedWithThoseThatTheCycleHasNotBegun) {
+  EXPECT_TRUE(calls.have_room(OpenCalls::most - 1));
+  EXPECT_FALSE(calls.have_room(OpenCalls::most));
+  for (std::uint32_t id = 0; id < OpenCalls::most - 1; ++id) calls.started({.id = id, .source = 7, .ack = 0});
+  EXPECT_TRUE(calls.have_room(0));
+  EXPECT_FALSE(calls.have_room(1));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -27,7 +26,10 @@ class OwnLoops {
     LoopMeter& meter;
   };
   explicit OwnLoops(const Parts& parts);
+  OwnLoops(const OwnLoops&) = delete;
+  OwnLoops& operator=(const OwnLoops&) = delete;
 
+  /// As many from now to the end.  Thread: any.
   [[nodiscard]] const std::vector<std::unique_ptr<OwnLoop>>& all() const noexcept { return loops_; }
   /// The one that the service of this type is in; null: it is in none.
   [[nodiscard]] OwnLoop* of(std::uint8_t type) noexcept;

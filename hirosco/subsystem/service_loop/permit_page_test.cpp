@@ -18,7 +18,7 @@ using testing::Rig;
 
 enum class Sealed { Yes, No };
 
-struct PermitPages : ::testing::Test {
+struct PagesOfSupervisors : ::testing::Test {
   Probe probe;
   Rig rig{probe, probe_descriptor};
 
@@ -51,7 +51,7 @@ struct PermitPages : ::testing::Test {
   std::vector<Mapping> pages;
 };
 
-TEST_F(PermitPages, WhatThePageBeforePermittedGoesOnUnderTheSameEpoch) {
+TEST_F(PagesOfSupervisors, WhatThePageBeforePermittedGoesOnUnderTheSameEpoch) {
   rig.bring_to(State::Operational);
   rig.supervisor_silent = true;
   PermitPage& page = hand_over(epoch(), true);
@@ -67,7 +67,7 @@ TEST_F(PermitPages, WhatThePageBeforePermittedGoesOnUnderTheSameEpoch) {
   EXPECT_EQ(rig.inhibited(), inhibited_by_stop) << "it is this page that counts";
 }
 
-TEST_F(PermitPages, ThePageBeforeCountsNoMore) {
+TEST_F(PagesOfSupervisors, ThePageBeforeCountsNoMore) {
   rig.bring_to(State::Operational);
   static_cast<void>(hand_over(epoch(), true));
   step();
@@ -77,7 +77,7 @@ TEST_F(PermitPages, ThePageBeforeCountsNoMore) {
   EXPECT_EQ(rig.inhibited(), 0u);
 }
 
-TEST_F(PermitPages, UnderAnyOtherEpochOrWithoutAPermissionNothingGoesOn) {
+TEST_F(PagesOfSupervisors, UnderAnyOtherEpochOrWithoutAPermissionNothingGoesOn) {
   for (const auto& [raised, permitted] : {std::pair{0u, false}, {1u, true}, {1u, false}}) {
     Probe another;
     Rig fresh{another, probe_descriptor};
@@ -96,7 +96,7 @@ TEST_F(PermitPages, UnderAnyOtherEpochOrWithoutAPermissionNothingGoesOn) {
   }
 }
 
-TEST_F(PermitPages, WhoIsInhibitedStaysSoWhateverTheNewPagePermits) {
+TEST_F(PagesOfSupervisors, WhoIsInhibitedStaysSoWhateverTheNewPagePermits) {
   rig.bring_to(State::Operational);
   const auto before = epoch();
   rig.permit.fence();
@@ -107,7 +107,7 @@ TEST_F(PermitPages, WhoIsInhibitedStaysSoWhateverTheNewPagePermits) {
   EXPECT_NE(rig.inhibited(), 0u);
 }
 
-TEST_F(PermitPages, ItsHeartbeatIsTheSignOfLifeFromThenOn) {
+TEST_F(PagesOfSupervisors, ItsHeartbeatIsTheSignOfLifeFromThenOn) {
   rig.bring_to(State::Operational);
   rig.supervisor_silent = true;
   const auto limit = static_cast<int>(2s / rig.subsystem.cycle_demand().period);
@@ -124,7 +124,7 @@ TEST_F(PermitPages, ItsHeartbeatIsTheSignOfLifeFromThenOn) {
   EXPECT_EQ(rig.inhibited(), inhibited_by_supervisor);
 }
 
-TEST_F(PermitPages, ANewPageAloneIsNoSignOfLife) {
+TEST_F(PagesOfSupervisors, ANewPageAloneIsNoSignOfLife) {
   rig.bring_to(State::Operational);
   rig.supervisor_silent = true;
   const auto limit = static_cast<int>(2s / rig.subsystem.cycle_demand().period);
@@ -135,7 +135,7 @@ TEST_F(PermitPages, ANewPageAloneIsNoSignOfLife) {
   EXPECT_EQ(rig.inhibited(), inhibited_by_supervisor);
 }
 
-TEST_F(PermitPages, OneThatOthersCouldWriteOrThatIsNoneIsNotTaken) {
+TEST_F(PagesOfSupervisors, OneThatOthersCouldWriteOrThatIsNoneIsNotTaken) {
   rig.bring_to(State::Operational);
   static_cast<void>(hand_over(epoch() + 1, true, Sealed::No));
   static_cast<void>(hand_over(epoch() + 1, true, Sealed::Yes, sizeof(PermitPage) + 64));
@@ -150,7 +150,7 @@ TEST_F(PermitPages, OneThatOthersCouldWriteOrThatIsNoneIsNotTaken) {
   EXPECT_EQ(rig.inhibited(), 0u);
 }
 
-TEST_F(PermitPages, WhileTheCycleRestsItCountsAtOnce) {
+TEST_F(PagesOfSupervisors, WhileTheCycleRestsItCountsAtOnce) {
   static_cast<void>(hand_over(epoch(), false));
   step();
   EXPECT_TRUE(says_so());
@@ -169,7 +169,7 @@ TEST_F(PermitPages, WhileTheCycleRestsItCountsAtOnce) {
   EXPECT_EQ(rig.inhibited(), 0u);
 }
 
-TEST_F(PermitPages, ASecondOneWaitsUntilTheCycleLooksAtTheFirst) {
+TEST_F(PagesOfSupervisors, ASecondOneWaitsUntilTheCycleLooksAtTheFirst) {
   rig.bring_to(State::Operational);
   static_cast<void>(hand_over(epoch(), true));
   static_cast<void>(hand_over(epoch() + 1, false));

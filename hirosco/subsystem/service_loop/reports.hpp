@@ -25,6 +25,8 @@ namespace hirosco {
 class Reports final : public pus::TelemetrySink {
  public:
   Reports(const descriptor::SubsystemDescriptor& descriptor, const Clock& clock, Channel& channel, VitalPage& vital);
+  Reports(const Reports&) = delete;
+  Reports& operator=(const Reports&) = delete;
 
   [[nodiscard]] pus::Verification& verification() noexcept { return verification_; }
   /// ST[05], one that listens to events and may be told to be silent (adr 0020).
@@ -34,8 +36,9 @@ class Reports final : public pus::TelemetrySink {
   /// An event by its id; nothing when the descriptor declares none.
   void raise_encoded(std::uint16_t event, Octets auxiliary);
   void raise(std::uint16_t event, std::span<const double> arguments);
-  /// By its name, with the octets that its arguments take; nothing when the descriptor declares none such.
+  /// By its name, which is known before Software-Init has bound an id, with the octets that its arguments take; nothing when the descriptor declares none such.
   void raise_named(std::string_view event, Octets auxiliary);
+  /// By its name, with numbers; nothing when the descriptor declares none such.
   void announce(std::string_view event, std::initializer_list<double> arguments);
   /// STATE_FAILED and CONFIGURATION_FAILED of `what`.
   void raise_failure(std::uint16_t event, std::uint8_t what, const Failure& why);

@@ -11,7 +11,7 @@
 
 namespace hirosco {
 
-/// Where a subsystem is: written by its state machine and by what puts configurations in force, read by whoever decides by it.
+/// Where a subsystem is: written by its state machine and by what puts configurations in force (Configurations, Bumpless), read by whoever decides by it.
 /// Thread: the service loop.
 struct Situation {
   State state{State::Offline};

@@ -190,34 +190,35 @@ void StateMachine::arrive(State state) {
   way_request_.reset();
 }
 
-void StateMachine::fail_transition(State at, const Failure& why) {
+void StateMachine::fail_transition(State failed, const Failure& why) {
   // Ground hears the first mistake and how many there are; the author each, on a line of its own.
-  const bool by_mistakes = at == State::SoftwareInit && !parts_.introduction.mistakes().empty();
+  const bool by_mistakes = failed == State::SoftwareInit && !parts_.introduction.mistakes().empty();
   const auto explain = [&](const std::string& words) {
     if (parts_.platform.explain)
-      parts_.platform.explain(parts_.descriptor.name + ": " + std::string{to_text(at)} + " failed: " + words);
+      parts_.platform.explain(parts_.descriptor.name + ": " + std::string{to_text(failed)} + " failed: " + words);
   };
   if (!by_mistakes) explain(why.text);
   else
     for (const Mistake& mistake : parts_.introduction.mistakes()) explain(parts_.introduction.words_of(mistake));
-  parts_.reports.raise_failure(descriptor::framework_event::state_failed, static_cast<std::uint8_t>(at), why);
+  parts_.reports.raise_failure(descriptor::framework_event::state_failed, static_cast<std::uint8_t>(failed), why);
   if (way_request_)
     parts_.reports.verification().completion_failed(
         *way_request_, pus::FailureNotice{pus::FailureCode::ExecutionError}.because({why.code, why.number, why.text}));
   way_request_.reset();
   at_.way.reset();
-  const auto target = failure_target(at);
-  if (at == State::PostOperational && at_.configuration != nullptr) {
+  const auto target = failure_target(failed);
+  if (failed == State::PostOperational && at_.configuration != nullptr) {
     parts_.configurations.end();
     at_.release_owed = true;
   }
   if (!target) {
     // A deinit that fails cannot stop the way down: what is left is given back by the end of the process.
-    if (at == State::HardwareDeinit || at == State::SoftwareDeinit || at == State::PostOperational) go_down_from(at);
+    if (failed == State::HardwareDeinit || failed == State::SoftwareDeinit || failed == State::PostOperational)
+      go_down_from(failed);
     return;
   }
-  if (is_cyclic(at)) return go(State::ErrorOperational, std::nullopt);
-  go_down_from(at);
+  if (is_cyclic(failed)) return go(State::ErrorOperational, std::nullopt);
+  go_down_from(failed);
 }
 
 /// The way to Offline that begins behind a failed state.
@@ -238,7 +239,7 @@ void StateMachine::go_down_from(State failed) {
 }
 
 void StateMachine::cycle_entered(State state) {
-  if (awaiting_cycle_ && at_.way && state == at_.way->states[way_at_]) {
+  if (awaits(state)) {
     // Where a device has not answered yet nobody can say that it was a success (docs/adr/0147).
     answer_owed_ = at_.state == State::PreOperational && at_.way->states[way_at_] == State::SafeOperational;
     if (answer_owed_) return look_for_first_answer();
@@ -251,7 +252,7 @@ void StateMachine::cycle_entered(State state) {
 }
 
 void StateMachine::cycle_refused(State state, const Failure& why) {
-  if (awaiting_cycle_ && at_.way && state == at_.way->states[way_at_]) fail_transition(state, why);
+  if (awaits(state)) fail_transition(state, why);
 }
 
 void StateMachine::node_failed(State state, const Failure& why) {
@@ -260,7 +261,7 @@ void StateMachine::node_failed(State state, const Failure& why) {
   else parts_.reports.raise_failure(descriptor::framework_event::state_failed, static_cast<std::uint8_t>(state), why);
 }
 
-void StateMachine::watch_supervisor() {
+void StateMachine::react_to_silence() {
   if (!parts_.permit.unheard()) return;
   if (at_.way) return;
   if (at_.state == State::Offline) {

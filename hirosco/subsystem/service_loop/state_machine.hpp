@@ -35,18 +35,23 @@ class StateMachine {
   };
   StateMachine(Situation& at, const Parts& parts) : at_{at}, parts_{parts} {}
 
+  /// A notice: refused, nothing was begun. Else it has begun and ends by its own report, of a failure, too, and perhaps at once.
   std::expected<void, pus::FailureNotice> command(State target, const pus::Request& request);
   /// Goes on with what is under way.
   void advance(TimePoint now);
-  /// What a cycle that did not come to rest in time still held is given back once it has.
+  /// A configuration that the cycle still held when Post-Operational ran out of time is given back once it rests.
   void release_late();
-  /// What is done when nobody supervises any more.
-  void watch_supervisor();
+  /// What is done when nobody supervises any more, by what PermitPages has watched.
+  void react_to_silence();
   /// Offline again after the supervisor went away or said so: the process may end.
   [[nodiscard]] bool finished() const noexcept { return finished_; }
 
   // --- what the cycle says -------------------------------------------------------------------------------------------
   void cycle_entered(State state);
+  /// Whether it was sent into this state and has not answered.
+  [[nodiscard]] bool awaits(State state) const noexcept {
+    return awaiting_cycle_ && at_.way && state == at_.way->states[way_at_];
+  }
   void cycle_refused(State state, const Failure& why);
   void node_failed(State state, const Failure& why);
 
@@ -57,7 +62,7 @@ class StateMachine {
   void be_in(State state);
   void arrive_transient(State state);
   void go_down_from(State failed);
-  void fail_transition(State at, const Failure& why);
+  void fail_transition(State failed, const Failure& why);
   void look_for_first_answer();
   [[nodiscard]] Failure never_answered_failure(const CycleLoop::NeverAnswered& device) const;
   Result<Step> enter_transient(State next);

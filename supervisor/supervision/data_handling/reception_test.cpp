@@ -212,7 +212,7 @@ TEST_F(SaidBeforeAStop, WithoutOneItLetsGo) {
 TEST_F(SaidBeforeAStop, AMotionThatSomebodySaidBeforeItIsNotCarriedOutWhenAnotherHasLetGo) {
   set(arm, Operational, 2);
   const auto move = telecommand(arm, 8, 1, call_data("MOVE_TO"));
-  const auto ping = telecommand(arm, 17, 1, {});
+  const auto asked = telecommand(arm, 17, 1, {});
   const auto say = [&](Octets packet, std::uint32_t known) {
     static_cast<void>(played[camera].channel.subsystem_end().send(
         {.kind = MessageKind::GroundTelecommand, .epoch = known, .packet = packet}));
@@ -229,7 +229,7 @@ TEST_F(SaidBeforeAStop, AMotionThatSomebodySaidBeforeItIsNotCarriedOutWhenAnothe
   static_cast<void>(texts(arm));
   EXPECT_THAT(say(move, before), IsEmpty());
   EXPECT_THAT(say(move, 0), IsEmpty());
-  EXPECT_THAT(say(ping, 0), ElementsAre("TC[17,1]")) << "a look harms nobody";
+  EXPECT_THAT(say(asked, 0), ElementsAre("TC[17,1]")) << "a look harms nobody";
   EXPECT_THAT(say(move, number_on_page(camera)), ElementsAre("MOVE_TO"));
 }
 

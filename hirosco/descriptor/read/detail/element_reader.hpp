@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -132,7 +130,7 @@ class Attributes {
   [[nodiscard]] std::optional<Number> exact(std::string_view name);
   /// Electrical power, 1 mW to 1 MW.
   [[nodiscard]] std::optional<double> watts(std::string_view name);
-  /// "yes" or "no"; anything else is reported, and `fallback` then and when absent.
+  /// "yes" or "no"; anything else is reported and counts as no. `fallback` when absent.
   [[nodiscard]] bool yes(std::string_view name, bool fallback);
 
   template <class E>
@@ -210,7 +208,7 @@ class Unique {
 [[nodiscard]] std::optional<xml::Element> read_root(const std::filesystem::path& file, const FileSource& source,
                                                     std::string_view root, Problems& problems);
 
-/// Host and port of an "host:port" that stays on this computer.
+/// Whether a "host:port" stays on this computer.
 enum class Address { Loopback, Foreign, Malformed };
 [[nodiscard]] Address classify_address(std::string_view text) noexcept;
 

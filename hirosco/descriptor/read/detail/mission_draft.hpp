@@ -13,7 +13,7 @@ namespace hirosco::descriptor::detail {
 
 /// A mission while it is read: what is known of it by now, and what is wrong with it. Who reads a part adds to this.
 struct MissionDraft {
-  /// A subsystem of the mission, with `supervisor` also the supervisor; reported when there is none.
+  /// A subsystem of the mission, with `supervisor` also the supervisor; reported when there is none, unless it may be one that could not be read.
   [[nodiscard]] const SubsystemDescriptor* find(const xml::Attribute& at, std::string_view name, bool supervisor);
 
   Problems& problems;  ///< of the mission's own file

@@ -30,7 +30,7 @@ class MissionLinkReader {
                   const MissionLink& link);
   // read_link_loss.cpp
   void read_loss(Attributes& attributes, const SubsystemDescriptor* consumer, MissionLink& link);
-  // read_way.cpp
+  // read_link_way.cpp
   void read_way(Attributes& attributes, MissionLink& link);
   [[nodiscard]] std::optional<InternetAddress> read_link_address(const xml::Attribute* at, const MissionLink& link,
                                                                  std::string& into);

@@ -23,14 +23,16 @@ void read_permit(const xml::Element& element, Mode& mode, MissionDraft& draft);
 
 /// What has to hold before it is entered, or must not.
 void read_interlock(const xml::Element& element, Interlock::Kind kind, Mode& mode, MissionDraft& draft);
+// check_modes.cpp
 /// Modes may be named before they are read: when all are.
 void check_from(const xml::Element& modes, const Mission& mission, Problems& problems);
 /// The mode that `start` names is entered first.
 void check_start(const xml::Attribute& start, const Mode& mode, const Mission& mission, Problems& problems);
 
+// check_mode.cpp
 /// What a mode commissions must fit the power budget together.
 void check_power(const xml::Element& element, const Mode& mode, const Mission& mission, Problems& problems);
-/// And the one processor of all cycles. From here on only what was read without a problem is judged.
+/// And the one processor of all cycles.
 void check_cycles(const xml::Element& element, const Mode& mode, const Mission& mission, Problems& problems);
 /// A mode brings up a link into each set that what it commissions requires.
 void check_required(const Mode& mode, const Mission& mission, Problems& problems);

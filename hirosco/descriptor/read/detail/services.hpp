@@ -20,7 +20,7 @@ inline constexpr std::size_t max_event_octets = 4096 - 22 - 2;
 /// Of one function, or of one event.
 inline constexpr std::size_t max_arguments = 255;
 
-/// What may stand once under <Subsystem> and once under each <Configuration>.
+/// Where the services under <Subsystem>, or under one <Configuration>, are read into.
 struct Services {
   std::vector<HousekeepingStructure>& housekeeping;
   std::vector<Provides>& provides;

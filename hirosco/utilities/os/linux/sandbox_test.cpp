@@ -231,13 +231,13 @@ TEST_F(SandboxTest, MakesTheSocketsThatItNamesAndNoOthers) {
     sandbox.sockets = std::move(sockets);
     return inside(sandbox, [] {
       name_refused_calls("test");
-      int made = makes(AF_UNIX, SOCK_DGRAM) ? 1 : 0;
-      if (makes(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK) && makes(AF_INET6, SOCK_DGRAM, IPPROTO_UDP)) made |= 2;
-      if (makes(AF_INET, SOCK_STREAM | SOCK_NONBLOCK) && makes(AF_INET6, SOCK_STREAM, IPPROTO_TCP)) made |= 4;
+      int kinds = makes(AF_UNIX, SOCK_DGRAM) ? 1 : 0;
+      if (makes(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK) && makes(AF_INET6, SOCK_DGRAM, IPPROTO_UDP)) kinds |= 2;
+      if (makes(AF_INET, SOCK_STREAM | SOCK_NONBLOCK) && makes(AF_INET6, SOCK_STREAM, IPPROTO_TCP)) kinds |= 4;
       constexpr int of_many_ways = 262;  // TCP by several ways at once, which Landlock's rules are not for
-      if (makes(AF_INET, SOCK_STREAM, of_many_ways) || makes(AF_INET, SOCK_RAW, IPPROTO_UDP)) made |= 8;
-      if (makes(AF_INET, SOCK_DGRAM, IPPROTO_ICMP) || makes(AF_NETLINK, SOCK_DGRAM)) made |= 8;
-      return made;
+      if (makes(AF_INET, SOCK_STREAM, of_many_ways) || makes(AF_INET, SOCK_RAW, IPPROTO_UDP)) kinds |= 8;
+      if (makes(AF_INET, SOCK_DGRAM, IPPROTO_ICMP) || makes(AF_NETLINK, SOCK_DGRAM)) kinds |= 8;
+      return kinds;
     });
   };
   EXPECT_EQ(made({.local = true}), 1);

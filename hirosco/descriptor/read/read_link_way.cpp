@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <optional>
-#include <utility>
 
 #include "hirosco/data_transfer/link/internet_address.hpp"
 #include "hirosco/descriptor/read/detail/mission_link_reader.hpp"
