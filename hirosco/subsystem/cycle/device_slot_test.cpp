@@ -321,7 +321,8 @@ TEST_F(MotorSlot, WhoAnswersByFramesOfAnotherVersionIsLostByThatName) {
   say(1);
   made.read(true);
   std::array<std::byte, 40> answer{};
-  const std::size_t octets = write_status(answer, {.epoch = 0, .sequence = 2, .flags = 0, .payload = {}}).value().size();
+  const std::size_t octets =
+      write_status(answer, {.epoch = 0, .sequence = 2, .flags = 0, .payload = {}}).value().size();
   for (int i = 0; i < 3; ++i) {
     static_cast<void>(motor->send(testing::sealed_as(0x22, MutableOctets{answer}.first(octets))));
     made.read(true);
