@@ -95,7 +95,7 @@ void OtherMembers::read_redirected(const xml::Element& element, MissionSubsystem
   redirections_.emplace_back(to, member.subsystem.name);
 }
 
-void OtherMembers::resolve() {
+void OtherMembers::resolve_all() {
   if (!draft_.whole) return;
   for (const auto& [to, commanding] : redirections_)
     if (const auto* found = draft_.find(*to, to->value, false); found != nullptr && found->name == commanding)

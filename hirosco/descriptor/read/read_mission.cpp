@@ -148,7 +148,7 @@ void MissionReader::read(const xml::Element& root) {
     read_ground(*element, draft_);
     break;
   }
-  other_members_.resolve();
+  other_members_.resolve_all();
   for (const auto* element : powers) read_power(*element, draft_);
   for (const auto* element : budgets) {
     read_resources(*element, mission_, problems_);

@@ -17,7 +17,7 @@ class OtherMembers {
   /// Whom an instance commands, or hears, in place of who has the name.
   void read_redirected(const xml::Element& element, MissionSubsystem& member, Redirected::Kind kind, Unique& names);
   /// Once all members are known.
-  void resolve();
+  void resolve_all();
 
  private:
   void resolve_one(const MissionSubsystem& member, Commands& commands);
