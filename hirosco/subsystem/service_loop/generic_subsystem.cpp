@@ -135,8 +135,7 @@ TimePoint GenericSubsystem::step_services(TimePoint now) {
   if (reports_.empty()) subscriber_.step(now);
   foreign_.step(now, at_.state == State::SafeOperational || at_.state == State::Operational);
   author_.service(now);
-  for (pus::Service* service : services_)
-    if (loops_.of(service->type()) == nullptr) service->step(now);
+  for (pus::Service* service : stepped_here()) service->step(now);
   values_.apply_at_rest();
   reports_.flush();
   reports_.tell_losses(now, rings_, loops_.lost());
@@ -160,6 +159,14 @@ void GenericSubsystem::look_at_resources(TimePoint now) {
                                           static_cast<double>(found.times)};
     reports_.raise(descriptor::framework_event::resource_warning, arguments);
   });
+}
+
+/// Those that are in no loop of their own. Asked in each step: of which each is, is asked once.
+const std::vector<pus::Service*>& GenericSubsystem::stepped_here() {
+  for (; sorted_services_ < services_.size(); ++sorted_services_)
+    if (pus::Service* const service = services_[sorted_services_]; loops_.of(service->type()) == nullptr)
+      stepped_here_.push_back(service);
+  return stepped_here_;
 }
 
 // --- functions ---------------------------------------------------------------------------------------------------------

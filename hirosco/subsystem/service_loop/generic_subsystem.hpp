@@ -108,6 +108,7 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
 
   [[nodiscard]] bool commissioned() const noexcept;
   TimePoint step_services(TimePoint now);
+  const std::vector<pus::Service*>& stepped_here();
   void look_at_resources(TimePoint now);
 
   Subsystem& author_;
@@ -135,6 +136,8 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
   pus::DescriptorService descriptor_service_;
   std::vector<std::unique_ptr<pus::Service>> made_services_;  ///< by their kinds
   std::vector<pus::Service*> services_;  ///< the framework's, then the author's
+  std::vector<pus::Service*> stepped_here_;
+  std::size_t sorted_services_{0};  ///< of services_: whether they are stepped here is known
   Requester requester_;
   Subscriber subscriber_;
   ForeignParameters foreign_;
