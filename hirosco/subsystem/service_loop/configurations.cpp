@@ -174,8 +174,9 @@ void Configurations::release() {
   while (parts_.rings.commands.try_pop(forgotten)) {
     // A function that never reached the cycle still ends: nothing accepted is lost.
     if (forgotten.kind == CommandKind::Function)
-      parts_.reports.verification().start_failed(forgotten.request, pus::FailureNotice{pus::FailureCode::Aborted});
+      parts_.calls.refused(forgotten.request, pus::FailureNotice{pus::FailureCode::Aborted});
   }
+  parts_.calls.forget_handed_over();
   parts_.values.apply();
   parts_.bumpless.release();
   parts_.cycle.release();

@@ -52,8 +52,7 @@ void CycleReports::take_one(const CycleReport& head, Octets payload) {
     case ReportKind::Event: parts_.reports.raise_encoded(head.index, payload); break;
     case ReportKind::Started: parts_.calls.started(head.request); break;
     case ReportKind::Refused:
-      parts_.reports.verification().start_failed(head.request,
-                                                 parts_.reports.notice_of(head.index, failure_in(payload)));
+      parts_.calls.refused(head.request, parts_.reports.notice_of(head.index, failure_in(payload)));
       break;
     case ReportKind::Progressed: parts_.reports.verification().progressed(head.request, head.index); break;
     case ReportKind::Finished: parts_.calls.completed(head.request); break;

@@ -182,8 +182,9 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::Func
     return std::unexpected{pus::FailureNotice{pus::FailureCode::ExecutionError}};
   CycleCommand command{.kind = CommandKind::Function, .index = call.function, .request = request};
   command.arguments = call.arguments;
-  if (!calls_.have_room(rings_.commands.size()) || !rings_.commands.try_push(command))
+  if (!calls_.have_room() || !rings_.commands.try_push(command))
     return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
+  calls_.handed_over();
   return {};
 }
 

@@ -18,12 +18,19 @@ class OpenCalls {
 
   explicit OpenCalls(pus::Verification& verification) : verification_{verification} { open_.reserve(most); }
 
-  /// Whether another one may run beside those that do and `handed_over`, which the cycle has not begun.
-  [[nodiscard]] bool have_room(std::size_t handed_over) const noexcept { return open_.size() + handed_over < most; }
+  /// Whether another one may run, beside those that do and those of which the cycle has not said whether they do.
+  [[nodiscard]] bool have_room() const noexcept { return open_.size() + handed_over_ < most; }
+  /// To the cycle, which says started or refused. Here, not by what is left in its ring: it may have taken one and not have said so yet.
+  void handed_over() noexcept { ++handed_over_; }
 
   void started(const pus::Request& request) {
+    answered();
     open_.push_back(request);
     verification_.started(request);
+  }
+  void refused(const pus::Request& request, const pus::FailureNotice& why) {
+    answered();
+    verification_.start_failed(request, why);
   }
   /// Nothing where it had its final report already.
   void completed(const pus::Request& request) {
@@ -39,7 +46,13 @@ class OpenCalls {
     open_.clear();
   }
 
+  /// The cycle rests, and all that it had said was taken.
+  void forget_handed_over() noexcept { handed_over_ = 0; }
+
  private:
+  void answered() noexcept {
+    if (handed_over_ > 0) --handed_over_;
+  }
   [[nodiscard]] std::vector<pus::Request>::const_iterator find(const pus::Request& request) const noexcept {
     return std::ranges::find_if(
         open_, [&](const pus::Request& open) { return open.id == request.id && open.source == request.source; });
@@ -53,6 +66,7 @@ class OpenCalls {
 
   pus::Verification& verification_;
   std::vector<pus::Request> open_;
+  std::size_t handed_over_{0};
 };
 
 }  // namespace hirosco

@@ -57,12 +57,19 @@ TEST_F(Calls, ThatAreForgottenFailEach) {
   EXPECT_THAT(told.reports, IsEmpty());
 }
 
-TEST_F(Calls, AreBoundedWithThoseThatTheCycleHasNotBegun) {
-  EXPECT_TRUE(calls.have_room(OpenCalls::most - 1));
-  EXPECT_FALSE(calls.have_room(OpenCalls::most));
-  for (std::uint32_t id = 0; id < OpenCalls::most - 1; ++id) calls.started({.id = id, .source = 7, .ack = 0});
-  EXPECT_TRUE(calls.have_room(0));
-  EXPECT_FALSE(calls.have_room(1));
+TEST_F(Calls, AreBoundedWithThoseOfWhichTheCycleHasNotSaidWhetherTheyRun) {
+  for (std::uint32_t id = 0; id < OpenCalls::most - 1; ++id) {
+    calls.handed_over();
+    calls.started({.id = id, .source = 7, .ack = 0});
+  }
+  EXPECT_TRUE(calls.have_room());
+  calls.handed_over();
+  EXPECT_FALSE(calls.have_room());
+  calls.refused(second, pus::FailureNotice{pus::FailureCode::ExecutionError});
+  EXPECT_TRUE(calls.have_room());
+  calls.handed_over();
+  calls.forget_handed_over();
+  EXPECT_TRUE(calls.have_room());
 }
 
 }  // namespace

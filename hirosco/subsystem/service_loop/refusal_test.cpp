@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "hirosco/pus/words/describe.hpp"
+#include "hirosco/subsystem/service_loop/open_calls.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
 
@@ -48,6 +52,44 @@ struct Refuser final : Subsystem {
     return ok();
   }
 };
+
+/// Its calls run until it is told.
+struct Untiring final : Subsystem {
+  std::vector<Call> calls;
+  bool ends_one{false};
+  Result<Step> software_init() override {
+    on_function("LATER", [this](Call call) -> Outcome {
+      calls.push_back(call);
+      return running;
+    });
+    return done;
+  }
+  Result<> operational(const Cycle&) noexcept override {
+    if (std::exchange(ends_one, false)) finish(calls.front());
+    return ok();
+  }
+};
+
+TEST(RunningFunctions, AreSoManyAndAnotherIsRefusedUntilOneHasEnded) {
+  Untiring author;
+  Rig rig{author, R"(<Subsystem name="UNTIRING" id="10">
+  <FunctionService><Function name="LATER"/></FunctionService>
+  <Configuration name="ONE" id="1" sampling_us="1000"/>
+</Subsystem>)"};
+  author.calls.reserve(OpenCalls::most + 1);
+  rig.bring_to(State::Operational);
+  const auto call = [&] {
+    const auto sent = rig.call("LATER");
+    rig.settle();
+    return rig.outcome(sent);
+  };
+  for (std::size_t i = 0; i < OpenCalls::most; ++i) ASSERT_EQ(call(), "1 3") << i;
+  EXPECT_THAT(call(), ::testing::EndsWith(":000b")) << "as of a full queue";
+  EXPECT_EQ(author.calls.size(), OpenCalls::most);
+  author.ends_one = true;
+  rig.settle();
+  EXPECT_EQ(call(), "1 3");
+}
 
 struct Refusals : ::testing::Test {
   Refuser author;
