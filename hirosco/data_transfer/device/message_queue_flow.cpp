@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <utility>
 
+#include "hirosco/data_transfer/device/side_lock.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
 
@@ -20,30 +21,14 @@ namespace {
 constexpr long waiting_frames = 8;
 constexpr int most_at_once = 16;
 constexpr int opening_attempts = 200;
+constexpr std::size_t octet_of_reader = 0;   ///< in each of the two queues
+constexpr std::size_t octet_of_closing = 1;  ///< in that to the device
 
 /// In Linux the descriptor of a queue is one of a file.
 struct Queue {
   std::string name;
   FileDescriptor file;
 };
-
-[[nodiscard]] struct flock whole_queue() noexcept {
-  struct flock lock{};
-  lock.l_type = F_WRLCK;
-  lock.l_whence = SEEK_SET;
-  lock.l_len = 1;
-  return lock;
-}
-
-[[nodiscard]] bool lock(int queue) noexcept {
-  struct flock wanted = whole_queue();
-  return ::fcntl(queue, F_OFD_SETLK, &wanted) == 0;
-}
-
-[[nodiscard]] bool is_read_by_another(int queue) noexcept {
-  struct flock looked = whole_queue();
-  return ::fcntl(queue, F_OFD_GETLK, &looked) == 0 && looked.l_type != F_UNLCK;
-}
 
 [[nodiscard]] Result<Queue> open_queue(std::string name) {
   mq_attr room{};
@@ -69,16 +54,21 @@ struct Queue {
 
 class MessageQueueFlow final : public DataFlow {
  public:
-  MessageQueueFlow(Queue own, Queue peer) : own_{std::move(own)}, peer_{std::move(peer)} {
+  MessageQueueFlow(Queue own, Queue peer, FlowSide side) : own_{std::move(own)}, peer_{std::move(peer)}, side_{side} {
     // What was for a predecessor is nobody's.
     for (long frames = 0; frames < waiting_frames && take_one() >= 0; ++frames) {}
   }
   MessageQueueFlow(const MessageQueueFlow&) = delete;
   MessageQueueFlow& operator=(const MessageQueueFlow&) = delete;
   ~MessageQueueFlow() override {
-    if (!lock(peer_.file.get())) return;
-    if (names(own_)) (void)::mq_unlink(own_.name.c_str());
-    if (names(peer_)) (void)::mq_unlink(peer_.name.c_str());
+    const int to_device = (side_ == FlowSide::Device ? own_ : peer_).file.get();
+    if (!take_turn_to_close(to_device, octet_of_closing)) return;
+    if (lock_side(peer_.file.get(), octet_of_reader)) {
+      if (names(own_)) (void)::mq_unlink(own_.name.c_str());
+      if (names(peer_)) (void)::mq_unlink(peer_.name.c_str());
+    }
+    free_side(own_.file.get(), octet_of_reader);
+    free_side(to_device, octet_of_closing);
   }
 
  private:
@@ -89,7 +79,7 @@ class MessageQueueFlow final : public DataFlow {
     return ::mq_send(peer_.file.get(), reinterpret_cast<const char*>(frame.data()), frame.size(), 0) == 0;
   }
   [[nodiscard]] bool peer_is_there() noexcept {
-    const bool there = is_read_by_another(peer_.file.get());
+    const bool there = is_locked_by_another(peer_.file.get(), octet_of_reader);
     peer_came_ = peer_came_ || there;
     return there;
   }
@@ -126,6 +116,7 @@ class MessageQueueFlow final : public DataFlow {
   [[nodiscard]] bool do_wait(Duration timeout) noexcept override { return wait_readable(own_.file.get(), timeout); }
 
   Queue own_, peer_;
+  FlowSide side_;
   std::array<std::byte, max_frame_octets> frame_{};
   bool peer_came_{false};
 };
@@ -139,14 +130,20 @@ Result<std::unique_ptr<DataFlow>> open_message_queue_flow(const std::string& add
   std::replace(to_device.begin() + 1, to_device.end(), '/', '.');
   std::string to_subsystem = to_device + ".to_subsystem";
   to_device += ".to_device";
-  for (int attempts = 0; attempts < opening_attempts; ++attempts) {
+  // Who went last may have removed them meanwhile, and who goes has both locks for a moment.
+  Result<std::unique_ptr<DataFlow>> opened =
+      fail(ErrorCode::Unavailable, "message queue is made and removed all the time");
+  for (int attempts = 0; attempts < opening_attempts && !opened; ++attempts) {
     HIROSCO_TRY_LET(Queue own, open_queue(side == FlowSide::Device ? to_device : to_subsystem));
     HIROSCO_TRY_LET(Queue peer, open_queue(side == FlowSide::Device ? to_subsystem : to_device));
-    if (!lock(own.file.get())) return fail(ErrorCode::AlreadyExists, "this side of the flow is open");
-    // Who went last may have removed them meanwhile.
-    if (names(own) && names(peer)) return std::make_unique<MessageQueueFlow>(std::move(own), std::move(peer));
+    if (!lock_side(own.file.get(), octet_of_reader)) {
+      opened = fail(ErrorCode::AlreadyExists, "this side of the flow is open");
+      pause_for_peer();
+    } else if (names(own) && names(peer)) {
+      opened = std::make_unique<MessageQueueFlow>(std::move(own), std::move(peer), side);
+    }
   }
-  return fail(ErrorCode::Unavailable, "message queue is made and removed all the time");
+  return opened;
 }
 
 }  // namespace hirosco

@@ -16,6 +16,7 @@
 #include <cstring>
 
 #include "hirosco/data_transfer/device/device_memory_name.hpp"
+#include "hirosco/data_transfer/device/side_lock.hpp"
 
 // Invariants:
 //  1. A segment of zeroes is a valid one, so it does not matter who makes it or how far he came.
@@ -25,8 +26,8 @@
 //  4. A mailbox has one writer, the owner of the side opposite. Its sequence follows the rules of latest_link.cpp; a
 //     writer that takes over from one killed in the middle goes on from the next even number.
 //  5. A side begins with what is in its mailbox marked as seen, before it says that it is open.
-//  6. The last to close removes the name only while it has both locks; who opens makes sure after its lock that the
-//     name still means the file it has locked.
+//  6. Who closes has the turn to close. The last one removes the name only while it has both locks; who opens makes sure
+//     after its lock that the name still means the file it has locked.
 namespace hirosco {
 namespace {
 
@@ -36,6 +37,7 @@ static_assert(std::atomic<Word>::is_always_lock_free && std::atomic<std::uint32_
 constexpr Word magic = 0x0001'574F'4C46'5348;  // "HSFLOW", version 1
 constexpr int reading_attempts = 8;
 constexpr int opening_attempts = 200;
+constexpr std::size_t octet_of_closing = 2;  ///< those before it are the sides
 
 long futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value, const timespec* timeout) noexcept {
   return ::syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&word), operation, value, timeout, nullptr, 0);
@@ -47,35 +49,11 @@ std::int64_t now_ns() noexcept {
   return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
 }
 
-/// An open-file-description lock on one octet: also two flows of one process exclude each other.
-bool lock(int file, std::size_t octet) noexcept {
-  struct flock range{};
-  range.l_type = F_WRLCK;
-  range.l_whence = SEEK_SET;
-  range.l_start = static_cast<off_t>(octet);
-  range.l_len = 1;
-  return ::fcntl(file, F_OFD_SETLK, &range) == 0;
-}
-
-bool is_locked_by_another(int file, std::size_t octet) noexcept {
-  struct flock range{};
-  range.l_type = F_WRLCK;
-  range.l_whence = SEEK_SET;
-  range.l_start = static_cast<off_t>(octet);
-  range.l_len = 1;
-  return ::fcntl(file, F_OFD_GETLK, &range) != 0 || range.l_type != F_UNLCK;
-}
-
 bool names(const std::string& path, int file) noexcept {
   const FileDescriptor named{::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW)};
   struct stat ours{};
   struct stat theirs{};
   return named && ::fstat(file, &ours) == 0 && ::fstat(named.get(), &theirs) == 0 && ours.st_ino == theirs.st_ino;
-}
-
-void pause_opening() noexcept {
-  const timespec moment{0, 100'000};
-  (void)::nanosleep(&moment, nullptr);
 }
 
 }  // namespace
@@ -105,7 +83,7 @@ Result<std::unique_ptr<DataFlow>> SharedMemoryFlow::open(const std::string& addr
     opened = try_open(path, side);
     if (opened || (opened.error().code != ErrorCode::AlreadyExists && opened.error().code != ErrorCode::Unavailable))
       break;
-    pause_opening();
+    pause_for_peer();
   }
   if (!opened) return fail(opened.error());
   return std::unique_ptr<DataFlow>{std::move(*opened)};
@@ -114,7 +92,7 @@ Result<std::unique_ptr<DataFlow>> SharedMemoryFlow::open(const std::string& addr
 Result<std::unique_ptr<SharedMemoryFlow>> SharedMemoryFlow::try_open(const std::string& path, FlowSide side) {
   FileDescriptor file{::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)};
   if (!file) return fail(ErrorCode::SystemFailure, "open shared memory", errno);
-  if (!lock(file.get(), side == FlowSide::Subsystem ? 0 : 1))
+  if (!lock_side(file.get(), side == FlowSide::Subsystem ? 0 : 1))
     return fail(ErrorCode::AlreadyExists, "this side of the flow is open");
   if (!names(path, file.get())) return fail(ErrorCode::Unavailable, "shared memory was removed");
   HIROSCO_TRY(os_detail::give_size(file.get(), sizeof(Segment)));
@@ -156,7 +134,9 @@ SharedMemoryFlow::~SharedMemoryFlow() {
   segment_.opened[own_].fetch_add(1);
   segment_.mailboxes[peer].bell.fetch_add(1);
   (void)futex(segment_.mailboxes[peer].bell, FUTEX_WAKE, 1, nullptr);
-  if (lock(file_.get(), peer) && names(path_, file_.get())) (void)::unlink(path_.c_str());
+  if (!take_turn_to_close(file_.get(), octet_of_closing)) return;
+  if (lock_side(file_.get(), peer) && names(path_, file_.get())) (void)::unlink(path_.c_str());
+  free_side(file_.get(), own_);
 }
 
 Result<> SharedMemoryFlow::do_send(Octets frame) noexcept {

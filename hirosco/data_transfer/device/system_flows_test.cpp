@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <mqueue.h>
 #include <netinet/in.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
@@ -10,10 +11,12 @@
 
 #include <array>
 #include <atomic>
+#include <barrier>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <thread>
 
@@ -189,6 +192,43 @@ TEST(SharedMemoryFlow, LeavesNoNameBehindWhenBothSidesHaveClosed) {
   device.reset();
   EXPECT_FALSE(std::filesystem::exists(file));
   EXPECT_TRUE(std::filesystem::exists("/dev/shm/hirosco")) << "whoever is let in there would not be in another";
+}
+
+/// Closes both sides at the same time, so often that they meet. `remove` takes away what they left and says how much that was; returns the sum.
+int left_by_two_that_close_at_once(const FlowAddress& address, const std::function<int()>& remove) {
+  int left = 0;
+  for (int i = 0; i < 2000; ++i) {
+    SystemFlowFactory factory;
+    auto subsystem = factory.open(address, FlowSide::Subsystem).value();
+    auto device = factory.open(address, FlowSide::Device).value();
+    std::barrier both{2};
+    std::thread closing{[&] {
+      both.arrive_and_wait();
+      device.reset();
+    }};
+    both.arrive_and_wait();
+    subsystem.reset();
+    closing.join();
+    left += remove();
+  }
+  return left;
+}
+
+TEST(SharedMemoryFlow, LeavesNoNameBehindWhenBothSidesCloseAtOnce) {
+  const FlowAddress address = SharedMemoryTraits::address();
+  const std::string file = "/dev/shm/hirosco/" + address.address;
+  EXPECT_EQ(left_by_two_that_close_at_once(address, [&] { return std::filesystem::remove(file) ? 1 : 0; }), 0);
+}
+
+TEST(MessageQueueFlow, LeavesNoNameBehindWhenBothSidesCloseAtOnce) {
+  const FlowAddress address = MessageQueueTraits::address();
+  const std::string queue = "/hirosco." + address.address;
+  const auto remove = [&] {
+    int left = 0;
+    for (const char* way : {".to_device", ".to_subsystem"}) left += ::mq_unlink((queue + way).c_str()) == 0 ? 1 : 0;
+    return left;
+  };
+  EXPECT_EQ(left_by_two_that_close_at_once(address, remove), 0);
 }
 
 TEST(SharedMemoryFlow, OfTheSupervisorsSideIsNotWhereThoseOfSubsystemsAre) {
