@@ -14,7 +14,7 @@ namespace hirosco {
 /// The supervisor passes --descriptor FILE --channel FD --vital FD --permit FD.
 int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Subsystem>()>& make);
 
-/// `int main(int argc, char** argv) { return hirosco::run<Hello>(argc, argv); }`
+/// `int main(int argc, char** argv) { return hirosco::run<Lamp>(argc, argv); }`
 template <class T>
 int run(int argc, char** argv) {
   return run_subsystem(argc, argv, [] { return std::make_unique<T>(); });

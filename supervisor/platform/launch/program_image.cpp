@@ -79,7 +79,7 @@ Result<ProgramImage> ProgramImage::read(const std::filesystem::path& file) {
     return fail(ErrorCode::SystemFailure, "memory cannot be sealed", errno);
   HIROSCO_TRY_LET(const auto mapped, MappedMemory::map(image.memory_.get(), image.octets_, MapMode::ReadOnly));
   const Octets octets{mapped.octets()};
-  HIROSCO_TRY_LET(image.digest_, sha256(octets));
+  image.digest_ = sha256(octets);
   image.is_script_ = octets.size() > 1 && octets[0] == std::byte{'#'} && octets[1] == std::byte{'!'};
   return image;
 }

@@ -2,24 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/launch/sha256.hpp"
 
-#include <openssl/crypto.h>
-#include <openssl/evp.h>
+#include <nettle/sha2.h>
 
 #include <array>
-#include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 namespace hirosco::supervisor {
 
-Result<std::string> sha256(Octets octets) {
-  // A file of settings may name code to be loaded: none is read. Nor does it leave anything to be done at the end of a process
-  // that may stand still.
-  ::OPENSSL_init_crypto(OPENSSL_INIT_NO_LOAD_CONFIG | OPENSSL_INIT_NO_ATEXIT, nullptr);
-  std::array<unsigned char, 32> digest{};
-  unsigned int length = 0;
-  if (::EVP_Digest(octets.data(), octets.size(), digest.data(), &length, ::EVP_sha256(), nullptr) != 1 ||
-      length != digest.size())
-    return fail(ErrorCode::SystemFailure, "libcrypto refuses SHA-256");
+std::string sha256(Octets octets) {
+  sha256_ctx context{};
+  ::sha256_init(&context);
+  ::sha256_update(&context, octets.size(), reinterpret_cast<const std::uint8_t*>(octets.data()));
+  std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
+  ::sha256_digest(&context, digest.size(), digest.data());
   constexpr std::string_view digits{"0123456789abcdef"};
   std::string text;
   text.reserve(2 * digest.size());

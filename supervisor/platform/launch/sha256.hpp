@@ -5,12 +5,11 @@
 #include <string>
 
 #include "hirosco/utilities/octets.hpp"
-#include "hirosco/utilities/result.hpp"
 
 namespace hirosco::supervisor {
 
-/// SHA-256 (FIPS 180-4) as 64 hexadecimal digits, lower case. SystemFailure: the cryptographic library refuses it.
+/// SHA-256 (FIPS 180-4) as 64 hexadecimal digits, lower case.
 /// Realtime: allocates, as long as the octets are many.
-[[nodiscard]] Result<std::string> sha256(Octets octets);
+[[nodiscard]] std::string sha256(Octets octets);
 
 }  // namespace hirosco::supervisor
