@@ -4,6 +4,7 @@
 """punctual.py SECONDS PROGRAM [WORD...]: runs a test of real processes, each attempt for SECONDS at most. One that fails is run again
 only if the host was late meanwhile: if a thread above all others did not run for longer than the shortest watchdog of a device. Then
 processors were taken from the machine as a whole, and no flight on it keeps its times. On a punctual host a failure is a failure."""
+import collections
 import os
 import subprocess
 import sys
@@ -15,6 +16,7 @@ ATTEMPTS = 5
 SKIPPED = 77
 ABOVE_ALL = 98                # the guard has 90, devices 85, cycles at most 80
 PERIOD_S = 0.001
+NOTABLE_S = 0.002             # what stood still for less is in the bounds of whoever judges
 
 
 class Lateness:
@@ -25,6 +27,7 @@ class Lateness:
 
     def __init__(self):
         self.worst_s = 0.0
+        self._stood_still = collections.defaultdict(lambda: collections.deque(maxlen=10_000))
         self._over = threading.Event()
         self._threads = [threading.Thread(target=self._watch, args=(processor,)) for processor in os.sched_getaffinity(0)]
 
@@ -38,6 +41,18 @@ class Lateness:
         for thread in self._threads:
             thread.join()
 
+    def stood_still_s(self, begin, end):
+        """How long the host stood still between these two of time.monotonic(), in seconds: of all processors the one that did for longest.
+        What is to happen there takes as much longer. 0 where nobody could see it."""
+        return max((sum(max(0.0, min(till, end) - max(since, begin)) for since, till in list(times))
+                    for times in list(self._stood_still.values())), default=0.0)
+
+    def _note(self, processor, begin, end):
+        if self.worst_s is not None:
+            self.worst_s = max(self.worst_s, end - begin)
+            if end - begin > NOTABLE_S:
+                self._stood_still[processor].append((begin, end))
+
     def _watch(self, processor):
         try:
             os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(ABOVE_ALL))
@@ -48,9 +63,7 @@ class Lateness:
         while not self._over.is_set():
             begin = time.monotonic()
             time.sleep(PERIOD_S)
-            still_s = time.monotonic() - begin
-            if self.worst_s is not None:
-                self.worst_s = max(self.worst_s, still_s)
+            self._note(processor, begin, time.monotonic())
 
 
 def attempt(command, limit_s):

@@ -37,6 +37,15 @@ class Punctual(unittest.TestCase):
         for code in (0, 3):
             self.assertEqual(punctual.attempt([sys.executable, "-c", f"raise SystemExit({code})"], 60.0)[0], code)
 
+    def test_what_the_host_stood_still_in_a_time_is_that_of_one_processor_and_of_that_time(self):
+        host = punctual.Lateness()
+        for processor, begin, end in ((0, 1.0, 1.009), (0, 2.0, 2.010), (1, 1.995, 2.004), (1, 5.0, 5.0 + punctual.NOTABLE_S / 2)):
+            host._note(processor, begin, end)
+        self.assertAlmostEqual(host.stood_still_s(0.0, 9.0), 0.019)
+        self.assertAlmostEqual(host.stood_still_s(1.9, 2.002), 0.007)
+        self.assertEqual(host.stood_still_s(3.0, 6.0), 0.0)
+        self.assertAlmostEqual(host.worst_s, 0.010)
+
     def test_late_means_later_than_the_shortest_watchdog_of_the_shipped_descriptors(self):
         watchdogs = [float(device.get("watchdog_ms")) for file in SOURCES.glob("subsystems/*/*.xml")
                      for device in xml.parse(file).iter("Device") if device.get("watchdog_ms")]
