@@ -24,8 +24,8 @@ ADOPTED_S = 1.0
 # The structures of both machines come every so often, by their cycles' count.
 SAMPLES_S = {4713: 0.05, 4721: 0.25}
 # What tells that it lacks something. Where the log finds no memory first (7 is SQLite's word for that), it gives back what it had, and that may be
-# enough for a start.
-BITES = ("cannot start JOYSTICK", "failed (storing in the log database, 7)")
+# enough for a start. Where its own step finds none it ends, and another one goes on that lacks nothing.
+BITES = ("cannot start JOYSTICK", "failed (storing in the log database, 7)", "this supervisor goes on for one that died")
 # With a heap for each thread what one of them lacks another one has.
 ONE_HEAP = {"MALLOC_ARENA_MAX": "1"}
 
