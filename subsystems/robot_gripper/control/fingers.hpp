@@ -34,6 +34,13 @@ struct Measured {
   Joints torque;  ///< that drives give to links: behind gears and their friction
 };
 
+/// What is between the fingers, as it is measured.
+struct Gap {
+  double width_m{0};
+  double speed_m_s{0};  ///< positive where it opens
+  double force_n{0};  ///< with which each side presses on what is between them
+};
+
 /// What all fingers do together, in numbers of the gap between them: width, m; speed, m/s, positive where it opens; force with which each side presses on
 /// what is between them, N. All joints go from closed to open in proportion; forces are those that do the same work, so what
 /// mimics a joint counts, and of joints that turn it is a mean over their range.
@@ -56,6 +63,10 @@ class Fingers {
   [[nodiscard]] double width(const Joints& position) const noexcept;
   [[nodiscard]] double speed(const Joints& velocity) const noexcept;
   [[nodiscard]] double force(const Joints& torque) const noexcept;
+  /// All three.
+  [[nodiscard]] Gap gap(const Measured& measured) const noexcept {
+    return {width(measured.position), speed(measured.velocity), force(measured.torque)};
+  }
 
   /// The torques of a force that closes, and of what keeps the joints in proportion; each at most its effort.
   [[nodiscard]] Joints torques(double closing_n, const Measured& measured, double bandwidth_rad_s) const noexcept;
