@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,7 +9,11 @@
 
 #include "hirosco/descriptor/model/mission.hpp"
 #include "simulation/campaign/campaign_log.hpp"
+#include "simulation/campaign/finale.hpp"
+#include "simulation/campaign/flight_traffic.hpp"
+#include "simulation/campaign/pinged_time.hpp"
 #include "simulation/campaign/plan.hpp"
+#include "simulation/campaign/plan_actions.hpp"
 #include "simulation/campaign/planted_defects.hpp"
 #include "simulation/campaign/world_trace.hpp"
 #include "simulation/spacecraft/modules.hpp"
@@ -39,38 +41,6 @@ class PlannedFlight {
     const simulation::Spacecraft* craft{nullptr};
     std::string text;
   };
-  struct Verdict {
-    bool over{false};
-    bool completed{false};
-  };
-
-  void run_until(Duration since_start);
-  void run_until(const std::function<bool()>& condition, Duration limit);
-  void perform(const Action& action);
-  [[nodiscard]] bool do_action(const std::vector<std::string>& words);
-  [[nodiscard]] bool disk_fault(const std::vector<std::string>& words);
-  [[nodiscard]] bool telecommand(const std::vector<std::string>& words);
-  [[nodiscard]] bool flood(const std::vector<std::string>& words);
-  struct Header {
-    std::uint16_t apid{};
-    std::uint8_t service{};
-    std::uint8_t subtype{};
-    std::uint8_t ack{};
-  };
-  bool send(const std::string& origin, const Header& header, Octets data);
-  bool send_packet(const std::string& origin, Octets packet);
-  void received_on_ground(Octets packet);
-
-  // The end of each flight: every fault is over, and what can fly has to fly again.
-  void finale();
-  void end_faults();
-  void rest_hands();
-  void see_hangs_ended();
-  void bring_up();
-  [[nodiscard]] bool call(std::string_view subsystem, std::string_view function, std::optional<double> argument);
-  [[nodiscard]] std::uint32_t state(std::string_view name) const;
-
-  void look();
 
   descriptor::Mission mission_;
   FlightPlan plan_;
@@ -79,12 +49,12 @@ class PlannedFlight {
   Disk disk_;
   std::unique_ptr<supervisor::Database> unused_{database_on(disk_)};
   Observer observer_;
+  // Made when the defect has changed what they are made of.
   std::unique_ptr<simulation::Spacecraft> craft_;
   std::unique_ptr<WorldTrace> trace_;
-  std::map<std::string, std::uint16_t> counts_;  ///< of the telecommands of each origin
-  std::map<std::uint32_t, Verdict> verdicts_;    ///< of the ground's, by request id
-  std::uint32_t last_request_{0};
-  bool supervisor_stopped_{false};
+  std::optional<FlightTraffic> traffic_;
+  std::optional<PingedTime> time_;
+  std::optional<PlanActions> actions_;
 };
 
 }  // namespace hirosco::campaign

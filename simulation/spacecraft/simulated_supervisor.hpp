@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "simulation/spacecraft/last_moment.hpp"
+#include "simulation/spacecraft/simulated_keeper.hpp"
+#include "simulation/spacecraft/simulated_processes.hpp"
+#include "simulation/spacecraft/supervisor_stores.hpp"
+#include "supervisor/supervisor.hpp"
+
+namespace hirosco::simulation {
+
+/// The supervisor with its guard on virtual time; it dies, and another one goes on with what runs (docs/adr/0093).
+class SimulatedSupervisor {
+ public:
+  struct Parts {
+    const descriptor::Mission& mission;
+    Platform platform;
+    supervisor::Observer& observer;
+    SimulatedProcesses& processes;
+    SimulatedKeeper& keeper;
+    SupervisorStores& stores;
+    std::uint64_t seed;  ///< of its sequence counts
+  };
+  /// Makes the first one.
+  explicit SimulatedSupervisor(Parts parts);
+  SimulatedSupervisor(const SimulatedSupervisor&) = delete;
+  SimulatedSupervisor& operator=(const SimulatedSupervisor&) = delete;
+  /// Starts the subsystems of the mission.
+  void start() { supervisor_->start(); }
+
+  /// Not to be asked while there is none.
+  [[nodiscard]] supervisor::Supervisor& supervisor() noexcept { return *supervisor_; }
+  [[nodiscard]] supervisor::Guard& guard() noexcept { return *guard_; }
+  [[nodiscard]] bool finished() const noexcept { return supervisor_ && supervisor_->finished(); }
+
+  /// When supervisor, guard or what stands in for them is due.
+  [[nodiscard]] TimePoint next_wake() const noexcept;
+  /// What is due: the next one goes on, guard or keeper, supervisor.
+  void step(TimePoint now);
+  /// Its process stands still, as by SIGSTOP, and goes on.
+  void stop(bool stopped);
+
+  /// It ends without a word, as by kill -9, between two of its steps.
+  void kill();
+  /// Nobody goes on for it.
+  void keep_down() noexcept { revive_at_.reset(); }
+  /// Those that have died.
+  [[nodiscard]] int deaths() const noexcept { return deaths_; }
+  /// It ends at this very moment, in the middle of its step: of what it does from here on until that returns nothing reaches pages
+  /// or the journal.
+  void die_here();
+  [[nodiscard]] bool is_dying() const noexcept { return last_moment_ != nullptr; }
+  /// `hirosco safe`: the guard stops everything at once, or the next one where there is none now; the supervisor hears of it in its next
+  /// step.
+  void stop_beside_flight();
+
+ private:
+  static constexpr TimePoint never = TimePoint::max();
+
+  void make(std::uint32_t first_epoch);
+  void revive(TimePoint now);
+  void step_supervisor(TimePoint now);
+
+  Parts parts_;
+  const Clock& clock_{parts_.platform.clock};
+  std::optional<TimePoint> revive_at_;  ///< there is no supervisor now
+  std::uint32_t next_first_epoch_{1};
+  std::unique_ptr<LastMoment> last_moment_;  ///< of one that dies in the middle of its step; null: none does
+  int deaths_{0};
+  std::optional<supervisor::Guard> guard_;
+  std::unique_ptr<supervisor::Supervisor> supervisor_;
+  TimePoint supervisor_wake_{};
+  TimePoint guard_wake_{};
+};
+
+}  // namespace hirosco::simulation
