@@ -109,16 +109,19 @@ TEST_F(Ways, WhatIsNoFaultOrNoWayIsRefused) {
 struct Switch : ::testing::Test {
   LocalFlows flows;
   std::unique_ptr<DataFlow> guard = flows.open({Transfer::SharedMemory, "power"}, FlowSide::Subsystem).value();
-  SimulatedSwitch made{flows.open({Transfer::SharedMemory, "power"}, FlowSide::Device).value()};
+  SimulatedSwitch made{FlowAddress{Transfer::SharedMemory, "power"}};
   TimePoint now{std::chrono::seconds{1}};
   std::uint32_t sequence{0};
 
+  Switch() { EXPECT_TRUE(made.open(flows)); }
   void tell(bool on, bool repeats = false) {
     std::array<std::byte, power_frame_octets> frame;
     if (!repeats) ++sequence;
     const PowerCommand command{on, std::chrono::milliseconds{100}, sequence};
     ASSERT_TRUE(guard->send(*write_power_command(frame, command)));
-    made.step(now);
+    const bool had = made.on();
+    const bool changed = made.step(now);
+    EXPECT_EQ(changed, made.on() != had);
   }
   std::optional<PowerStatus> said() {
     std::array<std::byte, max_frame_octets> frame;
@@ -129,7 +132,7 @@ struct Switch : ::testing::Test {
 };
 
 TEST_F(Switch, IsOffUntilItIsToldAndAnswersEveryCommand) {
-  made.step(now);
+  EXPECT_FALSE(made.step(now));
   EXPECT_FALSE(made.on());
   for (const bool on : {true, false, true}) {
     tell(on);
@@ -148,7 +151,7 @@ TEST_F(Switch, IsOffByItselfWhenNobodyTellsItAnyMore) {
   tell(true, true);
   EXPECT_TRUE(made.on());
   now += std::chrono::milliseconds{1};
-  made.step(now);
+  EXPECT_TRUE(made.step(now));
   EXPECT_FALSE(made.on()) << "a repetition is no sign of life";
   EXPECT_EQ(made.off_at(), TimePoint::max());
 }
@@ -157,7 +160,7 @@ TEST_F(Switch, HearsNoGarbage) {
   tell(true);
   static_cast<void>(said());
   ASSERT_TRUE(guard->send(std::array<std::byte, power_frame_octets>{}));
-  made.step(now);
+  EXPECT_FALSE(made.step(now));
   EXPECT_TRUE(made.on());
   EXPECT_FALSE(said());
 }

@@ -18,27 +18,16 @@
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
+#include "simulation/devices/device_answers.hpp"
+#include "simulation/devices/device_endnodes.hpp"
 #include "simulation/devices/further_endnode.hpp"
+#include "simulation/devices/obedience.hpp"
+#include "simulation/devices/simulated_inhibit.hpp"
 #include "simulation/devices/simulated_switch.hpp"
+#include "simulation/devices/words.hpp"
+#include "simulation/devices/world_clock.hpp"
 
 namespace hirosco::simulation {
-
-/// Words of one line of text, at most eight.
-class Words {
- public:
-  explicit Words(std::string_view line) noexcept;
-  [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  [[nodiscard]] std::string_view operator[](std::size_t i) const noexcept { return i < count_ ? words_[i] : ""; }
-  /// Word `i` as a finite number within low..high.
-  [[nodiscard]] Result<double> number(std::size_t i, double low, double high) const noexcept;
-  /// InvalidArgument unless there are exactly `expected` words.
-  [[nodiscard]] Result<> expect(std::size_t expected) const noexcept;
-
- private:
-  std::array<std::string_view, 8> words_{};
-  std::size_t count_{0};
-  bool too_many_{false};
-};
 
 /// A line for SimulatedDevice::fault with its numbers, as a page offers it, and what it does.
 struct FaultLine {
@@ -61,11 +50,7 @@ struct FaultLine {
 class SimulatedDevice {
  public:
   /// What it does by itself when its command is taken away.
-  enum class Stop : std::uint8_t {
-    Drop,  ///< no force at once
-    Controlled,  ///< comes to rest within `stop_within`, then holds
-    Hold,  ///< holds where it is
-  };
+  using Stop = DeviceStop;
   struct Settings {
     Duration cycle{std::chrono::microseconds{500}};
     Duration watchdog{std::chrono::milliseconds{10}};  ///< while commands ask for none
@@ -114,7 +99,7 @@ class SimulatedDevice {
 
   /// Makes its world and opens the flows (the device's side). `flows` must outlive the device. InvalidArgument: it has no such stop.
   [[nodiscard]] Result<> plug();
-  [[nodiscard]] bool plugged() const noexcept { return flow_ != nullptr; }
+  [[nodiscard]] bool plugged() const noexcept { return endnodes_.plugged(); }
 
   /// Takes what came, moves the world, answers.
   void step(TimePoint now);
@@ -122,7 +107,7 @@ class SimulatedDevice {
   [[nodiscard]] TimePoint next_wake() const noexcept;
   /// Waits for a frame. Blocks; false at once while there is no peer to wait for (a hang-up would end every wait). True: step()
   /// may find one; of a device with several flows also after a moment without any, as it waits for one of them only.
-  [[nodiscard]] bool wait(Duration timeout) noexcept;
+  [[nodiscard]] bool wait(Duration timeout) noexcept { return endnodes_.wait(timeout); }
 
   /// Injects a fault from one line of text and records it with the time of the last step:
   ///   unplug | plug | silent | stall MS | freeze MS | corrupt N | delay MS | reboot | heal
@@ -132,17 +117,19 @@ class SimulatedDevice {
   [[nodiscard]] Result<> fault(std::string_view line);
   [[nodiscard]] const std::vector<Injection>& injections() const noexcept { return injections_; }
 
-  [[nodiscard]] std::uint16_t flags() const noexcept { return flags_; }
-  [[nodiscard]] bool watchdog_tripped() const noexcept { return (flags_ & device_flag::watchdog_tripped) != 0; }
-  [[nodiscard]] DeviceOutput output() const noexcept { return output_; }
+  [[nodiscard]] std::uint16_t flags() const noexcept { return obedience_.flags(); }
+  [[nodiscard]] bool watchdog_tripped() const noexcept { return obedience_.watchdog_tripped(); }
+  [[nodiscard]] DeviceOutput output() const noexcept { return obedience_.output(); }
   /// False: its power switch is off. It hears and says nothing, and what moves has brakes or nothing.
-  [[nodiscard]] bool powered() const noexcept { return !switch_ || switch_->on(); }
+  [[nodiscard]] bool powered() const noexcept { return switch_.on(); }
   /// True while payloads of commands reach the motors.
-  [[nodiscard]] bool active() const noexcept { return output_ == DeviceOutput::Active; }
+  [[nodiscard]] bool active() const noexcept { return output() == DeviceOutput::Active; }
   /// Cycles that the world has moved, and how many of them the own clock drove.
-  [[nodiscard]] std::uint64_t cycles() const noexcept { return cycles_; }
-  [[nodiscard]] std::uint64_t own_cycles() const noexcept { return own_cycles_; }
-  [[nodiscard]] std::uint64_t damaged_commands() const noexcept { return damaged_commands_; }
+  [[nodiscard]] std::uint64_t cycles() const noexcept { return clock_.cycles(); }
+  [[nodiscard]] std::uint64_t own_cycles() const noexcept { return clock_.own_cycles(); }
+  [[nodiscard]] std::uint64_t damaged_commands() const noexcept {
+    return damaged_commands_ + inhibit_.damaged_commands();
+  }
   [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
   /// Whether its motors did anything in the last cycle.
   [[nodiscard]] virtual bool drives() const noexcept { return active(); }
@@ -155,23 +142,15 @@ class SimulatedDevice {
  protected:
   SimulatedDevice(FlowFactory& flows, FlowAddress address, const Settings& settings);
 
-  void raise(std::uint16_t flag, bool on) noexcept {
-    flags_ = static_cast<std::uint16_t>(on ? flags_ | flag : flags_ & ~flag);
-  }
+  void raise(std::uint16_t flag, bool on) noexcept { obedience_.raise(flag, on); }
   /// Of Stop::Controlled, while output() is Stopping: what is left of its time.
-  [[nodiscard]] Duration stop_left() const noexcept { return stop_left_; }
+  [[nodiscard]] Duration stop_left() const noexcept { return obedience_.stop_left(); }
   [[nodiscard]] std::endian byte_order() const noexcept { return settings_.byte_order; }
   /// As take() and write_sensors(), at its further endnodes by their names: one takes and says nothing unless the device does.
   [[nodiscard]] virtual Result<> take_at(std::string_view endnode, OctetReader payload) noexcept;
   virtual void write_sensors_at(std::string_view endnode, OctetWriter& payload) noexcept;
 
  private:
-  struct Frame {
-    std::array<std::byte, max_device_frame_octets> octets;
-    std::size_t size{0};
-    TimePoint due{};
-  };
-
   /// Moves the world by one cycle under the last accepted payload; output() tells what to do with it.
   virtual void advance(Duration cycle) noexcept = 0;
   /// Takes the payload of an accepted active command. Malformed: wrong size.
@@ -187,69 +166,26 @@ class SimulatedDevice {
   /// Before it is plugged in for the first time: makes its world, where that can fail.
   [[nodiscard]] virtual Result<> make_world() { return ok(); }
 
-  [[nodiscard]] Result<> open_all();
-  void exchange_further() noexcept;
-  void follow_power(TimePoint now) noexcept;
   void begin_anew() noexcept;
-  [[nodiscard]] Result<> fault_of_way(EndnodeWays* ways, const Words& words, std::size_t at);
-  [[nodiscard]] EndnodeWays* ways_of(std::string_view endnode) noexcept;
   [[nodiscard]] bool receive(TimePoint now) noexcept;
   [[nodiscard]] bool accept(const DeviceCommand& command, TimePoint now) noexcept;
-  void receive_enable(TimePoint now) noexcept;
-  [[nodiscard]] bool enabled(std::uint32_t epoch, TimePoint now) const noexcept;
-  void choose_output(TimePoint now) noexcept;
-  void count_down(Duration cycle) noexcept;
-  void answer_enable() noexcept;
-  void forgive_pause(TimePoint now) noexcept;
-  void watch(TimePoint now) noexcept;
-  [[nodiscard]] std::int64_t due_cycles(TimePoint now, bool exchanged) noexcept;
   void answer(TimePoint now) noexcept;
-  void send_due(TimePoint now) noexcept;
-  void compose(Frame& frame) noexcept;
+  void exchange_further() noexcept;
   [[nodiscard]] Result<> apply_fault(const Words& words);
+  void unplug() noexcept;
   void heal() noexcept;
 
   FlowFactory& flows_;
-  FlowAddress address_;
   Settings settings_;
-  std::unique_ptr<EndnodeWays> flow_;
-  std::unique_ptr<DataFlow> enable_flow_;
-  std::vector<FurtherExchange> further_;
-  std::optional<SimulatedSwitch> switch_;
-  bool had_power_{true};
-
+  DeviceEndnodes endnodes_;
+  SimulatedInhibit inhibit_;
+  SimulatedSwitch switch_;
+  Obedience obedience_;
+  WorldClock clock_;
+  DeviceAnswers answers_;
   bool world_made_{false};
-  bool peer_gone_{false};
-  bool started_{false};
-  bool by_own_clock_{true};
-  TimePoint now_{};
-  TimePoint world_time_{};  // up to where the world has moved
-  std::uint64_t cycles_{0};
-  std::uint64_t own_cycles_{0};
   std::uint64_t damaged_commands_{0};
-
-  bool begins_{true};  ///< and has not heard yet what it may be let go by
-  DeviceMode mode_{DeviceMode::Off};
-  std::uint32_t epoch_{0};
-  std::uint32_t sequence_{0};
-  std::uint16_t flags_{0};
-  TimePoint watchdog_at_{TimePoint::max()};
-  std::optional<EnableCommand> enable_;  ///< newest that counts
-  TimePoint enable_until_{};
-  std::optional<std::uint32_t> enable_asked_;  ///< not yet answered
-  DeviceOutput output_{DeviceOutput::Off};
-  std::uint64_t obeyed_cycles_{0};  ///< `cycles_` when commands reached the motors last
-  Duration stop_left_{};
-  Duration starved_{};  ///< steps since the last command that the watchdog does not count
-
-  TimePoint silent_until_{};
-  TimePoint frozen_until_{};
-  Duration delay_{0};
-  std::uint32_t corrupt_frames_{0};
-  Frame last_{};
-  std::vector<Frame> delayed_;  // ring, sized once
-  std::size_t delayed_first_{0};
-  std::size_t delayed_count_{0};
+  std::uint64_t obeyed_cycles_{0};  ///< cycles() when commands reached the motors last
   std::vector<Injection> injections_;
 };
 

@@ -6,7 +6,22 @@
 
 namespace hirosco::simulation {
 
-void SimulatedSwitch::step(TimePoint now) noexcept {
+Result<> SimulatedSwitch::open(FlowFactory& flows) {
+  if (!endnode_ || opened()) return ok();
+  FlowAddress address = *endnode_;
+  address.holder = FlowHolder::Supervisor;
+  HIROSCO_TRY_LET(flow_, flows.open(address, FlowSide::Device));
+  return ok();
+}
+
+bool SimulatedSwitch::step(TimePoint now) noexcept {
+  if (!opened()) return false;
+  const bool had = on_;
+  take(now);
+  return on_ != had;
+}
+
+void SimulatedSwitch::take(TimePoint now) noexcept {
   if (on_ && now >= until_) on_ = false;
   std::array<std::byte, max_frame_octets> buffer;
   const auto received = flow_->receive(buffer);

@@ -4,25 +4,35 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/device/power_frame.hpp"
+#include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
 
 namespace hirosco::simulation {
 
 /// The power switch in front of a simulated device (power_frame.hpp): off until it is told, and again when nobody tells it any more.
-/// Pure logic but for its flow. Realtime: bounded, no allocation. Thread: one.
+/// Pure logic but for its flow. Realtime: bounded, no allocation but in open(). Thread: one.
 class SimulatedSwitch {
  public:
-  explicit SimulatedSwitch(std::unique_ptr<DataFlow> flow) noexcept : flow_{std::move(flow)} {}
-  /// Takes what came and answers it.
-  void step(TimePoint now) noexcept;
-  [[nodiscard]] bool on() const noexcept { return on_; }
-  /// When it is off by itself; the end of time while it is off.
+  /// `endnode`: where it is told; none: there is no switch, and the device has power always, as it has before open().
+  explicit SimulatedSwitch(std::optional<FlowAddress> endnode) : endnode_{std::move(endnode)} {}
+  /// Opens the device's side, once.
+  [[nodiscard]] Result<> open(FlowFactory& flows);
+  [[nodiscard]] bool opened() const noexcept { return flow_ != nullptr; }
+  /// Takes what came and answers it. True: power came or went.
+  [[nodiscard]] bool step(TimePoint now) noexcept;
+  [[nodiscard]] bool on() const noexcept { return !opened() || on_; }
+  /// When it is off by itself; the end of time while it is off, or there is none.
   [[nodiscard]] TimePoint off_at() const noexcept { return on_ ? until_ : TimePoint::max(); }
 
  private:
+  void take(TimePoint now) noexcept;
+
+  std::optional<FlowAddress> endnode_;
   std::unique_ptr<DataFlow> flow_;
   bool on_{false};
   TimePoint until_{};

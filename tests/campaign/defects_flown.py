@@ -61,14 +61,14 @@ DEFECTS = {
          'for (const pus::Request& request : planted("NO_OUTCOME") ? std::vector<pus::Request>{} : parts_.unanswered.take(apid))')]),
     # A device that had just begun obeyed what it was told first.
     "BEGINS": ("I4", [
-        ("simulation/devices/simulated_device.cpp", "const bool begins = begins_ && settings_.actuator",
-         'const bool begins = !planted("BEGINS") && begins_ && settings_.actuator')]),
+        ("simulation/devices/obedience.cpp", "const bool begins = begins_ && declared_.actuator",
+         'const bool begins = !planted("BEGINS") && begins_ && declared_.actuator')]),
     # An exchange moved a device's clock by at least one cycle, and the rest was forgotten.
     "OWN_CLOCK": ("I13", [
-        ("simulation/devices/simulated_device.cpp", "  if (!exchanged && behind < settings_.cycle * (by_own_clock_ ? 1 : 2)) return 0;",
+        ("simulation/devices/world_clock.cpp", "  if (!exchanged && behind < planned_step()) return 0;",
          '  if (exchanged && planted("OWN_CLOCK")) {\n    by_own_clock_ = false;\n    world_time_ = now;\n'
-         "    return std::max<std::int64_t>(1, (behind + settings_.cycle / 2) / settings_.cycle);\n  }\n"
-         "  if (!exchanged && behind < settings_.cycle * (by_own_clock_ ? 1 : 2)) return 0;")]),
+         "    return std::max<std::int64_t>(1, (behind + cycle_ / 2) / cycle_);\n  }\n"
+         "  if (!exchanged && behind < planned_step()) return 0;")]),
 }
 HEADER = f"""#pragma once
 #include <cstdlib>

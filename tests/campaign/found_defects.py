@@ -305,17 +305,17 @@ DEFECTS = [
 
     # --- devices ---------------------------------------------------------------------------------------------------------
     # Whoever knew the epoch moved the actuator: there was no second inhibit.
-    Defect("SF16 one inhibit", DEVICE, "if (!settings_.enable) return true;", "if (!settings_.enable || PLANTED) return true;",
+    Defect("SF16 one inhibit", "simulation/devices/simulated_inhibit.cpp", "if (!endnode_) return true;", "if (!endnode_ || PLANTED) return true;",
            "robot_device_test", "Enable.*"),
     # Every stop was zero torque.
-    Defect("SF17 every stop drops", DEVICE, "case Stop::Controlled: output_ = stop_left_ > Duration{0} ?",
-           "case Stop::Controlled: output_ = PLANTED ? DeviceOutput::Off : stop_left_ > Duration{0} ?",
+    Defect("SF17 every stop drops", "simulation/devices/obedience.cpp", "case Controlled: output_ = stop_left_ > Duration{0} ?",
+           "case Controlled: output_ = PLANTED ? DeviceOutput::Off : stop_left_ > Duration{0} ?",
            "robot_device_test", "DeclaredStop.*"),
     # An exchange moved a device's clock by at least one cycle, and the rest was forgotten.
-    Defect("own clock", DEVICE, "  if (!exchanged && behind < settings_.cycle * (by_own_clock_ ? 1 : 2)) return 0;",
+    Defect("own clock", "simulation/devices/world_clock.cpp", "  if (!exchanged && behind < planned_step()) return 0;",
            "  if (exchanged && PLANTED) {\n    by_own_clock_ = false;\n    world_time_ = now;\n"
-           "    return std::max<std::int64_t>(1, (behind + settings_.cycle / 2) / settings_.cycle);\n  }\n"
-           "  if (!exchanged && behind < settings_.cycle * (by_own_clock_ ? 1 : 2)) return 0;",
+           "    return std::max<std::int64_t>(1, (behind + cycle_ / 2) / cycle_);\n  }\n"
+           "  if (!exchanged && behind < planned_step()) return 0;",
            "robot_device_test", "OwnClock.MakesTimeThroughPeriodCyclesWhateverTheRatioOfPeriods"),
     # A device spoke its own byte order, whatever its endnode's was.
     Defect("byte order of a device", DEVICE, "OctetWriter writer{payload, settings_.byte_order};",

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/mujoco/joint_drives.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hirosco::simulation {
+namespace {
+
+constexpr double brake_share = 2;  ///< of a joint's effort
+constexpr double slowing_share = 0.3;
+/// Dry friction of MuJoCo gives way a little; this little: how near to rigid.
+constexpr double friction_rigid = 0.9999;
+
+}  // namespace
+
+JointDrives::JointDrives(std::span<const DrivenJoint> joints) {
+  for (const DrivenJoint& joint : joints) joints_.push_back({.name = joint.name, .effort = joint.effort});
+}
+
+std::expected<void, std::string> JointDrives::find(mjModel& model, const MujocoSpec& spec) {
+  for (Joint& joint : joints_) {
+    const int id = mj_name2id(&model, mjOBJ_JOINT, joint.name.c_str());
+    if (id < 0) return std::unexpected{"MuJoCo has no joint '" + joint.name + "'"};
+    joint.position = model.jnt_qposadr[id];
+    joint.dof = model.jnt_dofadr[id];
+    joint.friction = model.dof_frictionloss[joint.dof];
+    joint.damping = model.dof_damping[joint.dof];
+    if (joint.rotor) model.dof_armature[joint.dof] = *joint.rotor;
+    model.dof_solref[mjNREF * joint.dof] = MujocoSpec::friction_s;
+    model.dof_solimp[mjNIMP * joint.dof] = model.dof_solimp[mjNIMP * joint.dof + 1] = friction_rigid;
+    if (!spec.is_scene()) model.jnt_solref[mjNREF * id] = MujocoSpec::end_s;
+  }
+  return {};
+}
+
+std::optional<std::size_t> JointDrives::named(std::string_view name) const noexcept {
+  const auto found =
+      std::ranges::find(joints_, name, [](const Joint& joint) -> std::string_view { return joint.name; });
+  if (found == joints_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - joints_.begin());
+}
+
+bool JointDrives::move(int body, const mjModel& model) const noexcept {
+  return std::ranges::any_of(joints_, [&](const Joint& joint) { return model.dof_bodyid[joint.dof] == body; });
+}
+
+double JointDrives::position(std::size_t joint, const MujocoWorld& world) const noexcept {
+  return world.data().qpos[joints_[joint].position];
+}
+
+double JointDrives::velocity(std::size_t joint, const MujocoWorld& world) const noexcept {
+  return world.data().qvel[joints_[joint].dof];
+}
+
+void JointDrives::place(std::span<const double> positions, MujocoWorld& world) const noexcept {
+  for (std::size_t i = 0; i < std::min(positions.size(), joints_.size()); ++i)
+    world.data().qpos[joints_[i].position] = positions[i];
+}
+
+void JointDrives::set_in_motion(std::span<const double> velocities, MujocoWorld& world) const noexcept {
+  for (std::size_t i = 0; i < std::min(velocities.size(), joints_.size()); ++i)
+    world.data().qvel[joints_[i].dof] = velocities[i];
+}
+
+void JointDrives::drive(std::size_t joint, double torque, Brakes brakes, MujocoWorld& world) noexcept {
+  Joint& its = joints_[joint];
+  its.brakes = brakes;
+  world.data().qfrc_applied[its.dof] = std::clamp(torque, -its.effort, its.effort);
+}
+
+void JointDrives::close_brakes(MujocoWorld& world) noexcept {
+  for (Joint& joint : joints_) joint.brakes = Brakes::Closed;
+  brake(world);
+}
+
+void JointDrives::brake(MujocoWorld& world) const noexcept {
+  for (const Joint& joint : joints_) {
+    const double held = joint.brakes == Brakes::Open ? 0
+                        : joint.brakes == Brakes::Slowing
+                            ? std::abs(world.data().qfrc_bias[joint.dof]) + slowing_share * joint.effort
+                            : brake_share * joint.effort;
+    world.model().dof_frictionloss[joint.dof] = joint.friction * friction_factor_ + more_friction_ + held;
+    world.model().dof_damping[joint.dof] = joint.damping * friction_factor_;
+  }
+}
+
+/// Friction and brakes act between drive and link, mechanical stops and what touches on the link itself.
+void JointDrives::feel(const MujocoWorld& world) noexcept {
+  const mjData& data = world.data();
+  for (Joint& joint : joints_)
+    joint.torque = data.qfrc_applied[joint.dof] + data.qfrc_passive[joint.dof] -
+                   world.model().dof_armature[joint.dof] * data.qacc[joint.dof];
+  for (int i = 0; i < data.nefc; ++i) {
+    if (data.efc_type[i] != mjCNSTR_FRICTION_DOF) continue;
+    const auto found = std::ranges::find(joints_, data.efc_id[i], &Joint::dof);
+    if (found != joints_.end()) found->torque += data.efc_force[i];
+  }
+}
+
+void JointDrives::set_friction(double factor, double more) noexcept {
+  friction_factor_ = factor;
+  more_friction_ = more;
+}
+
+void JointDrives::set_rotors(std::span<const double> inertias, MujocoWorld& world) noexcept {
+  for (std::size_t i = 0; i < std::min(inertias.size(), joints_.size()); ++i)
+    world.model().dof_armature[joints_[i].dof] = *(joints_[i].rotor = inertias[i]);
+}
+
+}  // namespace hirosco::simulation

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/mujoco/mujoco_world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace hirosco::simulation {
+
+std::expected<MujocoWorld::Compiled, std::string> MujocoWorld::compile(std::span<const Obstacle> obstacles,
+                                                                       std::span<const LooseBody> bodies) const {
+  auto model = spec_.compile(obstacles, bodies);
+  if (!model) return std::unexpected{std::move(model.error())};
+  MujocoData data{mj_makeData(model->get())};
+  if (data == nullptr) return std::unexpected{"MuJoCo has no memory for it"};
+  const std::size_t of_base = spec_.floats() ? FloatingBase::dofs : 0;
+  if (static_cast<std::size_t>((*model)->nv) !=
+      spec_.joints().size() + spec_.further_dofs() + of_base + 6 * bodies.size())
+    return std::unexpected{"MuJoCo has another number of joints than the file"};
+  return Compiled{std::move(*model), std::move(data)};
+}
+
+void MujocoWorld::become(Compiled next) noexcept {
+  if (model_ != nullptr) std::ranges::copy_n(model_->opt.gravity, 3, next.model->opt.gravity);
+  if (spec_.floats()) base_.find(*next.model, spec_.root());
+  model_ = std::move(next.model);
+  data_ = std::move(next.data);
+  tip_ = std::max(0, mj_name2id(model_.get(), mjOBJ_BODY, MujocoSpec::payload_body));
+}
+
+std::span<const double, 3> MujocoWorld::tip_m() const noexcept {
+  return std::span<const double, 3>{data_->xpos + 3 * tip_, 3};
+}
+
+std::span<const double, 4> MujocoWorld::tip_orientation() const noexcept {
+  return std::span<const double, 4>{data_->xquat + 4 * tip_, 4};
+}
+
+std::span<double, 6> MujocoWorld::pushed() const noexcept {
+  return std::span<double, 6>{data_->xfrc_applied + 6 * tip_, 6};
+}
+
+void MujocoWorld::push(double x, double y, double z) noexcept {
+  const auto force = pushed();
+  force[0] = x;
+  force[1] = y;
+  force[2] = z;
+}
+
+void MujocoWorld::set_gravity(double x, double y, double z) noexcept {
+  model_->opt.gravity[0] = x;
+  model_->opt.gravity[1] = y;
+  model_->opt.gravity[2] = z;
+}
+
+void MujocoWorld::step(Duration span) noexcept {
+  if (base_.floats()) base_.apply(*data_);
+  const auto steps =
+      std::max<std::int64_t>(1, std::llround(std::ceil(seconds(span) / MujocoSpec::longest_sub_step_s - 1e-9)));
+  model_->opt.timestep = seconds(span) / static_cast<double>(steps);
+  for (std::int64_t i = 0; i < steps; ++i) mj_step(model_.get(), data_.get());
+  // Once more, for the sensors: what stands there is of a stage within the last sub-step.
+  forward();
+}
+
+void MujocoWorld::follow() noexcept {
+  for (int i = 0; i < model_->neq; ++i) {
+    if (model_->eq_type[i] != mjEQ_JOINT || model_->eq_obj2id[i] < 0) continue;
+    const mjtNum* numbers = model_->eq_data + mjNEQDATA * i;
+    data_->qpos[model_->jnt_qposadr[model_->eq_obj1id[i]]] =
+        numbers[0] + numbers[1] * data_->qpos[model_->jnt_qposadr[model_->eq_obj2id[i]]];
+  }
+}
+
+double MujocoWorld::kinetic_energy_j() const {
+  std::vector<double> momentum(static_cast<std::size_t>(model_->nv));
+  mj_mulM(model_.get(), data_.get(), momentum.data(), data_->qvel);
+  return mju_dot(momentum.data(), data_->qvel, static_cast<int>(model_->nv)) / 2;
+}
+
+}  // namespace hirosco::simulation
