@@ -7,6 +7,7 @@
 #include <sched.h>
 #include <signal.h>
 #include <sys/eventfd.h>
+#include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/ptrace.h>
 #include <sys/resource.h>
@@ -143,6 +144,26 @@ void attack_scheduling(const Report& report) {
   report.tried("others: before the keeper", ::sched_setscheduler(0, SCHED_FIFO, &as) == 0);
 }
 
+/// A stop that nobody carries out: signals to who guards it, by each way that there is, also by a file or a terminal that is given to it.
+void attack_by_signals(const Report& report) {
+  const pid_t supervisor = ::getppid();
+  siginfo_t queued{};
+  queued.si_code = SI_QUEUE;
+  report.tried("others: signal", ::kill(supervisor, 0) == 0);
+  report.tried("others: signal to all", ::kill(-1, 0) == 0);
+  report.tried("others: signal to a thread", ::syscall(SYS_tgkill, supervisor, supervisor, 0) == 0);
+  report.tried("others: signal to a thread by its number", ::syscall(SYS_tkill, supervisor, 0) == 0);
+  report.tried("others: queued signal", ::syscall(SYS_rt_sigqueueinfo, supervisor, 0, &queued) == 0);
+  const int handle = static_cast<int>(::syscall(SYS_pidfd_open, supervisor, 0));
+  report.tried("others: signal by a handle", ::syscall(SYS_pidfd_send_signal, handle, 0, nullptr, 0) == 0);
+  if (handle >= 0) ::close(handle);
+  report.tried("others: signal by a file's owner", ::fcntl(STDIN_FILENO, F_SETOWN, supervisor) == 0);
+  char typed = 3;  // Ctrl-C
+  pid_t front = ::getpgrp();
+  report.tried("others: typed at its terminal", ::ioctl(STDIN_FILENO, TIOCSTI, &typed) == 0);
+  report.tried("others: its terminal's turn", ::ioctl(STDIN_FILENO, TIOCSPGRP, &front) == 0);
+}
+
 sockaddr_in in_this_computer(std::uint16_t port) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -196,7 +217,7 @@ void attack_others(const Report& report) {
   iovec here{&octets, sizeof octets};
   report.tried("others: ptrace", ::ptrace(PTRACE_SEIZE, ::getppid(), nullptr, nullptr) == 0);
   report.tried("others: process_vm_readv", ::process_vm_readv(::getppid(), &here, 1, &here, 1, 0) > 0);
-  report.tried("others: signal", ::kill(::getppid(), 0) == 0);
+  attack_by_signals(report);
   const pid_t child = ::fork();
   if (child == 0) ::_exit(0);
   report.tried("others: fork", child > 0);

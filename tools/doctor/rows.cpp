@@ -60,8 +60,8 @@ Finding isolation(const System& system) {
   if (system.open.empty()) return ok("files, signals, system calls");
   const std::string open = fmt::format("{}", fmt::join(system.open, "; "));
   const std::string mends = open.find("HIROSCO_SANDBOX") != std::string::npos ? "unset HIROSCO_SANDBOX"
-                            : open.find("version 6") != std::string::npos
-                                ? "sudo apt install -t bookworm-backports linux-image-amd64  # Linux 6.12 or later"
+                            : open.find("before version") != std::string::npos
+                                ? "sudo apt install -t bookworm-backports linux-image-amd64  # Linux 6.7 or later"
                             : open.find("Landlock") != std::string::npos
                                 ? "sudo sed -i 's/^GRUB_CMDLINE_LINUX=\"/&lsm=landlock,lockdown,yama,apparmor /' "
                                   "/etc/default/grub && sudo update-grub  # and restart"

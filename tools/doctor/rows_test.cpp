@@ -80,8 +80,11 @@ const std::vector<Case>& cases() {
       {"locked memory",
        [](System& system) { system.no_locked_memory = refused(ENOMEM), system.memory_limit = 8U << 20U; },
        Verdict::Missing, "refused, limit 8192 KiB: Cannot allocate memory", "ada - memlock unlimited"},
-      {"isolation", [](System& system) { system.open = {"signals reach others (Landlock before version 6)"}; },
-       Verdict::WorthKnowing, "signals reach others", "linux-image-amd64"},
+      {"isolation",
+       [](System& system) {
+         system.open = {"whoever has a device by TCP reaches every port (Landlock before version 4)"};
+       },
+       Verdict::WorthKnowing, "reaches every port", "linux-image-amd64"},
       {"isolation", [](System& system) { system.open = {"files are open to all (no Landlock)"}; },
        Verdict::WorthKnowing, "files are open to all", "lsm=landlock"},
       {"isolation",

@@ -7,11 +7,13 @@
 #include <netinet/in.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/ptrace.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/uio.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -101,6 +103,60 @@ TEST_F(SandboxTest, ReachesNoOtherProcessAndStartsNone) {
     return errno == EACCES ? 0 : 8;
   });
   EXPECT_EQ(wrong, 0);
+}
+
+/// By the filter alone: not every kernel has rules for signals.
+TEST_F(SandboxTest, SignalsItsOwnThreadsAndNobodyElse) {
+  const pid_t other = ::getpid();
+  const int wrong = inside({}, [&] {
+    name_refused_calls("test");
+    const pid_t self = ::getpid();
+    sigval nothing{};
+    ::signal(SIGUSR1, SIG_IGN);
+    if (::kill(self, SIGUSR1) != 0 || ::raise(SIGUSR1) != 0 || ::sigqueue(self, SIGUSR1, nothing) != 0) return 1;
+    bool own = false;
+    auto thread = Thread::start("signalled", [&] { own = ::pthread_kill(::pthread_self(), SIGUSR1) == 0; });
+    if (!thread) return 2;
+    thread->join();
+    if (!own) return 3;
+    for (const pid_t whom : {other, 0, -1, -self, -other})
+      if (::kill(whom, 0) == 0 || errno != EPERM) return 4;
+    return ::sigqueue(other, 0, nothing) == 0 || errno != EPERM ? 5 : 0;
+  });
+  EXPECT_EQ(wrong, 0);
+  siginfo_t queued{};
+  queued.si_code = SI_QUEUE;
+  const auto refused = [&](const std::function<long()>& call) {
+    return inside({}, [&] { return static_cast<int>(call() & 0x3F); });
+  };
+  constexpr int by_filter = 128 + SIGSYS;
+  EXPECT_EQ(refused([&] { return ::kill(other, 0); }), by_filter);
+  EXPECT_EQ(refused([&] { return ::syscall(SYS_tgkill, other, other, 0); }), by_filter);
+  EXPECT_EQ(refused([&] { return ::syscall(SYS_tkill, other, 0); }), by_filter);
+  EXPECT_EQ(refused([&] { return ::syscall(SYS_rt_sigqueueinfo, other, 0, &queued); }), by_filter);
+  EXPECT_EQ(refused([&] { return ::syscall(SYS_rt_tgsigqueueinfo, other, other, 0, &queued); }), by_filter);
+  EXPECT_EQ(refused([&] { return ::syscall(SYS_pidfd_send_signal, 3, 0, nullptr, 0); }), by_filter);
+}
+
+/// Whoever owns a file gets the signal that it asks for, and whoever sits at a terminal what is typed there.
+TEST_F(SandboxTest, GivesNoFileToAnotherToSignalAndTypesForNobody) {
+  const pid_t other = ::getpid();
+  std::array<int, 2> pipe{};
+  ASSERT_EQ(::pipe2(pipe.data(), O_CLOEXEC), 0);
+  const FileDescriptor reads{pipe[0]}, writes{pipe[1]};
+  const auto refused = [&](const std::function<long()>& call) {
+    return inside({}, [&] { return static_cast<int>(call() & 0x3F); });
+  };
+  constexpr int by_filter = 128 + SIGSYS;
+  const f_owner_ex owner{F_OWNER_PID, other};
+  int whom = other;
+  EXPECT_EQ(refused([&] { return ::fcntl(reads.get(), F_SETOWN, other); }), by_filter);
+  EXPECT_EQ(refused([&] { return ::fcntl(reads.get(), F_SETOWN_EX, &owner); }), by_filter);
+  for (const unsigned long request : {FIOSETOWN, SIOCSPGRP, TIOCSTI, TIOCSPGRP, TIOCSCTTY, TIOCLINUX})
+    EXPECT_EQ(refused([&] { return ::ioctl(reads.get(), request, &whom); }), by_filter) << request;
+  int waiting = -1;
+  EXPECT_EQ(inside({}, [&] { return ::ioctl(reads.get(), FIONREAD, &waiting) == 0 && waiting == 0 ? 0 : 1; }), 0);
+  EXPECT_EQ(inside({}, [&] { return ::fcntl(reads.get(), F_GETFL) == O_RDONLY ? 0 : 1; }), 0);
 }
 
 TEST_F(SandboxTest, SchedulesItsOwnThreadsAndLimitsItselfButNobodyElse) {
