@@ -236,7 +236,7 @@ class DevicePort final : private HasFields<Input, 0>, private HasFields<Output, 
   [[nodiscard]] const Input& input() const noexcept { return input_; }
   /// What the device is to do. Reaches an actuator in Operational only: in every other state, and while inhibited, the
   /// framework sends the descriptor's safe values instead (decision 22). What is outside a declared range goes out as
-  /// the end of it, and what is no number as the safe value.
+  /// the end of it, and what is no number or without end, whether it has a range or not, as the safe value.
   [[nodiscard]] Output& output() noexcept { return output_; }
 
  private:

@@ -215,12 +215,12 @@ void DeviceSlot::keep_in_range(MutableOctets payload) noexcept {
     const descriptor::Field& field = output.field;
     const std::size_t octets = octets_of(field.type);
     for (std::size_t i = 0; i < field.count; ++i, at += octets) {
-      if (!field.minimum && !field.maximum) continue;
       const MutableOctets place = payload.subspan(at, octets);
       OctetReader reader{place, order_};
       const double wanted = get_number(reader, field.type);
       double held = wanted;
-      if (std::isnan(wanted)) held = i < output.safe.size() ? output.safe[i] : 0.0;
+      // Also where no range is declared: an actuator is told a quantity or nothing.
+      if (!std::isfinite(wanted)) held = i < output.safe.size() ? output.safe[i] : 0.0;
       if (field.minimum) held = std::max(held, field.minimum->real());
       if (field.maximum) held = std::min(held, field.maximum->real());
       if (held == wanted) continue;

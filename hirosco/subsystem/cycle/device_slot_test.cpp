@@ -150,19 +150,40 @@ struct Pushed {
   float bias{};
 };
 
-TEST_F(MotorSlot, AnOutputWithARangeThatIsNoNumberGoesOutAsItsSafeValue) {
+TEST_F(MotorSlot, AnOutputThatIsNoNumberOrHasNoEndGoesOutAsItsSafeValueWithARangeAndWithout) {
+  constexpr double no_number = std::numeric_limits<double>::quiet_NaN(),
+                   no_end = std::numeric_limits<double>::infinity();
+  for (const bool ranged : {false, true})
+    for (const double wrong : {no_number, -no_number, no_end, -no_end}) {
+      device.output = {{.field = field("FORCE", Type::Double, 2), .safe = {0.5, 0.25}},
+                       {.field = field("BIAS", Type::Float), .safe = {}}};
+      if (ranged)
+        for (auto& output : device.output) output.field.maximum = 2;
+      DevicePort<Sensed, Pushed> pushing;
+      DeviceSlot made{device, use, pushing, one_way(), 1ms, true};
+      pushing.output() = Pushed{.force = {wrong, 1}, .bias = static_cast<float>(wrong)};
+      made.write(5, true, false);
+      const DeviceCommand command = heard();
+      OctetReader reader{command.payload, std::endian::little};
+      EXPECT_EQ(reader.get<double>(), 0.5) << ranged << wrong;
+      EXPECT_EQ(reader.get<double>(), 1) << ranged << wrong;
+      EXPECT_EQ(reader.get<float>(), 0) << ranged << wrong;
+    }
+}
+
+TEST_F(MotorSlot, AnOutputBeyondItsRangeGoesOutAsTheEndOfIt) {
   device.output = {{.field = field("FORCE", Type::Double, 2), .safe = {0.5, 0.25}},
                    {.field = field("BIAS", Type::Float), .safe = {}}};
   for (auto& output : device.output) output.field.maximum = 2;
   DevicePort<Sensed, Pushed> pushing;
   DeviceSlot made{device, use, pushing, one_way(), 1ms, true};
-  pushing.output() = Pushed{.force = {std::nan(""), 7}, .bias = std::numeric_limits<float>::quiet_NaN()};
+  pushing.output() = Pushed{.force = {1.5, 7}, .bias = 7};
   made.write(5, true, false);
   const DeviceCommand command = heard();
   OctetReader reader{command.payload, std::endian::little};
-  EXPECT_EQ(reader.get<double>(), 0.5);
+  EXPECT_EQ(reader.get<double>(), 1.5);
   EXPECT_EQ(reader.get<double>(), 2);
-  EXPECT_EQ(reader.get<float>(), 0);
+  EXPECT_EQ(reader.get<float>(), 2);
 }
 
 TEST_F(MotorSlot, WhatAConfigurationSetsForADeviceIsItsAuthorsToRead) {

@@ -238,29 +238,29 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     program.clear();  // it may be elsewhere by now
     return fail(spawned.error());
   }
-  HIROSCO_TRY_LET(LaunchedSubsystem launched,
-                  hold(*spawned, std::move(ends.first), std::move(vital.second), std::move(permit.second)));
+  auto held = hold(*spawned, std::move(ends.first), std::move(vital.second), std::move(permit.second));
+  if (!held) {
+    // One that nobody could end is not let go at all.
+    end_now(std::move(*spawned));
+    return fail(held.error());
+  }
+  LaunchedSubsystem& launched = *held;
   keep(subsystem.subsystem.name, launched, vital.first, permit.first, errors_read);
   if (script && image != nullptr) launched.not_held = "it is a script, whose interpreter is another file";
   if (script && !sandbox_is_off()) launched.not_isolated = "it is a script";
-  return launched;
+  return held;
 }
 
 Result<LaunchedSubsystem> SystemLauncher::hold(Process& process, FileDescriptor channel, Mapping vital,
                                                Mapping permit) {
-  auto grip = grip_of(process);
-  if (!grip) {
-    // One that nobody could end is not let go at all.
-    static_cast<void>(process.send_signal(SIGKILL));
-    return fail(grip.error());
-  }
+  HIROSCO_TRY_LET(auto grip, grip_of(process));
   LaunchedSubsystem launched;
   launched.vital = std::move(vital);
   launched.permit = std::move(permit);
   launched.port = std::make_unique<LocalMemberPort>(std::make_unique<OwnedEnd>(std::move(channel)), launched.vital,
                                                     launched.permit);
   launched.process = next_++;
-  launched.grip = std::move(*grip);
+  launched.grip = std::move(grip);
   memory_use_[launched.process] = open_statm(std::to_string(process.pid()));
   if (!memory_use_[0]) memory_use_[0] = open_statm("self");
   if (auto meter = ProcessMeter::of(process.pid())) meters_.emplace(launched.process, std::move(*meter));
@@ -316,17 +316,20 @@ NotAdopted SystemLauncher::end_at_once(std::size_t slot, Process process, const 
   const bool of_system = why.code == ErrorCode::SystemFailure && why.value > 0;
   const std::string words =
       of_system ? fmt::format("{} ({})", why.text, std::strerror(static_cast<int>(why.value))) : std::string{why.text};
+  const std::uint32_t number = end_now(std::move(process));
+  if (number == 0) store_.forget(slot);
+  else kept_[number] = slot;  // another supervisor tries again
+  return {.why = words, .process = number};
+}
+
+std::uint32_t SystemLauncher::end_now(Process process) {
   static_cast<void>(process.send_signal(SIGKILL));
   pollfd look{process.handle().get(), POLLIN, 0};
   static_cast<void>(::poll(&look, 1, longest_end_ms));
-  if (const auto end = process.poll(); end && *end) {
-    store_.forget(slot);
-    return {.why = words, .process = 0};
-  }
+  if (const auto end = process.poll(); end && *end) return 0;
   const std::uint32_t number = next_++;
   processes_.emplace(number, std::move(process));
-  kept_[number] = slot;  // another supervisor tries again
-  return {.why = words, .process = number};
+  return number;
 }
 
 Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, Process& process,

@@ -57,6 +57,8 @@ class SystemLauncher final : public FlightLauncher {
   [[nodiscard]] Result<AdoptedSubsystem> take_over(const std::string& name, Process& process,
                                                    std::array<FileDescriptor, kept_roles>& kept);
   [[nodiscard]] NotAdopted end_at_once(std::size_t slot, Process process, const Error& why);
+  /// 0, or as which process it is still to be seen to its end.
+  std::uint32_t end_now(Process process);
   void keep(const std::string& name, const LaunchedSubsystem& launched, const MemoryHandle& vital,
             const MemoryHandle& permit, const FileDescriptor& errors);
   [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;

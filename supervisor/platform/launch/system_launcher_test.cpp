@@ -203,6 +203,28 @@ TEST_F(ManifestStart, OfAnotherFileIsRefused) {
   EXPECT_EQ(run(), 0);
 }
 
+TEST_F(ManifestStart, ThatFailsForWantOfADescriptorAtWhicheverStepLeavesNoProcessBehind) {
+  rlimit all{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &all), 0);
+  const FileDescriptor next{::dup(STDIN_FILENO)};
+  int failed = 0;
+  bool started = false;
+  constexpr int most = 64;
+  for (int left = 1; left <= most && !started; ++left) {
+    rlimit few = all;
+    few.rlim_cur = static_cast<rlim_t>(next.get() + left);
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+    auto launched = launcher.launch(mission.subsystems[0]);
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &all), 0);
+    started = launched.has_value();
+    failed += started ? 0 : 1;
+    while (launcher.any_running()) {}
+    EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << left << " left: a zombie, or one that goes on";
+  }
+  EXPECT_TRUE(started);
+  EXPECT_GT(failed, 10);
+}
+
 /// Of a process that rests, with pages as a supervisor before had kept them.
 std::array<FileDescriptor, kept_roles> kept_of(pid_t process, SealedMemory& memory, const PermitPage& permit) {
   std::array<FileDescriptor, kept_roles> kept;
