@@ -155,7 +155,7 @@ int run(int repeats, int kills) {
   Network network{clock};
   const auto watch = LifeWatch::start(network.guard());
   if (!watch) {
-    std::printf("The end of a process: %s\n", watch.error().text.c_str());
+    std::printf("The end of a process: %s\n", watch.error().text);
     return EXIT_SUCCESS;
   }
   std::array<Series, 2> bare{Series{"bare word, small", {}}, Series{"bare word, 512 MB", {}}};

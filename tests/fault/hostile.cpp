@@ -12,6 +12,7 @@
 #include <sys/ptrace.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <time.h>
@@ -158,6 +159,7 @@ void attack_by_signals(const Report& report) {
   report.tried("others: signal by a handle", ::syscall(SYS_pidfd_send_signal, handle, 0, nullptr, 0) == 0);
   if (handle >= 0) ::close(handle);
   report.tried("others: signal by a file's owner", ::fcntl(STDIN_FILENO, F_SETOWN, supervisor) == 0);
+  report.tried("others: its group", ::setpgid(0, ::getpgid(supervisor)) == 0);
   char typed = 3;  // Ctrl-C
   pid_t front = ::getpgrp();
   report.tried("others: typed at its terminal", ::ioctl(STDIN_FILENO, TIOCSTI, &typed) == 0);
@@ -183,6 +185,8 @@ void attack_inhibits(const Report& report) {
     if (file >= 0) ::close(file);
     report.tried("inhibits: open " + segment, file >= 0);
     report.tried("inhibits: link " + segment, ::link(segment.c_str(), here.c_str()) == 0);
+    report.tried("inhibits: cut short " + segment, ::truncate(segment.c_str(), 0) == 0);
+    report.tried("inhibits: shut " + segment, ::chmod(segment.c_str(), 0) == 0);
     report.tried("inhibits: move " + segment, ::rename(segment.c_str(), here.c_str()) == 0);
   }
   constexpr std::uint16_t telecommands = 10025;

@@ -33,6 +33,8 @@ struct ProcessLimits {
   /// The highest of real time that its threads may take; less where we have less ourselves. Root's right to all of them ends in a sandbox
   /// only.
   std::optional<std::uint64_t> realtime_priority{};
+  /// Where memory ends, the system ends a process: this one before those that are not so marked, as if it had half the computer's memory more.
+  bool goes_first{false};
 };
 
 /// What to start.

@@ -27,6 +27,7 @@ struct Sandbox {
   std::vector<std::string> executable;
   std::vector<std::string> writable;  ///< also made and removed, and read
   SandboxSockets sockets{};
+  bool queues{false};  ///< POSIX message queues, whosever of its user
 };
 
 /// What this computer or build cannot keep a process from, in words; empty: all of it.

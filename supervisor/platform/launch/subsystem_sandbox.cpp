@@ -47,7 +47,10 @@ void add_internet_address(const descriptor::Endnode& endnode, SandboxSockets& so
 void add_address(const descriptor::Endnode& endnode, Sandbox& sandbox) {
   if (endnode.transfer == Transfer::SharedMemory) add_once(device_memory_folder, sandbox.writable);
   // Queues lie in no folder that programs see, but where one is shown, that is the one whose files they are.
-  if (endnode.transfer == Transfer::MessageQueue) add_once("/dev/mqueue", sandbox.writable);
+  if (endnode.transfer == Transfer::MessageQueue) {
+    add_once("/dev/mqueue", sandbox.writable);
+    sandbox.queues = true;
+  }
   if (endnode.transfer == Transfer::Serial) {
     const std::string line = endnode.address.substr(0, endnode.address.rfind('@'));
     add_once(line.starts_with('/') ? line : "/dev/pts", sandbox.writable);
@@ -114,8 +117,8 @@ std::string left_open(const Sandbox& sandbox) {
   std::string open;
   const auto add = [&](std::string_view what) { open.append(open.empty() ? "" : ", ").append(what); };
   if (sandbox.sockets.datagrams) add("all that listens by UDP");
-  if (sandbox.sockets.local) add("all UNIX sockets that its user may open");
-  if (std::ranges::find(sandbox.writable, "/dev/mqueue") != sandbox.writable.end()) add("all message queues");
+  if (sandbox.sockets.local) add("all UNIX sockets that its user may open (a bus of his starts programs)");
+  if (sandbox.queues) add("all message queues");
   if (std::ranges::find(sandbox.writable, "/dev/pts") != sandbox.writable.end()) add("all pseudo-terminals");
   return open;
 }

@@ -220,6 +220,7 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   start.limits = limits_of(subsystem.subsystem.resources);
   // Below those of devices, guard and keeper, whatever it asks for.
   start.limits.realtime_priority = descriptor::greatest_cycle_priority;
+  start.limits.goes_first = true;  // and not the supervisor
   std::optional<PreparedSandbox> sandbox;
   if (image != nullptr) start.image = image->descriptor();
   if (image != nullptr && script) start.inherited.push_back({image->descriptor(), script_number});
@@ -229,10 +230,14 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     sandbox.emplace(sandbox_of(subsystem, image != nullptr ? "" : program));
     start.sandbox = &*sandbox;
   }
-  // What it writes to its standard error is shown with its name, within limits.
+  // What it writes is shown with its name, within limits. The terminal of whoever flies is not its own: by it, whoever has it stops him (docs/adr/0164).
   FileDescriptor errors_read;
   const auto errors = errors_.open(subsystem.subsystem.name, &errors_read);
-  if (errors) start.inherited.push_back({errors->get(), STDERR_FILENO});
+  const FileDescriptor nothing{::open("/dev/null", O_RDWR | O_CLOEXEC)};
+  if (!nothing) return fail(ErrorCode::SystemFailure, "open /dev/null for its standard input", errno);
+  start.inherited.push_back({nothing.get(), STDIN_FILENO});
+  for (const int output : {STDOUT_FILENO, STDERR_FILENO})
+    start.inherited.push_back({errors ? errors->get() : nothing.get(), output});
   auto spawned = Process::spawn(start);
   if (!spawned) {
     program.clear();  // it may be elsewhere by now

@@ -181,7 +181,7 @@ int PreparedSandbox::enter() const noexcept {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return errno;
   give_up_rights();
   if (const int error = restrict_files(sandbox_); error != 0) return error;
-  return refuse_calls(sandbox_.sockets);
+  return refuse_calls(sandbox_);
 }
 
 }  // namespace hirosco

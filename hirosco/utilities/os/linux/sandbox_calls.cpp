@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/utilities/os/linux/sandbox_calls.hpp"
 
+#include <asm/sockios.h>
 #include <fcntl.h>
 #include <linux/audit.h>
 #include <linux/filter.h>
@@ -33,6 +34,8 @@ struct Call {
   std::uint32_t number;
   const char* name;
 };
+/// fchmodat2, setxattrat, removexattrat, file_setattr: newer than the headers of Debian 12, and refused by whichever kernel knows them.
+constexpr std::array<std::uint32_t, 4> calls_of_later_kernels{452, 463, 466, 469};
 /// Other processes, the kernel, its clock, its tables of files: nothing of it is a subsystem's matter.
 constexpr std::array refused_calls{
     Call{SYS_ptrace, "ptrace"},
@@ -68,6 +71,35 @@ constexpr std::array refused_calls{
     Call{SYS_keyctl, "keyctl"},
     Call{SYS_request_key, "request_key"},
     Call{SYS_pidfd_send_signal, "pidfd_send_signal"},
+    // A process that sits in the group of another is stopped with it by their terminal, and stops it.
+    Call{SYS_setpgid, "setpgid"},
+    Call{SYS_setsid, "setsid"},
+    // Whoever maps a file that somebody cuts short dies; rules of files know nothing of it before their version 3.
+    Call{SYS_truncate, "truncate of a file by its path"},
+    // What the rules of files are not about: who may open what, when it was written, what else stands with it.
+    Call{SYS_fchmod, "fchmod"},
+    Call{SYS_fchmodat, "fchmodat"},
+    Call{calls_of_later_kernels[0], "fchmodat2"},
+    Call{SYS_fchown, "fchown"},
+    Call{SYS_fchownat, "fchownat"},
+    Call{SYS_utimensat, "utimensat"},
+    Call{SYS_setxattr, "setxattr"},
+    Call{SYS_lsetxattr, "lsetxattr"},
+    Call{SYS_fsetxattr, "fsetxattr"},
+    Call{SYS_removexattr, "removexattr"},
+    Call{SYS_lremovexattr, "lremovexattr"},
+    Call{SYS_fremovexattr, "fremovexattr"},
+    Call{calls_of_later_kernels[1], "setxattrat"},
+    Call{calls_of_later_kernels[2], "removexattrat"},
+    Call{calls_of_later_kernels[3], "file_setattr"},
+    // Memory, queues and locks under a number: of every process of the user.
+    Call{SYS_shmget, "shmget"},
+    Call{SYS_shmat, "shmat"},
+    Call{SYS_shmctl, "shmctl"},
+    Call{SYS_semget, "semget"},
+    Call{SYS_semctl, "semctl"},
+    Call{SYS_msgget, "msgget"},
+    Call{SYS_msgctl, "msgctl"},
     Call{SYS_syslog, "syslog"},
     Call{SYS_acct, "acct"},
     Call{SYS_quotactl, "quotactl"},
@@ -80,6 +112,12 @@ constexpr std::array refused_calls{
     Call{SYS_iopl, "iopl"},
     Call{SYS_ioperm, "ioperm"},
     Call{SYS_setrlimit, "setrlimit"},
+    Call{SYS_chmod, "chmod"},
+    Call{SYS_chown, "chown"},
+    Call{SYS_lchown, "lchown"},
+    Call{SYS_utime, "utime"},
+    Call{SYS_utimes, "utimes"},
+    Call{SYS_futimesat, "futimesat"},
 #endif
 };
 /// How a thread is scheduled is its own matter, and asked for with 0 in place of its number. With one user's rights, or root's, another's
@@ -99,12 +137,11 @@ constexpr std::array signal_calls{
     Call{SYS_rt_sigqueueinfo, "rt_sigqueueinfo to another process"},
     Call{SYS_rt_tgsigqueueinfo, "rt_tgsigqueueinfo to another process"},
 };
-/// Who gets the signals of a file, whichever they are, and what a terminal that came with the process lets it do to whoever sits in front of it:
-/// typing for him, his Ctrl-C, the turn to read.
-constexpr std::array<std::uint32_t, 2> owners_by_fcntl{F_SETOWN, F_SETOWN_EX};
-constexpr std::uint32_t owner_of_file = 0x8901;
-constexpr std::array<std::uint32_t, 7> owners_by_ioctl{owner_of_file, SIOCSPGRP, TIOCSTI,  TIOCSPGRP,
-                                                       TIOCSCTTY,     TIOCSIG,   TIOCLINUX};
+/// Who gets the signal that a file is set to, and who waits until this process lets a file be opened.
+constexpr std::array<std::uint32_t, 3> of_others_by_fcntl{F_SETOWN_EX, F_SETLEASE, F_NOTIFY};
+constexpr std::array<std::uint32_t, 2> owners_by_ioctl{FIOSETOWN, SIOCSPGRP};
+/// Of a terminal: to type for whoever sits there, his Ctrl-C among it, and to take the turn to read, or the terminal.
+constexpr std::array<std::uint32_t, 5> terminals_by_ioctl{TIOCSTI, TIOCSPGRP, TIOCSCTTY, TIOCSIG, TIOCLINUX};
 
 [[nodiscard]] const char* name_of_call(std::uint32_t number) noexcept {
   for (const Call& call : refused_calls)
@@ -123,8 +160,12 @@ constexpr std::array<std::uint32_t, 7> owners_by_ioctl{owner_of_file, SIOCSPGRP,
     case SYS_sendmmsg: return "a send that connects";
     case SYS_prlimit64: return "prlimit64 of another process, or of its priority";
     case SYS_setpriority: return "setpriority of others";
-    case SYS_fcntl: return "fcntl of who gets signals";
+    case SYS_fcntl: return "fcntl of who gets signals, or a lease";
     case SYS_ioctl: return "ioctl of who gets signals, or of a terminal";
+    case SYS_open:
+    case SYS_openat: return "open that cuts a file short unwritten, or is neither to read nor to write";
+    case SYS_mq_open:
+    case SYS_mq_unlink: return "message queues";
     default: return "";
   }
 }
@@ -138,7 +179,7 @@ constexpr std::uint32_t argument_at(std::size_t which) noexcept {
   return static_cast<std::uint32_t>(offsetof(seccomp_data, args) + which * sizeof(std::uint64_t));
 }
 constexpr std::uint32_t half_octets = sizeof(std::uint32_t);
-constexpr std::size_t fixed_instructions = 192;
+constexpr std::size_t fixed_instructions = 256;
 
 struct Filter {
   std::array<sock_filter,
@@ -224,22 +265,65 @@ void filter_signals(Filter& made) noexcept {
     made.add(bpf_answer, SECCOMP_RET_ALLOW);
     made.end_of_call();
   }
-  const auto refuse = [&](std::uint32_t number, std::span<const std::uint32_t> requests) {
-    made.begin_call(number);
-    made.add(bpf_load, argument_at(1));
+  const auto refuse = [&](std::span<const std::uint32_t> requests) {
     for (const std::uint32_t request : requests) {
       made.add(bpf_equal, request, 0, 1);
       made.add(bpf_answer, refused);
     }
+  };
+  made.begin_call(SYS_fcntl);
+  made.add(bpf_load, argument_at(1));
+  refuse(of_others_by_fcntl);
+  made.add(bpf_equal, F_SETOWN, 0, 3);
+  made.add(bpf_load, argument_at(2));
+  made.add(bpf_equal, self, 1, 0);
+  made.add(bpf_answer, refused);
+  made.add(bpf_answer, SECCOMP_RET_ALLOW);
+  made.end_of_call();
+  made.begin_call(SYS_ioctl);
+  made.add(bpf_load, argument_at(1));
+  refuse(owners_by_ioctl);
+  refuse(terminals_by_ioctl);
+  made.add(bpf_answer, SECCOMP_RET_ALLOW);
+  made.end_of_call();
+}
+
+/// The number of the call is loaded, before and after. Rules of files ask what a file is opened for: one that is opened to read may be cut
+/// short all the same, and one for neither (3) is asked for nothing, though devices can be controlled by it.
+constexpr void filter_opening(Filter& made, bool queues) noexcept {
+  constexpr std::uint32_t refused = SECCOMP_RET_TRAP;
+  struct Opening {
+    std::uint32_t number, flags_at;
+  };
+  for (const auto& [number, flags_at] : {
+           Opening{SYS_openat, argument_at(2)},
+#if defined(__x86_64__)
+           Opening{SYS_open, argument_at(1)},
+#endif
+       }) {
+    made.begin_call(number);
+    made.add(bpf_load, flags_at);
+    made.add(bpf_and, O_ACCMODE | O_TRUNC);
+    for (const std::uint32_t way :
+         {std::uint32_t{O_RDONLY | O_TRUNC}, std::uint32_t{O_ACCMODE}, std::uint32_t{O_ACCMODE | O_TRUNC}}) {
+      made.add(bpf_equal, way, 0, 1);
+      made.add(bpf_answer, refused);
+    }
     made.add(bpf_answer, SECCOMP_RET_ALLOW);
     made.end_of_call();
-  };
-  refuse(SYS_fcntl, owners_by_fcntl);
-  refuse(SYS_ioctl, owners_by_ioctl);
+  }
+  // Its flags lie in memory.
+  made.add(bpf_equal, SYS_openat2, 0, 1);
+  made.add(bpf_answer, SECCOMP_RET_ERRNO | ENOSYS);
+  if (queues) return;
+  for (const std::uint32_t number : {SYS_mq_open, SYS_mq_unlink}) {
+    made.add(bpf_equal, number, 0, 1);
+    made.add(bpf_answer, refused);
+  }
 }
 
 /// Refused calls raise SIGSYS, which names them (name_refused_calls()).
-[[nodiscard]] Filter call_filter(const SandboxSockets& sockets) noexcept {
+[[nodiscard]] Filter call_filter(const Sandbox& sandbox) noexcept {
   constexpr std::uint32_t refused = SECCOMP_RET_TRAP;
   constexpr std::uint32_t foreign_numbers = 0x40000000;  // of another way to call the same kernel
   Filter made;
@@ -279,8 +363,9 @@ void filter_signals(Filter& made) noexcept {
   made.add(bpf_equal, 0, 1, 0);
   made.add(bpf_answer, refused);
   made.add(bpf_answer, SECCOMP_RET_ALLOW);
-  filter_sockets(made, sockets);
+  filter_sockets(made, sandbox.sockets);
   filter_signals(made);
+  filter_opening(made, sandbox.queues);
   // Its flags lie in memory, where no filter looks: the C library takes clone() instead.
   made.add(bpf_equal, SYS_clone3, 0, 1);
   made.add(bpf_answer, SECCOMP_RET_ERRNO | ENOSYS);
@@ -332,8 +417,8 @@ void tell_refused(int, siginfo_t* info, void* context) {
 
 }  // namespace
 
-int refuse_calls(const SandboxSockets& sockets) noexcept {
-  const Filter calls = call_filter(sockets);
+int refuse_calls(const Sandbox& sandbox) noexcept {
+  const Filter calls = call_filter(sandbox);
   sock_fprog program{};
   program.len = calls.length;
   program.filter = const_cast<sock_filter*>(calls.code.data());  // the kernel reads it
