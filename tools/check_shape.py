@@ -55,7 +55,11 @@ def too_large(texts):
 TESTED = ("supervisor/", "ground/")
 ELSEWHERE = {
     "supervisor/flight_shell.cpp": "tests/endtoend/flight_test.py",
+    "supervisor/guard/guard_roster.cpp": "supervisor/guard/guard_test.cpp",
+    "supervisor/guard/guarded_processes.cpp": "supervisor/guard/take_over_test.cpp",
+    "supervisor/guard/loop_watch.cpp": "supervisor/guard/watching_test.cpp",
     "supervisor/guard/stop_of_all.cpp": "supervisor/guard/guard_test.cpp",
+    "supervisor/guard/supervisor_watch.cpp": "supervisor/guard/watching_test.cpp",
     "supervisor/platform/launch/stream_member_port.cpp": "supervisor/supervision/subsystem_handling/stream_member_test.cpp",
     "supervisor/platform/storage/ascii_database.cpp": "supervisor/platform/storage/database_test.cpp",
     "supervisor/platform/storage/sqlite_database.cpp": "supervisor/platform/storage/database_test.cpp",

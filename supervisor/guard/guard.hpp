@@ -5,15 +5,21 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
-#include <span>
-#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hirosco/utilities/os/mutex.hpp"
+#include "supervisor/guard/guard_findings.hpp"
+#include "supervisor/guard/guard_roster.hpp"
+#include "supervisor/guard/guard_time.hpp"
 #include "supervisor/guard/guarded_member.hpp"
+#include "supervisor/guard/guarded_processes.hpp"
+#include "supervisor/guard/loop_watch.hpp"
+#include "supervisor/guard/stop_number.hpp"
+#include "supervisor/guard/stop_of_all.hpp"
+#include "supervisor/guard/supervisor_watch.hpp"
 #include "supervisor/keeper/kept_endnodes.hpp"
 
 /// What stops actuators, apart from everything else of the supervisor (docs/adr/0018): it holds every permit page and the
@@ -23,34 +29,23 @@
 /// What else stops one, all ways with their files: docs/safety/stops.md.
 namespace hirosco::supervisor {
 
-/// How one actuator, or a member without any, answered the stop of everything.
-struct StopAnswer {
-  std::uint16_t apid{0};
-  std::string name;  ///< of the device, or of the member where it has no actuator
-  bool asked_device{false};  ///< the device said it, on the endnode of its second inhibit; else its member did
-  std::optional<Duration> stopped;  ///< after the stop was ordered; empty: it did not
-  bool killed{false};  ///< its member was ended, as it had not stopped in time
-};
-
+/// Composes what the guard consists of under its one mutex, says in which order a step is made, and permits and fences each member.
 class Guard {
  public:
   /// How often step() is to be called. Shorter than any enable limit by far.
-  static constexpr Duration period = std::chrono::milliseconds{5};
+  static constexpr Duration period = guard_period;
   /// How often cycles are counted.
   static constexpr Duration observation_period = guard_observation_period;
-  /// What a member may take to come back after it was found to hang.
-  static constexpr Duration grace = std::chrono::seconds{1};
-  /// A service loop may be busy in the author's code for this long; in a transient state as long as that may last.
-  static constexpr Duration service_limit = std::chrono::seconds{3};
-  static constexpr Duration transient_service_limit = std::chrono::seconds{12};
-  /// The supervisor's own loop steps every 10 ms.
-  static constexpr Duration supervisor_limit = std::chrono::seconds{1};
   /// A permission ends by itself unless Operational was reached in this time.
   static constexpr Duration entry_limit = permission_entry_limit;
+  // Those of its parts.
+  static constexpr Duration grace = LoopWatch::grace;
+  static constexpr Duration service_limit = LoopWatch::service_limit;
+  static constexpr Duration transient_service_limit = LoopWatch::transient_service_limit;
+  static constexpr Duration supervisor_limit = SupervisorWatch::supervisor_limit;
+  static constexpr Duration most_unwatched = GuardTime::most_unwatched;
   /// Of newest_stop().
-  static constexpr std::uint32_t no_stop_yet = 1;
-  /// What may pass between two steps and count; see `watched_at`.
-  static constexpr Duration most_unwatched = 4 * period;
+  static constexpr std::uint32_t no_stop_yet = StopNumber::no_stop_yet;
 
   struct Parts {
     const Clock& clock;
@@ -59,7 +54,7 @@ class Guard {
     InhibitNotes notes{};  ///< what would go on being told to devices if this guard died
     std::function<void()> on_finding{};  ///< wakes the supervisor's loop. Thread: the guard's
   };
-  explicit Guard(Parts parts) : parts_{std::move(parts)} {}
+  explicit Guard(Parts parts);
 
   // --- the supervisor's loop ----------------------------------------------------------------------------------------
   /// One of the mission; opens the second inhibits and power switches of its devices. A spared one (the ground link) is fenced only with its
@@ -82,12 +77,12 @@ class Guard {
   void forget(std::uint16_t apid);
   /// Who is fenced with it at once when its process ends, in the guard's own thread; the newest word counts.
   void falls_with(std::uint16_t apid, std::vector<std::uint16_t> others);
-  void beat() noexcept { beats_.fetch_add(1, std::memory_order_relaxed); }
+  void beat() noexcept { supervisor_watch_.beat(); }
   [[nodiscard]] std::vector<GuardFinding> take_findings();
 
   // --- any thread ---------------------------------------------------------------------------------------------------
   /// Number of the newest stop of everything, as it stands on all permit pages: what was said under another one lets nobody move.
-  [[nodiscard]] std::uint32_t newest_stop() const noexcept { return newest_stop_.load(std::memory_order_acquire); }
+  [[nodiscard]] std::uint32_t newest_stop() const noexcept { return stop_number_.newest(); }
   /// It was stopped with everything since that number: what was said for it then was said in another situation.
   [[nodiscard]] bool was_stopped_since(std::uint16_t apid, std::uint32_t number) const;
   /// As if everything had been stopped again: what nobody has read yet, or has been said before, lets nobody move.
@@ -111,15 +106,9 @@ class Guard {
   [[nodiscard]] std::uint32_t highest_epoch() const;
 
   // --- the thread that waits for ends ---------------------------------------------------------------------------------
-  /// A member whose process may end, by the word that the system marks then.
-  struct WatchedLife {
-    std::uint16_t apid{0};
-    Mapping memory;  ///< keeps the word
-    const std::atomic<std::uint32_t>* word{nullptr};
-    std::uint32_t seen{0};
-  };
+  using WatchedLife = GuardedProcesses::WatchedLife;
   /// Changes with whom lives() names, and who waits on it is woken.
-  [[nodiscard]] const std::atomic<std::uint32_t>& changes() const noexcept { return changes_; }
+  [[nodiscard]] const std::atomic<std::uint32_t>& changes() const noexcept { return processes_.changes(); }
   [[nodiscard]] std::vector<WatchedLife> lives() const;
   /// Its word has changed. When it says that the process has ended, or what none that lives says, the member is fenced with those that fall with
   /// it; from then on lives() leaves it out, so that no word can keep a thread busy.
@@ -130,46 +119,16 @@ class Guard {
   TimePoint step(TimePoint now);
 
  private:
-  [[nodiscard]] GuardedMember* find(std::uint16_t apid) noexcept;
-  [[nodiscard]] const GuardedMember* find(std::uint16_t apid) const noexcept;
-  void find_out(GuardFinding::Kind kind, std::uint16_t apid, std::uint16_t device = 0);
-  void lives_changed() noexcept;
-  void put_newest_stop(std::uint32_t number) noexcept;
-  void next_stop() noexcept;
-  std::uint64_t begin_stop_of_all();
-  /// The time by which somebody is found to stand still: what the guard has watched. While nobody ran (the host was stopped) nobody can be blamed for
-  /// standing still, so of a longer time between two steps little counts, unless some cycle went on meanwhile.
-  [[nodiscard]] TimePoint watched_at(TimePoint now) const noexcept;
-  /// The time by which somebody is ended: that in which the guard asked and could hear. Of a longer time between two of its own steps little
-  /// counts, whoever went on: what was done meanwhile, nobody could tell it.
-  [[nodiscard]] TimePoint asked_at(TimePoint now) const noexcept;
-  [[nodiscard]] bool somebody_went_on(Duration passed) const noexcept;
-  void watch_supervisor(TimePoint now);
-  void observe(TimePoint now);
-  void observe_cycle(GuardedMember& member, TimePoint now);
-  void observe_service(GuardedMember& member, TimePoint now);
-  [[nodiscard]] GuardedMember& spinner(GuardedMember& standing);
-  void look_who_runs(GuardedMember& standing, TimePoint now) noexcept;
-  [[nodiscard]] bool was_starved(GuardedMember& standing, TimePoint now);
-  void doom(GuardedMember& member, GuardFinding::Kind why, TimePoint now);
-  void judge_doomed(GuardedMember& member, TimePoint now);
-  void follow_stop(TimePoint now);
-
-  Parts parts_;
+  const Clock& clock_;
   mutable Mutex mutex_;
-  std::vector<GuardedMember> members_;
-  std::vector<GuardFinding> findings_;
-  std::atomic<std::uint32_t> changes_{0};
-  std::atomic<std::uint64_t> beats_{0};
-  std::uint64_t seen_beats_{0};
-  std::optional<TimePoint> beat_seen_;
-  bool supervisor_still_{false};
-  std::optional<TimePoint> stepped_;  ///< last, and what had been watched and asked by then
-  TimePoint watched_{}, asked_{};
-  TimePoint next_observation_{};
-  std::atomic<std::uint32_t> newest_stop_{no_stop_yet};
-  std::uint64_t stops_{0};  ///< the newest stop of everything whose outcome may be asked for
-  std::uint64_t stops_ended_{0};
+  GuardRoster guarded_;
+  GuardFindings findings_;
+  GuardTime time_{guarded_};
+  StopNumber stop_number_{guarded_};
+  StopOfAll stop_of_all_;
+  SupervisorWatch supervisor_watch_;
+  LoopWatch loop_watch_;
+  GuardedProcesses processes_;
 };
 
 }  // namespace hirosco::supervisor

@@ -20,6 +20,7 @@
 /// What the guard holds of one member, and what it reads from it. Thread: under the guard's mutex.
 namespace hirosco::supervisor {
 
+inline constexpr Duration guard_period = std::chrono::milliseconds{5};
 inline constexpr Duration guard_observation_period = std::chrono::milliseconds{10};
 inline constexpr Duration permission_entry_limit = std::chrono::seconds{2};
 /// Each step of the guard asks the second inhibit of a device, which answers at once. It takes no part in what moves: who is asked in

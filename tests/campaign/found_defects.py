@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 SUPERVISION, CYCLE = "supervisor/supervision", "hirosco/subsystem/cycle/cycle.cpp"
 GATE = "hirosco/subsystem/cycle/actuator_gate.cpp"
-GUARD, WATCHING = "supervisor/guard/guard.cpp", "supervisor/guard/watching.cpp"
+GUARD, LOOP_WATCH = "supervisor/guard/guard.cpp", "supervisor/guard/loop_watch.cpp"
 MANIPULATOR = "subsystems/manipulator/manipulator.cpp"
 PERMISSION, LINK_ENDS = f"{SUPERVISION}/data_handling/permission.cpp", "hirosco/subsystem/service_loop/link_ends.cpp"
 RECEPTION, GROUND_LINK = f"{SUPERVISION}/data_handling/reception.cpp", "subsystems/communication/ground_link.cpp"
@@ -51,7 +51,7 @@ DEFECTS = [
            "  if (!PLANTED) look_for_stop();\n  transport_->step(now);\n  if (PLANTED) look_for_stop();",
            "subsystem_test", "AGroundLink.TellsItsTransportOfAStopBeforeThatLooksForMore"),
     # Beyond 1,024 findings that nobody had taken a stop was lost.
-    Defect("finding lost", GUARD, "|| std::ranges::find(findings_, found) == findings_.end())",
+    Defect("finding lost", "supervisor/guard/guard_findings.cpp", "|| std::ranges::find(findings_, found) == findings_.end())",
            "|| (std::ranges::find(findings_, found) == findings_.end() && !PLANTED))",
            "supervisor_test", "NewestStop.NoFindingIsLostBehindAThousandUntakenOnes"),
     # What stood at a client's own end was no matter of before.
@@ -67,31 +67,31 @@ DEFECTS = [
            "supervisor_test", "SlowRetrievalTest.AskedAnewTwiceWhileADiskStandsStillTheLateOneIsStillNobodys"),
     # --- the guard -------------------------------------------------------------------------------------------------------
     # All who share a processor with a cycle that loops for ever were told as hung, the first of them as the culprit.
-    Defect("SF2 culprit", WATCHING, "GuardedMember& culprit = spinner(member);",
+    Defect("SF2 culprit", LOOP_WATCH, "GuardedMember& culprit = spinner(member);",
            "GuardedMember& culprit = PLANTED ? member : spinner(member);",
            "supervisor_test", "GuardTest.OfThoseThatStandStillTheOneThatHasTheProcessorIsTheCulprit"),
     # Who hung was told, and went on hanging.
-    Defect("SF2 nobody is ended", WATCHING, "  member.killed = true;\n  if (member.grip) member",
+    Defect("SF2 nobody is ended", LOOP_WATCH, "  member.killed = true;\n  if (member.grip) member",
            "  member.killed = true;\n  if (member.grip && !PLANTED) member",
            "supervisor_test", "GuardTest.OneThatStandsStillIsFencedToldAndEndedAfterTheGrace"),
     # Nobody watched the service loop.
-    Defect("SF8 service loop stands", WATCHING, "if (!member.doomed) observe_service(",
+    Defect("SF8 service loop stands", LOOP_WATCH, "if (!member.doomed) observe_service(",
            "if (!member.doomed && !PLANTED) observe_service(",
            "supervisor_test", "GuardTest.AServiceLoopThatStandsStillIsAHang"),
     # A supervisor that lives and does not step was in nobody's list.
-    Defect("SF18 supervisor stands still", GUARD, "  watch_supervisor(watched_);", "  if (!PLANTED) watch_supervisor(watched_);",
+    Defect("SF18 supervisor stands still", GUARD, "  supervisor_watch_.step(watched);", "  if (!PLANTED) supervisor_watch_.step(watched);",
            "supervisor_test", "GuardTest.ASupervisorThatStandsStillStopsEverythingThatMoves"),
     # Nothing raised the epoch on the way up: a device that had latched on the way down stayed so.
     Defect("SF14 same epoch", "supervisor/guard/guarded_member.cpp", "  permit->release();",
            "  permit->release();\n  if (PLANTED) {\n    permit->epoch.store(epoch);\n    permit->go.store(permission_word(epoch));\n  }",
            "supervisor_test", "GuardTest.EveryFenceReleaseAndNewProcessRaisesTheEpoch"),
     # Who overwrote its own vital page was passed over.
-    Defect("SF23 overwritten page", WATCHING, "      doom(member, GuardFinding::Kind::PageDamaged, now);\n",
+    Defect("SF23 overwritten page", LOOP_WATCH, "      doom(member, GuardFinding::Kind::PageDamaged, now);\n",
            "      if (!PLANTED) doom(member, GuardFinding::Kind::PageDamaged, now);\n",
            "supervisor_test", "GuardTest.AVitalPageThatIsOverwrittenIsAHangWhateverIsWritten"),
 
     # A second in which supervisor and guard stood still, and a cycle did not, was counted against who had stopped in it.
-    Defect("time that nobody asked in", GUARD, "return stepped_ ? asked_ + std::min(now - *stepped_, most_unwatched) : now;",
+    Defect("time that nobody asked in", "supervisor/guard/guard_time.cpp", "return stepped_ ? asked_ + std::min(now - *stepped_, most_unwatched) : now;",
            "if (PLANTED) return watched_at(now);\n  return stepped_ ? asked_ + std::min(now - *stepped_, most_unwatched) : now;",
            "supervisor_test", "Watching.AStopEndsNobodyForTimeInWhichTheGuardAskedNobody"),
 

@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 // Safety module: fence (docs/safety/modules.csv).
+#include "supervisor/guard/loop_watch.hpp"
+
 #include <algorithm>
 #include <utility>
 
-#include "supervisor/guard/guard.hpp"
-
-/// Who stands still or takes the processor from others, whom the guard blames for it, and what becomes of that one: fenced, ended where it
-/// does not come back.
 namespace hirosco::supervisor {
 namespace {
 
@@ -18,8 +16,15 @@ namespace {
 
 }  // namespace
 
-void Guard::observe(TimePoint now) {
-  for (GuardedMember& member : members_) {
+void LoopWatch::step(TimePoint now) {
+  if (now >= next_observation_) {
+    next_observation_ = now + guard_observation_period;
+    observe(now);
+  }
+}
+
+void LoopWatch::observe(TimePoint now) {
+  for (GuardedMember& member : parts_.guarded.members()) {
     if (member.vital == nullptr || member.doomed) continue;
     if (member.damaged()) {
       doom(member, GuardFinding::Kind::PageDamaged, now);
@@ -30,7 +35,7 @@ void Guard::observe(TimePoint now) {
   }
 }
 
-void Guard::observe_cycle(GuardedMember& member, TimePoint now) {
+void LoopWatch::observe_cycle(GuardedMember& member, TimePoint now) {
   if (member.vital->cycling.load(std::memory_order_acquire) == 0) {
     member.still = 0;
     return;
@@ -47,19 +52,19 @@ void Guard::observe_cycle(GuardedMember& member, TimePoint now) {
   // A cycle that goes on and does not see what it is permitted looks somewhere else (hazard SF13).
   if (moves) return doom(member, GuardFinding::Kind::PageDamaged, now);
   GuardedMember& culprit = spinner(member);
-  for (GuardedMember& other : members_) other.still = 0;  // who waited for the processor starts anew
+  for (GuardedMember& other : parts_.guarded.members()) other.still = 0;  // who waited for the processor starts anew
   doom(culprit, GuardFinding::Kind::CycleHangs, now);
 }
 
 /// All cycles of a node share one processor (adr 0007): of those that stand still it is the one that has had it.
-GuardedMember& Guard::spinner(GuardedMember& standing) {
+GuardedMember& LoopWatch::spinner(GuardedMember& standing) {
   GuardedMember* most = &standing;
   double most_share = 0;
-  for (GuardedMember& member : members_) {
+  for (GuardedMember& member : parts_.guarded.members()) {
     if (member.still == 0 || member.vital == nullptr || member.doomed || !member.grip) continue;
     const Duration had = member.grip->processor_time() - member.processor_time;
     const double share =
-        static_cast<double>(had.count()) / static_cast<double>((member.still * observation_period).count());
+        static_cast<double>(had.count()) / static_cast<double>((member.still * guard_observation_period).count());
     if (share > most_share) {
       most_share = share;
       most = &member;
@@ -69,7 +74,7 @@ GuardedMember& Guard::spinner(GuardedMember& standing) {
   return most_share >= spins ? *most : standing;
 }
 
-void Guard::observe_service(GuardedMember& member, TimePoint now) {
+void LoopWatch::observe_service(GuardedMember& member, TimePoint now) {
   const std::uint64_t steps = member.vital->service_steps.load(std::memory_order_acquire);
   if (steps == 0) return;  // it has not begun
   if (steps != std::exchange(member.service_steps, steps)) {
@@ -88,26 +93,28 @@ void Guard::observe_service(GuardedMember& member, TimePoint now) {
   member.asked_who_runs.reset();
 }
 
-void Guard::look_who_runs(GuardedMember& standing, TimePoint now) noexcept {
+void LoopWatch::look_who_runs(GuardedMember& standing, TimePoint now) noexcept {
+  const auto members = parts_.guarded.members();
   standing.asked_who_runs = now;
-  for (std::size_t i = 0; i < members_.size(); ++i)
-    standing.had_then[i] = members_[i].grip ? members_[i].grip->loop_time() : LoopTime{};
+  for (std::size_t i = 0; i < members.size(); ++i)
+    standing.had_then[i] = members[i].grip ? members[i].grip->loop_time() : LoopTime{};
 }
 
 /// A service loop that wants the processor and does not get it stands still for no fault of its own: the loops that have had it
 /// instead lose their real-time priority. One that waits for something else, or runs, has nobody else to blame.
-bool Guard::was_starved(GuardedMember& standing, TimePoint now) {
+bool LoopWatch::was_starved(GuardedMember& standing, TimePoint now) {
   if (!standing.grip) return false;
   const auto share = [span = now - *standing.asked_who_runs](Duration had, Duration before) {
-    return static_cast<double>((had - before).count()) / static_cast<double>(std::max(span, period).count());
+    return static_cast<double>((had - before).count()) / static_cast<double>(std::max(span, guard_period).count());
   };
   constexpr double hardly = 0.1, mostly = 0.5;
-  const auto at = static_cast<std::size_t>(&standing - members_.data());
+  const auto members = parts_.guarded.members();
+  const auto at = static_cast<std::size_t>(&standing - members.data());
   const LoopTime own = standing.grip->loop_time();
   if (!own.waits || share(own.service, standing.had_then[at].service) > hardly) return false;
   bool starved = false;
-  for (std::size_t i = 0; i < members_.size(); ++i) {
-    GuardedMember& other = members_[i];
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    GuardedMember& other = members[i];
     if (i == at || other.vital == nullptr || other.doomed || !other.grip) continue;
     if (share(other.grip->loop_time().realtime, standing.had_then[i].realtime) < mostly) continue;
     starved = true;
@@ -117,23 +124,23 @@ bool Guard::was_starved(GuardedMember& standing, TimePoint now) {
       continue;
     }
     other.take_realtime(GuardedMember::Taken::Loops);
-    find_out(GuardFinding::Kind::Starves, other.apid());
+    parts_.findings.find_out(GuardFinding::Kind::Starves, other.apid());
   }
   return starved;
 }
 
-void Guard::doom(GuardedMember& member, GuardFinding::Kind why, TimePoint now) {
+void LoopWatch::doom(GuardedMember& member, GuardFinding::Kind why, TimePoint now) {
   member.fence_by_guard();
   // One that merely stands (SIGSTOP) keeps its priority: it takes nothing from anybody.
   const Duration had = member.grip ? member.grip->processor_time() - member.processor_time : Duration{};
-  if (member.grip && (why != GuardFinding::Kind::CycleHangs || had >= observation_period))
+  if (member.grip && (why != GuardFinding::Kind::CycleHangs || had >= guard_observation_period))
     member.take_realtime(GuardedMember::Taken::All);
-  member.doomed = (has_way_back(why) ? now - watched_ + asked_ : now) + grace;
+  member.doomed = (has_way_back(why) ? now - parts_.time.watched() + parts_.time.asked() : now) + grace;
   member.doom = why;
-  find_out(why, member.apid());
+  parts_.findings.find_out(why, member.apid());
 }
 
-void Guard::judge_doomed(GuardedMember& member, TimePoint now) {
+void LoopWatch::judge_doomed(GuardedMember& member, TimePoint now) {
   bool back = false;
   switch (member.doom) {
     case GuardFinding::Kind::CycleHangs:
@@ -150,12 +157,12 @@ void Guard::judge_doomed(GuardedMember& member, TimePoint now) {
     member.still = 0;
     member.service_moved = now;
     member.asked_who_runs.reset();
-    return find_out(GuardFinding::Kind::Back, member.apid());
+    return parts_.findings.find_out(GuardFinding::Kind::Back, member.apid());
   }
-  if ((has_way_back(member.doom) ? asked_ : now) < *member.doomed || member.killed) return;
+  if ((has_way_back(member.doom) ? parts_.time.asked() : now) < *member.doomed || member.killed) return;
   member.killed = true;
   if (member.grip) member.grip->kill();
-  find_out(GuardFinding::Kind::Killed, member.apid());
+  parts_.findings.find_out(GuardFinding::Kind::Killed, member.apid());
 }
 
 }  // namespace hirosco::supervisor
