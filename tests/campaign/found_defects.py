@@ -4,8 +4,13 @@
 from dataclasses import dataclass
 
 SUPERVISION, CYCLE = "supervisor/supervision", "hirosco/subsystem/cycle/cycle.cpp"
+<<<<<<< HEAD
 GATE = "hirosco/subsystem/cycle/actuator_gate.cpp"
 GUARD, LOOP_WATCH = "supervisor/guard/guard.cpp", "supervisor/guard/loop_watch.cpp"
+=======
+PERMIT, SAYS = "hirosco/subsystem/cycle/permit_watch.cpp", "hirosco/subsystem/cycle/report_writer.cpp"
+GUARD, WATCHING = "supervisor/guard/guard.cpp", "supervisor/guard/watching.cpp"
+>>>>>>> a3d260ac (The cycle is composed of a class for each concern: permission, inputs, what passes to an actuator, what is said, what is measured, a takeover)
 MANIPULATOR = "subsystems/manipulator/manipulator.cpp"
 PERMISSION, LINK_ENDS = f"{SUPERVISION}/data_handling/permission.cpp", "hirosco/subsystem/service_loop/link_ends.cpp"
 RECEPTION, GROUND_LINK = f"{SUPERVISION}/data_handling/reception.cpp", "subsystems/communication/ground_link.cpp"
@@ -180,8 +185,8 @@ DEFECTS = [
            "if (octets && (!PLANTED || reported == pus::Reported::Yes)) backlog_.send(channel_, {.kind = MessageKind::Event",
            "subsystem_test", "Events.ReachTheSupervisorThoughTheirReportIsSwitchedOff"),
     # The cycle did not look at the supervisor's heartbeat.
-    Defect("SF8 cycle without supervisor", GATE, "if (silent_cycles_ > silence_limit_) inhibit(",
-           "if (silent_cycles_ > silence_limit_ && !PLANTED) inhibit(",
+    Defect("SF8 cycle without supervisor", PERMIT, "if (silent_cycles_ > silence_limit_) parts_.control.inhibit(",
+           "if (silent_cycles_ > silence_limit_ && !PLANTED) parts_.control.inhibit(",
            "subsystem_test", "SupervisorGone.TheCycleItselfInhibitsTheActuatorsInItsOwnCyclesThoughTheServiceLoopIsStuck"),
     # In real time no sample started a cycle: the thread slept by the clock.
     Defect("no sample starts a cycle", "hirosco/subsystem/process/loops.cpp", "rest_until(planned, subsystem_.cycle_wait(), clock_);",
@@ -192,8 +197,8 @@ DEFECTS = [
            "if (parts_.unanswered.full() && !essential && !to_itself && !PLANTED)",
            "supervisor_test", "TelecommandsTest.OneWhoseEndCouldNotBeToldIsRefusedButWhatProtectsLeaves"),
     # The entry into Operational forgot that a node had failed in the cycle before.
-    Defect("SF10 entry forgets failure", CYCLE, "if ((inhibited_ & inhibited_by_failure) != 0) return \"a node",
-           "if ((inhibited_ & inhibited_by_failure) != 0 && !PLANTED) return \"a node",
+    Defect("SF10 entry forgets failure", CYCLE, "if (control_.failed()) return \"a node",
+           "if (control_.failed() && !PLANTED) return \"a node",
            "subsystem_test", "FailedNode.StaysInhibitedAndRefusesAnEntryIntoOperationalThatWasOnItsWay"),
     # The pass of a self test that was voided on the way into Operational; the service loop alone had looked.
     Defect("entry without the self test", CYCLE, "return required && !self_test_.passed() ?",
@@ -203,17 +208,17 @@ DEFECTS = [
            "lose_device(std::int64_t index) noexcept {\n  passed_", "lose_device(std::int64_t index) noexcept {\n  if (!PLANTED) passed_",
            "subsystem_test", "RequiredSelfTest.IsVoidAfterADeviceWasLost"),
     # One bit of the page decided: flipped, it enabled.
-    Defect("SF19 one bit of the page", GATE, "(epoch != entered_epoch_ || !permit().permits(epoch))",
-           "(epoch != entered_epoch_ || (!PLANTED && !permit().permits(epoch)))",
+    Defect("SF19 one bit of the page", PERMIT, "(epoch != entered_epoch_ || !page().permits(epoch))",
+           "(epoch != entered_epoch_ || (!PLANTED && !page().permits(epoch)))",
            "subsystem_test", "Devices.NoFlippedBitOfAFencedPermitPage*"),
     # An author's events without end took the room of what the framework has to tell.
-    Defect("events crowd out the loss", CYCLE, "if (event.id >= descriptor::framework_event::first) return answer(",
+    Defect("events crowd out the loss", SAYS, "if (event.id >= descriptor::framework_event::first) return answer(",
            "if (event.id >= descriptor::framework_event::first && !PLANTED) return answer(",
            "subsystem_test", "Rings.FullOfAnAuthorsEventsStillTellThatADeviceIsLost"),
     # ... and of answers to telecommands.
-    Defect("events crowd out answers", CYCLE,
-           "RecordRing& ring = parts_.rings.events;\n  if (event.severity < descriptor::Severity::Medium &&",
-           "RecordRing& ring = PLANTED ? parts_.rings.answers : parts_.rings.events;\n"
+    Defect("events crowd out answers", SAYS,
+           "RecordRing& ring = rings_.events;\n  if (event.severity < descriptor::Severity::Medium &&",
+           "RecordRing& ring = PLANTED ? rings_.answers : rings_.events;\n"
            "  if (!PLANTED && event.severity < descriptor::Severity::Medium &&",
            "subsystem_test", "Rings.FullOfAnAuthorsEventsAndProgressLoseNoAnswerAndTellWhatTheyLost"),
     # Events with arrays had another length than their descriptor, and were never reported.
@@ -248,12 +253,12 @@ DEFECTS = [
            "if (!parts_.values.problem().empty() && !PLANTED) mistake(",
            "subsystem_test", "AuthorsMistakes.OfADescriptorBuiltInCodeAreToldAndCrashNothing"),
     # An author's reason became "node failed".
-    Defect("reason of a node", CYCLE, "const AuthorsError failure{result.error()};",
-           'const AuthorsError failure{PLANTED ? Error{ErrorCode::Internal, "node failed", 0} : result.error()};',
+    Defect("reason of a node", CYCLE, "result.error());",
+           'PLANTED ? Error{ErrorCode::Internal, "node failed", 0} : result.error());',
            "subsystem_test", "Events.OfAFailedStateCarryTheAuthorsWordsAndNumber"),
     # A function's became a number.
-    Defect("reason of a function", CYCLE, "const AuthorsError error{why};",
-           'const AuthorsError error{PLANTED ? Error{why.code, "", 0} : why};',
+    Defect("reason of a function", SAYS, ".request = request}, why);",
+           '.request = request}, PLANTED ? Error{why.code, "", 0} : why);',
            "subsystem_test", "Refusals.CarryTheAuthorsCodeWordsAndNumber"),
     # A lost device was silent, whatever it had said.
     Defect("reason of a loss", "hirosco/subsystem/cycle/device_slot.cpp", "  blame(loss.damaged, Damaged);",

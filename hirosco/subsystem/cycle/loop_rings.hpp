@@ -14,8 +14,8 @@
 #include "hirosco/utilities/spsc_ring.hpp"
 
 /// What the two loops of a subsystem tell each other. Trivially copyable records in preallocated rings: the only way
-/// of commands and reports between them (architecture, rule 1). Single words stand in atomics of CycleLoop and
-/// CycleOrders, values to be set in WriteQueue.
+/// of commands and reports between them (architecture, rule 1). Single words stand in atomics of CycleLoop, its
+/// parts and CycleOrders, values to be set in WriteQueue.
 namespace hirosco {
 
 struct AttachedLink;

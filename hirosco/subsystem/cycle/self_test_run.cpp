@@ -26,35 +26,36 @@ bool SelfTestRun::first(TimePoint planned) noexcept {
   return true;
 }
 
-std::optional<SelfTestRun::End> SelfTestRun::take(const Result<Step>& said, TimePoint planned) noexcept {
+void SelfTestRun::take(const Result<Step>& said, TimePoint planned) noexcept {
   if (!said) return end(pus::FailureCode::ExecutionError, said.error());
   if (*said == Step::Done) return end(pus::FailureCode{}, {});
-  if (planned - begun_.value_or(planned) < within_) return std::nullopt;
-  return end(pus::FailureCode::Timeout,
-             {ErrorCode::Timeout, "self test: not done in its time, ms", within_ / std::chrono::milliseconds{1}});
+  if (planned - begun_.value_or(planned) < within_) return;
+  end(pus::FailureCode::Timeout,
+      {ErrorCode::Timeout, "self test: not done in its time, ms", within_ / std::chrono::milliseconds{1}});
 }
 
-std::optional<SelfTestRun::End> SelfTestRun::leave(descriptor::State to) noexcept {
+void SelfTestRun::leave(descriptor::State to) noexcept {
   if (to == descriptor::State::ErrorOperational) passed_.store(false, std::memory_order_release);
-  if (to == descriptor::State::SafeOperational) return std::nullopt;
-  return end(pus::FailureCode::Aborted,
-             {ErrorCode::NotPermitted, "self test: the subsystem went to state", static_cast<std::int64_t>(to)});
+  if (to == descriptor::State::SafeOperational) return;
+  end(pus::FailureCode::Aborted,
+      {ErrorCode::NotPermitted, "self test: the subsystem went to state", static_cast<std::int64_t>(to)});
 }
 
-std::optional<SelfTestRun::End> SelfTestRun::lose_device(std::int64_t index) noexcept {
+void SelfTestRun::lose_device(std::int64_t index) noexcept {
   passed_.store(false, std::memory_order_release);
-  return end(pus::FailureCode::Aborted, {ErrorCode::Unavailable, "self test: a device was lost, number", index});
+  end(pus::FailureCode::Aborted, {ErrorCode::Unavailable, "self test: a device was lost, number", index});
 }
 
-std::optional<SelfTestRun::End> SelfTestRun::fail_node() noexcept {
-  return end(pus::FailureCode::Aborted, {ErrorCode::Unavailable, "self test: the node of Safe-Operational failed"});
+void SelfTestRun::fail_node() noexcept {
+  end(pus::FailureCode::Aborted, {ErrorCode::Unavailable, "self test: the node of Safe-Operational failed"});
 }
 
-std::optional<SelfTestRun::End> SelfTestRun::end(pus::FailureCode code, const Error& why) noexcept {
-  if (!running_) return std::nullopt;
+void SelfTestRun::end(pus::FailureCode code, const Error& why) noexcept {
+  if (!running_) return;
   running_ = false;
   passed_.store(code == pus::FailureCode{}, std::memory_order_release);
-  return End{request_, code, why};
+  reports_.explain({.kind = ReportKind::SelfTestEnded, .index = static_cast<std::uint16_t>(code), .request = request_},
+                   why);
 }
 
 }  // namespace hirosco

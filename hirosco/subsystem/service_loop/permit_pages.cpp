@@ -11,7 +11,7 @@ namespace hirosco {
 /// The supervisor died, and another one goes on in its place: it cannot write the page of the one before (hazard SF13). What is no
 /// permit page is not taken, nor is one before the cycle looks at the last: then it comes again.
 void PermitPages::take(const MemoryHandle& memory) {
-  if (!parts_.cycle.looks_at_offered_permit() || !parts_.memory.verify(memory, sizeof(PermitPage), true)) return;
+  if (!parts_.cycle.permit().looks_at_offered() || !parts_.memory.verify(memory, sizeof(PermitPage), true)) return;
   auto mapped = parts_.memory.map(memory, Access::ReadOnly);
   if (!mapped) return;
   const auto* page = reinterpret_cast<const PermitPage*>(mapped->octets.data());
@@ -19,7 +19,7 @@ void PermitPages::take(const MemoryHandle& memory) {
   before_ = std::exchange(memory_, std::move(*mapped));
   page_ = page;
   last_heartbeat_ = page->heartbeat.load(std::memory_order_acquire);
-  parts_.cycle.offer_permit(*page);
+  parts_.cycle.permit().offer(*page);
   parts_.loops.take_permit(*page);
   owed_ = true;
   confirm();
@@ -27,8 +27,8 @@ void PermitPages::take(const MemoryHandle& memory) {
 
 void PermitPages::confirm() {
   if (!owed_) return;
-  if (parts_.orders.rests()) parts_.cycle.take_permit();
-  if (!parts_.cycle.looks_at_offered_permit()) return;
+  if (parts_.orders.rests()) parts_.cycle.permit().take_offered();
+  if (!parts_.cycle.permit().looks_at_offered()) return;
   owed_ = !parts_.channel.send({.kind = MessageKind::PermitPage});
 }
 

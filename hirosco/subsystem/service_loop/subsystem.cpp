@@ -51,7 +51,7 @@ void Subsystem::bind_function(std::string_view name, BoundHandler handler) {
 }
 
 void Subsystem::raise_encoded(std::uint16_t event, Octets auxiliary) noexcept {
-  framework_->cycle().raise_encoded(event, auxiliary);
+  framework_->cycle().reports().raise_encoded(event, auxiliary);
 }
 void Subsystem::raise_encoded_in_service(const EventPort& event, Octets auxiliary) {
   framework_->reports().raise_named(event.name(), auxiliary);
@@ -59,12 +59,14 @@ void Subsystem::raise_encoded_in_service(const EventPort& event, Octets auxiliar
 void Subsystem::inhibit_actuators() noexcept { framework_->cycle().inhibit(inhibited_by_author); }
 
 void Subsystem::progress(const Call& call, std::uint16_t step) noexcept {
-  framework_->cycle().report(ReportKind::Progressed, step, call.request);
+  framework_->cycle().reports().report(ReportKind::Progressed, step, call.request);
 }
-void Subsystem::finish(const Call& call) noexcept { framework_->cycle().report(ReportKind::Finished, 0, call.request); }
+void Subsystem::finish(const Call& call) noexcept {
+  framework_->cycle().reports().report(ReportKind::Finished, 0, call.request);
+}
 void Subsystem::abort(const Call& call, const Error& why) noexcept { abort_call(call, failure_code(why.code), why); }
 void Subsystem::abort_call(const Call& call, pus::FailureCode code, const Error& why) noexcept {
-  framework_->cycle().fail_call(ReportKind::Aborted, code, call.request, why);
+  framework_->cycle().reports().fail_call(ReportKind::Aborted, code, call.request, why);
 }
 
 Result<std::uint32_t> Subsystem::send_request(const RequestPort& asked, pus::GivenValues values) {
