@@ -275,8 +275,8 @@ DEFECTS = [
            "if (finding.verdict <= told_ || (PLANTED && told_ != TorqueVerdict::Fine)) return",
            MANIPULATOR_TEST, "ManipulatorTest.TheHardLimitStaysOnWatchAfterTheSoftOneTripped"),
     # ... and was watched only while the actuators were enabled.
-    Defect("SF21 limit when inhibited", MANIPULATOR, "  if (!finding) return;\n  inhibit_actuators();\n  const bool is_hard",
-           "  if (!finding || (PLANTED && !cycle.active)) return;\n  inhibit_actuators();\n  const bool is_hard",
+    Defect("SF21 limit when inhibited", MANIPULATOR, "  if (!found) return;\n  inhibit_actuators();",
+           "  if (!found || (PLANTED && !cycle.active)) return;\n  inhibit_actuators();",
            MANIPULATOR_TEST, "ManipulatorTest.TheHardLimitIsOnWatchInSafeOperationalToo"),
     # A motion of any speed was taken.
     Defect("SF21 any speed", MANIPULATOR, "if (duration_s < manipulator::shortest_duration_s(",
@@ -287,8 +287,8 @@ DEFECTS = [
            "<= tolerance_rad + (PLANTED ? 1e9 : 0);",
            MANIPULATOR_TEST, "ManipulatorTest.AMotionThatDoesNotArriveFailsInsteadOfCompletingByTime"),
     # HOLD was completed where actuators were inhibited.
-    Defect("SF22 function without effect", "subsystems/manipulator/manipulator_setup.cpp", "if (!moving_) return refused(",
-           "if (!moving_ && !PLANTED) return refused(",
+    Defect("SF22 function without effect", MANIPULATOR, "if (!moving_) return refused(Trouble::actuators_inhibited);\n    stop_tasks(",
+           "if (!moving_ && !PLANTED) return refused(Trouble::actuators_inhibited);\n    stop_tasks(",
            MANIPULATOR_TEST, "ManipulatorTest.WhatCanHaveNoEffectIsRefused"),
     # New gains came as a kick.
     Defect("SF22 gains at once", "subsystems/manipulator/control/joint_controller.cpp",
@@ -296,7 +296,7 @@ DEFECTS = [
            "PLANTED ? wanted.kp_n_m_per_rad\n                                : towards(now_.kp_n_m_per_rad, wanted.kp_n_m_per_rad, kp_rate_per_s * span_s);",
            MANIPULATOR_TEST, "ManipulatorTest.NewGainsAreReportedDoneWhenTheLawHasThem"),
     # Limits of temperature in any order were taken.
-    Defect("limits out of order", "subsystems/manipulator/manipulator_setup.cpp",
+    Defect("limits out of order", MANIPULATOR,
            "if (!(warning_c < critical_c && critical_c < maximum_c)) return",
            "if (!(warning_c < critical_c && critical_c < maximum_c) && !PLANTED) return",
            MANIPULATOR_TEST, "ManipulatorTest.TemperatureLimitsAscend"),
@@ -304,7 +304,7 @@ DEFECTS = [
     Defect("limit below the load", MANIPULATOR, "< limit_n_m)) return refused(", "< limit_n_m) && !PLANTED) return refused(",
            MANIPULATOR_TEST, "ManipulatorTest.ATorqueLimitBelowThePresentLoadIsRefused"),
     # A motion that the limit ended said "aborted".
-    Defect("tripped, told as aborted", MANIPULATOR, "if (torque_guard_.tripped()) return static_cast",
+    Defect("tripped, told as aborted", "subsystems/manipulator/sensor_watch.cpp", "if (torque_guard_.tripped()) return static_cast",
            "if (torque_guard_.tripped() && !PLANTED) return static_cast",
            MANIPULATOR_TEST, "ManipulatorTest.AMotionThatTheTorqueLimitEndsSaysSo"),
 

@@ -1,17 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include "subsystems/manipulator/self_check.hpp"
+
 #include <array>
 #include <cmath>
 
-#include "subsystems/manipulator/manipulator.hpp"
-
-/// An arm's self test (adr 0073): the sensors at rest, then what the law would put out for small deviations of each joint to each
-/// side, up to the output itself. A law with a wrong sign would run away from where it is to hold.
-namespace hirosco {
-
-using manipulator::Joints;
-using manipulator::Measured;
-
+namespace hirosco::manipulator {
 namespace {
 
 constexpr double displacement_rad = 0.01;
@@ -32,8 +26,7 @@ constexpr double past_stop_rad = 0.05;
 
 }  // namespace
 
-/// One deviation in each cycle: joints to both sides in turn.
-Result<Step> Manipulator::self_test(const Cycle& cycle) noexcept {
+Result<Step> SelfCheck::step(const Cycle& cycle) noexcept {
   if (cycle.first) {
     tried_ = 0;
     HIROSCO_TRY(check_sensors());
@@ -41,41 +34,35 @@ Result<Step> Manipulator::self_test(const Cycle& cycle) noexcept {
   const double side = tried_ % 2 == 0 ? 1.0 : -1.0;
   const auto checked = check_law(tried_ / 2, side);
   // The node of the next cycle begins where the joints are, as ever.
-  rest();
+  parts_.setpoint.rest();
   if (!checked) return std::unexpected{checked.error()};
-  return ++tried_ < 2 * joints() ? again : done;
+  return ++tried_ < 2 * parts_.joints.count() ? again : done;
 }
 
-Result<> Manipulator::check_sensors() noexcept {
-  if (!robot_.alive()) return fail(ErrorCode::Unavailable, "the robot says nothing");
-  const Measured now = measured();
-  for (std::size_t i = 0; i < joints(); ++i) {
+Result<> SelfCheck::check_sensors() const noexcept {
+  const DescribedJoints& joints = parts_.joints;
+  if (!parts_.drives.alive()) return fail(ErrorCode::Unavailable, "the robot says nothing");
+  const Measured now = parts_.drives.measured();
+  for (std::size_t i = 0; i < joints.count(); ++i) {
     // Written so that what is no number fails.
     if (!(std::abs(now.velocity_rad_s[i]) < rest_rad_s && std::abs(now.motor_velocity_rad_s[i]) < rest_rad_s))
       return fails("it moves though nothing drives it, joint", i);
-    if (!(now.position_rad[i] > lowest_rad_[i] - past_stop_rad &&
-          now.position_rad[i] < highest_rad_[i] + past_stop_rad))
+    if (!(now.position_rad[i] > joints.lowest_rad()[i] - past_stop_rad &&
+          now.position_rad[i] < joints.highest_rad()[i] + past_stop_rad))
       return fails("measured outside of its range, joint", i);
     if (!(std::abs(now.position_rad[i] - now.motor_position_rad[i]) < most_windup_rad))
       return fails("motor and joint are measured apart, joint", i);
-    if (!(std::abs(now.torque_n_m[i]) < torque_limit_.load()))
+    if (!(std::abs(now.torque_n_m[i]) < parts_.parameters.torque_limit.load()))
       return fails("its load at rest is above its limit, joint", i);
   }
-  if (temperature_guard_.too_hot()) return fail(ErrorCode::Unavailable, "too hot");
+  if (parts_.watch.too_hot()) return fail(ErrorCode::Unavailable, "too hot");
   return ok();
 }
 
-/// What would be put out, with a setpoint that stands still.
-Joints Manipulator::wish(const Joints& desired_rad, const Measured& measured) noexcept {
-  controller_->reset(desired_rad);
-  drive(desired_rad, measured);
-  return robot_.output().torque_n_m;
-}
-
-Result<> Manipulator::check_law(std::size_t joint, double side) noexcept {
-  const Measured now = measured();
+Result<> SelfCheck::check_law(std::size_t joint, double side) noexcept {
+  const Measured now = parts_.drives.measured();
   const Joints& here = now.motor_position_rad;
-  const Joints at_rest = wish(here, now);
+  const Joints at_rest = parts_.servo.wish(here, now);
   struct Deviation {
     Joints desired_rad;
     Measured measured;
@@ -89,8 +76,8 @@ Result<> Manipulator::check_law(std::size_t joint, double side) noexcept {
   deviations[1].measured.motor_velocity_rad_s[joint] += side * velocity_rad_s;
   deviations[2].measured.torque_n_m[joint] += side * load_n_m;
   for (const Deviation& deviation : deviations) {
-    const Joints wanted = wish(deviation.desired_rad, deviation.measured);
-    for (std::size_t i = 0; i < joints(); ++i) {
+    const Joints wanted = parts_.servo.wish(deviation.desired_rad, deviation.measured);
+    for (std::size_t i = 0; i < parts_.joints.count(); ++i) {
       const double answer = wanted[i] - at_rest[i];
       if (i == joint && !(deviation.answer * answer > least_answer_n_m)) return fails(deviation.wrong, joint);
       if (i != joint && !(std::abs(answer) < most_crosstalk_n_m)) return fails("driven by another joint, joint", i);
@@ -99,4 +86,4 @@ Result<> Manipulator::check_law(std::size_t joint, double side) noexcept {
   return ok();
 }
 
-}  // namespace hirosco
+}  // namespace hirosco::manipulator
