@@ -68,6 +68,7 @@ ELSEWHERE = {
     "supervisor/supervision/procedures/steps/": "supervisor/supervision/procedures/plan_step_kinds_test.cpp",
     "supervisor/supervisor.cpp": "tests/integration/commissioning_test.cpp",
     "ground/api/schemas.cpp": "ground/api/openapi_test.cpp",
+    "ground/archive/archive_file.cpp": "ground/archive/archive_test.cpp",
     "ground/clients/xtce/": "ground/clients/xtce/xtce_test.cpp",
     "ground/shell/": "tests/ground/ground_test.py",
 }

@@ -16,13 +16,14 @@
 #include "hirosco/utilities/time.hpp"
 
 namespace SQLite {
-class Database;
 class Statement;
 }  // namespace SQLite
 
 /// The memory of the ground station: every packet as it came, and what the live view made of it. The packets are the
 /// truth; histories and replay decode them again.
 namespace hirosco::ground {
+
+class ArchiveFile;
 
 /// SQLite in write-ahead mode: what is committed survives the end of this process, however it comes about.
 /// Thread: one.
@@ -40,7 +41,7 @@ class Archive {
   /// Deletes some of the oldest packets when the limit is reached, and the same share of all else. Call once a second.
   void keep_within_limit();
   /// Additions, commits and readings that the disk refused.
-  [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
+  [[nodiscard]] std::uint64_t failures() const noexcept;
 
   void add(const StoredPacket& packet, Octets octets);
   void add(const StoredEvent& event);
@@ -93,22 +94,10 @@ class Archive {
   [[nodiscard]] std::vector<StoredMark> marks(const std::string& kind, const Span& span, std::size_t limit = 10'000);
 
  private:
-  explicit Archive(const std::string& path, std::int64_t limit_octets);
-  void begin();
-  /// Whether it was done; what the disk refuses is counted, and ends it.
-  template <class Work>
-  bool counted(Work work);
-  /// A change, within the transaction.
-  template <class... Values>
-  bool store(const std::string& sql, const Values&... values);
-  /// The one number that a question has as its answer; 0 when it was refused.
-  [[nodiscard]] std::int64_t number(const std::string& sql);
+  explicit Archive(std::unique_ptr<ArchiveFile> file);
 
-  std::unique_ptr<SQLite::Database> database_;  // closed after its statement
+  std::unique_ptr<ArchiveFile> file_;  // ends after its statement
   std::unique_ptr<SQLite::Statement> add_packet_;
-  std::int64_t limit_octets_;
-  bool in_transaction_{false};
-  std::uint64_t failures_{0};
 };
 
 }  // namespace hirosco::ground

@@ -9,7 +9,7 @@
 #include <string>
 #include <type_traits>
 
-#include "ground/archive/archive.hpp"
+#include "ground/archive/records.hpp"
 
 /// The archive's types as columns.
 namespace hirosco::ground {
@@ -48,17 +48,6 @@ template <class... Values>
   SQLite::Statement made{database, sql};
   bind(made, values...);
   return made;
-}
-
-template <class Work>
-bool Archive::counted(Work work) {
-  try {
-    work();
-    return true;
-  } catch (const SQLite::Exception&) {
-    ++failures_;
-    return false;
-  }
 }
 
 }  // namespace hirosco::ground
