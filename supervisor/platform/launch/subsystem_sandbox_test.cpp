@@ -90,7 +90,7 @@ TEST(SubsystemSandbox, SaysWhatItCannotNarrowDown) {
   EXPECT_EQ(open(Transfer::Tcp, "127.0.0.1:5000"), "");
   EXPECT_EQ(open(Transfer::Serial, "/dev/ttyS0@115200"), "");
   EXPECT_EQ(open(Transfer::Udp, "127.0.0.1:5000"), "all that listens by UDP");
-  EXPECT_EQ(open(Transfer::Unix, "arm"), "all UNIX sockets that its user may open");
+  EXPECT_EQ(open(Transfer::Unix, "arm"), "all UNIX sockets that its user may open (a bus of his starts programs)");
   EXPECT_EQ(open(Transfer::MessageQueue, "arm"), "all message queues");
   EXPECT_EQ(open(Transfer::Serial, "arm@115200"), "all pseudo-terminals");
 }
