@@ -55,7 +55,7 @@ class Packages(unittest.TestCase):
                            ("usr/lib/hirosco/hirosco-sim-mujoco.so", "hirosco-world-mujoco"),
                            ("usr/share/hirosco/missions/six_joints/mission.xml", "hirosco-world-mujoco"),
                            ("usr/lib/cmake/hirosco/hirosco-config.cmake", "libhirosco-dev"),
-                           ("usr/share/hirosco/templates/subsystem/newpart.cpp", "libhirosco-dev")):
+                           ("usr/share/hirosco/templates/robot/mission.xml", "hirosco")):
             self.assertEqual(owners.get(path), [name], path)
         self.assertEqual([path for path in owners if "libmujoco" in path], [], "it is fetched")
         # That nothing which is installed is in none of them dh_missing sees.

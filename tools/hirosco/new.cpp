@@ -17,6 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether what builds and tests a folder is beside this program: an installation may go without.
+[[nodiscard]] bool can_be_built(const fs::path& templates) {
+  const fs::path share = templates.parent_path().parent_path();
+  return share.filename() != "share" || fs::exists(share.parent_path() / "lib/cmake/hirosco");
+}
+
 /// What cmake has to be told, so that it finds the package beside this program; where it looks by itself, nothing.
 [[nodiscard]] std::string where_installed(const fs::path& templates) {
   const fs::path share = templates.parent_path().parent_path();
@@ -31,13 +37,14 @@ namespace fs = std::filesystem;
   return !told && find_program("make").empty() && !find_program("ninja").empty() ? " -G Ninja" : "";
 }
 
-void say_what_is_next(const NewKind& kind, const std::string& folder, const std::string& installed) {
+void say_what_is_next(const NewKind& kind, const std::string& folder, const std::string& installed, bool builds) {
+  if (kind.compiles && !builds) fmt::print("  sudo apt install libhirosco-dev    # what builds it\n");
   fmt::print("  cd {}\n", folder);
   if (kind.compiles) {
     fmt::print("  cmake -B build -DCMAKE_BUILD_TYPE=Release{} && cmake --build build && ctest --test-dir build\n",
                installed);
     fmt::print("  export PATH=$PWD/build:$PATH    # in each terminal: hirosco finds programs and their faults by it\n");
-  } else {
+  } else if (builds) {
     fmt::print("  cmake -B build{} && ctest --test-dir build\n", installed);
   }
   fmt::print("  hirosco simulate mission.xml --for 5s\n  hirosco run mission.xml\n");
@@ -117,7 +124,7 @@ int make_new(const NewOptions& options) {
   }
   const fs::path from = find_shipped("templates") / kind->name;
   if (from.is_relative()) {
-    fmt::print(stderr, "hirosco new: there are no templates with this program: sudo apt install libhirosco-dev\n");
+    fmt::print(stderr, "hirosco new: there are no templates with this program: sudo apt install --reinstall hirosco\n");
     return exit_environment;
   }
   const fs::path target = fs::path{options.to} / name->lower;
@@ -137,7 +144,8 @@ int make_new(const NewOptions& options) {
   if (kind->of_urdf) say_what_is_missing();
   else say_what_is_ready(*name);
   fmt::print("\nNow:\n");
-  say_what_is_next(*kind, target.string(), generator() + where_installed(from.parent_path()));
+  say_what_is_next(*kind, target.string(), generator() + where_installed(from.parent_path()),
+                   can_be_built(from.parent_path()));
   return exit_ok;
 }
 
