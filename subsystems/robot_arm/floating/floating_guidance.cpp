@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/floating/floating_guidance.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "subsystems/robot_arm/floating/floating_trouble.hpp"
+
+namespace hirosco::robot_arm {
+namespace {
+
+constexpr double joint_error_per_s = 5;
+/// So long a goal has to be measured before it counts as reached, and at most so long after the end of the path.
+constexpr double settled_enough_s = 0.1, patience_s = 10;
+constexpr double joint_tolerance_rad = 1e-3;
+/// Of the filter before the tool's error, which single samples of a star tracker would hide.
+constexpr double error_filter_s = 0.5;
+
+}  // namespace
+
+void FloatingGuidance::begin(double cycle_s) noexcept {
+  cycle_s_ = cycle_s;
+  joints_goal_ = joints_from_ = parts_.drives.measured().position;
+  phase_ = Phase::Holds;
+  parts_.parameters.progress.store(0);
+}
+
+void FloatingGuidance::engage() noexcept {
+  phase_ = Phase::Holds;
+  stand();
+  base_kept_ = parts_.craft.attitude();
+  mean_left_m_.setZero();
+  error_m_ = 0;
+}
+
+void FloatingGuidance::stand() noexcept {
+  joints_goal_ = joints_from_ = parts_.drives.measured().position;
+  tool_goal_ = {parts_.craft.tool(), Vector3::Zero()};
+}
+
+void FloatingGuidance::end_motion() noexcept {
+  if (phase_ == Phase::ToolMoves || phase_ == Phase::JointsMove) phase_ = Phase::Holds;
+}
+
+// --- in each cycle -------------------------------------------------------------------------------------------------------
+
+FloatingGuidance::News FloatingGuidance::advance() noexcept {
+  // The mean of the way that is left, not of its length: noise of the base's place has no direction.
+  const Vector3 left = tool_goal_.pose.position - parts_.craft.tool().position;
+  mean_left_m_ += (left - mean_left_m_) * (cycle_s_ / error_filter_s);
+  error_m_ = mean_left_m_.norm();
+  if (phase_ == Phase::Holds) {
+    tool_goal_.velocity_m_s.setZero();
+    return News::None;
+  }
+  moved_s_ += cycle_s_;
+  const Course at = course(moved_s_, duration_s_);
+  parts_.parameters.progress.store(at.share);
+  if (phase_ == Phase::ToolMoves) {
+    tool_goal_.pose.position = tool_from_ + at.share * tool_offset_;
+    tool_goal_.velocity_m_s = at.per_s * tool_offset_;
+    if (parts_.craft.law() == ToolLaw::AttitudeHold && parts_.parameters.conditioning.load() < least_conditioning)
+      return News::IllConditioned;
+  }
+  return moved_s_ >= duration_s_ ? arrive() : News::None;
+}
+
+/// The end of a path is not yet the goal: a motion is done when it is measured there.
+FloatingGuidance::News FloatingGuidance::arrive() noexcept {
+  const JointVector& measured = parts_.drives.measured().position;
+  const bool there = phase_ == Phase::ToolMoves
+                         ? error_m_ <= parts_.parameters.goal_tolerance_m.load()
+                         : (joints_goal_ - measured).cwiseAbs().maxCoeff() <= joint_tolerance_rad;
+  settled_s_ = there ? settled_s_ + cycle_s_ : 0;
+  const bool reached = settled_s_ >= settled_enough_s;
+  if (!reached && !(moved_s_ > duration_s_ + patience_s)) return News::None;
+  if (reached && phase_ == Phase::JointsMove) tool_goal_ = {parts_.craft.tool(), Vector3::Zero()};
+  else joints_goal_ = measured;
+  phase_ = Phase::Holds;
+  return reached ? News::Reached : News::NotReached;
+}
+
+JointVector FloatingGuidance::wanted_rates() const noexcept {
+  const FloatingCraft& craft = parts_.craft;
+  JointVector rates;
+  if (phase_ == Phase::ToolMoves || (phase_ == Phase::Holds && craft.tracks())) {
+    rates = tool_rates(craft.law(), craft.model(), tool_goal_, craft.attitude(), base_kept_);
+  } else {
+    const Course at = phase_ == Phase::JointsMove ? course(moved_s_, duration_s_) : Course{};
+    const JointVector way = joints_goal_ - joints_from_;
+    rates = at.per_s * way + joint_error_per_s * (joints_from_ + at.share * way - parts_.drives.measured().position);
+  }
+  slow_down(rates, parts_.known.bounds());
+  return rates;
+}
+
+void FloatingGuidance::tell(bool braked) noexcept {
+  parts_.parameters.phase.store(static_cast<std::uint8_t>(braked ? Phase::Braked : phase_));
+  constexpr double deg = 180 / std::numbers::pi;
+  parts_.parameters.error.store(
+      {error_m_, deg * rotation_between(parts_.craft.tool().rotation, tool_goal_.pose.rotation).norm()});
+}
+
+// --- functions -----------------------------------------------------------------------------------------------------------
+
+void FloatingGuidance::start(Phase phase, double duration_s) noexcept {
+  phase_ = phase;
+  duration_s_ = duration_s;
+  moved_s_ = settled_s_ = 0;
+}
+
+Outcome FloatingGuidance::move_joint(const FunctionValues& values) noexcept {
+  const Bounds bounds = parts_.known.bounds();
+  const JointVector& measured = parts_.drives.measured().position;
+  const JointVector goal = vector_of(std::span{values}.first(bounds.size()));
+  const double duration_s = values[bounds.size()];
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const auto joint = static_cast<Eigen::Index>(i);
+    if (!(goal[joint] >= bounds[i].lowest && goal[joint] <= bounds[i].highest))
+      return refused(FloatingTrouble::out_of_range, "joint", static_cast<std::int64_t>(i + 1));
+    const double fastest = fastest_of_course * std::abs(goal[joint] - measured[joint]) / duration_s;
+    if (!(fastest <= bounds[i].motion.velocity))
+      return refused(FloatingTrouble::too_fast, "joint", static_cast<std::int64_t>(i + 1));
+  }
+  start(Phase::JointsMove, duration_s);
+  joints_from_ = measured;
+  joints_goal_ = goal;
+  return running;
+}
+
+Outcome FloatingGuidance::move_tool(const std::array<double, 3>& offset_m, double duration_s) noexcept {
+  const Vector3 offset{offset_m[0], offset_m[1], offset_m[2]};
+  const double fastest = fastest_of_course * offset.norm() / duration_s;
+  if (!(fastest <= parts_.parameters.tool_speed_m_s.load()))
+    return refused(FloatingTrouble::too_fast, "mm/s", std::llround(1e3 * fastest));
+  start(Phase::ToolMoves, duration_s);
+  // One that stood by its joints begins where it is, one that kept its tool where that is to be.
+  if (!parts_.craft.tracks()) tool_goal_ = {parts_.craft.tool(), Vector3::Zero()};
+  tool_from_ = tool_goal_.pose.position;
+  tool_offset_ = offset;
+  return running;
+}
+
+}  // namespace hirosco::robot_arm

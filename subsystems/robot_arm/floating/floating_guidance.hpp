@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hirosco/subsystem/author/handler.hpp"
+#include "subsystems/robot_arm/drives.hpp"
+#include "subsystems/robot_arm/floating/floating_craft.hpp"
+#include "subsystems/robot_arm/floating/floating_parameters.hpp"
+#include "subsystems/robot_arm/urdf_arm.hpp"
+
+namespace hirosco::robot_arm {
+
+/// Where joints and tool of a craft that floats are to be from cycle to cycle, how fast the joints go for that, and how far a motion is, one at a
+/// time. It reports nothing: it says what is to be told.
+/// Realtime: bounded, no allocation. Thread: the cycle, and the service loop while there is none.
+class FloatingGuidance {
+ public:
+  struct Parts {
+    const UrdfArm& known;
+    const Drives& drives;
+    const FloatingCraft& craft;
+    FloatingParameters& parameters;  ///< PROGRESS, PHASE and ERR tell how far it is
+  };
+  enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked };
+  /// What a cycle has brought to the motion.
+  enum class News : std::uint8_t {
+    None,
+    Reached,
+    NotReached,  ///< its path has ended, and it is not there
+    IllConditioned,  ///< it cannot move the tool and leave the base unturned
+  };
+  explicit FloatingGuidance(const Parts& parts) noexcept : parts_{parts} {}
+
+  /// In configure(), when drives and craft have begun.
+  void begin(double cycle_s) noexcept;
+  /// Takes the present place as the reference: entering Operational moves nothing.
+  void engage() noexcept;
+  /// Keeps joints and tool where they are.
+  void stand() noexcept;
+  /// A motion goes on no further: it keeps to what it came to.
+  void end_motion() noexcept;
+
+  // --- functions: refused, or running; numbers in the order of the descriptor ---------------------------------------------
+  [[nodiscard]] Outcome move_joint(const FunctionValues& values) noexcept;
+  [[nodiscard]] Outcome move_tool(const std::array<double, 3>& offset_m, double duration_s) noexcept;
+
+  // --- in each cycle ------------------------------------------------------------------------------------------------------
+  [[nodiscard]] News advance() noexcept;
+  /// rad/s or m/s of each joint, none faster than it may be.
+  [[nodiscard]] JointVector wanted_rates() const noexcept;
+  /// PHASE and ERR. `braked`: the brakes hold it.
+  void tell(bool braked) noexcept;
+  [[nodiscard]] bool holds() const noexcept { return phase_ == Phase::Holds; }
+
+ private:
+  void start(Phase phase, double duration_s) noexcept;
+  [[nodiscard]] News arrive() noexcept;
+
+  Parts parts_;
+  double cycle_s_{0.001};
+  Phase phase_{Phase::Holds};
+  double moved_s_{0}, duration_s_{0}, settled_s_{0};
+  JointVector joints_from_, joints_goal_;
+  ToolGoal tool_goal_;
+  Vector3 tool_from_{Vector3::Zero()}, tool_offset_{Vector3::Zero()};
+  robotics::Matrix3 base_kept_{robotics::Matrix3::Identity()};
+  Vector3 mean_left_m_{Vector3::Zero()};
+  double error_m_{0};  ///< of the tool, without the noise of single samples
+};
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hirosco/parameter/parameter.hpp"
+#include "subsystems/robot_arm/robot_arm_data.hpp"
+
+/// Structures and parameters of floating_arm.xml; what is of its arm is as of any (robot_arm_data.hpp).
+namespace hirosco::robot_arm {
+
+struct PoseValues {
+  std::array<double, 3> position_m;
+  std::array<double, 4> orientation_wxyz;
+};
+struct ErrorValues {
+  double position_m;
+  double orientation_deg;
+};
+struct BasePose {
+  std::array<double, 3> position_m;
+  std::array<double, 4> orientation_wxyz;
+  std::array<double, 3> rate_rad_s, velocity_m_s;
+  std::uint8_t quality, free;
+  std::uint32_t stamp;
+};
+
+/// In its units.  Thread: the cycle, and the service loop while there is none.
+struct FloatingParameters {
+  /// Calls `publish(name, cell)` for each.
+  template <class Publish>
+  void each(const Publish& publish) {
+    publish("CUR", current);
+    publish("TOOL", tool);
+    publish("ERR", error);
+    publish("BASE_PRED", base);
+    publish("SIGMA_MIN", conditioning);
+    publish("PHASE", phase);
+    publish("PROGRESS", progress);
+    publish("LIMITS", limits);
+    publish("TOOL_SPEED", tool_speed_m_s);
+    publish("GOAL_TOLERANCE", goal_tolerance_m);
+    publish("DES_VELOCITY", desired_velocity);
+    publish("ACTIVE", active);
+  }
+
+  Parameter<CurrentValues> current;
+  Parameter<PoseValues> tool, base;
+  Parameter<ErrorValues> error;
+  Parameter<double> conditioning, progress;
+  Parameter<std::uint8_t> phase, active;
+  Parameter<Joints> desired_velocity;
+  Parameter<std::array<double, 3>> limits;  ///< of torque, hard of torque, of speed: shares
+  Parameter<double> tool_speed_m_s, goal_tolerance_m;
+};
+
+}  // namespace hirosco::robot_arm

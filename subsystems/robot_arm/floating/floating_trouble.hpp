@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace hirosco::robot_arm {
+
+/// Failure codes of floating_arm.xml: why a function was refused or ended without its effect.
+enum class FloatingTrouble : std::uint16_t {
+  goal_not_reached = 0x8001,
+  out_of_range = 0x8002,
+  limit_tripped = 0x8003,
+  too_fast = 0x8004,  ///< joints or tool would be faster than they may
+  another_law = 0x8005,  ///< not in this configuration
+  actuators_inhibited = 0x8006,
+  base_is_held = 0x8007,  ///< somebody's actuators act on the base
+  ill_conditioned = 0x8008,  ///< it cannot move the tool and leave the base unturned; thousandths
+};
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/guidance.hpp"
+
+#include <span>
+
+#include "subsystems/robot_arm/trouble.hpp"
+
+namespace hirosco::robot_arm {
+namespace {
+
+/// So long a goal has to be measured before it counts as reached, and at most so long after the end of the path.
+constexpr double settled_enough_s = 0.02;
+constexpr double patience_s = 3;
+/// A telecommand is waited for a little longer.
+constexpr double longest_motion_s = 60;
+/// Of a line, before it is given up; of its end, where the tool has to be measured.
+constexpr double most_off_line_m = 0.002, most_off_end_m = 0.001;
+
+}  // namespace
+
+void Guidance::begin(double cycle_s) {
+  cycle_s_ = cycle_s;
+  setpoints_.emplace(parts_.known.model(), parts_.known.tip(), parts_.known.bounds(), cycle_s_);
+  retracting_ = false;
+  jog_left_s_ = 0;
+}
+
+void Guidance::engage() noexcept {
+  setpoints_->begin(parts_.drives.measured().position);
+  retracting_ = false;
+}
+
+void Guidance::retract() noexcept {
+  const Measured& measured = parts_.drives.measured();
+  setpoints_->retract(measured.position, measured.velocity, parts_.parameters.retract_distance.load());
+  retracting_ = true;
+}
+
+// --- in each cycle -------------------------------------------------------------------------------------------------------
+
+void Guidance::advance(bool led) noexcept {
+  if (jog_left_s_ > 0 && (jog_left_s_ -= cycle_s_) <= 0) setpoints_->brake();
+  if (led) setpoints_->begin(parts_.drives.measured().position);
+  static_cast<void>(setpoints_->advance());
+}
+
+std::optional<double> Guidance::end_retract() noexcept {
+  if (!retracting_ || !setpoints_->at_rest()) return std::nullopt;
+  retracting_ = false;
+  return setpoints_->retracted_by();
+}
+
+void Guidance::tell() noexcept {
+  parts_.parameters.motion.store(
+      {static_cast<std::uint8_t>(setpoints_->kind()), setpoints_->duration_s(), setpoints_->progress()});
+}
+
+Guidance::News Guidance::look(bool gives_way) noexcept {
+  if (setpoints_->off_line_m() > most_off_line_m) return {.end = End::LineLost};
+  News news;
+  if (arrives_ && !half_reported_ && setpoints_->progress() >= 0.5) half_reported_ = news.half_way = true;
+  if (setpoints_->at_rest()) news.end = arrive(gives_way);
+  return news;
+}
+
+/// The end of a path is not yet the goal: a motion is done when it is measured there, and rests.
+Guidance::End Guidance::arrive(bool gives_way) noexcept {
+  const double tolerance = parts_.parameters.goal_tolerance.load();
+  const JointVector left = setpoints_->now().position - parts_.drives.measured().position;
+  // A long arm's joints are all there, and its tool is not.
+  const auto tool = parts_.parameters.tool.load().position_m;
+  const bool at_end = !line_to_ || (Vector3{tool[0], tool[1], tool[2]} - *line_to_).norm() <= most_off_end_m;
+  const bool there = gives_way || (at_end && left.cwiseAbs().maxCoeff() <= tolerance);
+  settled_s_ = there ? settled_s_ + cycle_s_ : 0;
+  waited_s_ += cycle_s_;
+  if (settled_s_ >= settled_enough_s) return End::Reached;
+  return waited_s_ > patience_s ? End::NotReached : End::None;
+}
+
+// --- functions -----------------------------------------------------------------------------------------------------------
+
+bool Guidance::in_range(const JointVector& goal) const noexcept {
+  const Bounds bounds = parts_.known.bounds();
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const double value = goal[static_cast<Eigen::Index>(i)];
+    if (!(value >= bounds[i].lowest && value <= bounds[i].highest)) return false;
+  }
+  return true;
+}
+
+Outcome Guidance::start(const Result<>& planned) noexcept {
+  if (!planned) return refused(Trouble::no_goal, planned.error().text, planned.error().value);
+  if (setpoints_->duration_s() > longest_motion_s) {
+    setpoints_->rest(setpoints_->now().position);
+    return refused(Trouble::too_slow, "it would take longer, s", static_cast<std::int64_t>(longest_motion_s));
+  }
+  line_to_.reset();
+  half_reported_ = false;
+  arrives_ = true;
+  settled_s_ = waited_s_ = jog_left_s_ = 0;
+  return running;
+}
+
+Outcome Guidance::start_jog(double seconds) noexcept {
+  line_to_.reset();
+  arrives_ = false;
+  settled_s_ = waited_s_ = 0;
+  jog_left_s_ = seconds;
+  return running;
+}
+
+Outcome Guidance::move_j(const FunctionValues& values) noexcept {
+  const std::size_t joints = parts_.known.joints();
+  const JointVector goal = vector_of(std::span{values}.first(joints));
+  if (!in_range(goal)) return refused(Trouble::out_of_range);
+  if (const auto there = parts_.obstacles.nearer(setpoints_->now().position, goal); there.distance_m < HUGE_VAL)
+    return refused(Trouble::too_near, there.names, millimetres(there.distance_m));
+  return start(setpoints_->go(goal, values[joints]));
+}
+
+Outcome Guidance::move_l(const FunctionValues& values) noexcept {
+  const robotics::Quaternion wanted{values[3], values[4], values[5], values[6]};
+  if (!(wanted.norm() > 0.5 && wanted.norm() < 1.5)) return refused(Trouble::no_goal, "no orientation");
+  const robotics::Pose goal{wanted.normalized().toRotationMatrix(), {values[0], values[1], values[2]}};
+  const Outcome started = start(setpoints_->go_straight(goal, {values[7], values[8]}));
+  if (started.kind != Outcome::Kind::Refused) line_to_ = goal.position;
+  return started;
+}
+
+Outcome Guidance::jog_j(const FunctionValues& values) noexcept {
+  const std::size_t joints = parts_.known.joints();
+  setpoints_->jog(vector_of(std::span{values}.first(joints)));
+  return start_jog(values[joints]);
+}
+
+Outcome Guidance::jog_l(const FunctionValues& values) noexcept {
+  Vector6 twist;
+  twist << values[3], values[4], values[5], values[0], values[1], values[2];
+  setpoints_->jog(twist);
+  return start_jog(values[6]);
+}
+
+}  // namespace hirosco::robot_arm

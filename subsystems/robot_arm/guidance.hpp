@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "hirosco/subsystem/author/handler.hpp"
+#include "subsystems/robot_arm/control/setpoints.hpp"
+#include "subsystems/robot_arm/drives.hpp"
+#include "subsystems/robot_arm/obstacles.hpp"
+#include "subsystems/robot_arm/parameters.hpp"
+#include "subsystems/robot_arm/urdf_arm.hpp"
+
+namespace hirosco::robot_arm {
+
+/// Where the arm is to be from cycle to cycle, and how far a motion is, one at a time. It reports nothing: it says what is to be told.
+/// Realtime: bounded, but begin(). Thread: the cycle, and the service loop while there is none.
+class Guidance {
+ public:
+  struct Parts {
+    const UrdfArm& known;
+    const Drives& drives;
+    Obstacles& obstacles;  ///< no goal is near them
+    Parameters& parameters;  ///< MOTION tells how far it is
+  };
+  enum class End : std::uint8_t {
+    None,  ///< not yet
+    Reached,
+    NotReached,  ///< its path has ended, and it is not there
+    LineLost,  ///< the joints cannot follow
+  };
+  /// What a cycle has brought, in the order in which it is told.
+  struct News {
+    bool half_way{false};  ///< once in a motion that has a goal
+    End end{End::None};
+  };
+  explicit Guidance(const Parts& parts) noexcept : parts_{parts} {}
+
+  /// In configure().  Realtime: allocates. Thread: the service loop.
+  void begin(double cycle_s);
+  [[nodiscard]] bool begun() const noexcept { return setpoints_.has_value(); }
+  /// Takes the present position as the reference, to which it came by no way.
+  void engage() noexcept;
+  /// Goes back by the way it came, RETRACT_DISTANCE at most.
+  void retract() noexcept;
+  [[nodiscard]] bool retracting() const noexcept { return retracting_; }
+
+  // --- functions: refused, or running; all numbers in the order of the descriptor -----------------------------------------
+  [[nodiscard]] Outcome move_j(const FunctionValues& values) noexcept;
+  [[nodiscard]] Outcome move_l(const FunctionValues& values) noexcept;
+  [[nodiscard]] Outcome jog_j(const FunctionValues& values) noexcept;
+  [[nodiscard]] Outcome jog_l(const FunctionValues& values) noexcept;
+  /// Whatever its time was: nobody waits for it any more.
+  void end_jog() noexcept { jog_left_s_ = 0; }
+
+  // --- in each cycle ------------------------------------------------------------------------------------------------------
+  /// `led`: it is to be wherever it is.
+  void advance(bool led) noexcept;
+  /// It has come to the end of its way back: how far that was, rad or m. Once.
+  [[nodiscard]] std::optional<double> end_retract() noexcept;
+  /// MOTION.
+  void tell() noexcept;
+  /// Of the motion that was begun last, while somebody waits for it. Who `gives_way` is wherever he was pushed, and done with his path.
+  [[nodiscard]] News look(bool gives_way) noexcept;
+
+  [[nodiscard]] Setpoints& setpoints() noexcept { return *setpoints_; }
+  [[nodiscard]] const Setpoints& setpoints() const noexcept { return *setpoints_; }
+  [[nodiscard]] bool at_rest() const noexcept { return setpoints_->at_rest(); }
+
+ private:
+  [[nodiscard]] bool in_range(const JointVector& goal) const noexcept;
+  [[nodiscard]] Outcome start(const Result<>& planned) noexcept;
+  [[nodiscard]] Outcome start_jog(double seconds) noexcept;
+  [[nodiscard]] End arrive(bool gives_way) noexcept;
+
+  Parts parts_;
+  std::optional<Setpoints> setpoints_;
+  std::optional<Vector3> line_to_;  ///< where the tool is to be at the end of its line
+  double cycle_s_{0.001};
+  double waited_s_{0};  ///< behind the end of a path
+  double settled_s_{0};  ///< at the goal
+  double jog_left_s_{0};
+  bool retracting_{false};
+  bool half_reported_{false};
+  bool arrives_{false};  ///< its motion has a goal
+};
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/limit_watch.hpp"
+
+#include <cmath>
+
+#include "subsystems/robot_arm/trouble.hpp"
+
+namespace hirosco::robot_arm {
+
+std::optional<Finding> LimitWatch::update(const JointVector* setpoint) noexcept {
+  const Parameters& values = parts_.parameters;
+  const Watch::Limits limits{.speed_share = values.speed_limit.load(),
+                             .torque_share = values.torque_limit.load(),
+                             .torque_hard_share = values.torque_hard.load(),
+                             .following = values.following_limit.load()};
+  return watch_.update(parts_.drives.measured(), setpoint, parts_.known.bounds(), limits);
+}
+
+Outcome LimitWatch::set_torque_limit(double share) noexcept {
+  const JointVector& torque = parts_.drives.measured().torque;
+  if (torque.size() == 0) return refused(pus::FailureCode::NotPermittedNow);
+  const Bounds bounds = parts_.known.bounds();
+  for (std::size_t i = 0; i < bounds.size(); ++i)
+    if (!(std::abs(torque[static_cast<Eigen::Index>(i)]) < share * bounds[i].effort))
+      return refused(Trouble::load_above_limit, "joint", static_cast<std::int64_t>(i + 1));
+  parts_.parameters.torque_limit.store(share);
+  return ok();
+}
+
+}  // namespace hirosco::robot_arm

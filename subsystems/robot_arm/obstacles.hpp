@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "hirosco/subsystem/author/handler.hpp"
+#include "robotics/shapes/clearance.hpp"
+#include "robotics/urdf/named_robot.hpp"
+#include "subsystems/robot_arm/control/setpoints.hpp"
+#include "subsystems/robot_arm/parameters.hpp"
+#include "subsystems/robot_arm/urdf_arm.hpp"
+
+namespace hirosco::robot_arm {
+
+/// As numbers of reports have them.
+[[nodiscard]] inline std::int64_t millimetres(double metres) noexcept {
+  return static_cast<std::int64_t>(std::clamp(1e3 * metres, -1e6, 1e6));
+}
+
+/// What links must not come near: each other, and volumes that are kept out of. It tells before they do; to brake is others' to do.
+/// Realtime: wait-free, but read(). Thread: the cycle, and the service loop while there is none.
+class Obstacles {
+ public:
+  using Nearest = robotics::Clearance::Nearest;
+
+  /// CLEARANCE tells how near they are.
+  explicit Obstacles(Parameters& parameters) noexcept : parameters_{parameters} {}
+  /// The words of an error that it gave live as long as it does, where it is.
+  Obstacles(const Obstacles&) = delete;
+  Obstacles& operator=(const Obstacles&) = delete;
+
+  /// The shapes of all links. Meshes beside the file, too. Of what is wrong in them the first is told; what is not seen, to whoever reads standard
+  /// error.  Realtime: allocates. Thread: the service loop.
+  [[nodiscard]] Result<> read(const UrdfArm::Source& source, const robotics::Model& model);
+  /// As it was written last.
+  void take_limit() noexcept { clearance_->set_limit(parameters_.clearance_limit_m.load()); }
+  /// These volumes from now on, in the base's axes.
+  [[nodiscard]] Outcome keep_out(const KeepOut& numbers) noexcept;
+
+  /// Tells how near they are with the joints there, m, and says it.
+  double tell(const JointVector& position) noexcept;
+  /// Who would be nearer at `goal` than they may, and than they are at `now`; infinitely far: nobody.
+  [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& goal) noexcept {
+    return clearance_->nearer(now, goal);
+  }
+  /// Each cycle: who would meet, if it is not braked now. Who is too near already may go away.
+  [[nodiscard]] std::optional<Nearest> watch(const Setpoints& setpoints) noexcept;
+  /// Each cycle in which it gives way: who would meet soon. `floats`: it has no other setpoint than where it is.
+  [[nodiscard]] std::optional<Nearest> watch_led(const Measured& measured, bool floats) noexcept;
+
+ private:
+  Parameters& parameters_;
+  std::optional<robotics::Clearance> clearance_;
+  robotics::urdf::NotRead not_read_;  ///< of shapes, for whoever reads the refusal
+};
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/on_board_model.hpp"
+
+namespace hirosco::robot_arm {
+namespace {
+
+/// Of the filter of what acts from outside.
+constexpr double observer_gain_per_s = 50;
+
+}  // namespace
+
+void OnBoardModel::begin(double cycle_s) {
+  const robotics::Model& model = parts_.known.model();
+  dynamics_.emplace(model, robotics::Base::Fixed);
+  observer_.emplace(model.joint_count(), cycle_s, observer_gain_per_s);
+}
+
+void OnBoardModel::update() noexcept {
+  const UrdfArm& known = parts_.known;
+  const Measured& measured = parts_.drives.measured();
+  state_.q = measured.position;
+  state_.qd = measured.velocity;
+  const auto gravity = parts_.parameters.gravity_m_s2.load();
+  dynamics_->set_gravity({gravity[0], gravity[1], gravity[2]});
+  dynamics_->update(state_);
+  const robotics::Pose tip = dynamics_->frame_pose(known.tip());
+  const auto place = parts_.parameters.tool_place_m.load();
+  const Vector3 tool = tip * Vector3{place[0], place[1], place[2]};
+  const robotics::Quaternion turned{tip.rotation};
+  parts_.parameters.tool.store({{tool.x(), tool.y(), tool.z()}, {turned.w(), turned.x(), turned.y(), turned.z()}});
+  robotics::Coordinates of_payload = robotics::Coordinates::Zero(known.model().joint_count());
+  Law::add_payload(payload(), known.tip(), {gravity[0], gravity[1], gravity[2]}, *dynamics_,
+                   JointVector::Zero(known.model().joint_count()), of_payload);
+  observer_->update(measured, *dynamics_, of_payload);
+  parts_.parameters.external_torque.store(joints_of(observer_->external()));
+}
+
+void OnBoardModel::forget_external() noexcept {
+  if (observer_) observer_->reset();
+}
+
+Payload OnBoardModel::payload() const noexcept {
+  const auto values = parts_.parameters.payload.load();
+  return {values.mass_kg, {values.place_m[0], values.place_m[1], values.place_m[2]}};
+}
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "subsystems/robot_arm/control/law.hpp"
+#include "subsystems/robot_arm/control/momentum_observer.hpp"
+#include "subsystems/robot_arm/drives.hpp"
+#include "subsystems/robot_arm/parameters.hpp"
+#include "subsystems/robot_arm/urdf_arm.hpp"
+
+namespace hirosco::robot_arm {
+
+/// The on-board model in the posture that is measured: its dynamics, what hangs at the tool, where that is, and what acts on the joints from outside.
+/// Realtime: bounded, but begin(). Thread: the cycle, and the service loop while there is none.
+class OnBoardModel {
+ public:
+  struct Parts {
+    const UrdfArm& known;
+    const Drives& drives;
+    Parameters& parameters;  ///< TOOL and EXTERNAL_TORQUE tell what it finds
+  };
+  explicit OnBoardModel(const Parts& parts) noexcept : parts_{parts} {}
+
+  /// In configure().  Realtime: allocates. Thread: the service loop.
+  void begin(double cycle_s);
+  /// Takes what is measured, and tells what follows.
+  void update() noexcept;
+  /// Something else hangs at the tool: what acts from outside is felt anew.
+  void forget_external() noexcept;
+
+  /// Of update(), gravity included.
+  [[nodiscard]] robotics::Dynamics& dynamics() noexcept { return *dynamics_; }
+  /// N m or N of each joint, in the direction in which it would accelerate it.
+  [[nodiscard]] const JointVector& external() const noexcept { return observer_->external(); }
+  [[nodiscard]] Payload payload() const noexcept;
+
+ private:
+  Parts parts_;
+  std::optional<robotics::Dynamics> dynamics_;
+  std::optional<MomentumObserver> observer_;
+  robotics::State state_;
+};
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/torque_control.hpp"
+
+namespace hirosco::robot_arm {
+
+void TorqueControl::begin(double cycle_s) { laws_.emplace(parts_.known.model(), parts_.known.tip(), cycle_s); }
+
+void TorqueControl::forget_learnt() noexcept {
+  if (laws_) laws_->forget_learnt();  // else it would be held twice
+}
+
+Laws::Settings TorqueControl::settings() noexcept {
+  const Parameters& values = parts_.parameters;
+  const auto gravity = values.gravity_m_s2.load();
+  rotor_ = values.rotor_inertia.load();
+  return {.position = {.bandwidth_rad_s = values.bandwidth_rad_s.load(),
+                       .rotor = rotor_,
+                       .gravity_m_s2 = {gravity[0], gravity[1], gravity[2]}},
+          .float_damping_per_s = values.float_damping.load()};
+}
+
+void TorqueControl::control() noexcept {
+  const Setpoint& wanted = parts_.guidance.setpoints().now();
+  parts_.parameters.desired_position.store(joints_of(wanted.position));
+  parts_.parameters.desired_velocity.store(joints_of(wanted.velocity));
+  parts_.drives.put_out(joints_of(laws_->torque(wanted, parts_.drives.measured(), parts_.model.dynamics(),
+                                                parts_.model.payload(), parts_.known.bounds(), settings())));
+  const Impedance& impedance = laws_->impedance();
+  parts_.parameters.law.store(
+      {static_cast<std::uint8_t>(laws_->kind()), impedance.tool_n_m, impedance.tool_n_m_rad, impedance.damping_ratio});
+  parts_.parameters.joint_stiffness.store(joints_of(impedance.joint_n_m_rad));
+}
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "subsystems/robot_arm/control/laws.hpp"
+#include "subsystems/robot_arm/drives.hpp"
+#include "subsystems/robot_arm/guidance.hpp"
+#include "subsystems/robot_arm/on_board_model.hpp"
+#include "subsystems/robot_arm/parameters.hpp"
+#include "subsystems/robot_arm/urdf_arm.hpp"
+
+namespace hirosco::robot_arm {
+
+/// Which torques keep the arm at its setpoint, by the law in force.
+/// Realtime: bounded, but begin(). Thread: the cycle, and the service loop while there is none.
+class TorqueControl {
+ public:
+  struct Parts {
+    const UrdfArm& known;
+    Drives& drives;
+    OnBoardModel& model;
+    const Guidance& guidance;
+    Parameters& parameters;  ///< DES_POSITION, DES_VELOCITY, LAW and JOINT_STIFFNESS tell what it does
+  };
+  explicit TorqueControl(const Parts& parts) noexcept : parts_{parts} {}
+
+  /// In configure().  Realtime: allocates. Thread: the service loop.
+  void begin(double cycle_s);
+  [[nodiscard]] bool begun() const noexcept { return laws_.has_value(); }
+  /// What hangs at the tool is known from now on.
+  void forget_learnt() noexcept;
+
+  /// A cycle of the law: what it finds is put out and told.
+  void control() noexcept;
+
+  [[nodiscard]] Laws& laws() noexcept { return *laws_; }
+  /// It goes wherever it is led.
+  [[nodiscard]] bool floats() const noexcept { return laws_->kind() == LawKind::Float; }
+  /// Where it is may be far from its setpoint, and that is meant.
+  [[nodiscard]] bool gives_way() const noexcept { return laws_->gives_way(); }
+
+ private:
+  [[nodiscard]] Laws::Settings settings() noexcept;
+
+  Parts parts_;
+  std::optional<Laws> laws_;
+  Joints rotor_;  ///< of this cycle
+};
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace hirosco::robot_arm {
+
+/// Failure codes of robot_arm.xml: why a function was refused or ended without its effect.
+enum class Trouble : std::uint16_t {
+  goal_not_reached = 0x8001,
+  out_of_range = 0x8002,  ///< a joint would leave its range
+  limit_tripped = 0x8003,
+  contact = 0x8004,
+  load_above_limit = 0x8005,
+  actuators_inhibited = 0x8006,
+  too_slow = 0x8007,  ///< longer than a telecommand is waited for
+  line_lost = 0x8008,  ///< the joints cannot follow the line
+  no_goal = 0x8009,  ///< it is no place, or where it stands already
+  too_near = 0x800A,  ///< to itself, or to a volume that it keeps out of
+  too_stiff = 0x800B,  ///< a spring that would swing faster than the law may
+  led = 0x800C,  ///< it gives way to whoever leads it: HOLD first
+};
+
+}  // namespace hirosco::robot_arm

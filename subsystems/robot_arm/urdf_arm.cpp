@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/urdf_arm.hpp"
+
+#include <utility>
+
+#include "subsystems/robot_arm/control/bounds.hpp"
+
+namespace hirosco::robot_arm {
+
+Result<UrdfArm::Source> UrdfArm::read(const descriptor::SubsystemDescriptor& subsystem) {
+  auto named = robotics::urdf::read_named(subsystem, device);
+  if (!named) return (not_read_ = std::move(named.error())).error();
+  const auto tip = robotics::urdf::named_tip(subsystem, device, *named);
+  if (!tip) return (not_read_ = tip.error()).error();
+  tip_ = *tip;
+  model_ = std::move(named->model);
+  return Source{std::move(named->file), std::move(named->text)};
+}
+
+Result<> UrdfArm::take_bounds() {
+  auto bounds = bounds_of(*model_);
+  if (!bounds) {
+    not_read_ = {ErrorCode::InvalidArgument, std::move(bounds.error())};
+    return not_read_.error();
+  }
+  bounds_ = std::move(*bounds);
+  return ok();
+}
+
+void UrdfArm::limit_motions(double acceleration, double jerk) noexcept {
+  for (auto& bounds : bounds_) {
+    bounds.motion.acceleration = acceleration;
+    bounds.motion.jerk = jerk;
+  }
+}
+
+}  // namespace hirosco::robot_arm

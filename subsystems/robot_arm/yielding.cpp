@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/yielding.hpp"
+
+#include <cmath>
+#include <span>
+
+#include "subsystems/robot_arm/trouble.hpp"
+
+namespace hirosco::robot_arm {
+namespace {
+
+/// An external torque has to last for a contact, so many cycles.
+constexpr std::uint32_t contact_after_cycles = 3;
+/// In which it lets go of whoever it met.
+constexpr double let_go_s = 0.05;
+
+}  // namespace
+
+void Yielding::engage() noexcept {
+  parts_.guidance.engage();
+  parts_.obstacles.tell(parts_.drives.measured().position);
+  parts_.control.laws().reset();
+  contact_cycles_ = 0;
+}
+
+/// The setpoint of whoever gave way is elsewhere than the arm: a hard law begins where the arm is, and so does any after it was led.
+void Yielding::take_law(LawKind kind) noexcept {
+  const Measured& measured = parts_.drives.measured();
+  if (parts_.control.floats() || (kind == LawKind::Position && parts_.control.gives_way()))
+    parts_.guidance.setpoints().settle(measured.position, measured.velocity);
+  if (kind == LawKind::Float) parts_.guidance.engage();
+  parts_.control.laws().set(kind, kind == LawKind::Float ? let_go_s : Laws::smooth_s);
+  contact_cycles_ = 0;
+}
+
+void Yielding::stand() noexcept {
+  if (parts_.control.floats()) take_law(LawKind::Position);
+  else parts_.guidance.setpoints().brake();
+}
+
+// --- a contact -----------------------------------------------------------------------------------------------------------
+
+std::optional<Yielding::Contact> Yielding::meet() noexcept {
+  const ContactValues values = parts_.parameters.contact.load();
+  if (values.reaction == static_cast<std::uint8_t>(Reaction::None)) return std::nullopt;
+  const JointVector& external = parts_.model.external();
+  const Bounds bounds = parts_.known.bounds();
+  std::size_t worst = 0;
+  double most = 0;
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const double share = std::abs(external[static_cast<Eigen::Index>(i)]) / bounds[i].effort;
+    if (share > most) most = share, worst = i;
+  }
+  if (most <= values.limit) {
+    contact_cycles_ = 0;
+    return std::nullopt;
+  }
+  if (++contact_cycles_ != contact_after_cycles || parts_.control.floats()) return std::nullopt;
+  return Contact{worst, external[static_cast<Eigen::Index>(worst)], values.limit * bounds[worst].effort,
+                 values.reaction};
+}
+
+void Yielding::react(const Doing& doing) noexcept {
+  const auto reaction = static_cast<Reaction>(parts_.parameters.contact.load().reaction);
+  if (reaction == Reaction::Float && !doing.stopping) {
+    take_law(LawKind::Float);
+    return;
+  }
+  if (doing.stood) return;
+  if (reaction == Reaction::Retract && !doing.stopping && !parts_.guidance.retracting()) {
+    parts_.guidance.retract();
+  } else {
+    const Measured& measured = parts_.drives.measured();
+    parts_.guidance.setpoints().halt(measured.position, measured.velocity);
+  }
+}
+
+// --- functions -----------------------------------------------------------------------------------------------------------
+
+Outcome Yielding::soften(LawKind kind, const Impedance& impedance) noexcept {
+  Compliance& compliance = parts_.control.laws().compliance();
+  const Joints rotor = parts_.parameters.rotor_inertia.load();
+  if (const auto found = compliance.too_stiff(kind, impedance, parts_.model.dynamics(), rotor,
+                                              parts_.parameters.bandwidth_rad_s.load()))
+    return refused(Trouble::too_stiff, kind == LawKind::JointImpedance ? "joint" : "of the tool, 1-3 about, 4-6 along",
+                   static_cast<std::int64_t>(*found + 1));
+  compliance.set(impedance);
+  take_law(kind);
+  return ok();
+}
+
+Outcome Yielding::soften_joints(const FunctionValues& values) noexcept {
+  const std::size_t joints = parts_.known.joints();
+  Impedance impedance = parts_.control.laws().impedance();
+  impedance.joint_n_m_rad = vector_of(std::span{values}.first(joints));
+  impedance.damping_ratio = values[joints];
+  return soften(LawKind::JointImpedance, impedance);
+}
+
+Outcome Yielding::soften_tool(double stiffness_n_m, double turning_n_m, double damping) noexcept {
+  Impedance impedance = parts_.control.laws().impedance();
+  impedance.tool_n_m = stiffness_n_m;
+  impedance.tool_n_m_rad = turning_n_m;
+  impedance.damping_ratio = damping;
+  return soften(LawKind::ToolImpedance, impedance);
+}
+
+void Yielding::harden() noexcept {
+  if (parts_.control.gives_way()) take_law(LawKind::Position);
+}
+
+}  // namespace hirosco::robot_arm
