@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What random flights (simulation/campaign) may do to this mission's devices besides what every device takes."""
 
+MOSTLY, HOOKED = "telepresence", "standalone"
+ENDS = ["telepresence", "standalone"]
 FAULTS = {"MANIPULATOR": ["temperature", "hook", "release", "friction", "noise", "thermal_accel"], "JOYSTICK": ["hand"]}
 
 

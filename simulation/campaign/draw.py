@@ -55,7 +55,7 @@ def commands_of(mission):
 def of_folder(folder):
     file = folder / "campaign.py"
     if not file.exists():
-        return types.SimpleNamespace(FAULTS={}, lines=lambda random: {})
+        return types.SimpleNamespace(FAULTS={}, MOSTLY=None, HOOKED=None, ENDS=[], lines=lambda random: {})
     spec = importlib.util.spec_from_file_location("campaign_of_mission", file)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -63,8 +63,9 @@ def of_folder(folder):
 
 
 def of_its_devices(mission):
-    """What a mission's own devices take besides what all do: campaign.py of its folder has FAULTS by member, and lines(random), the line
-    of each with numbers drawn."""
+    """What is of this mission alone, campaign.py of its folder: FAULTS by member that its own devices take besides what all do, and lines(random),
+    the line of each with numbers drawn; MOSTLY, the mode that most flights begin in, HOOKED, the one for faults of hooks; ENDS, in which of its modes a flight ends:
+    the first whose members all live."""
     return of_folder(mission.folder)
 
 
@@ -95,7 +96,10 @@ class Draw:
         self.acting = [m for m in mission.members if m.name != mission.ground]
         self.flight_seed = self.random.randrange(1, 1 << 32)
         hooks = any(cell.startswith("fault hook") for cell in self.wanted_faults)
-        self.mode = "standalone" if hooks else self.random.choice(["telepresence"] * 3 + [m for m in mission.modes if m not in (mission.initial_mode, "safe")])
+        own = of_its_devices(mission)
+        self.ends = own.ENDS
+        flown = [m for m in mission.modes if m not in (mission.initial_mode, "safe")]
+        self.mode = own.HOOKED if hooks and own.HOOKED else self.random.choice([own.MOSTLY] * 3 + flown if own.MOSTLY else flown)
 
     # --- values ------------------------------------------------------------------------------------------------------
     def argument(self, argument):
@@ -465,7 +469,7 @@ class Draw:
         if self.index % SILENCED_EVERY == SILENCED_AT:
             self.strike_silenced()
         self.lines.sort(key=lambda line: line[0])
-        head = [f"seed {self.flight_seed}", f"mode {self.mode}", f"finale {FINALE_S}"]
+        head = [f"seed {self.flight_seed}", f"mode {self.mode}", f"finale {FINALE_S}", *([" ".join(["ends", *self.ends])] if self.ends else [])]
         return "\n".join(head + [f"{time:.6f} {words}" for time, words in self.lines]) + "\n"
 
 

@@ -54,14 +54,15 @@ void Finale::see_hangs_ended() {
   }
 }
 
-/// The mode that couples most, or what is left of it.
+/// The first of its modes that has all of its members, or what is left of the last.
 void Finale::bring_up() {
-  const auto* mode = parts_.mission.find_mode("telepresence");
-  const auto* alone = parts_.mission.find_mode("standalone");
   const auto* commissioning = parts_.mission.find_mode(parts_.mission.initial_mode);
-  if (mode == nullptr || alone == nullptr || commissioning == nullptr) return;
   const auto lives = [&](const auto& step) { return parts_.craft.alive(step.subsystem); };
-  if (!std::ranges::all_of(mode->commission, lives)) mode = alone;
+  const descriptor::Mode* mode = nullptr;
+  for (const std::string& name : parts_.ends) {
+    mode = parts_.mission.find_mode(name);
+    if (std::ranges::all_of(mode->commission, lives)) break;
+  }
   static_cast<void>(call(parts_.mission.supervisor.name, "SET_MODE", commissioning->id));
   // An operator who brings the craft up gives it the power for that again.
   if (parts_.mission.power_budget_w)

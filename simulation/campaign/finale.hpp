@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "simulation/campaign/flight_traffic.hpp"
 #include "simulation/campaign/pinged_time.hpp"
@@ -23,6 +25,7 @@ class Finale {
     FlightTraffic& traffic;
     PlanActions& actions;
     PingedTime& time;
+    const std::vector<std::string>& ends;  ///< modes of the mission, one at least: FlightPlan
   };
   explicit Finale(const Parts& parts) : parts_{parts} {}
 

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "hirosco/descriptor/read/read.hpp"
 #include "simulation/campaign/planned_flight.hpp"
@@ -49,6 +51,13 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "hirosco-fly-plan: {} is not a plan (line {})\n", argv[2], plan ? 0 : plan.error().value);
     return exit_usage;
   }
+  std::vector<std::string> modes = plan->ends;
+  if (!plan->mode.empty()) modes.push_back(plan->mode);
+  for (const std::string& mode : modes)
+    if (reading.value->find_mode(mode) == nullptr) {
+      fmt::print(stderr, "hirosco-fly-plan: {} names mode '{}', which the mission has not\n", argv[2], mode);
+      return exit_usage;
+    }
   auto modules = simulation::load_modules(*reading.value);
   for (const auto& [program, why] : modules.missing) fmt::print(stderr, "hirosco-fly-plan: {}\n", why);
   if (!modules.missing.empty()) return exit_finding;

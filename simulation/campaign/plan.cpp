@@ -40,6 +40,10 @@ namespace {
     HIROSCO_TRY_LET(plan.finale, seconds_of(words[1]));
     return ok();
   }
+  if (words.size() >= 2 && words[0] == "ends") {
+    plan.ends.assign(words.begin() + 1, words.end());
+    return ok();
+  }
   if (words.size() < 2) return fail(ErrorCode::Malformed, "an action has a time and a verb");
   HIROSCO_TRY_LET(const Duration at, seconds_of(words[0]));
   words.erase(words.begin());

@@ -17,22 +17,24 @@
 ///   SECONDS VERB WORD...            what stands behind a '#' is a remark
 /// and before the actions lines without a time:
 ///   seed N | mode NAME (to commission) | finale SECONDS (from when on all faults are over)
+///   ends MODE... (in the first whose members all live, or else in the last, with those that do; by itself the one that is commissioned)
 namespace hirosco::campaign {
 
 /// Where the spacecraft's clock begins.
 inline constexpr TimePoint start_of_flight{std::chrono::seconds{1}};
 
 struct Action {
-  Duration at{};                     ///< since the start of the flight
-  std::vector<std::string> words;    ///< the verb first
-  std::string line;                  ///< as written
+  Duration at{};  ///< since the start of the flight
+  std::vector<std::string> words;  ///< the verb first
+  std::string line;  ///< as written
 };
 
 struct FlightPlan {
   std::uint64_t seed{1};
-  std::string mode;                  ///< empty: that of the mission
+  std::string mode;  ///< empty: that of the mission
   Duration finale{std::chrono::seconds{24}};
-  std::vector<Action> actions;       ///< by time; of equal times as written
+  std::vector<std::string> ends;  ///< modes
+  std::vector<Action> actions;  ///< by time; of equal times as written
 };
 
 /// Malformed: `value` is the number of the line.

@@ -18,6 +18,7 @@ PlannedFlight::PlannedFlight(const descriptor::Mission& mission, simulation::Mod
       defect_{defect ? std::move(defect) : std::make_unique<PlantedDefect>()},
       modules_{std::move(modules)} {
   if (!plan_.mode.empty()) mission_.start_mode = plan_.mode;
+  if (plan_.ends.empty()) plan_.ends = {mission_.start_mode.empty() ? mission_.initial_mode : mission_.start_mode};
   defect_->mission = &mission_;
   if (defect_->edit) defect_->edit(mission_);
   if (defect_->devices) defect_->devices(modules_.devices);
@@ -59,7 +60,8 @@ void PlannedFlight::fly() {
           .trace = *trace_,
           .traffic = *traffic_,
           .actions = *actions_,
-          .time = *time_}}
+          .time = *time_,
+          .ends = plan_.ends}}
       .fly(plan_.finale);
   trace_->say("end");
 }

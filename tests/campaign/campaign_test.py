@@ -25,6 +25,7 @@ FOUND = {
 seed 2067581723
 mode standalone
 finale 26.0
+ends telepresence standalone
 14.713206 tc ground 1 8 1 15 5345545f4d4f44450000000000000000010101
 14.743206 tc ground 10 8 1 15 5345545f535441544500000000000000010104
 14.743206 tc ground 11 8 1 15 5345545f535441544500000000000000010104
@@ -40,6 +41,7 @@ finale 26.0
 seed 4203175389
 mode telepresence
 finale 26.0
+ends telepresence standalone
 18.946899 tc ground 1 8 1 15 534146455f414c4c000000000000000000
 19.073649 stop SUPERVISOR
 """,
@@ -47,6 +49,7 @@ finale 26.0
 seed 1824551638
 mode telepresence
 finale 26.0
+ends telepresence standalone
 7.672652 strain MANIPULATOR 3 600
 12.180817 tc ground 10 8 1 15 5345545f535441544500000000000000010105
 23.318167 fault joystick hand hold 0.1 0.1
