@@ -23,6 +23,7 @@
 #include "hirosco/utilities/memory_reserve.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
+#include "hirosco/utilities/os/line_writer.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
 #include "hirosco/utilities/program_options.hpp"
@@ -30,6 +31,7 @@
 #include "supervisor/guard/guard_shell.hpp"
 #include "supervisor/guard/life_watch.hpp"
 #include "supervisor/inheritance.hpp"
+#include "supervisor/keeper/job_control.hpp"
 #include "supervisor/keeper/kept.hpp"
 #include "supervisor/platform/storage/begin_log.hpp"
 #include "supervisor/platform/storage/epoch_file.hpp"
@@ -164,13 +166,14 @@ auto without_unwinding(Body body) noexcept {
 }
 
 /// Between two steps, all of which is noted: for the next supervisor as a death, and one of its own choice.
-[[noreturn]] void leave_to_another() noexcept {
-  std::fputs("hirosco: no memory left: the supervisor ends between two steps\n", stderr);
+[[noreturn]] void leave_to_another(LineWriter& errors) noexcept {
+  errors.say("hirosco: no memory left: the supervisor ends between two steps\n");
+  errors.flush(LineWriter::last_patience);
   std::_Exit(exit_environment);
 }
 
-int serve(const descriptor::Mission& mission, const Options& options, const MakeDeployment& deploy,
-          Inheritance& keeper) {
+int serve(const descriptor::Mission& mission, const Options& options, const MakeDeployment& deploy, Inheritance& keeper,
+          LineWriter& errors) {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
@@ -179,6 +182,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   sigaddset(&blocked, SIGUSR1);  // the guard's thread takes it
   ::pthread_sigmask(SIG_BLOCK, &blocked, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
+  ignore_job_control();
   const FileDescriptor signal_descriptor{::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK)};
 
   const bool kept = ::fcntl(keeper_descriptor, F_GETFD) >= 0;
@@ -200,13 +204,13 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   auto guard_found = WakeEvent::create();
   if (!log_progress || !guard_found) {
     const Error& why = (log_progress ? guard_found : log_progress).error();
-    fmt::print(stderr, "hirosco: nothing to wake the supervisor by: {} ({})\n", why.text,
-               std::strerror(static_cast<int>(why.value)));
+    errors.say(fmt::format("hirosco: nothing to wake the supervisor by: {} ({})\n", why.text,
+                           std::strerror(static_cast<int>(why.value))));
     return exit_environment;
   }
   auto store = make_store(strategy, log_path, mission.database);
   if (!store) {
-    fmt::print(stderr, "hirosco: no flight without a log: libpq.so.5 is not installed (libpq5)\n");
+    errors.say(fmt::format("hirosco: no flight without a log: libpq.so.5 is not installed (libpq5)\n"));
     return exit_environment;
   }
   if (!launcher.keep_with(keeper.store(), mission, std::move(inherited), &page)) page.alone.store(1);
@@ -218,7 +222,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   UnprovokedReactions causes{clock, console};
   const auto begun = launcher.begin(mission);
   if (!begun) {
-    fmt::print(stderr, "hirosco: {} does not fly: {}\n", mission.name, begun.error());
+    errors.say(fmt::format("hirosco: {} does not fly: {}\n", mission.name, begun.error()));
     return exit_environment;
   }
   if (!begun->empty()) console.told(clock.onboard(), *begun);
@@ -238,7 +242,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   begin_log(log);
   const auto log_refused = [&] {
     const auto why_not = why_not_begun(log, clock, log_start_limit);
-    if (why_not) fmt::print(stderr, "hirosco: no flight without a log: {} ({})\n", *why_not, log_path.string());
+    if (why_not) errors.say(fmt::format("hirosco: no flight without a log: {} ({})\n", *why_not, log_path.string()));
     return why_not.has_value();
   };
   ThreadedValueStore values{clock, std::make_unique<SystemValueDisk>(),
@@ -251,7 +255,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   EpochFile epochs{std::filesystem::path{log_path}.replace_extension(".epoch")};
   const auto first_epoch = epochs.first(clock.onboard());
   if (!first_epoch) {
-    if (!log_refused()) fmt::print(stderr, "hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text);
+    if (!log_refused()) errors.say(fmt::format("hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text));
     return exit_environment;
   }
   Guard guard{
@@ -314,8 +318,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
              return stops.carry_out([&](bool) { return guard.stop_all(GuardFinding::Kind::StopAsked); });
            }});
   if (!guard_thread) {
-    fmt::print(stderr, "hirosco: the guard cannot start: {} ({})\n", guard_thread.error().text,
-               guard_thread.error().value);
+    errors.say(fmt::format("hirosco: the guard cannot start: {} ({})\n", guard_thread.error().text,
+                           guard_thread.error().value));
     launcher.kill_all();
     return exit_environment;
   }
@@ -329,7 +333,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
       page.supervisor.fetch_add(1, std::memory_order_relaxed);
       static_cast<void>(keeper.note(supervisor.mission().texts));
       if (reserve.used() && !std::exchange(ends_as_a_whole, true)) {
-        if (kept && page.alone.load() == 0 && !asked_to_end) leave_to_another();
+        if (kept && page.alone.load() == 0 && !asked_to_end) leave_to_another(errors);
         console.told(clock.onboard(), "no memory left: the flight ends in order");
         supervisor.request_shutdown("the supervisor, which has no memory left");
       }
@@ -379,33 +383,32 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   wait_for_ends();
   if (launcher.any_running()) {
     // Whoever cannot be ended works on what stands in this function: it is not left.
-    std::fputs("hirosco: what cannot be ended is ended with this process\n", stderr);
-    std::fflush(nullptr);
+    errors.say("hirosco: what cannot be ended is ended with this process\n");
+    errors.flush(LineWriter::last_patience);
     std::_Exit(exit_internal);
   }
   const auto without_cause = unprovoked(causes.uncommanded(), injections_of(mission, options.runtime), mission);
   if (!without_cause.empty()) {
-    fmt::print(
-        stderr,
+    errors.say(fmt::format(
         "hirosco: {} reaction{} of high severity that no fault, telecommand or scenario of this flight had caused, "
         "the first {:.3f} s after the start: hirosco log --text plan\n",
-        without_cause.size(), without_cause.size() == 1 ? "" : "s", seconds(without_cause.front().at - started));
+        without_cause.size(), without_cause.size() == 1 ? "" : "s", seconds(without_cause.front().at - started)));
     return exit_unprovoked;
   }
   return supervisor.succeeded() ? 0 : exit_finding;
 }
 
 int named_failures(const char* program, const descriptor::Mission& mission, const Options& options,
-                   const MakeDeployment& deploy, Inheritance& keeper) {
-  const auto flight = [&] { return serve(mission, options, deploy, keeper); };
+                   const MakeDeployment& deploy, Inheritance& keeper, LineWriter& errors) {
+  const auto flight = [&] { return serve(mission, options, deploy, keeper, errors); };
   try {
     return keeper.goes_on() ? without_unwinding(flight) : flight();
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "{}: no memory left for this flight\n", program);
+    errors.say(fmt::format("{}: no memory left for this flight\n", program));
   } catch (const std::system_error& problem) {
     // A thread of the log or of the console that cannot be started.
-    fmt::print(stderr, "{}: the system refuses what a flight needs (thread, descriptor): {}\n", program,
-               problem.what());
+    errors.say(
+        fmt::format("{}: the system refuses what a flight needs (thread, descriptor): {}\n", program, problem.what()));
   }
   return exit_environment;
 }
@@ -426,17 +429,19 @@ int fly(int argc, char** argv, const MakeDeployment& deploy) {
     fmt::print(stderr, "{}: started by 'hirosco run MISSION'\n  --mission FILE [--json|--quiet]\n", argv[0]);
     return exit_usage;
   }
+  // Who goes on for another one waits for nobody who reads this, from here on.
+  LineWriter errors{STDERR_FILENO};
   Inheritance keeper;
   const auto source = keeper.source();
   auto reading = descriptor::read_mission(options.mission, source);
-  for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, false));
+  for (const auto& problem : reading.problems) errors.say(descriptor::render(problem, source, false));
   if (!reading.value) return exit_finding;
   if (!options.mode.empty())
     if (const auto why_not = descriptor::start_in(*reading.value, options.mode)) {
-      fmt::print(stderr, "{}: {}\n", argv[0], *why_not);
+      errors.say(fmt::format("{}: {}\n", argv[0], *why_not));
       return exit_usage;
     }
-  return named_failures(program, *reading.value, options, deploy, keeper);
+  return named_failures(program, *reading.value, options, deploy, keeper, errors);
 }
 
 }  // namespace hirosco::supervisor

@@ -16,14 +16,17 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <string>
 #include <string_view>
 
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
+#include "hirosco/utilities/os/line_writer.hpp"
 #include "hirosco/utilities/os/linux/memfd.hpp"
 #include "hirosco/utilities/os/shared_memory.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "supervisor/keeper/inhibit_bridge.hpp"
+#include "supervisor/keeper/job_control.hpp"
 #include "supervisor/keeper/kept_store.hpp"
 #include "supervisor/keeper/service_notice.hpp"
 
@@ -107,8 +110,8 @@ void end_orphans(const std::vector<Process>& devices, int beside, const sigset_t
 }
 
 /// Nothing ends here without a word of what the system refused.
-int refused(const char* what, std::int64_t number) {
-  std::fprintf(stderr, "hirosco: %s: %s\n", what, std::strerror(static_cast<int>(number)));
+int refused(LineWriter& errors, std::string_view what, std::int64_t number) {
+  errors.say("hirosco: " + std::string{what} + ": " + std::strerror(static_cast<int>(number)) + "\n");
   return exit_environment;
 }
 
@@ -123,9 +126,9 @@ struct Shared {
 };
 
 /// 0, or the exit code.
-[[nodiscard]] int prepare(Shared& shared) {
+[[nodiscard]] int prepare(Shared& shared, LineWriter& errors) {
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return refused("no pipe to watch over the flight", errno);
+  if (::pipe2(ends, O_CLOEXEC) != 0) return refused(errors, "no pipe to watch over the flight", errno);
   shared.watched.reset(ends[0]);
   shared.held.reset(ends[1]);
   const auto memory = [](const char* name, std::size_t octets, FileDescriptor& into) -> Result<> {
@@ -135,13 +138,13 @@ struct Shared {
   auto made = memory("hirosco-keeper", sizeof(KeeperPage), shared.page_memory);
   if (made) made = memory("hirosco-journal", journal_octets, shared.journal);
   if (made) made = memory("hirosco-texts", texts_octets, shared.texts);
-  if (!made) return refused("no memory to watch over the flight", made.error().value);
+  if (!made) return refused(errors, "no memory to watch over the flight", made.error().value);
   auto mapped = MappedMemory::map(shared.page_memory.get(), sizeof(KeeperPage), MapMode::ReadWrite);
-  if (!mapped) return refused("no memory to watch over the flight", mapped.error().value);
+  if (!mapped) return refused(errors, "no memory to watch over the flight", mapped.error().value);
   shared.mapped = std::move(*mapped);
   ::new (shared.mapped.octets().data()) KeeperPage;
   auto socket = KeptStore::make_socket();
-  if (!socket) return refused("no socket to keep the flight by", socket.error().value);
+  if (!socket) return refused(errors, "no socket to keep the flight by", socket.error().value);
   shared.store.emplace(std::move(socket->first));
   shared.to_store = std::move(socket->second);
   return 0;
@@ -151,9 +154,10 @@ struct Shared {
 class Flight {
  public:
   Flight(KeeperPlan& plan, Shared& shared, const std::vector<Process>& devices, const sigset_t& signals,
-         const ServiceNotice& notice)
+         const ServiceNotice& notice, LineWriter& errors)
       : plan_{plan},
         notice_{notice},
+        errors_{errors},
         devices_{devices},
         shared_{shared},
         page_{shared.page()},
@@ -211,8 +215,8 @@ class Flight {
     const bool still = progress_.stands_still(page_.supervisor.load(std::memory_order_relaxed), now);
     if ((!still && !stopped()) || killed_) return std::nullopt;
     killed_ = true;
-    std::fputs("hirosco: the supervisor stands still and is ended\n", stderr);
     static_cast<void>(supervisor_->send_signal(SIGKILL));
+    errors_.say("hirosco: the supervisor stands still and is ended\n");
     return std::nullopt;
   }
 
@@ -225,9 +229,9 @@ class Flight {
     if (!pause) return code == 0 && !in_order ? exit_internal : code;
     bridge_.begin();
     shared_.store->take();
-    std::fputs("hirosco: the supervisor has died; another one goes on\n", stderr);
     killed_ = false;
     revive_at_ = now + *pause;
+    errors_.say("hirosco: the supervisor has died; another one goes on\n");
     return std::nullopt;
   }
 
@@ -288,6 +292,7 @@ class Flight {
   const SystemClock clock_;
   KeeperPlan& plan_;
   const ServiceNotice& notice_;
+  LineWriter& errors_;
   bool told_ready_{false}, told_end_{false};
   const std::vector<Process>& devices_;
   Shared& shared_;
@@ -313,10 +318,14 @@ int keep(KeeperPlan plan) {
   const SystemClock clock;
   const sigset_t set = handled_signals();
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  ignore_job_control();
+  ::signal(SIGPIPE, SIG_IGN);
+  // Nothing in here waits for who reads it: what stands still there, or is gone, is nobody's of the flight.
+  LineWriter errors{STDERR_FILENO};
   ::prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
   const ServiceNotice notice = ServiceNotice::take();  // before anybody is started
   Shared shared;
-  if (const int code = prepare(shared); code != 0) return code;
+  if (const int code = prepare(shared, errors); code != 0) return code;
 
   std::vector<Process> devices;
   devices.reserve(plan.devices.size());
@@ -326,16 +335,16 @@ int keep(KeeperPlan plan) {
     auto device = Process::spawn(start);
     if (!device) {
       end_devices(devices, set, clock);
-      return refused(("cannot start " + start.executable).c_str(), device.error().value);
+      return refused(errors, "cannot start " + start.executable, device.error().value);
     }
     devices.push_back(std::move(*device));
   }
   static_cast<void>(set_fifo_priority(keeper_priority));
   int code = 0;
   {
-    Flight flight{plan, shared, devices, set, notice};
+    Flight flight{plan, shared, devices, set, notice, errors};
     if (const auto started = flight.start(); !started)
-      code = refused(("cannot start " + plan.supervisor.executable).c_str(), started.error().value);
+      code = refused(errors, "cannot start " + plan.supervisor.executable, started.error().value);
     else code = flight.fly();
   }
   static_cast<void>(set_ordinary_scheduling());

@@ -1,10 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
 
 #include "supervisor/keeper/keeper.hpp"
+#include "supervisor/platform/storage/testing/test_folder.hpp"
 
-/// Keeper and supervisor look at each other's counter on a page that both may write (hazards SF18 and SF19).
+/// Keeper and supervisor look at each other's counter on a page that both may write (hazards SF18 and SF19). And the keeper with a shell in
+/// the place of its supervisor, and nobody who reads its standard error.
 namespace hirosco::supervisor {
 namespace {
 
@@ -48,6 +61,89 @@ TEST(Progress, NoDamageOfTheCounterHidesThatItStandsStillForLongerThanOnePatienc
     EXPECT_FALSE(progress.stands_still(damaged, TimePoint{11s}));
     EXPECT_TRUE(looks(progress, damaged, TimePoint{11s}, TimePoint{11s} + keeper_patience + 100ms)) << damaged;
   }
+}
+
+/// What stands in the keeper's page first: its own count and the supervisor's (kept.hpp). A shell that writes there has moved.
+constexpr const char* moves = "printf aaaaaaaabbbbbbbb >&7; ";
+
+struct KeeperTest : ::testing::Test {
+  TestFolder folder;
+  std::string starts{(folder.path() / "starts").string()};
+  FileDescriptor unread, full;
+
+  void SetUp() override {
+    std::array<int, 2> ends{-1, -1};
+    ASSERT_EQ(::pipe(ends.data()), 0);
+    unread.reset(ends[0]);
+    full.reset(ends[1]);
+    ASSERT_EQ(::fcntl(full.get(), F_SETFL, O_NONBLOCK), 0);
+    while (::write(full.get(), "#", 1) == 1) {}
+    ASSERT_EQ(::fcntl(full.get(), F_SETFL, 0), 0);  // as those who share it have it
+  }
+  /// How a keeper ended that was started with this for its supervisor, each of which notes its start. Whoever stands still is ended by a
+  /// signal in the end, and so is who was stopped.
+  [[nodiscard]] int kept(const std::string& supervisor) {
+    const pid_t keeper = ::fork();
+    if (keeper == 0) {
+      static_cast<void>(::setpgid(0, 0));  // a group whose parent is outside it: job control reaches it
+      ::dup2(full.get(), STDERR_FILENO);
+      full.reset();
+      if (!unread_stays) unread.reset();
+      ::alarm(20);
+      KeeperPlan plan;
+      plan.supervisor.executable = "/bin/sh";
+      plan.supervisor.arguments = {"-c", "echo $$ >> '" + starts + "'; " + supervisor};
+      ::_exit(keep(std::move(plan)));
+    }
+    if (!unread_stays) unread.reset();
+    int how = 0;
+    EXPECT_EQ(::waitpid(keeper, &how, WUNTRACED), keeper);
+    if (WIFSTOPPED(how)) {
+      ::kill(keeper, SIGKILL);
+      ::waitpid(keeper, nullptr, 0);
+    }
+    return how;
+  }
+  [[nodiscard]] std::size_t supervisors() const {
+    std::ifstream lines{starts};
+    return static_cast<std::size_t>(std::count(std::istreambuf_iterator<char>{lines}, {}, '\n'));
+  }
+  bool unread_stays{true};
+};
+
+TEST_F(KeeperTest, EndsASupervisorThatStandsStillThoughNobodyReadsItsStandardError) {
+  const int how = kept("kill -STOP $$");
+  ASSERT_TRUE(WIFEXITED(how)) << how;
+  EXPECT_EQ(WEXITSTATUS(how), 4);
+}
+
+TEST_F(KeeperTest, StartsAnotherSupervisorThoughNobodyReadsItsStandardError) {
+  const int how = kept(std::string{moves} + "kill -KILL $$");
+  ASSERT_TRUE(WIFEXITED(how)) << how;
+  EXPECT_EQ(supervisors(), 2U) << "the second one's words say that it has finished";
+}
+
+TEST_F(KeeperTest, StartsAnotherSupervisorThoughWhoReadItsStandardErrorIsGone) {
+  unread_stays = false;
+  const int how = kept(std::string{moves} + "kill -KILL $$");
+  ASSERT_TRUE(WIFEXITED(how)) << how;
+  EXPECT_EQ(supervisors(), 2U);
+}
+
+TEST_F(KeeperTest, HearsAnEndAskedForThoughNobodyReadsItsStandardError) {
+  // The first one dies without an end, and what the keeper says of it has no room; the second asks the keeper for one.
+  // It begins with SIGTERM blocked, so that it sees it wait.
+  const int how =
+      kept("if [ $(wc -l < '" + starts + "') = 1 ]; then " + moves +
+           "kill -KILL $$; fi; kill -TERM $PPID; until grep -q '^ShdPnd:.*4...$' /proc/$$/status; do :; done");
+  ASSERT_TRUE(WIFEXITED(how)) << how;
+  EXPECT_EQ(supervisors(), 2U);
+}
+
+TEST_F(KeeperTest, IsStoppedByNoTerminal) {
+  const int how = kept("kill -TSTP $PPID; kill -TTIN $PPID; kill -TTOU $PPID");
+  ASSERT_FALSE(WIFSTOPPED(how)) << "by signal " << WSTOPSIG(how);
+  ASSERT_TRUE(WIFEXITED(how)) << how;
 }
 
 }  // namespace

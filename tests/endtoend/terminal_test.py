@@ -145,6 +145,24 @@ class TerminalTest(unittest.TestCase):
             self.assertEqual(terminal.wait(), 0)
             self.assert_as_before(terminal)
 
+    def test_a_supervisor_that_stands_still_is_replaced_while_ctrl_s_holds_a_terminal_with_lines(self):
+        with Terminal(flight.HELLO, "--no-ground", "--plain") as terminal:
+            def supervisors():
+                return [pid for pid, name in flight.marked_processes(terminal.mark).items() if name == "hirosco-supervisor"]
+            terminal.until(lambda t: "commissioned" in t, "that it flies")
+            terminal.press(b"\x13")
+            time.sleep(0.2)
+            before = supervisors()
+            os.kill(before[0], signal.SIGSTOP)
+            end = time.monotonic() + 10.0
+            while not set(supervisors()) - set(before):
+                self.assertLess(time.monotonic(), end, "another one goes on")
+                time.sleep(0.02)
+            terminal.press(b"\x11")
+            terminal.until(lambda t: "this supervisor goes on for one that died" in " ".join(t.split()), "what the next one says")
+            os.kill(terminal.pid, signal.SIGTERM)
+            self.assertEqual(terminal.wait(), 0)
+
     def test_lines_tell_changes_and_nothing_else_where_there_is_no_terminal(self):
         with tempfile.TemporaryDirectory(prefix="hirosco-lines-") as folder:
             done = subprocess.run([str(flight.BINARIES / "hirosco"), "run", str(flight.HELLO), "--no-ground", "--for", "3s"],

@@ -4,6 +4,7 @@
 """Keeper and supervisor are killed or stopped while the robot pushes: it stops where nobody looks after it, nobody is left behind,
 and who is left says so (hazard SF18, reliability 5.1). The supervisor alone: adoption_test.py."""
 import os
+import pathlib
 import signal
 import time
 import unittest
@@ -61,6 +62,18 @@ class StandsStill(unittest.TestCase):
             self.assertGreater(rokviss.truth("robot")["force"], 20.0, "it pushes on")
             self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0)
             rokviss.process.send_signal(signal.SIGCONT)
+            self.assertEqual(rokviss.end(), 0, rokviss.errors)
+
+    def test_no_terminal_stops_keeper_or_supervisor(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            for number in (signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU):
+                for name in ("hirosco", "hirosco-supervisor"):
+                    rokviss.kill(name, number)
+            for name in ("hirosco", "hirosco-supervisor"):
+                status = pathlib.Path(f"/proc/{rokviss.pid_of(name)}/status").read_text()
+                self.assertNotIn("State:\tT", status, name)
+            self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0)
             self.assertEqual(rokviss.end(), 0, rokviss.errors)
 
     def test_a_killed_keeper_leaves_a_robot_that_stops_in_order(self):

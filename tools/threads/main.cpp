@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
+#include <memory>
 
 #include "hirosco/subsystem/author/module.hpp"
+#include "hirosco/utilities/os/line_writer.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "supervisor/flight_shell.hpp"
 #include "supervisor/platform/launch/thread_launcher.hpp"
@@ -33,13 +36,16 @@ using namespace hirosco::supervisor;
   if (!find_makers(parts.mission, makers)) return {};
   // All of it, code of modules and stacks included: no cycle waits for a page.
   if (parts.realtime) static_cast<void>(lock_memory());
-  auto launcher = std::make_unique<ThreadLauncher>(ThreadLauncher::Parts{
-      .clock = parts.clock,
-      .flows = parts.flows,
-      .makers = std::move(makers),
-      .realtime = parts.realtime,
-      .links = local_link_mechanisms(),
-      .explain = [](std::string_view line) { std::fputs(fmt::format("{}\n", line).c_str(), stderr); }});
+  auto launcher = std::make_unique<ThreadLauncher>(
+      ThreadLauncher::Parts{.clock = parts.clock,
+                            .flows = parts.flows,
+                            .makers = std::move(makers),
+                            .realtime = parts.realtime,
+                            .links = local_link_mechanisms(),
+                            // By whoever's service loop it is: it must not wait for a terminal.
+                            .explain = [errors = std::make_shared<LineWriter>(STDERR_FILENO)](std::string_view line) {
+                              errors->say(fmt::format("{}\n", line));
+                            }});
   MemoryProvider& memory = launcher->memory();
   return {.launcher = std::move(launcher), .memory = &memory, .links = local_link_mechanisms()};
 }

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/utilities/os/last_words.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
 #include <csignal>
 #include <functional>
 #include <new>
@@ -44,6 +48,21 @@ TEST(LastWords, OfAnotherThreadAreSaidToo) {
     thread->join();
   };
   EXPECT_EXIT(in_a_thread(), ::testing::ExitedWithCode(3), "hirosco-probe: no memory left");
+}
+
+TEST(LastWords, ThatNobodyReadsKeepNobodyAlive) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const auto unheard = [] {
+    std::array<int, 2> ends{-1, -1};
+    if (::pipe(ends.data()) != 0) return;
+    static_cast<void>(::fcntl(ends[1], F_SETFL, O_NONBLOCK));
+    while (::write(ends[1], "#", 1) == 1) {}
+    static_cast<void>(::fcntl(ends[1], F_SETFL, 0));
+    static_cast<void>(::dup2(ends[1], STDERR_FILENO));
+    ::alarm(20);
+    speak(std::bad_alloc{});
+  };
+  EXPECT_EXIT(unheard(), ::testing::ExitedWithCode(3), "");
 }
 
 TEST(LastWords, OfADefectNameItAndAbort) {

@@ -37,6 +37,8 @@ class Thread {
   [[nodiscard]] bool joinable() const noexcept { return joinable_; }
   /// Returns when the body has ended; at once when there is none.
   void join() noexcept;
+  /// Nobody waits for it any more: its body goes on by itself, with nothing but what it holds.
+  void leave_behind() noexcept;
 
  private:
   [[nodiscard]] static Result<Thread> begin(std::string name, std::function<void()> body, std::size_t stack_octets);

@@ -12,7 +12,6 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 
 #include "hirosco/utilities/os/thread.hpp"
 
@@ -65,7 +64,10 @@ void LineCutter::end(const std::function<void(std::string_view)>& line) {
 }
 
 StandardError::StandardError(Print print) : print_{std::move(print)} {
-  if (!print_) print_ = [](const std::string& line) { std::fputs(line.c_str(), stderr); };
+  if (!print_) {
+    writer_.emplace(STDERR_FILENO);
+    print_ = [this](const std::string& line) { writer_->say(line); };
+  }
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) return;
   wake_read_.reset(ends[0]);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/line_writer.hpp"
 #include "hirosco/utilities/result.hpp"
 
 namespace hirosco::supervisor {
@@ -50,12 +52,13 @@ class LineCutter {
 };
 
 /// The standard errors of the subsystems: each line is printed with its speaker's name, at most `most_lines` of one speaker
-/// in a second, the rest as a count. One ordinary thread.
+/// in a second, the rest as a count. One ordinary thread, which goes on reading though nobody takes what it prints: else who writes would
+/// wait, and that is a subsystem.
 class StandardError {
  public:
   static constexpr std::size_t most_lines = 20;
   using Print = std::function<void(const std::string&)>;
-  /// `print` is called by the thread; standard error by default.
+  /// `print` is called by the thread and must not wait for anybody; by default standard error, by a LineWriter.
   explicit StandardError(Print print = {});
   ~StandardError();
   StandardError(const StandardError&) = delete;
@@ -78,6 +81,7 @@ class StandardError {
   void read_from(Stream& stream, LineLimit& limit);
   void say(const std::string& speaker, std::string_view line, LineLimit& limit);
 
+  std::optional<LineWriter> writer_;
   Print print_;
   std::mutex mutex_;
   std::vector<Stream> fresh_;

@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/launch/standard_error.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <unistd.h>
+
+#include <array>
 
 namespace hirosco::supervisor {
 namespace {
@@ -56,6 +60,31 @@ TEST(StandardErrorLines, AreNamedAfterWhoWroteThemToTheLastOne) {
     hand->reset();
   }
   EXPECT_THAT(printed, ::testing::UnorderedElementsAre("ARM: sensor \\x1b broken\n", "HAND: no end\n"));
+}
+
+/// As of a terminal under Ctrl-S, or `2>&1 | less`.
+TEST(StandardErrorLines, WhileNobodyTakesWhatIsPrintedWhoWritesIsReadAllTheSame) {
+  std::array<int, 2> ends{-1, -1};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  FileDescriptor nobody_reads{ends[0]}, full{ends[1]};
+  ASSERT_EQ(::fcntl(full.get(), F_SETFL, O_NONBLOCK), 0);
+  while (::write(full.get(), "#", 1) == 1) {}
+  ASSERT_EQ(::fcntl(full.get(), F_SETFL, 0), 0);
+  const FileDescriptor before{::dup(STDERR_FILENO)};
+  ASSERT_EQ(::dup2(full.get(), STDERR_FILENO), STDERR_FILENO);
+  std::size_t written = 0;
+  constexpr std::size_t wanted = 1'000'000;  // far more than a pipe has room for
+  {
+    StandardError lines;
+    auto arm = lines.open("ARM");
+    if (arm && ::fcntl(arm->get(), F_SETFL, O_NONBLOCK) == 0)
+      for (pollfd look{arm->get(), POLLOUT, 0}; written < wanted && ::poll(&look, 1, 10'000) == 1;)
+        if (const auto octets = ::write(arm->get(), "the sensor is broken\n", 21); octets > 0)
+          written += static_cast<std::size_t>(octets);
+    if (written < wanted) nobody_reads.reset();  // or the end of this test would wait, too
+  }
+  ASSERT_EQ(::dup2(before.get(), STDERR_FILENO), STDERR_FILENO);
+  EXPECT_GE(written, wanted);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/utilities/os/last_words.hpp"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -14,6 +15,7 @@ namespace hirosco {
 namespace {
 
 constexpr int exit_environment = 3;
+constexpr int longest_wait_ms = 200;
 
 /// The handler has no argument; written once, before any thread is started.
 const char*& program_name() noexcept {
@@ -23,7 +25,14 @@ const char*& program_name() noexcept {
 
 void write_words(const char* text) noexcept { static_cast<void>(!::write(STDERR_FILENO, text, std::strlen(text))); }
 
+/// Whoever ends is to be gone for those who look after it, though a terminal stands still or nobody reads a pipe.
+[[nodiscard]] bool somebody_takes_them() noexcept {
+  pollfd look{STDERR_FILENO, POLLOUT, 0};
+  return ::poll(&look, 1, longest_wait_ms) == 1 && (look.revents & POLLOUT) != 0;
+}
+
 void say(const char* what, const char* detail = "") noexcept {
+  if (!somebody_takes_them()) return;
   for (const char* part : {program_name(), ": ", what, detail, "\n"}) write_words(part);
 }
 

@@ -59,6 +59,10 @@ void Thread::join() noexcept {
   if (std::exchange(joinable_, false)) (void)pthread_join(handle_, nullptr);
 }
 
+void Thread::leave_behind() noexcept {
+  if (std::exchange(joinable_, false)) (void)pthread_detach(handle_);
+}
+
 void sleep_until(TimePoint wake) noexcept {
   const Duration since_start = std::max(wake.time_since_epoch(), Duration{0});
   const auto whole = std::chrono::duration_cast<std::chrono::seconds>(since_start);
