@@ -53,7 +53,7 @@ def of_interfaces(page, texts):
         yield "docs/interfaces.md: its table of versions is not read"
 
 
-sources = [path.read_text() for folder in ("hirosco", "supervisor", "ground") for path in sorted((root / folder).rglob("*.[ch]pp"))
+sources = [path.read_text() for folder in ("hirosco", "supervisor", "ground", "tools") for path in sorted((root / folder).rglob("*.[ch]pp"))
            if not path.name.endswith("_test.cpp")]
 wrong += of_interfaces(read("docs/interfaces.md"), sources)
 # One that is said wrongly is seen, of each kind.

@@ -17,6 +17,8 @@
 #include <chrono>
 #include <cstring>
 
+#include "supervisor/guard/safe_answer.hpp"
+
 namespace hirosco::supervisor {
 namespace {
 
@@ -26,12 +28,15 @@ constexpr std::size_t stack_octets = std::size_t{256} << 10;
 constexpr std::size_t most_clients = 8;
 constexpr Duration patience = std::chrono::seconds{1};
 constexpr Duration knock_pause = std::chrono::milliseconds{1};
+/// Until who has no room for its answer is tried again.
+constexpr Duration say_pause = std::chrono::milliseconds{10};
 
 [[nodiscard]] std::string line_of(const StopAnswer& answer) {
-  if (!answer.stopped) return answer.name + " did not confirm that it stopped\n";
-  return fmt::format("{} stopped {:.0f} ms{}{}\n", answer.name,
-                     std::chrono::duration<double, std::milli>(*answer.stopped).count(),
-                     answer.asked_device ? ", says the device" : "", answer.killed ? ", its subsystem was ended" : "");
+  if (!answer.stopped) return safe_line(false, answer.name + " did not confirm that it stopped");
+  return safe_line(true, fmt::format("{} stopped {:.0f} ms{}{}", answer.name,
+                                     std::chrono::duration<double, std::milli>(*answer.stopped).count(),
+                                     answer.asked_device ? ", says the device" : "",
+                                     answer.killed ? ", its subsystem was ended" : ""));
 }
 
 /// The code of a program or library as it is in memory.
@@ -102,7 +107,8 @@ void GuardShell::run() {
   while (!ended_.load()) {
     const TimePoint wake = guard_.step(clock_.now());
     answer_clients(clock_.now());
-    const auto ready = waits_.wait(std::max(wake - clock_.now(), Duration{0}));
+    const Duration rest = std::max(wake - clock_.now(), Duration{0});
+    const auto ready = waits_.wait(has_more_to_say() ? std::min(rest, say_pause) : rest);
     if (!ready) continue;
     bool asked = false;
     for (const Ready& entry : *ready) {
@@ -124,7 +130,7 @@ bool GuardShell::welcome(TimePoint now) {
     const auto silent = std::ranges::find(clients_, 0U, &Client::stop);
     clients_.erase(silent != clients_.end() ? silent : clients_.begin());
   }
-  clients_.push_back({std::move(socket), now + patience, 0});
+  clients_.push_back({.socket = std::move(socket), .until = now + patience});
   return true;
 }
 
@@ -132,9 +138,25 @@ void GuardShell::hear(Client& client) {
   std::array<char, 8> words{};
   const auto octets = ::recv(client.socket.get(), words.data(), words.size(), MSG_DONTWAIT);
   if (octets < 0 && (errno == EAGAIN || errno == EINTR)) return;
-  if (octets == 4 && std::memcmp(words.data(), "SAFE", 4) == 0) {
+  if (octets > 0 && std::string_view{words.data(), static_cast<std::size_t>(octets)} == safe_request) {
     client.stop = stop();
     return;
+  }
+  client.socket.reset();
+}
+
+bool GuardShell::has_more_to_say() const noexcept {
+  return std::ranges::any_of(clients_, [](const Client& client) { return !client.answer.empty(); });
+}
+
+/// All of it, or the end of the connection without the last line: who hears that knows that somebody is missing.
+void GuardShell::say(Client& client, TimePoint now) {
+  for (; client.said < client.answer.size(); ++client.said) {
+    const std::string& line = client.answer[client.said];
+    if (::send(client.socket.get(), line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL) >= 0) continue;
+    const bool no_room = errno == EAGAIN || errno == EINTR || errno == ENOBUFS || errno == ENOMEM;
+    if (no_room && now < client.until) return;
+    break;
   }
   client.socket.reset();
 }
@@ -147,13 +169,14 @@ void GuardShell::answer_clients(TimePoint now) {
       if (now >= client.until) client.socket.reset();
       continue;
     }
-    const auto answers = guard_.stop_outcome(client.stop);
-    if (!answers) continue;
-    for (const StopAnswer& answer : *answers) {
-      const std::string line = line_of(answer);
-      static_cast<void>(::send(client.socket.get(), line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
+    if (client.answer.empty()) {
+      const auto answers = guard_.stop_outcome(client.stop);
+      if (!answers) continue;
+      for (const StopAnswer& answer : *answers) client.answer.push_back(line_of(answer));
+      client.answer.push_back(safe_last_line(answers->size()));
+      client.until = now + patience;
     }
-    client.socket.reset();
+    say(client, now);
   }
   std::erase_if(clients_, [](const Client& client) { return !client.socket; });
 }

@@ -22,7 +22,7 @@ void keep_code_in_memory() noexcept;
 
 /// The guard's thread, above every cycle, and its own two ways in, neither of which passes the ground link or the
 /// supervisor's loop: signal SIGUSR1, and the local socket `safe.socket` (SOCK_SEQPACKET; "SAFE" is answered with one line
-/// for everybody who was to stop, and the end).
+/// for everybody who was to stop, and a last one: safe_answer.hpp).
 class GuardShell {
  public:
   /// Above all cycles (1 to 89), below the kernel's own.
@@ -45,6 +45,8 @@ class GuardShell {
     FileDescriptor socket;
     TimePoint until{};  ///< it asks by then or goes
     std::uint64_t stop{0};  ///< 0: it has not asked yet
+    std::vector<std::string> answer{};  ///< empty: it is not known yet
+    std::size_t said{0};  ///< of its lines
   };
   GuardShell(Guard& guard, const Clock& clock, WakeEvent ending)
       : guard_{guard}, clock_{clock}, ending_{std::move(ending)} {}
@@ -55,6 +57,9 @@ class GuardShell {
   std::uint64_t stop() { return calls_.stop ? calls_.stop() : guard_.stop_all(GuardFinding::Kind::StopAsked); }
   void hear(Client& client);
   void answer_clients(TimePoint now);
+  void say(Client& client, TimePoint now);
+  /// Somebody who has its answer, but no room for it yet.
+  [[nodiscard]] bool has_more_to_say() const noexcept;
 
   Guard& guard_;
   const Clock& clock_;

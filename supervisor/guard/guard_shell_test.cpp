@@ -191,7 +191,8 @@ TEST_F(GuardShellTest, WhoAsksForSafeStopsEverythingAndIsToldOfEverybodyWhoWasTo
   ASSERT_TRUE(arm_may_move());
   const FileDescriptor client = connect();
   ask(client, "SAFE");
-  EXPECT_THAT(lines(client), ElementsAre("MOTOR stopped 0 ms, says the device\n", "HAND stopped 0 ms\n"));
+  EXPECT_THAT(lines(client),
+              ElementsAre("STOPPED MOTOR stopped 0 ms, says the device\n", "STOPPED HAND stopped 0 ms\n", "END 1 2\n"));
   EXPECT_FALSE(arm_may_move());
   EXPECT_THAT(kinds(), ElementsAre(GuardFinding::Kind::StopAsked));
 }
@@ -206,7 +207,8 @@ TEST_F(GuardShellTest, TheAnswerComesWhenTheLastHasStoppedAndSaysAfterHowLong) {
   pass(40ms);
   EXPECT_TRUE(is_waited_for(client));
   device.mute = false;
-  EXPECT_THAT(lines(client), ElementsAre("MOTOR stopped 40 ms, says the device\n", "HAND stopped 0 ms\n"));
+  EXPECT_THAT(lines(client), ElementsAre("STOPPED MOTOR stopped 40 ms, says the device\n",
+                                         "STOPPED HAND stopped 0 ms\n", "END 1 2\n"));
 }
 
 TEST_F(GuardShellTest, WhoDidNotConfirmThatItStoppedIsNamed) {
@@ -217,7 +219,8 @@ TEST_F(GuardShellTest, WhoDidNotConfirmThatItStoppedIsNamed) {
   until([this] { return !arm_may_move(); });
   a_round();
   while (is_waited_for(client)) pass(Guard::most_unwatched);
-  EXPECT_THAT(lines(client), ElementsAre("MOTOR did not confirm that it stopped\n", "HAND stopped 0 ms\n"));
+  EXPECT_THAT(lines(client), ElementsAre("UNCONFIRMED MOTOR did not confirm that it stopped\n",
+                                         "STOPPED HAND stopped 0 ms\n", "END 1 2\n"));
 }
 
 TEST_F(GuardShellTest, WhoseSubsystemHadToBeEndedForItIsNamed) {
@@ -268,7 +271,8 @@ TEST_F(GuardShellTest, WhoHasAskedIsAnsweredThoughItsTimeToAskIsOver) {
   pass(5s);
   EXPECT_TRUE(is_waited_for(client)) << "of a pause little counts for whoever is to stop";
   device.mute = false;
-  EXPECT_THAT(lines(client), ElementsAre("MOTOR stopped 5000 ms, says the device\n", "HAND stopped 0 ms\n"));
+  EXPECT_THAT(lines(client), ElementsAre("STOPPED MOTOR stopped 5000 ms, says the device\n",
+                                         "STOPPED HAND stopped 0 ms\n", "END 1 2\n"));
 }
 
 TEST_F(GuardShellTest, WhoHasGoneBeforeItsAnswerKeepsItFromNobody) {
@@ -282,7 +286,7 @@ TEST_F(GuardShellTest, WhoHasGoneBeforeItsAnswerKeepsItFromNobody) {
   a_round();
   gone.reset();
   device.mute = false;
-  EXPECT_EQ(lines(other).size(), 2U);
+  EXPECT_EQ(lines(other).size(), 3U);
 }
 
 TEST_F(GuardShellTest, OfMoreThanItHasPlacesForTheOldestIsLetGo) {
@@ -297,7 +301,7 @@ TEST_F(GuardShellTest, OfMoreThanItHasPlacesForTheOldestIsLetGo) {
   EXPECT_THAT(lines(oldest), IsEmpty());
   for (const FileDescriptor& other : others) EXPECT_TRUE(is_waited_for(other));
   ask(newest, "SAFE");
-  EXPECT_EQ(lines(newest).size(), 2U);
+  EXPECT_EQ(lines(newest).size(), 3U);
 }
 
 TEST_F(GuardShellTest, WhoHasAskedKeepsItsPlaceBeforeWhoHasNot) {
@@ -318,6 +322,47 @@ TEST_F(GuardShellTest, WhoHasAskedKeepsItsPlaceBeforeWhoHasNot) {
   EXPECT_FALSE(lines(newest).empty());
 }
 
+/// So many actuators that a connection has no room for what is said of them.
+struct LongAnswerTest : GuardShellTest {
+  static constexpr std::size_t more = 2000;
+  void SetUp() override {
+    for (std::size_t i = 0; i < more; ++i) {
+      auto& device = mission.subsystems[1].subsystem.devices.emplace_back();
+      device.name = "FINGER_" + std::to_string(i);
+      device.actuator = true;
+      device.stop_within = 200ms;
+    }
+    GuardShellTest::SetUp();
+  }
+  /// It has asked, and the guard has said what there was room for.
+  [[nodiscard]] FileDescriptor asked_and_half_answered() {
+    start();
+    FileDescriptor client = connect();
+    ask(client, "SAFE");
+    until([this] { return !arm_may_move(); });
+    until([&] { return !is_waited_for(client); });
+    a_round();
+    return client;
+  }
+};
+
+TEST_F(LongAnswerTest, WhoReadsSlowlyGetsAllOfIt) {
+  const FileDescriptor client = asked_and_half_answered();
+  const auto all = lines(client);
+  ASSERT_EQ(all.size(), more + 2);
+  EXPECT_EQ(all.back(), "END 1 2001\n");
+}
+
+TEST_F(LongAnswerTest, WhoDoesNotReadIsLetGoInItsTimeWithoutTheLineThatSaysItIsAll) {
+  const FileDescriptor client = asked_and_half_answered();
+  pass(1s);
+  a_round();
+  const auto some = lines(client);
+  EXPECT_LT(some.size(), more);
+  ASSERT_FALSE(some.empty());
+  EXPECT_TRUE(some.back().starts_with("STOPPED FINGER_")) << some.back();
+}
+
 TEST_F(GuardShellTest, ASignalStopsEverythingThoughThereIsNoSocket) {
   auto started = GuardShell::start(guard, clock, {}, {});
   ASSERT_TRUE(started);
@@ -335,7 +380,7 @@ TEST_F(GuardShellTest, WhoIsCalledForAStopDoesWhatTheGuardWouldAndTheAnswerIsOfT
          }});
   const FileDescriptor client = connect();
   ask(client, "SAFE");
-  EXPECT_EQ(lines(client).size(), 2U);
+  EXPECT_EQ(lines(client).size(), 3U);
   EXPECT_EQ(called, 1);
   ASSERT_EQ(::kill(::getpid(), SIGUSR1), 0);
   until([&] { return called == 2; });
@@ -371,7 +416,7 @@ TEST_F(GuardShellTest, ASocketOfAFlightThatWasKilledIsInNobodysWay) {
   start();
   const FileDescriptor client = connect();
   ask(client, "SAFE");
-  EXPECT_EQ(lines(client).size(), 2U);
+  EXPECT_EQ(lines(client).size(), 3U);
 }
 
 TEST_F(GuardShellTest, AFolderInWhichNoSocketCanBeIsSaidSo) {

@@ -18,6 +18,7 @@
 #include "supervisor/keeper/keeper.hpp"
 #include "supervisor/keeper/kept_endnodes.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/flight_lock.hpp"
 #include "tools/hirosco/instance.hpp"
 #include "tools/hirosco/json_line.hpp"
 #include "tools/hirosco/readiness.hpp"
@@ -81,8 +82,7 @@ void clear_sockets(const descriptor::Mission& mission, const std::filesystem::pa
     if (std::filesystem::is_socket(folder / device.name, failed)) std::filesystem::remove(folder / device.name, failed);
 }
 
-/// One flight of an instance at a time: the lock lives as long as the process. It tells `hirosco safe` whom to signal, in
-/// milliseconds how long the answer to a stop may take, and which mission this is.
+/// One flight of an instance at a time: the lock lives as long as the process. It tells `hirosco safe` whom to signal.
 [[nodiscard]] FileDescriptor take_folder(const std::filesystem::path& folder, const descriptor::Mission& mission) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
@@ -94,7 +94,7 @@ void clear_sockets(const descriptor::Mission& mission, const std::filesystem::pa
     for (const auto& device : member.subsystem.devices) longest = std::max(longest, device.stop_within);
   // The guard waits for the device, then ends its subsystem and waits for that.
   const auto limit = std::chrono::duration_cast<std::chrono::milliseconds>(longest + std::chrono::seconds{1});
-  const std::string text = fmt::format("{} {} {}\n", ::getpid(), limit.count(), mission.name);
+  const std::string text = lock_text({.keeper = ::getpid(), .limit = limit, .mission = mission.name});
   if (::ftruncate(lock->get(), 0) != 0 || ::write(lock->get(), text.data(), text.size()) < 0) return {};
   return std::move(*lock);
 }

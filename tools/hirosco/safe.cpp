@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
@@ -18,16 +17,17 @@
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/process.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/flight_lock.hpp"
+#include "tools/hirosco/hear_safe.hpp"
 #include "tools/hirosco/instance.hpp"
 
 namespace hirosco::tools {
 namespace {
 
-constexpr std::string_view request{"SAFE"};
 /// Of a flight whose lock does not say what its devices may take.
 constexpr std::chrono::milliseconds usual_limit{2000};
 
-enum class Stop : std::uint8_t { All, NotAll, Nobody };
+using Stop = supervisor::SafeAnswer::Stop;
 
 /// One flight of this user. No descriptor is read for it: what stops a flight does not depend on a file that somebody edits.
 struct Flying {
@@ -37,6 +37,7 @@ struct Flying {
   FileDescriptor socket;  ///< connected to its guard and asked; empty: nobody listens
   int keeper{0};
   std::chrono::milliseconds limit{usual_limit};
+  std::string lock_unread{};  ///< why its lock tells nothing: the registry's keeper and the usual limit hold
 };
 
 /// Asks the guard of a flight; empty when nobody takes it.
@@ -48,31 +49,17 @@ struct Flying {
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
   FileDescriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
   if (!socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return {};
+  constexpr std::string_view request = supervisor::safe_request;
   if (::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
     return {};
   return socket;
 }
 
 /// Prints what the guard answers, one line for each device or member.
-[[nodiscard]] Stop answer_of(const Flying& flight, std::chrono::steady_clock::time_point limit) {
-  if (!flight.socket) return Stop::Nobody;
-  Stop outcome = Stop::Nobody;
-  for (;;) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(limit - std::chrono::steady_clock::now());
-    pollfd wanted{flight.socket.get(), POLLIN, 0};
-    // Without an end somebody may be missing in what was said.
-    if (::poll(&wanted, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0))) <= 0)
-      return outcome == Stop::Nobody ? Stop::Nobody : Stop::NotAll;
-    std::array<char, 512> line;
-    const auto got = ::recv(flight.socket.get(), line.data(), line.size(), 0);
-    if (got <= 0) return outcome;
-    std::string_view text{line.data(), static_cast<std::size_t>(got)};
-    while (text.ends_with('\n')) text.remove_suffix(1);
-    fmt::print("{}: {}\n", flight.name, text);
-    const bool stopped = text.find("did not confirm") == std::string_view::npos;
-    if (!stopped) outcome = Stop::NotAll;
-    else if (outcome == Stop::Nobody) outcome = Stop::All;
-  }
+[[nodiscard]] HeardSafe answer_of(const Flying& flight, std::chrono::steady_clock::time_point limit) {
+  if (!flight.socket) return {};
+  return hear_safe(flight.socket.get(), limit,
+                   [&](std::string_view words) { fmt::print("{}: {}\n", flight.name, words); });
 }
 
 /// The keeper of a flight; empty when this number is by now none of our programs.
@@ -109,15 +96,16 @@ struct Flying {
        folders.increment(failed))
     add(folders->path(), instance_of_folder(folders->path()), {}, 0);
   for (Flying& flight : found) {
-    std::ifstream lock{flight.folder / "lock"};
-    int keeper = 0;
-    std::int64_t limit_ms = 0;
-    std::string mission;
-    if (lock >> keeper >> limit_ms) {
-      flight.keeper = keeper;
-      flight.limit = std::chrono::milliseconds{std::clamp<std::int64_t>(limit_ms, 0, 120'000)};
+    std::string line;
+    std::ifstream file{flight.folder / "lock"};
+    std::getline(file, line);
+    if (auto lock = lock_from_text(line)) {
+      flight.keeper = lock->keeper;
+      flight.limit = lock->limit;
+      flight.mission = std::move(lock->mission);
+    } else if (!line.empty()) {
+      flight.lock_unread = std::move(lock.error());
     }
-    if (lock >> mission) flight.mission = mission;
     if (flight.mission.empty()) flight.mission = flight.name;
   }
   return found;
@@ -161,14 +149,24 @@ int safe(const SafeOptions& options) {
   }
   int code = exit_ok;
   for (const Flying& flight : flights) {
-    const Stop outcome = answer_of(flight, asked + flight.limit);
-    if (outcome == Stop::NotAll) code = std::max(code, exit_finding);
-    if (outcome != Stop::Nobody) continue;
+    if (!flight.lock_unread.empty())
+      fmt::print(stderr, "hirosco safe: {}: {} cannot be gone by: {}\n", flight.name, (flight.folder / "lock").string(),
+                 flight.lock_unread);
+    const HeardSafe heard = answer_of(flight, asked + flight.limit);
+    if (heard.stop == Stop::NotAll) code = std::max(code, exit_finding);
+    const bool whole = heard.stop != Stop::Nobody && heard.why_not_whole.empty();
+    if (whole) continue;
+    // Who may be missing in an answer is stopped once more, by whoever goes on.
     auto keeper = keeper_of(flight);
     const bool signalled = keeper && keeper->send_signal(SIGUSR1);
-    fmt::print(stderr, "hirosco safe: {} does not answer; {}\n", flight.name,
-               signalled ? "its keeper was signalled to stop it" : "its keeper is gone, too");
-    code = exit_environment;
+    const std::string_view whom = signalled ? "its keeper was signalled to stop it" : "its keeper is gone, too";
+    if (heard.stop == Stop::Nobody) {
+      fmt::print(stderr, "hirosco safe: {} does not answer; {}\n", flight.name, whom);
+      code = exit_environment;
+    } else {
+      fmt::print(stderr, "hirosco safe: somebody of {} may not have stopped: its answer is not whole: {}; {}\n",
+                 flight.name, heard.why_not_whole, whom);
+    }
   }
   return code;
 }
