@@ -49,9 +49,9 @@ struct SupervisorParts final : OwnSubsystem::Author {
         own_telecommands{craft, telecommands, outside.first_sequence_count},
         retrieval{{craft, own, telemetry, outside.log_readings}},
         descriptors{{craft, own, own_telecommands, under_way, stored, outside.readings}},
-        memory{
-            outside.journal,
-            {&adoption, &modes, &links, &telecommands, &safe_all, &own, &commanded, &restarts, &power, &replacement}} {
+        memory{outside.journal,
+               {&adoption, &modes, &links, &telecommands, &safe_all, &own, &commanded, &restarts, &power, &replacement,
+                &subscriptions}} {
     if (outside.journal != nullptr) craft.remembers = [this] { memory.note(); };
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });

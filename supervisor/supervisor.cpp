@@ -39,6 +39,7 @@ void Supervisor::adopt(bool stop_asked) {
   // Whoever is found dead, or dies before this one has carried it out, is not brought back by what was commanded before.
   if (parts_->adoption.stop_asked()) parts_->commanded.all_stopped();
   parts_->own.enter_mode(craft.mode_epoch);
+  parts_->subscriptions.go_on();
   parts_->stored.begin();
 }
 

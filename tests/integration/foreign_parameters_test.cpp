@@ -107,7 +107,8 @@ struct Heated : ::testing::Test {
   Flight flight{{.mission = "hello",  // its folder: the texts stand in for the files there
                  .subsystems = {{"bus", [] { return std::make_unique<PowerBus>(); }},
                                 {"heater", [this] { return std::make_unique<Heater>(most_w); }}},
-                 .files = {{"mission.xml", heated_mission_text}, {"bus.xml", bus_text}, {"heater.xml", heater_text}}}};
+                 .files = {{"mission.xml", heated_mission_text}, {"bus.xml", bus_text}, {"heater.xml", heater_text}},
+                 .revives_after = std::chrono::milliseconds{300}}};
 };
 
 TEST_F(Heated, ALimitIsThatOfTheOtherInTheCycleAndInItsOwnHousekeeping) {
@@ -130,6 +131,17 @@ TEST_F(Heated, WhileTheOtherIsNotHeardItIsWhatTheDescriptorSaysAndThatIsTold) {
   flight.craft().run(1s);
   EXPECT_EQ(most_w, 5);
   EXPECT_EQ(unknown_events, 1) << "once";
+}
+
+/// Whoever hears has been told so once, and asks no more (docs/adr/0168).
+TEST_F(Heated, AfterEachDeathOfASupervisorTheOtherIsHeardOn) {
+  commission();
+  for (const double watts : {80.0, 60.0, 40.0}) {
+    flight.craft().kill_supervisor();
+    flight.craft().run(3s);
+    ASSERT_TRUE(budget(watts)) << flight.story().text();
+    EXPECT_EQ(most_w, watts) << flight.story().text();
+  }
 }
 
 TEST_F(Heated, WhatIsOutsideItsOwnRangeIsNotTaken) {

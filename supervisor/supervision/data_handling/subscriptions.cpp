@@ -32,11 +32,21 @@ void Subscriptions::answer(const pus::Request& asked, Octets data, bool begins) 
     return verification.rejected(asked, pus::FailureNotice{pus::FailureCode::IllegalField});
   Subscriber& subscriber = subscribers_[asked.source];
   if (subscriber.process != member->process()) subscriber = {.process = member->process()};
+  if (begins && !subscriber.heard.contains(*what) && heard() == most_heard)
+    return verification.rejected(asked, pus::FailureNotice{pus::FailureCode::QueueFull});
   if (begins) subscriber.heard.insert(*what);
   else subscriber.heard.erase(*what);
+  // Before it is told: who was told asks no more, whichever supervisor is there.
+  craft_.remember();
   verification.accepted(asked);
   verification.started(asked);
   verification.completed(asked);
+}
+
+std::size_t Subscriptions::heard() const {
+  std::size_t sum = 0;
+  for (const auto& [apid, subscriber] : subscribers_) sum += subscriber.heard.size();
+  return sum;
 }
 
 template <class Give>
@@ -96,6 +106,31 @@ void Subscriptions::watch(TimePoint now) {
     const Member& member = *craft_.member(entry.first);
     return !member.alive() || member.process() != entry.second.process || entry.second.heard.empty();
   });
+}
+
+void Subscriptions::note(OctetWriter& writer) const {
+  writer.put(static_cast<std::uint16_t>(subscribers_.size()));
+  for (const auto& [apid, subscriber] : subscribers_) {
+    writer.put(apid).put(static_cast<std::uint16_t>(subscriber.heard.size()));
+    for (const auto& what : subscriber.heard) writer.put(Octets{pus::st129::write_subscribed(what)});
+  }
+}
+
+void Subscriptions::recall(OctetReader& reader) {
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    const auto apid = reader.get<std::uint16_t>();
+    for (auto more = reader.get<std::uint16_t>(); more > 0 && reader.good(); --more)
+      if (const auto what = pus::st129::read_subscribed(reader.get(pus::st129::subscribed_octets)))
+        subscribers_[apid].heard.insert(*what);
+  }
+}
+
+void Subscriptions::go_on() {
+  std::erase_if(subscribers_, [this](const auto& entry) {
+    const Member* member = craft_.member(entry.first);
+    return member == nullptr || !member->alive();
+  });
+  for (auto& [apid, subscriber] : subscribers_) subscriber.process = craft_.member(apid)->process();
 }
 
 }  // namespace hirosco::supervisor

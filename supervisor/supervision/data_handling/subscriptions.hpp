@@ -11,6 +11,7 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/deliveries.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/succession/journal.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
@@ -18,10 +19,13 @@ namespace hirosco::supervisor {
 /// Housekeeping and events of one subsystem, passed on to those that hear them (adr 0098). Who may hear what is permission's; this
 /// keeps who does: until it says otherwise or its process ends. Whose reports they are does not know of it, and may die and come
 /// back. An event comes whether its report to the ground is switched on or not. More than it may have in a second, or than its
-/// channel and a few places hold, is lost to it alone, counted and told.  Thread: the supervisor's.
-class Subscriptions final : public Hearer, public Watch {
+/// channel and a few places hold, is lost to it alone, counted and told. Who was told that it hears goes on hearing when another
+/// supervisor goes on (docs/adr/0168).  Thread: the supervisor's.
+class Subscriptions final : public Hearer, public Watch, public Remembered {
  public:
   static constexpr std::size_t most_a_second = 200;  ///< reports for one subscriber
+  /// Of all subscribers together: what the journal has room for beside everything else.
+  static constexpr std::size_t most_heard = 8192;
 
   Subscriptions(Craft& craft, OwnSubsystem& own);
 
@@ -33,6 +37,11 @@ class Subscriptions final : public Hearer, public Watch {
   void hear_event(std::uint16_t from, Octets message);
   void watch(TimePoint now) override;
 
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
+  /// What was recalled is of the processes that this supervisor has taken over, and of nobody who is started later.
+  void go_on();
+
  private:
   struct Subscriber {
     std::uint32_t process{0};
@@ -41,6 +50,7 @@ class Subscriptions final : public Hearer, public Watch {
     std::size_t in_window{0};
   };
   void answer(const pus::Request& asked, Octets data, bool begins);
+  [[nodiscard]] std::size_t heard() const;
   /// Each who hears it, with room for one more in this second.
   template <class Give>
   void each_of(const pus::st129::Subscribed& what, Give&& give);

@@ -175,6 +175,78 @@ TEST_F(SubscriptionsTest, ItEndsWithTheProcessThatAsked) {
   EXPECT_THAT(given(hand), ElementsAre("3.25 -> 0 3"));
 }
 
+[[nodiscard]] std::vector<std::byte> notes_of(const Subscriptions& subscriptions) {
+  std::vector<std::byte> noted(4096);
+  OctetWriter writer{noted};
+  subscriptions.note(writer);
+  EXPECT_TRUE(writer.good());
+  noted.resize(writer.size());
+  return noted;
+}
+
+void goes_on_with(Subscriptions& next, Octets noted) {
+  OctetReader reader{noted};
+  next.recall(reader);
+  EXPECT_TRUE(reader.exhausted());
+  next.go_on();
+}
+
+TEST_F(SubscriptionsTest, WhoHearsGoesOnHearingFromTheNextSupervisor) {
+  ASSERT_EQ(hear_structure(hand), "done");
+  ASSERT_EQ(hear_event(hand), "done");
+  given(hand);
+  Subscriptions next{craft, parts.own};
+  goes_on_with(next, notes_of(parts.subscriptions));
+  std::array<std::byte, 64> buffer;
+  const std::array data{std::byte{0x12}, std::byte{0xC0}, std::byte{7}};  // 4800
+  const auto packet = pus::write_telemetry(buffer, {.apid = arm, .service = 3, .subtype = 25}, data);
+  next.hear(arm, pus::TelemetryView::parse(*packet).value());
+  std::array<std::byte, pus::event_message_head_octets> event{};
+  next.hear_event(arm, *pus::write_event_message(event, {.severity = Severity::Low, .id = cracked}));
+  next.watch(clock.now());
+  EXPECT_THAT(given(hand), ElementsAre("3.25 -> 0 7", "5.2 -> 11"));
+}
+
+TEST_F(SubscriptionsTest, WhoDiedWithTheSupervisorAndIsStartedByTheNextHearsNothingItHasNotAskedFor) {
+  ASSERT_EQ(hear_event(hand), "done");
+  given(hand);
+  const auto noted = notes_of(parts.subscriptions);
+  ends[played[hand].process] = {};
+  parts.processes.watch(clock.now());
+  ends.clear();
+  Subscriptions next{craft, parts.own};
+  goes_on_with(next, noted);
+  ASSERT_TRUE(parts.processes.start(hand));
+  set(hand, PreOperational);
+  std::array<std::byte, pus::event_message_head_octets> event{};
+  next.hear_event(arm, *pus::write_event_message(event, {.severity = Severity::Low, .id = cracked}));
+  EXPECT_THAT(given(hand), IsEmpty());
+}
+
+TEST_F(SubscriptionsTest, ItIsNotedBeforeWhoAskedIsTold) {
+  std::vector<std::string> told_at_note;
+  craft.remembers = [&] {
+    std::vector<std::byte> noted(64);
+    OctetWriter writer{noted};
+    parts.subscriptions.note(writer);
+    told_at_note.push_back(std::to_string(writer.size()) + (last_routed.contains(1) ? " told" : " untold"));
+  };
+  EXPECT_EQ(hear_structure(hand), "done");
+  EXPECT_THAT(told_at_note, ElementsAre("11 untold"));
+}
+
+TEST_F(SubscriptionsTest, MoreThanTheJournalHasRoomForIsRefused) {
+  std::vector<std::byte> noted(64 << 10);
+  OctetWriter writer{noted};
+  writer.put(std::uint16_t{1}).put(camera).put(static_cast<std::uint16_t>(Subscriptions::most_heard));
+  for (std::size_t i = 0; i < Subscriptions::most_heard; ++i)
+    writer.put(Octets{st129::write_subscribed({camera, What::Structure, static_cast<std::uint16_t>(i)})});
+  OctetReader reader{writer.written()};
+  parts.subscriptions.recall(reader);
+  parts.subscriptions.go_on();
+  EXPECT_EQ(hear_structure(hand), "refused " + std::to_string(static_cast<int>(pus::FailureCode::QueueFull)));
+}
+
 TEST_F(SubscriptionsTest, WhatIsTooMuchInASecondIsLostCountedAndTold) {
   ASSERT_EQ(hear_structure(hand), "done");
   wait(1s);
