@@ -51,7 +51,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
         descriptors{{craft, own, own_telecommands, under_way, stored, outside.readings}},
         memory{outside.journal,
                {&adoption, &modes, &links, &telecommands, &safe_all, &own, &commanded, &restarts, &power, &replacement,
-                &subscriptions}} {
+                &subscriptions, &stored}} {
     if (outside.journal != nullptr) craft.remembers = [this] { memory.note(); };
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
@@ -109,7 +109,8 @@ struct SupervisorParts final : OwnSubsystem::Author {
       ground_route,
       {&traffic, &commanded, &stored, &replies, &subscriptions, &reception, &power, &own_telecommands, &links}};
   Retrieval retrieval;
-  Reception reception{{craft, own, telecommands, telemetry, reactions, unanswered, traffic, subscriptions, adoption}};
+  Reception reception{
+      {craft, own, telecommands, telemetry, reactions, unanswered, traffic, subscriptions, stored, adoption}};
   // real-time links, resource management
   LinkCommands links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};

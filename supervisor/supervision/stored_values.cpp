@@ -59,8 +59,27 @@ void StoredValues::begin() {
   for (descriptor::MissionSubsystem& member : craft_.mission.subsystems) {
     ValueSet values{member};
     const std::uint16_t apid = member.subsystem.id;
-    if (values.wanted()) begin(apid, subjects_.emplace(apid, Subject{&member, std::move(values)}).first->second);
+    if (!values.wanted()) continue;
+    Subject& subject = subjects_.emplace(apid, Subject{&member, std::move(values)}).first->second;
+    begin(apid, subject);
+    if (const auto left = left_.find(apid); left != left_.end()) go_on(subject, left->second);
   }
+  left_.clear();
+}
+
+void StoredValues::go_on(Subject& subject, const Left& left) {
+  // The disk may have it all the same: nobody was told.
+  if (left.unkept && left.unkept->sequence >= subject.sequence) {
+    subject.sequence = left.unkept->sequence;
+    if (subject.values.take(*left.unkept)) {
+      subject.since = left.unkept->since;
+      subject.values.begin(*subject.member);
+      keep(subject);
+    } else {
+      own_.announce("VALUES_NOT_KEPT", {static_cast<double>(subject.member->subsystem.id)});
+    }
+  }
+  ask_later(subject, left.changed);
 }
 
 void StoredValues::begin(std::uint16_t apid, Subject& subject) {
@@ -135,33 +154,41 @@ void StoredValues::forwarded(std::uint16_t apid, const pus::TelecommandView& tel
   if (subject == subjects_.end()) return;
   Ids ids = set_by(telecommand, subject->second);
   if (ids.empty()) return;
-  if ((telecommand.ack() & pus::ack_completion) == 0 || open_.size() == most_open)
-    return ask_later(subject->second, ids);
-  Open open{apid, pus::request_of(telecommand), std::move(ids)};
+  const pus::Request request = pus::request_of(telecommand);
+  AwaitedChanges::Change change{apid, request.id, request.source, ids};
   const Octets data = telecommand.application_data();
-  if (is_write(telecommand)) open.values.assign(data.begin(), data.end());
-  open_.push_back(std::move(open));
+  if (is_write(telecommand)) change.values.assign(data.begin(), data.end());
+  if ((telecommand.ack() & pus::ack_completion) == 0 || !awaited_.add(std::move(change)))
+    ask_later(subject->second, ids);
 }
 
 void StoredValues::hear(std::uint16_t from, const pus::TelemetryView& report) {
+  if (report.service() == 1) return hear_end(from, report);
   const auto subject = subjects_.find(from);
   if (subject == subjects_.end()) return;
   if (report.service() == Parameters::service_type && report.subtype() == Parameters::value_report &&
       report.destination() == supervisor_apid)
-    return take_report(subject->second, report.source_data());
+    take_report(subject->second, report.source_data());
+}
+
+void StoredValues::hear_end(std::uint16_t from, const pus::TelemetryView& report) {
   const bool failed = report.subtype() % 2 == 0 && report.subtype() != 6;
-  if (report.service() != 1 || (!failed && report.subtype() != 7)) return;
-  const auto id = OctetReader{report.source_data()}.get<std::uint32_t>();
-  const auto found = std::ranges::find_if(open_, [&](const Open& each) {
-    return each.apid == from && each.request.id == id && each.request.source == report.destination();
-  });
-  if (found == open_.end()) return;
-  const Open ended = std::move(*found);
-  open_.erase(found);
-  if (!failed && !ended.values.empty()) return take_write(subject->second, ended.values);
+  if (!failed && report.subtype() != 7) return;
+  if (from == supervisor_apid) {
+    // Its end went with the supervisor before, or is still to come.
+    if (const auto* unknown = awaited_.told_as_unknown(report))
+      if (const auto subject = subjects_.find(unknown->apid); subject != subjects_.end())
+        ask_later(subject->second, unknown->ids);
+    return;
+  }
+  const auto subject = subjects_.find(from);
+  if (subject == subjects_.end()) return;
+  const auto ended = awaited_.take(from, report);
+  if (!ended) return;
+  if (!failed && !ended->values.empty()) return take_write(subject->second, ended->values);
   // A function that failed on its way may have set it before.
   const bool may_have_begun = report.subtype() == 7 || report.subtype() == 8;
-  if (ended.values.empty() && may_have_begun) ask_later(subject->second, ended.ids);
+  if (ended->values.empty() && may_have_begun) ask_later(subject->second, ended->ids);
 }
 
 void StoredValues::take_write(Subject& subject, Octets data) {
@@ -228,9 +255,7 @@ void StoredValues::ended(std::uint16_t apid) {
   const auto found = subjects_.find(apid);
   if (found == subjects_.end()) return;
   Subject& subject = found->second;
-  for (Open& open : open_)
-    if (open.apid == apid && open.values.empty()) subject.changed.merge(open.ids);
-  std::erase_if(open_, [apid](const Open& each) { return each.apid == apid; });
+  subject.changed.merge(awaited_.take_all_of(apid));
   subject.changed.merge(subject.asked);
   subject.asked.clear();
   bool forgot = false;
@@ -255,8 +280,12 @@ void StoredValues::changed(Subject& subject) {
 
 void StoredValues::keep(Subject& subject) {
   if (store_ == nullptr) return;
-  store_->keep(subject.member->subsystem.name,
-               {subject.values.layout(), subject.sequence, subject.since, subject.values.octets()});
+  subject.waits = true;
+  store_->keep(subject.member->subsystem.name, copy_of(subject));
+}
+
+ValueCopy StoredValues::copy_of(const Subject& subject) {
+  return {subject.values.layout(), subject.sequence, subject.since, subject.values.octets()};
 }
 
 void StoredValues::watch(TimePoint now) {
@@ -277,6 +306,7 @@ void StoredValues::take_outcomes(TimePoint now) {
       const bool failed = outcome.failure.has_value();
       subject.retry_at = now + retry_after;
       if (!failed) {
+        subject.waits = false;
         own_.announce("VALUES_KEPT", {static_cast<double>(apid), static_cast<double>(subject.values.size())});
       } else if (!subject.failing) {
         craft_.tell(fmt::format("{}'s values are not stored: {} ({})", outcome.subsystem, outcome.failure->text,
@@ -286,6 +316,33 @@ void StoredValues::take_outcomes(TimePoint now) {
       }
       subject.failing = failed;
     }
+}
+
+void StoredValues::note(OctetWriter& writer) const {
+  const auto is_under_way = [](const auto& entry) {
+    return entry.second.waits || !entry.second.changed.empty() || !entry.second.asked.empty();
+  };
+  writer.put(static_cast<std::uint16_t>(std::ranges::count_if(subjects_, is_under_way)));
+  for (const auto& entry : subjects_) {
+    if (!is_under_way(entry)) continue;
+    const auto& [apid, subject] = entry;
+    writer.put(apid).put(static_cast<std::uint16_t>(subject.changed.size() + subject.asked.size()));
+    for (const Ids* ids : {&subject.changed, &subject.asked})
+      for (const std::uint32_t id : *ids) writer.put(id);
+    const auto copy = subject.waits ? write_copy(copy_of(subject)) : std::vector<std::byte>{};
+    writer.put(static_cast<std::uint16_t>(copy.size())).put(Octets{copy});
+  }
+  awaited_.note(writer);
+}
+
+void StoredValues::recall(OctetReader& reader) {
+  for (auto subjects = reader.get<std::uint16_t>(); subjects > 0 && reader.good(); --subjects) {
+    Left& left = left_[reader.get<std::uint16_t>()];
+    for (auto ids = reader.get<std::uint16_t>(); ids > 0 && reader.good(); --ids)
+      left.changed.insert(reader.get<std::uint32_t>());
+    if (const auto copy = read_copy(reader.get(reader.get<std::uint16_t>()))) left.unkept = *copy;
+  }
+  awaited_.recall(reader);
 }
 
 /// An event that nobody can hear yet would be in the log only.

@@ -3,18 +3,18 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "supervisor/platform/storage/value_store.hpp"
+#include "supervisor/supervision/awaited_changes.hpp"
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/succession/journal.hpp"
 #include "supervisor/supervision/value_set.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
@@ -22,11 +22,11 @@ namespace hirosco::supervisor {
 
 /// Has what telecommands set of persistent parameters outlive the flight (docs/adr/0087). What TC[20,3] sets is known from its TM[1,7]; what
 /// a function makes of a parameter that an argument of it is `of` is asked for by TC[20,1] when it has ended. From a change on the subsystem
-/// begins with it; VALUES_KEPT is told when the disk has it. Bounded: `most_open` telecommands whose end is awaited; those without room,
-/// or without a report of their end, are asked for like functions. Thread: the supervisor's.
-class StoredValues final : public Hearer, public Watch {
+/// begins with it; VALUES_KEPT is told when the disk has it. Telecommands that have no room among AwaitedChanges, or ask for no report of
+/// their end, are asked for like functions. What is under way when a supervisor dies the next one ends (docs/adr/0168).
+/// Thread: the supervisor's.
+class StoredValues final : public Hearer, public Watch, public Remembered {
  public:
-  static constexpr std::size_t most_open = 256;
   /// A disk that did not take them is tried again after so long.
   static constexpr Duration retry_after = std::chrono::seconds{10};
   /// What was found at the start is told when the ground link is there, but not later than this.
@@ -36,7 +36,8 @@ class StoredValues final : public Hearer, public Watch {
   StoredValues(Craft& craft, OwnSubsystem& own, CommandDesk& desk, ValueStore* store)
       : craft_{craft}, own_{own}, desk_{desk}, store_{store} {}
 
-  /// Before any subsystem is started: each begins with what its copies have, if one is whole and fits.  Realtime: blocks.
+  /// Before any subsystem is started, or when those that run were taken over: each begins with what its copies have, if one is whole and
+  /// fits, and goes on with what was recalled.  Realtime: blocks.
   void begin();
   /// It has left for a member.
   void forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand);
@@ -47,8 +48,12 @@ class StoredValues final : public Hearer, public Watch {
   /// Its process is gone. What a function had made of a value and nobody could ask for any more is what the descriptor says again.
   void ended(std::uint16_t apid);
 
+  /// What is awaited, what is to be asked for, and what the disk has not taken yet.
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
+
  private:
-  using Ids = std::set<std::uint32_t>;
+  using Ids = AwaitedChanges::Ids;
   struct Subject {
     descriptor::MissionSubsystem* member{};
     ValueSet values;
@@ -57,20 +62,22 @@ class StoredValues final : public Hearer, public Watch {
     Ids changed{};  ///< to be asked for at `ask_at`
     TimePoint ask_at{};
     Ids asked{};  ///< under way
+    bool waits{false};  ///< for the disk
     bool failing{false};  ///< the disk did not take the newest
     TimePoint retry_at{};
   };
-  struct Open {
-    std::uint16_t apid{};
-    pus::Request request;
-    Ids ids;
-    std::vector<std::byte> values{};  ///< application data of TC[20,3]; empty: a function's
+  /// Of the supervisor before.
+  struct Left {
+    Ids changed{};
+    std::optional<ValueCopy> unkept{};
   };
   struct News {
     std::string event;
     double apid{}, first{}, second{};
   };
   void begin(std::uint16_t apid, Subject& subject);
+  void go_on(Subject& subject, const Left& left);
+  void hear_end(std::uint16_t from, const pus::TelemetryView& report);
   void refuse(const Subject& subject, std::size_t copy, CopyFault fault);
   [[nodiscard]] Ids set_by(const pus::TelecommandView& telecommand, const Subject& subject) const;
   void take_write(Subject& subject, Octets data);
@@ -79,6 +86,7 @@ class StoredValues final : public Hearer, public Watch {
   void ask(std::uint16_t apid, Subject& subject);
   void changed(Subject& subject);
   void keep(Subject& subject);
+  [[nodiscard]] static ValueCopy copy_of(const Subject& subject);
   void take_outcomes(TimePoint now);
   void tell_news(TimePoint now);
 
@@ -87,7 +95,8 @@ class StoredValues final : public Hearer, public Watch {
   CommandDesk& desk_;
   ValueStore* store_;
   std::map<std::uint16_t, Subject> subjects_;  ///< that have persistent parameters, by APID
-  std::deque<Open> open_;
+  AwaitedChanges awaited_;
+  std::map<std::uint16_t, Left> left_;
   std::vector<News> news_;  ///< of the start
   TimePoint begun_{};
 };

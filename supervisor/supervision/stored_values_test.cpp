@@ -314,6 +314,129 @@ struct FullDisk final : MemoryValueDisk {
   }
 };
 
+/// Another supervisor goes on for the one that the rig has, which died at this moment.
+struct StoredValuesGoOn : StoredValuesTest {
+  std::optional<StoredValues> next;
+
+  void goes_on() { goes_on(values); }
+  void goes_on(ValueStore& store) {
+    std::vector<std::byte> noted(4096);
+    OctetWriter writer{noted};
+    stored.note(writer);
+    ASSERT_TRUE(writer.good());
+    described().overrides.clear();  // the mission as it is read again
+    for (auto& parameter : described().subsystem.parameters) parameter.init = {Number{5}};
+    events.clear();
+    next.emplace(craft, parts.own, parts.own_telecommands, &store);
+    OctetReader reader{writer.written()};
+    next->recall(reader);
+    ASSERT_TRUE(reader.exhausted());
+    next->begin();
+  }
+  void heard(std::uint16_t from, std::uint8_t service, std::uint8_t subtype, Octets data, std::uint16_t destination) {
+    std::array<std::byte, 64> room;
+    const auto packet = pus::write_telemetry(
+        room, {.apid = from, .service = service, .subtype = subtype, .destination = destination}, data);
+    next->hear(from, pus::TelemetryView::parse(*packet).value());
+  }
+  void end_heard(std::uint16_t from, std::uint32_t request, std::uint8_t subtype) {
+    heard(from, 1, subtype, octets(request, static_cast<std::uint16_t>(pus::FailureCode::OutcomeUnknown)), 7);
+  }
+  void goes_by() {
+    for (Duration passed{}; passed < 20ms; passed += 1ms) {
+      own_step();
+      next->watch(clock.now());
+    }
+  }
+  /// How often ARM was asked for P1, which is 17.
+  std::size_t answered() {
+    const auto questions = received(arm);
+    for (const Received& each : questions) {
+      heard(arm, 20, 2, one(1, 17), supervisor_apid);
+      verify(arm, each.request, 7);
+    }
+    return questions.size();
+  }
+};
+
+TEST_F(StoredValuesGoOn, WhatWasAcceptedUnderOneSupervisorAndEndsUnderTheNextIsKept) {
+  begin();
+  const auto request = leaves(20, 3, one(1, 42));
+  goes_on();
+  end_heard(arm, request, 7);
+  goes_by();
+  EXPECT_THAT(begins(), ElementsAre("P1=42"));
+  EXPECT_EQ(in_copy(0)->octets(), one(1, 42));
+  EXPECT_THAT(events, Contains(values_kept));
+}
+
+/// The dead one had read it and not noted that: nobody hears it again.
+TEST_F(StoredValuesGoOn, WhatWasChangedByOneWhoseEndNobodyKnowsIsAskedForAndHeardIfItEndsLater) {
+  begin();
+  const auto request = leaves(20, 3, one(1, 42));
+  goes_on();
+  goes_by();
+  EXPECT_EQ(answered(), 0U) << "it may still be on its way";
+  end_heard(supervisor_apid, request, 8);
+  goes_by();
+  EXPECT_EQ(answered(), 1U);
+  EXPECT_THAT(begins(), ElementsAre("P1=17"));
+  end_heard(arm, request, 7);
+  EXPECT_THAT(begins(), ElementsAre("P1=42"));
+}
+
+TEST_F(StoredValuesGoOn, WhatAFunctionMadeOfItIsAskedForByTheNextOne) {
+  for (const bool asked_already : {false, true}) {
+    begin();
+    ends(leaves(8, 1, call_data("SET_LIMIT", 1)));
+    if (asked_already) pass();
+    received(arm);
+    goes_on();
+    goes_by();
+    EXPECT_EQ(answered(), 1U) << asked_already;
+    EXPECT_THAT(begins(), ElementsAre("P1=17"));
+  }
+}
+
+TEST_F(StoredValuesGoOn, WhoDiesWithTheSupervisorDoesNotBeginWithWhatAFunctionMayHaveTightened) {
+  begin();
+  set(1, 42);
+  set(2, 43);
+  leaves(8, 1, call_data("SET_LIMIT", 1));
+  pass();
+  goes_on();
+  EXPECT_THAT(begins(), ElementsAre("P1=42", "P2=43"));
+  next->ended(arm);
+  goes_by();
+  EXPECT_THAT(begins(), ElementsAre("P2=43"));
+  EXPECT_THAT(events, Contains(values_not_kept));
+}
+
+TEST_F(StoredValuesGoOn, WhatTheDiskHadNotTakenIsKeptByTheNextOneAndTold) {
+  begin();
+  set(1, 42);
+  MemoryValueDisk other_disk;  // on which nothing of it has come
+  DirectValueStore other{other_disk, "values"};
+  goes_on(other);
+  EXPECT_THAT(begins(), ElementsAre("P1=42"));
+  goes_by();
+  EXPECT_THAT(events, Contains(values_kept));
+  ValueCopies there{other_disk, "values/ARM"};
+  EXPECT_TRUE(there.read()[0] && there.read()[1]);
+  EXPECT_EQ(there.read()[0]->sequence, 1U);
+}
+
+TEST_F(StoredValuesGoOn, WhatTheDiskHasIsNotNotedAndNobodyIsAskedForNothing) {
+  begin();
+  set(1, 42);
+  pass();
+  goes_on();
+  goes_by();
+  EXPECT_EQ(answered(), 0U);
+  EXPECT_THAT(begins(), ElementsAre("P1=42")) << "from the disk";
+  EXPECT_THAT(events, Not(Contains(values_kept)));
+}
+
 TEST_F(StoredValuesTest, ADiskThatTakesNothingIsToldOnceAndTriedAgain) {
   FullDisk disk;
   DirectValueStore on_it{disk, "values"};

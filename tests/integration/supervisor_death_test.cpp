@@ -9,6 +9,7 @@
 #include "hirosco/utilities/testing/slice.hpp"
 #include "simulation/spacecraft/observed_flight.hpp"
 #include "tests/integration/flight.hpp"
+#include "tests/integration/mortal_channel.hpp"
 
 /// The supervisor dies, before or after each single message that it sends or takes, and another one goes on (docs/adr/0093): rokviss,
 /// with its links and its devices.
@@ -16,44 +17,6 @@ namespace hirosco::testing {
 namespace {
 
 using simulation::CommandOutcome;
-
-/// Counts the moments at which a supervisor may die, and lets it die in one of them.
-struct Deaths {
-  bool armed{false};
-  int at{0};  ///< the moment in which it dies, from 1; 0: in none
-  int passed{0};
-  std::function<void()> dies;
-  std::function<bool()> dying;
-  /// False: it is dead already.
-  [[nodiscard]] bool moment() {
-    if (dying && dying()) return false;
-    if (!armed || ++passed != at) return true;
-    dies();
-    return false;
-  }
-};
-
-class MortalChannel final : public Channel {
- public:
-  MortalChannel(std::unique_ptr<Channel> channel, Deaths& deaths) : channel_{std::move(channel)}, deaths_{deaths} {}
-  Result<> send(const Message& message) override {
-    if (!deaths_.moment()) return ok();
-    auto sent = channel_->send(message);
-    static_cast<void>(deaths_.moment());
-    return sent;
-  }
-  Result<Found> receive(MessageBuffer& buffer) override {
-    if (deaths_.dying && deaths_.dying()) return Found{};
-    auto found = channel_->receive(buffer);
-    const bool lives = !found || found->flow == Flow::None || deaths_.moment();
-    if (!lives) return Found{};
-    return found;
-  }
-
- private:
-  std::unique_ptr<Channel> channel_;
-  Deaths& deaths_;
-};
 
 /// How each telecommand of the ground ended, by its request id. Those of the supervisor itself are its own concern.
 struct Verdicts {

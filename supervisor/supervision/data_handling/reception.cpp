@@ -9,6 +9,7 @@
 #include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "supervisor/supervision/data_handling/subscriptions.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
+#include "supervisor/supervision/stored_values.hpp"
 
 namespace hirosco::supervisor {
 
@@ -85,8 +86,11 @@ void Reception::take(Member& member, const Message& message) {
   } else if (!header->telecommand) {
     // Before an answer, what was said before it: the copy of the telecommand that it answers.
     read_own();
-    if (const auto report = pus::TelemetryView::parse(message.packet); report && parts_.unanswered.contradicts(*report))
-      return craft_.tell(member.descriptor().name + " tells the end of a telecommand that was told as unknown", from);
+    const auto report = pus::TelemetryView::parse(message.packet);
+    if (report && parts_.unanswered.contradicts(*report)) {
+      craft_.tell(member.descriptor().name + " tells the end of a telecommand that was told as unknown", from);
+      return parts_.stored.hear(from, *report);  // what it has changed is so all the same
+    }
     if (!parts_.telemetry.take(from, message.packet)) count_unreadable(from);
   } else if (from_ground) {
     parts_.telecommands.take(

@@ -14,6 +14,7 @@
 namespace hirosco::supervisor {
 
 class Reactions;
+class StoredValues;
 class Subscriptions;
 
 /// Reads what the members and the supervisor itself say, and hands it on by its kind. The ground is read no faster than its
@@ -29,6 +30,7 @@ class Reception final : public Hearer {
     Unanswered& unanswered;
     Traffic& traffic;
     Subscriptions& subscriptions;
+    StoredValues& stored;
     Succession& succession;
   };
   explicit Reception(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
