@@ -126,7 +126,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Reactions reactions{means, own};
   SafeAll safe_all{craft, own, own_telecommands, {&under_way, &restoration, &losses}};
   // subsystem handling, status
-  GroundLinkCare ground_link{means, under_way};
+  GroundLinkCare ground_link{means, under_way, adoption};
   Restoration restoration{means, own, under_way};
   LinkLosses losses{means, own, links};
   Processes processes{{craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link,

@@ -14,7 +14,8 @@
 
 /// When a subsystem whose process ended is started again: after a pause that doubles with each time, and no more often
 /// than its plan says (`procedures/steps/restart.hpp`; `Processes` starts it; hazard SF15; reliability 5: a crash loop stays
-/// down until the ground starts it, docs/adr/0068). The ground link alone never stays down: nobody could bring it up again.
+/// down until the ground starts it, docs/adr/0068). The ground link alone never stays down: nobody could bring it up again. It is started
+/// where no plan says so, too (`GroundLinkCare`).
 namespace hirosco::supervisor {
 
 class Restarts final : public Remembered {
@@ -51,6 +52,8 @@ class Restarts final : public Remembered {
     pause = std::clamp(2 * pause, shortest_retry, longest_pause);
     due_[apid] = now + pause;
   }
+  /// It is to be started, now or later.
+  [[nodiscard]] bool is_planned(std::uint16_t apid) const { return due_.contains(apid); }
   /// One that is due now, and no longer planned.
   [[nodiscard]] std::optional<std::uint16_t> take_due(TimePoint now) {
     for (auto entry = due_.begin(); entry != due_.end(); ++entry) {

@@ -3,16 +3,31 @@
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 
 #include <algorithm>
+#include <chrono>
 
+#include "hirosco/descriptor/model/plan_steps.hpp"
 #include "supervisor/supervision/modes/mode_plan.hpp"
 
 namespace hirosco::supervisor {
 
 using descriptor::State;
 
+namespace {
+
+/// What a plan says of a restart where it says no more than that.
+constexpr Restarts::Rule usual_restart = [] {
+  const auto attributes = descriptor::find_plan_step("restart")->attributes;
+  return Restarts::Rule{.limit = static_cast<std::size_t>(*attributes[0].otherwise),
+                        .within = std::chrono::seconds{*attributes[1].otherwise},
+                        .pause = std::chrono::milliseconds{*attributes[2].otherwise}};
+}();
+
+}  // namespace
+
 void GroundLinkCare::watch(TimePoint now) {
   const Member* link = craft_.ground_link();
   if (link == nullptr) return;
+  if (!link->alive()) start_again(*link, now);
   // In Offline, and after that until a configuration is in force, it hears nobody who could bring it up again.
   const bool deaf = link->state() == State::Offline || link->configuration() == 0;
   const bool others_at_it = craft_.shutting_down || under_way_.running() || runner_.running();
@@ -21,6 +36,18 @@ void GroundLinkCare::watch(TimePoint now) {
   if (now - *lost_at_ < patience_) return;
   lost_at_.reset();
   restore(*link);
+}
+
+/// By the rule of 0043, as if its plan had said so: the limit does not hold for it.
+void GroundLinkCare::start_again(const Member& link, TimePoint now) {
+  // A plan that still runs for it may come to a restart of its own; who has not been there yet is commissioned; and of whom the
+  // supervisor before left it is told first that it died.
+  const bool others_at_it = craft_.shutting_down || restarts_.is_planned(link.apid()) || link.recovery.running() ||
+                            (!link.was_started && under_way_.running()) || succession_.waits();
+  if (others_at_it) return;
+  craft_.tell(link.descriptor().name + " carries the ground link and is started again, which no plan asks for",
+              link.apid());
+  static_cast<void>(restarts_.plan(link.apid(), usual_restart, now, Restarts::AtLimit::GoesOn));
 }
 
 const descriptor::CommissionStep* GroundLinkCare::wanted(const Member& link) const {
