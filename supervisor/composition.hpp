@@ -15,6 +15,7 @@
 #include "supervisor/supervision/data_handling/subscriptions.hpp"
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/data_handling/telemetry.hpp"
+#include "supervisor/supervision/event_handling/ground_loss.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
 #include "supervisor/supervision/event_handling/safe_all.hpp"
 #include "supervisor/supervision/modes/commissioning.hpp"
@@ -51,7 +52,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
         descriptors{{craft, own, own_telecommands, under_way, stored, outside.readings}},
         memory{outside.journal,
                {&adoption, &modes, &links, &telecommands, &safe_all, &own, &commanded, &restarts, &power, &replacement,
-                &subscriptions, &stored}} {
+                &subscriptions, &stored, &ground_loss}} {
     if (outside.journal != nullptr) craft.remembers = [this] { memory.note(); };
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
@@ -110,7 +111,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
       {&traffic, &commanded, &stored, &replies, &subscriptions, &reception, &power, &own_telecommands, &links}};
   Retrieval retrieval;
   Reception reception{
-      {craft, own, telecommands, telemetry, reactions, unanswered, traffic, subscriptions, stored, adoption}};
+      {craft, own, telecommands, telemetry, reactions, ground_loss, unanswered, traffic, subscriptions, stored, adoption}};
   // real-time links, resource management
   LinkCommands links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
@@ -124,13 +125,14 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Shutdown shutdown{{means, own, under_way, telecommands, reception}};
   // event handling
   Reactions reactions{means, own};
+  GroundLoss ground_loss{craft, own, reactions};
   SafeAll safe_all{craft, own, own_telecommands, {&under_way, &restoration, &losses}};
   // subsystem handling, status
   GroundLinkCare ground_link{means, under_way, adoption};
   Restoration restoration{means, own, under_way};
   LinkLosses losses{means, own, links};
   Processes processes{{craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link,
-                       restarts, restoration, resources, replacement, stored}};
+                       ground_loss, restarts, restoration, resources, replacement, stored}};
   Replacement replacement{{craft, own, processes, reactions, under_way}};
   Descriptors descriptors;
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
@@ -138,10 +140,10 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Adoption adoption{{craft, own, processes, own_telecommands, telecommands, links, modes, commissioning, reactions,
                      safe_all, shutdown, memory}};
   Memory memory;
-  std::array<Watch*, 19> watches{&adoption,    &stored,        &processes,    &replacement,      &descriptors,
-                                 &ground_link, &restoration,   &losses,       &housekeeping,     &power,
-                                 &links,       &log_watch,     &telecommands, &own_telecommands, &replies,
-                                 &resources,   &subscriptions, &waiting,      &retrieval};
+  std::array<Watch*, 20> watches{&adoption,    &stored,      &processes,     &replacement,  &descriptors,
+                                 &ground_link, &ground_loss, &restoration,   &losses,       &housekeeping,
+                                 &power,       &links,       &log_watch,     &telecommands, &own_telecommands,
+                                 &replies,     &resources,   &subscriptions, &waiting,      &retrieval};
 };
 
 }  // namespace hirosco::supervisor

@@ -13,8 +13,7 @@ class SimulatedGround::OnBoardEnd final : public GroundTransport {
  public:
   OnBoardEnd(SimulatedGround& ground, GroundTraffic& traffic) : ground_{ground}, traffic_{traffic} {
     ground_.end_ = this;
-    counters_.clients = 1;
-    counters_.admitted = 1;
+    is_there(ground.there_);
   }
   ~OnBoardEnd() override { ground_.end_ = nullptr; }
 
@@ -45,6 +44,12 @@ class SimulatedGround::OnBoardEnd final : public GroundTransport {
     if (ground_.receive_) ground_.receive_(packet);
   }
   [[nodiscard]] const Counters& counters() const override { return counters_; }
+  void is_there(bool there) {
+    const auto closed = static_cast<std::size_t>(CloseReason::PeerClosed);
+    if (there && counters_.clients == 0) ++counters_.admitted;
+    if (!there && counters_.clients == 1) ++counters_.closed[closed];
+    counters_.clients = there ? 1 : 0;
+  }
   /// False: the link is closing.
   [[nodiscard]] bool arrive(Octets packet) {
     if (!finishing_) uplink_.emplace_back(packet.begin(), packet.end());
@@ -67,6 +72,11 @@ OpenGroundTransport SimulatedGround::transport() {
   };
 }
 
-bool SimulatedGround::send(Octets packet) { return end_ != nullptr && end_->arrive(packet); }
+void SimulatedGround::is_there(bool there) {
+  there_ = there;
+  if (end_ != nullptr) end_->is_there(there);
+}
+
+bool SimulatedGround::send(Octets packet) { return there_ && end_ != nullptr && end_->arrive(packet); }
 
 }  // namespace hirosco::simulation

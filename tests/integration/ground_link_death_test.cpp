@@ -51,5 +51,56 @@ TEST_F(GroundLinkDeath, InAChangeOfModeEndsItAndTheGroundChangesTheModeAgain) {
   EXPECT_EQ(flight.state("HELLO"), State::Operational);
 }
 
+/// Its station is gone when the ground link dies, or at the same time; HELLO comes to rest by the mission's plan for the loss of the ground.
+struct GroundLossByDeath : ::testing::Test {
+  Flight flight{{.mission = "hello", .edit = [](descriptor::Mission& mission) {
+                   const auto rest = static_cast<std::int64_t>(State::SafeOperational);
+                   mission.plans.front().steps = {{"set_state", {rest}, "HELLO"}};
+                 }}};
+  void SetUp() override { ASSERT_TRUE(flight.commission()) << flight.story().text(); }
+  static constexpr const char* told = "SUPERVISOR medium GROUND_LINK_LOST APID=2";
+};
+
+TEST_F(GroundLossByDeath, IsToldByTheSupervisorWhereNobodyComesBack) {
+  flight.craft().kill("COMMUNICATION");
+  flight.craft().ground().is_there(false);
+  flight.craft().run(1900ms);
+  EXPECT_EQ(flight.state("COMMUNICATION"), State::Operational) << "it is back";
+  EXPECT_EQ(flight.state("HELLO"), State::Operational);
+  ASSERT_TRUE(flight.run_until_state("HELLO", State::SafeOperational, 300ms)) << flight.story().text();
+  EXPECT_EQ(flight.story().count(told), 1U);
+  EXPECT_FALSE(flight.story().has("COMMUNICATION medium GROUND_LINK_LOST")) << "who is new has never had anybody";
+  flight.craft().run(10s);
+  EXPECT_EQ(flight.story().count(told), 1U) << "once";
+  flight.craft().ground().is_there(true);
+  flight.craft().run(100ms);
+  EXPECT_TRUE(flight.set_state("HELLO", State::Operational).completed) << flight.story().text();
+}
+
+TEST_F(GroundLossByDeath, IsNoneWhereTheStationConnectsAgain) {
+  flight.craft().kill("COMMUNICATION");
+  flight.craft().run(10s);
+  EXPECT_FALSE(flight.story().has("GROUND_LINK_LOST")) << flight.story().text();
+  EXPECT_EQ(flight.state("HELLO"), State::Operational);
+}
+
+TEST_F(GroundLossByDeath, IsToldWhereTheGroundLinkStandsStillFirst) {
+  flight.craft().stop("COMMUNICATION", true);
+  flight.craft().ground().is_there(false);
+  ASSERT_TRUE(flight.run_until_state("HELLO", State::SafeOperational, 6s)) << flight.story().text();
+  EXPECT_EQ(flight.story().count(told), 1U);
+}
+
+TEST_F(GroundLossByDeath, IsToldWhereATelecommandTookItOfflineAndNobodyComesBack) {
+  ASSERT_TRUE(flight.set_mode("commissioning").completed);
+  for (const State state : {State::SafeOperational, State::PostOperational})
+    ASSERT_TRUE(flight.set_state("COMMUNICATION", state).completed) << to_text(state);
+  static_cast<void>(flight.craft().command("COMMUNICATION", "SET_STATE", {static_cast<double>(State::Offline)}, 10ms));
+  flight.craft().ground().is_there(false);
+  ASSERT_TRUE(flight.run_until_state("HELLO", State::SafeOperational, 4s)) << flight.story().text();
+  EXPECT_EQ(flight.story().count(told), 1U);
+  EXPECT_EQ(flight.state("COMMUNICATION"), State::Operational);
+}
+
 }  // namespace
 }  // namespace hirosco::testing

@@ -36,7 +36,8 @@ struct Asked {
       events.push_back(&event);
   if (own) return events;
   for (const descriptor::Event& event : mission.supervisor.events)
-    if (descriptor::is_about_subsystem(event.name) && subsystem.find_event(event.name) == nullptr)
+    if (descriptor::may_be_told_of(event.name, subsystem.name, mission.ground.subsystem) &&
+        subsystem.find_event(event.name) == nullptr)
       events.push_back(&event);
   return events;
 }

@@ -199,6 +199,7 @@ constexpr Mistake mistakes[] = {
     {"E0326", R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)", R"(@<Plan name="note"><When severity="low info"/><Do action="restart"/>)", "PROCESS_DIED"},
     {"E0326", R"(<Plan name="note"><When severity="low info"/><Do action="log"/>)", R"(@<Plan name="note"><When event="HANG"/><Do action="restart"/>)", "PROCESS_DIED"},
     {"E0311", R"(<Plan name="note"><When severity="low info"/>)", R"(<Plan name="note"><When subsystem="FLYWHEEL" event="@LOG_STORE"/>)"},
+    {"E0311", R"(<Plan name="note"><When severity="low info"/>)", R"(<Plan name="note"><When subsystem="FLYWHEEL" event="@GROUND_LINK_LOST"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" state="@Operational"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" limit="@3"/>)"},
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" subsystem="@FLYWHEEL"/>)", "whose event"},

@@ -134,7 +134,8 @@ void PlanReader::read_when(const xml::Element& element, Plan& plan) {
   bool fires = plan.severities.empty();
   const auto add = [&](const SubsystemDescriptor& candidate) {
     for (const Event& e : candidate.events) {
-      const bool told_of_it = &candidate == &mission_.supervisor && is_about_subsystem(e.name);
+      const bool told_of_it = &candidate == &mission_.supervisor && found != nullptr &&
+                              may_be_told_of(e.name, found->name, mission_.ground.subsystem);
       if (found != nullptr && found != &candidate && !told_of_it) continue;
       known.push_back(e.name);
       fires =

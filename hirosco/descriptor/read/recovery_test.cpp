@@ -28,6 +28,17 @@ TEST(MissionRecovery, ARestartSaysAsFarAsItComesBack) {
   }
 }
 
+TEST(MissionRecovery, APlanForTheLossOfTheGroundMayNameTheGroundLinkWhetherThatHasTheEventOrNot) {
+  for (const char* named : {"GROUNDSTATION", "SUPERVISOR"}) {
+    const std::string plan =
+        std::string{R"(<When subsystem=")"} + named + R"(" event="GROUND_LINK_LOST"/><Do action="log"/>)";
+    const auto reading =
+        read_mission(data / "mission.xml",
+                     overlay({{"mission.xml", changed(R"(<When severity="low info"/><Do action="log"/>)", plan)}}));
+    EXPECT_TRUE(reading.value) << named << rendered(reading.problems, file_system());
+  }
+}
+
 TEST(MissionRecovery, APlanHasAPriorityAndAStepMayNameWhomItMoves) {
   const auto reading = read_mission(
       data / "mission.xml",

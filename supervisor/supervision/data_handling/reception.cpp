@@ -8,6 +8,7 @@
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "supervisor/supervision/data_handling/subscriptions.hpp"
+#include "supervisor/supervision/event_handling/ground_loss.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
 #include "supervisor/supervision/stored_values.hpp"
 
@@ -74,6 +75,7 @@ void Reception::take(Member& member, const Message& message) {
   if (message.kind == MessageKind::Event) {
     read_own();
     if (!parts_.reactions.take_event(from, message.packet)) return count_unreadable(from);
+    parts_.ground_loss.hear_event(from, message.packet);
     parts_.subscriptions.hear_event(from, message.packet);
     return;
   }
@@ -93,6 +95,7 @@ void Reception::take(Member& member, const Message& message) {
     }
     if (!parts_.telemetry.take(from, message.packet)) count_unreadable(from);
   } else if (from_ground) {
+    parts_.ground_loss.heard();
     parts_.telecommands.take(
         {.packet = message.packet, .origin = Origin::ground(message.link), .known_stop = message.epoch});
     craft_.remember();

@@ -13,6 +13,7 @@
 
 namespace hirosco::supervisor {
 
+class GroundLoss;
 class Reactions;
 class StoredValues;
 class Subscriptions;
@@ -27,6 +28,7 @@ class Reception final : public Hearer {
     Telecommands& telecommands;
     Telemetry& telemetry;
     Reactions& reactions;
+    GroundLoss& ground_loss;
     Unanswered& unanswered;
     Traffic& traffic;
     Subscriptions& subscriptions;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "hirosco/descriptor/model/supervisor_events.hpp"
+
 namespace hirosco::supervisor {
 namespace {
 
@@ -23,6 +25,19 @@ namespace {
 }
 
 }  // namespace
+
+RaisedEvent raised_of(const descriptor::Mission& mission, const descriptor::SubsystemDescriptor& subsystem,
+                      std::string_view event, descriptor::Severity severity, std::string_view mode) {
+  RaisedEvent raised{subsystem.name, event, severity, mode};
+  const bool has_it_itself = subsystem.find_event(event) != nullptr;
+  if (!descriptor::may_be_told_of(event, subsystem.name, mission.ground.subsystem) ||
+      (has_it_itself && event != descriptor::event_of_ground_lost))
+    return raised;
+  raised.teller = mission.supervisor.name;
+  if (const auto* told = mission.supervisor.find_event(event); told != nullptr)
+    raised.severity = has_it_itself ? std::max(severity, told->severity) : told->severity;
+  return raised;
+}
 
 Reaction choose_reaction(const descriptor::Mission& mission, const RaisedEvent& event) {
   const descriptor::Plan* best = nullptr;

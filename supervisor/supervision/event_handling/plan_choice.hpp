@@ -20,10 +20,16 @@ struct RaisedEvent {
   enum class Origin : std::uint8_t { Subsystem, Supervisor } origin{Origin::Subsystem};
 };
 
+/// An event of a subsystem as its plan is chosen. What the supervisor tells of it is as severe as our descriptor calls it; what either of the two
+/// may tell, as the more severe one does, whoever told it.
+[[nodiscard]] RaisedEvent raised_of(const descriptor::Mission& mission,
+                                    const descriptor::SubsystemDescriptor& subsystem, std::string_view event,
+                                    descriptor::Severity severity, std::string_view mode);
+
 struct Reaction {
-  std::string_view plan;             ///< name, "default" when no plan of the mission matched
+  std::string_view plan;  ///< name, "default" when no plan of the mission matched
   std::vector<descriptor::PlanStep> steps;
-  std::uint16_t number{0};           ///< of the plan in the mission, from 1; 0 = the default
+  std::uint16_t number{0};  ///< of the plan in the mission, from 1; 0 = the default
   std::uint8_t priority{descriptor::default_plan_priority};
 };
 

@@ -71,10 +71,11 @@ void each_event(const descriptor::Mission& mission, Visit&& visit) {
   for (const descriptor::MissionSubsystem& member : mission.subsystems) {
     const descriptor::SubsystemDescriptor& subsystem = member.subsystem;
     for (const descriptor::Event& event : mission.supervisor.events)
-      if (descriptor::is_about_subsystem(event.name) && subsystem.find_event(event.name) == nullptr)
-        visit(RaisedEvent{subsystem.name, event.name, event.severity, {}, mission.supervisor.name});
+      if (descriptor::may_be_told_of(event.name, subsystem.name, mission.ground.subsystem) &&
+          subsystem.find_event(event.name) == nullptr)
+        visit(raised_of(mission, subsystem, event.name, event.severity, {}));
     for (const descriptor::Event& event : subsystem.events)
-      visit(RaisedEvent{subsystem.name, event.name, event.severity, {}});
+      visit(raised_of(mission, subsystem, event.name, event.severity, {}));
   }
 }
 

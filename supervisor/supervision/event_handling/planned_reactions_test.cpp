@@ -55,6 +55,21 @@ TEST_F(PlannedReactionsTest, EveryEventHasItsReactionInEachMode) {
                           "to=commanded, shut_down_network"));
 }
 
+TEST_F(PlannedReactionsTest, TheLossOfTheGroundIsToldOfTheGroundLinkAlone) {
+  mission.ground.subsystem = "CAMERA";
+  mission.supervisor.events.front().name = "GROUND_LINK_LOST";
+  mission.supervisor.events.front().severity = descriptor::Severity::Medium;
+  mission.modes.resize(1);
+  plan("lost", "GROUND_LINK_LOST", "", {{"log"}});
+  mission.plans.front().subsystem = mission.supervisor.name;
+  EXPECT_THAT(lines(), ElementsAre("ARM HOT open default: set_state state=SafeOperational",
+                                   "CAMERA GROUND_LINK_LOST open lost: log"));
+  mission.subsystems.back().subsystem.events = mission.supervisor.events;
+  EXPECT_THAT(lines(), ElementsAre("ARM HOT open default: set_state state=SafeOperational",
+                                   "CAMERA GROUND_LINK_LOST open lost: log"))
+      << "and once where it has the event itself";
+}
+
 TEST_F(PlannedReactionsTest, WhichPlanGivesWayToWhichIsSaidForEachSubsystem) {
   descriptor::Event event;
   event.severity = descriptor::Severity::Low;

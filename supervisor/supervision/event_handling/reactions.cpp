@@ -46,12 +46,9 @@ bool Reactions::take_event(std::uint16_t from, Octets message) {
 /// What we tell of a subsystem is answered where it is told: by the plan that names it or us, or the event, as severe as our
 /// descriptor calls it.
 Reaction Reactions::reaction_to(const Member& origin, std::string_view event, Severity& severity) const {
-  const descriptor::SubsystemDescriptor& supervisor = craft_.mission.supervisor;
-  const bool ours = descriptor::is_about_subsystem(event) && origin.descriptor().find_event(event) == nullptr;
-  const auto* declared = ours ? supervisor.find_event(event) : nullptr;
-  if (declared != nullptr) severity = declared->severity;
-  return choose_reaction(craft_.mission, {origin.descriptor().name, event, severity, craft_.mode->name,
-                                          ours ? std::string_view{supervisor.name} : std::string_view{}});
+  const RaisedEvent raised = raised_of(craft_.mission, origin.descriptor(), event, severity, craft_.mode->name);
+  severity = raised.severity;
+  return choose_reaction(craft_.mission, raised);
 }
 
 std::vector<PlanStart> Reactions::answer_to(const Member& origin, std::string_view event, Severity severity) const {
@@ -203,7 +200,10 @@ const descriptor::Event* Reactions::find_event(std::uint16_t apid, std::uint16_t
     if (const auto* own = find_in(origin->descriptor())) return own;
   const auto* ours = find_in(craft_.mission.supervisor);
   if (ours == nullptr || descriptor::is_unplanned(ours->name)) return nullptr;
-  const bool fits = descriptor::is_about_subsystem(ours->name) ? origin != nullptr : apid == supervisor_apid;
+  const bool fits = descriptor::is_about_subsystem(ours->name)
+                        ? origin != nullptr && descriptor::may_be_told_of(ours->name, origin->descriptor().name,
+                                                                          craft_.mission.ground.subsystem)
+                        : apid == supervisor_apid;
   return fits ? ours : nullptr;
 }
 

@@ -37,7 +37,7 @@ struct AdoptionTest : PartsTest {
   descriptor::Mission next_mission = mission;
   Memory notes{&journal,
                {&parts.adoption, &parts.modes, &parts.links, &parts.telecommands, &parts.safe_all, &parts.own,
-                &parts.commanded, &parts.restarts, &parts.power, &parts.replacement}};
+                &parts.commanded, &parts.restarts, &parts.power, &parts.replacement, &parts.ground_loss}};
   std::set<std::uint16_t> gone;
   std::vector<std::unique_ptr<Next>> nexts;
 

@@ -11,6 +11,7 @@
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"
 #include "supervisor/supervision/data_handling/reception.hpp"
 #include "supervisor/supervision/data_handling/telecommands.hpp"
+#include "supervisor/supervision/event_handling/ground_loss.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
 #include "supervisor/supervision/event_handling/safe_all.hpp"
 #include "supervisor/supervision/realtime_links/link_commands.hpp"
@@ -266,7 +267,10 @@ void Processes::hear_of(Member& subject, const GuardFinding& finding) {
     case ServiceHangs: tell(" hangs: its service loop stands still"); break;
     case PageDamaged: tell(" hangs: its vital or permit page is damaged"); break;
     case Starves: return tell("'s loops kept the processor from others: they have lost their real-time priority");
-    case Back: parts_.restoration.recovered(subject.apid()); return tell(" moves again");
+    case Back:
+      parts_.restoration.recovered(subject.apid());
+      parts_.ground_loss.moves_again(subject);
+      return tell(" moves again");
     case Killed: return tell(" was ended: it did not come back or had not stopped in time");
     case Ended: return parts_.reception.give_up(subject);  // what it left unsaid is read when its process has gone
     case InhibitSilent:
@@ -285,6 +289,7 @@ void Processes::hear_of(Member& subject, const GuardFinding& finding) {
   }
   parts_.own.announce("HANG", {static_cast<double>(subject.apid())});
   parts_.restoration.lost(subject.apid());
+  parts_.ground_loss.stands_still(subject, finding.kind == ServiceHangs ? Guard::service_limit : Duration{});
   parts_.reactions.react(subject, "HANG", Severity::High);
 }
 

@@ -15,6 +15,7 @@
 namespace hirosco::supervisor {
 
 class GroundLinkCare;
+class GroundLoss;
 class LinkCommands;
 class OwnTelecommands;
 class Reactions;
@@ -40,6 +41,7 @@ class Processes final : public Watch {
     Telecommands& telecommands;
     OwnTelecommands& desk;
     GroundLinkCare& ground_link;
+    GroundLoss& ground_loss;
     Restarts& restarts;
     Restoration& restoration;
     ResourceHandling& resources;
