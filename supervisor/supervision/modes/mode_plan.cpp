@@ -168,8 +168,8 @@ class Planner {
     }
   }
 
-  /// Those who are to come up, in the order of the mission, against what there is now beside those who stay. A mode that brings up nobody
-  /// is never refused for want of power.
+  /// Those who are to come up, in the order of the mission, against what there is now beside those who stay and those before them, who
+  /// are wanted with them: each for whom that is too little is told. A mode that brings up nobody is never refused for want of power.
   void check_power(const PowerLedger& power) {
     if (!power.limited()) return;
     const auto milliwatts = [](double watts) { return static_cast<std::uint32_t>(watts * 1000 + 0.5); };
@@ -189,9 +189,9 @@ class Planner {
       const auto& measured = craft_.mission.power_measured;
       const bool measures = measured && measured->apid == member.apid();
       if (needs_mw <= free_mw || measures || craft_.is_ground_link(member)) continue;
-      return object("{} needs {} W, {} W of {} W are free{}{}", member.descriptor().name,
-                    static_cast<double>(needs_mw) / 1000, static_cast<double>(free_mw) / 1000,
-                    power.budget_mw() / 1000.0, power.basis().empty() ? "" : ": ", power.basis());
+      object("{} needs {} W, {} W of {} W are free{}{}", member.descriptor().name, static_cast<double>(needs_mw) / 1000,
+             static_cast<double>(free_mw) / 1000, power.budget_mw() / 1000.0, power.basis().empty() ? "" : ": ",
+             power.basis());
     }
   }
 

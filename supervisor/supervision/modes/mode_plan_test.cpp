@@ -215,6 +215,16 @@ TEST_F(ModePlanTest, WhoeverIsToComeUpNeedsPowerAndWhoeverGoesDownDoesNot) {
   EXPECT_TRUE(plan(watching).against.empty());
 }
 
+TEST_F(ModePlanTest, EachForWhomPowerIsShortIsNamedAndNotTheFirstAlone) {
+  power.set_budget(50);
+  EXPECT_THAT(plan(coupled).against,
+              ElementsAre("ARM needs 60 W, 50 W of 50 W are free", "HAND needs 20 W, 0 W of 50 W are free"));
+  power.set_budget(70);
+  EXPECT_THAT(plan(coupled).against, ElementsAre("HAND needs 20 W, 10 W of 70 W are free"));
+  power.set_budget(80);
+  EXPECT_TRUE(plan(coupled).against.empty());
+}
+
 TEST_F(ModePlanTest, AnInterlockIsJudgedByStateAndConfiguration) {
   couple();
   auto& lock = watching.interlocks.emplace_back();
