@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "hirosco/descriptor/model/mission.hpp"
 
@@ -17,6 +18,17 @@ std::string to_string(const Interlock& interlock) {
          (interlock.configuration.empty() ? "" : " with " + interlock.configuration);
 }
 
+std::vector<std::string> against_beginning(const Mode& mode) {
+  std::vector<std::string> against;
+  for (const Interlock& interlock : mode.interlocks) {
+    const bool holds = std::ranges::find(interlock.states, State::Offline) != interlock.states.end() &&
+                       interlock.configuration.empty();
+    if (holds == (interlock.kind == Interlock::Kind::Excludes))
+      against.push_back(fmt::format("it {} {}", holds ? "excludes" : "needs", to_string(interlock)));
+  }
+  return against;
+}
+
 std::vector<std::string> against_start(const Mission& mission, const Mode& mode) {
   std::vector<std::string> against;
   if (!mode.from.empty() && std::ranges::find(mode.from, mission.initial_mode) == mode.from.end())
@@ -24,12 +36,7 @@ std::vector<std::string> against_start(const Mission& mission, const Mode& mode)
   for (const CommissionStep& step : mode.commission)
     if (const auto* member = mission.find_subsystem(step.subsystem); member != nullptr && !member->starts)
       against.push_back(fmt::format("it commissions {}, which is not started with the flight", step.subsystem));
-  for (const Interlock& interlock : mode.interlocks) {
-    const bool holds = std::ranges::find(interlock.states, State::Offline) != interlock.states.end() &&
-                       interlock.configuration.empty();
-    if (holds == (interlock.kind == Interlock::Kind::Excludes))
-      against.push_back(fmt::format("it {} {}", holds ? "excludes" : "needs", to_string(interlock)));
-  }
+  for (std::string& why : against_beginning(mode)) against.push_back(std::move(why));
   return against;
 }
 

@@ -245,6 +245,8 @@ struct Mission {
   [[nodiscard]] const MissionLink* find_link(std::uint8_t link) const noexcept;
 };
 
+/// Of what this mode needs and excludes that which does not hold with everybody Offline, in words: as a flight begins.
+[[nodiscard]] std::vector<std::string> against_beginning(const Mode& mode);
 /// Why commissioning cannot enter this mode from the initial one, with everybody Offline, in words; empty: it can.
 [[nodiscard]] std::vector<std::string> against_start(const Mission& mission, const Mode& mode);
 /// Of a flight, in place of the mission's own start mode. In words: why not.

@@ -20,6 +20,12 @@ void check_from(const xml::Element& modes, const Mission& mission, Problems& pro
   }
 }
 
+void check_initial(const xml::Attribute& initial, const Mode& mode, Problems& problems) {
+  for (const std::string& why : against_beginning(mode))
+    problems.add(initial, "E0356", fmt::format("mode {} cannot be the initial one: {}", in_quotes(mode.name), why),
+                 "it is in force from the beginning, with every subsystem Offline");
+}
+
 void check_start(const xml::Attribute& start, const Mode& mode, const Mission& mission, Problems& problems) {
   for (const std::string& why : against_start(mission, mode))
     problems.add(start, "E0330", fmt::format("mode {} cannot be the first: {}", in_quotes(mode.name), why),

@@ -16,9 +16,9 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 /// The mission of the examples, with this in front of what its mode telepresence commissions, and with these attributes.
-Reading<Mission> read_with(const std::string& inside, const std::string& attributes = {}) {
+Reading<Mission> read_with(const std::string& inside, const std::string& attributes = {},
+                           const std::string& mode = R"(<Mode name="telepresence" id="7")") {
   std::string text = testing::good_mission();
-  const std::string mode = R"(<Mode name="telepresence" id="7")";
   const auto at = text.find(mode) + mode.size();
   text.insert(text.find('>', at) + 1, inside);
   text.insert(at, " " + attributes);
@@ -62,6 +62,16 @@ TEST(Interlocks, OfTheStartModeMustHoldWithEverybodyOffline) {
   EXPECT_THAT(codes_of(read_with(R"(<Excludes subsystem="FLYWHEEL" state="Offline"/>)")), ElementsAre("E0330"));
   EXPECT_THAT(codes_of(read_with("", R"(from="telepresence")")), ElementsAre("E0330"));
   EXPECT_THAT(codes_of(read_with(R"(<Excludes subsystem="FLYWHEEL" state="Operational"/>)")), IsEmpty());
+}
+
+TEST(Interlocks, OfTheInitialModeMustHoldWithEverybodyOffline) {
+  const auto initial = [](const std::string& inside, const std::string& attributes = {}) {
+    return codes_of(read_with(inside, attributes, R"(<Mode name="commissioning")"));
+  };
+  EXPECT_THAT(initial(R"(<Needs subsystem="FLYWHEEL" state="Operational"/>)"), ElementsAre("E0356"));
+  EXPECT_THAT(initial(R"(<Excludes subsystem="FLYWHEEL" state="Offline Operational"/>)"), ElementsAre("E0356"));
+  EXPECT_THAT(initial(R"(<Excludes subsystem="FLYWHEEL" state="Operational"/>)"), IsEmpty());
+  EXPECT_THAT(initial("", R"(from="telepresence")"), IsEmpty()) << "a flight comes from no mode";
 }
 
 TEST(Interlocks, AFlightStartsInAModeThatCanBeTheFirstAndInNoOther) {

@@ -22,10 +22,15 @@ void ModeReader::read_modes(const xml::Element& element) {
                     did_you_mean(at->value, known));
     return at->value;
   };
-  mission_.initial_mode = mode(attributes.required("initial"));
+  const auto* initial = attributes.required("initial");
+  mission_.initial_mode = mode(initial);
   const auto* start = attributes.optional("start");
   mission_.start_mode = mode(start);
   check_from(element, mission_, problems_);
+  // Where it is the start mode as well that says the same.
+  const bool both = mission_.start_mode == mission_.initial_mode;
+  if (const Mode* first = mission_.find_mode(mission_.initial_mode); first != nullptr && initial != nullptr && !both)
+    check_initial(*initial, *first, problems_);
   if (const Mode* first = mission_.find_mode(mission_.start_mode); first != nullptr && start != nullptr)
     check_start(*start, *first, mission_, problems_);
 }
