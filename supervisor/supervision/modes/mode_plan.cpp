@@ -59,13 +59,26 @@ struct Target {
   State state{State::Offline};
 };
 
+[[nodiscard]] std::uint16_t apid_of(const Craft& craft, const std::string& name) {
+  return craft.mission.find_subsystem(name)->subsystem.id;
+}
+
+[[nodiscard]] bool holds(const Craft& craft, const descriptor::Interlock& interlock) {
+  const Member* member = craft.member(apid_of(craft, interlock.subsystem));
+  if (member == nullptr || !member->state()) return false;
+  if (std::ranges::find(interlock.states, *member->state()) == interlock.states.end()) return false;
+  if (interlock.configuration.empty()) return true;
+  const auto* wanted = member->descriptor().find_configuration(interlock.configuration);
+  return wanted != nullptr && member->configuration() == wanted->id;
+}
+
 class Planner {
  public:
   Planner(const Craft& craft, const LinkGraph& links, const descriptor::Mode& mode)
       : craft_{craft}, links_{links}, mode_{mode} {}
 
   ModePlan plan(const PowerLedger& power) {
-    check_interlocks();
+    against_ = interlocks_against(craft_, mode_, Judged::Everybody);
     if (!mode_.commission.empty()) {
       find_movers();
       check_members();
@@ -104,16 +117,14 @@ class Planner {
     return target.configuration == nullptr || member.configuration() == target.configuration->id;
   }
 
-  [[nodiscard]] std::uint16_t apid_of(const std::string& name) const {
-    return craft_.mission.find_subsystem(name)->subsystem.id;
-  }
   [[nodiscard]] bool is_wanted(std::uint8_t link) const {
     return std::ranges::find(mode_.establish, link) != mode_.establish.end();
   }
   /// Not up yet, or taken along by an end that moves.
   [[nodiscard]] bool is_made(std::uint8_t id) const {
     const auto& link = *craft_.mission.find_link(id);
-    return !links_.is_up(id) || movers_.contains(apid_of(link.from)) || movers_.contains(apid_of(link.to));
+    return !links_.is_up(id) || movers_.contains(apid_of(craft_, link.from)) ||
+           movers_.contains(apid_of(craft_, link.to));
   }
 
   /// One that has nowhere to go takes part in nothing: it is left out, or told by check_members().
@@ -128,8 +139,8 @@ class Planner {
     for (const descriptor::MissionLink& link : craft_.mission.links) {
       const bool changes = is_wanted(link.id) ? !links_.is_up(link.id) : links_.is_held(link.id);
       if (!changes) continue;
-      move(apid_of(link.from));
-      move(apid_of(link.to));
+      move(apid_of(craft_, link.from));
+      move(apid_of(craft_, link.to));
     }
     // Who gives its links back takes down those who need them: a network moves as a whole, the one that there is and the one to be.
     for (std::size_t before = 0; before != movers_.size();) {
@@ -138,7 +149,7 @@ class Planner {
         for (const std::uint16_t other : links_.network_of(apid)) move(other);
       for (const std::uint8_t id : mode_.establish) {
         const auto& link = *craft_.mission.find_link(id);
-        const std::uint16_t from = apid_of(link.from), to = apid_of(link.to);
+        const std::uint16_t from = apid_of(craft_, link.from), to = apid_of(craft_, link.to);
         if (movers_.contains(from)) move(to);
         if (movers_.contains(to)) move(from);
       }
@@ -195,26 +206,6 @@ class Planner {
     }
   }
 
-  [[nodiscard]] bool holds(const descriptor::Interlock& interlock) const {
-    const Member* member = craft_.member(apid_of(interlock.subsystem));
-    if (member == nullptr || !member->state()) return false;
-    if (std::ranges::find(interlock.states, *member->state()) == interlock.states.end()) return false;
-    if (interlock.configuration.empty()) return true;
-    const auto* wanted = member->descriptor().find_configuration(interlock.configuration);
-    return wanted != nullptr && member->configuration() == wanted->id;
-  }
-
-  void check_interlocks() {
-    const auto& from = mode_.from;
-    // Entered anew from itself it may always be: that is how what has fallen comes up again.
-    if (!from.empty() && craft_.mode != &mode_ && std::ranges::find(from, craft_.mode->name) == from.end())
-      object("it is not entered from mode {}", craft_.mode->name);
-    for (const descriptor::Interlock& interlock : mode_.interlocks) {
-      const bool excludes = interlock.kind == descriptor::Interlock::Kind::Excludes;
-      if (holds(interlock) == excludes) object("it {} {}", excludes ? "excludes" : "needs", to_string(interlock));
-    }
-  }
-
   template <class... Values>
   void object(fmt::format_string<Values...> text, Values&&... values) {
     against_.push_back(fmt::format(text, std::forward<Values>(values)...));
@@ -228,6 +219,22 @@ class Planner {
 };
 
 }  // namespace
+
+std::vector<std::string> interlocks_against(const Craft& craft, const descriptor::Mode& mode, Judged judged) {
+  std::vector<std::string> against;
+  // Entered anew from itself it may always be: that is how what has fallen comes up again.
+  if (!mode.from.empty() && craft.mode != &mode && std::ranges::find(mode.from, craft.mode->name) == mode.from.end())
+    against.push_back(fmt::format("it is not entered from mode {}", craft.mode->name));
+  for (const descriptor::Interlock& interlock : mode.interlocks) {
+    const bool commissioned = std::ranges::find(mode.commission, interlock.subsystem,
+                                                &descriptor::CommissionStep::subsystem) != mode.commission.end();
+    if (commissioned && judged == Judged::WhomItDoesNotCommission) continue;
+    const bool excludes = interlock.kind == descriptor::Interlock::Kind::Excludes;
+    if (holds(craft, interlock) == excludes)
+      against.push_back(fmt::format("it {} {}", excludes ? "excludes" : "needs", to_string(interlock)));
+  }
+  return against;
+}
 
 ModePlan plan_mode(const Craft& craft, const LinkGraph& links, const PowerLedger& power, const descriptor::Mode& mode) {
   return Planner{craft, links, mode}.plan(power);

@@ -53,6 +53,15 @@ struct ModePlan {
   std::vector<std::string> against;  ///< every reason why it is impossible now, in words; empty: it is possible
 };
 
+/// Whose states interlocks are judged on. What a change of mode brings about itself is no reason against it: at its end those are left
+/// out whom it commissions.
+enum class Judged : std::uint8_t { Everybody, WhomItDoesNotCommission };
+
+/// What guards a mode, whoever brings the craft there: the modes that it is entered from, states of others that it needs or excludes.
+/// Every reason why it may not be entered now, in words; empty: it may. Pure. Thread: the supervisor's.
+[[nodiscard]] std::vector<std::string> interlocks_against(const Craft& craft, const descriptor::Mode& mode,
+                                                          Judged judged);
+
 /// What brings the craft into `mode` from where it is. A mode that commissions somebody is one of the whole craft: who is not named goes
 /// Offline, but for the ground link, and links that it does not establish are given back. Who has to move takes its real-time
 /// network along. A mode that commissions nobody moves nobody.

@@ -27,27 +27,50 @@ namespace {
 void Modes::provide() {
   parts_.own.on_function(
       "SET_MODE", [this](double id, Call call) -> Outcome { return set_mode(static_cast<std::uint8_t>(id), call); });
-  parts_.own.on_function("ENTER_MODE", [this](double id) -> Outcome {
-    const auto* mode = find_mode(craft_, static_cast<std::uint8_t>(id));
-    if (mode == nullptr) return refused(pus::FailureCode::UnknownIdentifier);
-    enter(*mode);
-    return ok();
+  parts_.own.on_function("ENTER_MODE", [this](double id, Call call) -> Outcome {
+    return enter_mode(static_cast<std::uint8_t>(id), call);
   });
+}
+
+/// A mode is entered while nothing else brings the craft into one.
+std::optional<Outcome> Modes::not_now() const {
+  if (craft_.shutting_down) return refused(pus::FailureCode::NotPermittedNow, "the craft shuts down");
+  if (runner_.running()) return refused(pus::FailureCode::Busy, "another change of mode is under way");
+  if (parts_.commissioning.running()) return refused(pus::FailureCode::Busy, "the craft is being commissioned");
+  return std::nullopt;
+}
+
+/// What permissions guard, interlocks guard: whoever has moved the craft there by hand is held to them, too.
+Outcome Modes::enter_mode(std::uint8_t id, const Call& call) {
+  const auto* mode = find_mode(craft_, id);
+  if (mode == nullptr) return refused(pus::FailureCode::UnknownIdentifier);
+  // The supervisor's own is the last step of commissioning, which was judged with everybody Offline. One that was cancelled has said
+  // it, perhaps, and does not mean it any more.
+  const bool commissions = call.request.source == supervisor_apid;
+  if (commissions && !parts_.commissioning.running())
+    return refused(pus::FailureCode::NotPermittedNow, "the commissioning that it ends was stopped");
+  if (const auto why = commissions ? std::nullopt : not_now()) return *why;
+  const Judged judged = commissions ? Judged::WhomItDoesNotCommission : Judged::Everybody;
+  const ModePlan plan{.stages = {}, .moved = {}, .against = interlocks_against(craft_, *mode, judged)};
+  if (!plan.against.empty()) return impossible(*mode, plan, call);
+  enter(*mode);
+  return ok();
+}
+
+/// Every reason is told, in the story and to who asked.
+Outcome Modes::impossible(const descriptor::Mode& mode, const ModePlan& plan, const Call& call) {
+  craft_.tell(fmt::format("mode {} is impossible: {}", mode.name, fmt::join(plan.against, "; ")), supervisor_apid);
+  report(call.request.source, mode, plan);
+  return refused(pus::FailureCode::WrongStatus,
+                 "reasons against it, all of them in TM[129,5]:", static_cast<std::int64_t>(plan.against.size()));
 }
 
 Outcome Modes::set_mode(std::uint8_t id, const Call& call) {
   const auto* mode = find_mode(craft_, id);
   if (mode == nullptr) return refused(pus::FailureCode::UnknownIdentifier);
-  if (craft_.shutting_down) return refused(pus::FailureCode::NotPermittedNow, "the craft shuts down");
-  if (runner_.running()) return refused(pus::FailureCode::Busy, "another change of mode is under way");
-  if (parts_.commissioning.running()) return refused(pus::FailureCode::Busy, "the craft is being commissioned");
+  if (const auto why = not_now()) return *why;
   ModePlan plan = plan_mode(craft_, parts_.means.links, parts_.power, *mode);
-  if (!plan.against.empty()) {
-    craft_.tell(fmt::format("mode {} is impossible: {}", mode->name, fmt::join(plan.against, "; ")), supervisor_apid);
-    report(call.request.source, *mode, plan);
-    return refused(pus::FailureCode::WrongStatus,
-                   "reasons against it, all of them in TM[129,5]:", static_cast<std::int64_t>(plan.against.size()));
-  }
+  if (!plan.against.empty()) return impossible(*mode, plan, call);
   if (plan.stages.empty()) {
     enter(*mode);
     return ok();

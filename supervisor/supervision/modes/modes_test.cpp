@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/modes/modes.hpp"
 
+#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
 namespace hirosco::supervisor {
@@ -17,7 +18,28 @@ struct ModesTest : PartsTest {
     start_supervisor();
   }
   static constexpr int narrow = 2;
+  /// ENTER_MODE of the ground has been read, and is still to be carried out.
+  void ask_to_enter(int mode) {
+    last_routed.erase(1);
+    parts.telecommands.take(
+        {.packet = telecommand(supervisor_apid, 8, 1, call_data("ENTER_MODE", mode)), .origin = Origin::ground()});
+  }
+  /// ENTER_MODE of the ground: the code of its failure; empty: it was done.
+  std::optional<pus::FailureCode> enter_by_hand(int mode) {
+    ask_to_enter(mode);
+    for (int step = 0; step < 20; ++step) own_step();
+    OctetReader reader{last_routed[1]};
+    static_cast<void>(reader.get<std::uint32_t>());
+    const auto code = reader.get<std::uint16_t>();
+    return reader.good() ? std::optional{static_cast<pus::FailureCode>(code)} : std::nullopt;
+  }
 };
+
+/// A lock on a mode.
+descriptor::Interlock lock_on(descriptor::Interlock::Kind kind, std::string subsystem, State state) {
+  return {.kind = kind, .subsystem = std::move(subsystem), .states = {state}, .configuration = {}, .at = {}};
+}
+using Lock = descriptor::Interlock::Kind;
 
 TEST_F(ModesTest, AModeHoldsForAllFromTheSameMomentOn) {
   const std::uint32_t before = craft.mode_epoch;
@@ -50,10 +72,128 @@ TEST_F(ModesTest, AModeWhoseMembersAreDeadIsRefusedUntilTheyLiveAgain) {
 TEST_F(ModesTest, EnteringAModeMovesNobodyWhateverItCommissions) {
   craft.mission.modes[1].commission = {
       {.subsystem = "ARM", .configuration = "COUPLED", .state = Operational, .at = {}}};
-  EXPECT_EQ(call_own("ENTER_MODE", narrow), "done");
+  EXPECT_EQ(enter_by_hand(narrow), std::nullopt);
   EXPECT_EQ(craft.mode->name, "narrow");
   EXPECT_TRUE(texts(arm).empty());
-  EXPECT_EQ(call_own("ENTER_MODE", 9), to_text(pus::FailureCode::UnknownIdentifier));
+  EXPECT_EQ(call_own("SET_MODE", 1), "done");
+  EXPECT_EQ(enter_by_hand(9), pus::FailureCode::UnknownIdentifier);
+}
+
+TEST_F(ModesTest, WhatAModeIsEnteredFromNeedsAndExcludesHoldsForWhoEntersItByHandToo) {
+  descriptor::Mode& wanted = craft.mission.modes[1];
+  wanted.from = {"narrow"};
+  wanted.interlocks = {lock_on(Lock::Excludes, "ARM", SafeOperational), lock_on(Lock::Needs, "HAND", Operational)};
+  const std::uint32_t before = craft.mode_epoch;
+  EXPECT_EQ(enter_by_hand(narrow), pus::FailureCode::WrongStatus);
+  EXPECT_EQ(craft.mode->name, "open");
+  EXPECT_EQ(craft.mode_epoch, before) << "nothing that was permitted is void";
+  EXPECT_TRUE(
+      was_told("mode narrow is impossible: it is not entered from mode open; it excludes ARM in SafeOperational; "
+               "it needs HAND in Operational"));
+  const auto told = pus::st129::read_mode_preview(last_routed[129]);
+  ASSERT_TRUE(told) << "the reasons are telemetry";
+  EXPECT_EQ(told->against.size(), 3U);
+  wanted.from = {"open"};
+  set(hand, Operational);
+  EXPECT_EQ(enter_by_hand(narrow), pus::FailureCode::WrongStatus) << "one that is left is enough";
+  set(arm, PreOperational);
+  EXPECT_EQ(enter_by_hand(narrow), std::nullopt);
+  EXPECT_EQ(craft.mode->name, "narrow");
+}
+
+/// In all states of both: it is entered by hand where SET_MODE would be let, and nowhere else.
+TEST_F(ModesTest, AnInterlockIsOneInWhicheverStateAndByWhicheverWay) {
+  descriptor::Mode& wanted = craft.mission.modes[1];
+  wanted.interlocks = {lock_on(Lock::Excludes, "ARM", Operational), lock_on(Lock::Needs, "HAND", SafeOperational)};
+  for (const auto& of_arm : EnumTexts<State>::table)
+    for (const auto& of_hand : EnumTexts<State>::table) {
+      set(arm, of_arm.value);
+      set(hand, of_hand.value);
+      craft.mode = &craft.mission.modes[0];
+      const bool may = of_arm.value != Operational && of_hand.value == SafeOperational;
+      EXPECT_EQ(call_own("SET_MODE", narrow) == "done", may) << of_arm.text << ", " << of_hand.text;
+      craft.mode = &craft.mission.modes[0];
+      EXPECT_EQ(!enter_by_hand(narrow), may) << of_arm.text << ", " << of_hand.text;
+      EXPECT_EQ(craft.mode->name, may ? "narrow" : "open");
+    }
+}
+
+TEST_F(ModesTest, NoModeIsEnteredOnTheWayDown) {
+  ask_to_enter(narrow);
+  parts.shutdown.request();
+  for (int step = 0; step < 20; ++step) own_step();
+  EXPECT_EQ(craft.mode->name, "open");
+}
+
+/// On its way into its start mode `narrow`, which has ARM Operational: nobody has answered yet.
+struct BeingCommissioned : ModesTest {
+  void SetUp() override {
+    PartsTest::SetUp();
+    start_all(Offline);
+    craft.mission.start_mode = "narrow";
+    craft.mission.modes[1].commission = {
+        {.subsystem = "ARM", .configuration = "COUPLED", .state = SafeOperational, .at = {}}};
+    craft.mission.links.clear();
+    craft.mission.subsystems[0].subsystem.configurations.front().requires_.clear();
+    parts.own.start(craft.mode_epoch);
+    parts.commissioning.start([] {});
+    while (received_by_arm.empty()) {
+      own_step();
+      hear_arm();
+    }
+  }
+  std::vector<Received> received_by_arm;
+  void hear_arm() {
+    for (const Received& each : received(arm)) received_by_arm.push_back(each);
+  }
+  /// It does what it is told next.
+  void answer() {
+    const Received next = received_by_arm.front();
+    received_by_arm.erase(received_by_arm.begin());
+    constexpr std::string_view to_state = "SET_STATE ";
+    if (next.text.starts_with(to_state))
+      set(arm, static_cast<State>(std::stoi(next.text.substr(to_state.size()))), craft.member(arm)->configuration());
+    else played[arm].vital->configuration = 2;
+    verify(arm, next.request, 7);
+    hear_arm();
+  }
+  /// Until its last step has been said, and nobody has read that.
+  void go_to_the_last_step() {
+    while (!received_by_arm.empty()) answer();
+    ASSERT_EQ(parts.commissioning.waiting_for(), "SUPERVISOR: mode narrow");
+  }
+  void end() {
+    for (int step = 0; step < 20; ++step) own_step();
+  }
+};
+
+TEST_F(BeingCommissioned, NobodyEntersAModeBesideIt) {
+  craft.mission.modes.push_back(craft.mission.modes[0]);
+  craft.mission.modes.back().id = 3;
+  EXPECT_EQ(enter_by_hand(3), pus::FailureCode::Busy);
+  go_to_the_last_step();
+  end();
+  EXPECT_EQ(craft.mode->name, "narrow");
+  EXPECT_TRUE(parts.commissioning.succeeded());
+}
+
+TEST_F(BeingCommissioned, WhomItExcludesAndSomebodyHasBroughtUpMeanwhileEndsIt) {
+  craft.mission.modes[1].interlocks = {lock_on(Lock::Excludes, "CAMERA", Operational),
+                                       lock_on(Lock::Needs, "ARM", Offline)};
+  set(camera, Operational);
+  go_to_the_last_step();
+  end();
+  EXPECT_EQ(craft.mode->name, "open");
+  EXPECT_TRUE(craft.failed());
+  EXPECT_TRUE(was_told("mode narrow is impossible: it excludes CAMERA in Operational"))
+      << "that ARM was to be Offline was true before it brought ARM up";
+}
+
+TEST_F(BeingCommissioned, WhoseLastStepIsReadWhenItHasBeenStoppedEntersNoMode) {
+  go_to_the_last_step();
+  EXPECT_TRUE(parts.under_way.cancel("SAFE_ALL"));
+  end();
+  EXPECT_EQ(craft.mode->name, "open");
 }
 
 /// Changes of the whole craft: mode `narrow` has ARM and HAND Operational, `open` permits all and commissions nobody.
