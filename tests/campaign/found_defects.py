@@ -146,8 +146,8 @@ DEFECTS = [
            "if (const auto refused = write_refused(asked); refused && !PLANTED) return refused;",
            "supervisor_test", "Permission.AParameterIsWrittenOnlyInItsStatesAndOnlyWhereTheModeOpensIt"),
     # "Commissioned" was told of members that a recovery had taken down.
-    Defect("commissioned and Offline", f"{SUPERVISION}/modes/commissioning.cpp", "if (missing.empty() && (subject == nullptr ||",
-           "if (missing.empty() && !PLANTED && (subject == nullptr ||",
+    Defect("commissioned and Offline", f"{SUPERVISION}/modes/commissioning.cpp", "failure.empty() ? missing_from(",
+           "failure.empty() && !PLANTED ? missing_from(",
            "supervisor_test", "CommissioningTest.WhoWasTakenDownAfterItsOwnStepIsMissed"),
     # Plans for the supervisor's own events were accepted and never fired.
     Defect("plans of own events", f"{SUPERVISION}/event_handling/reactions.cpp", "if (from == supervisor_apid) react_to_own(",

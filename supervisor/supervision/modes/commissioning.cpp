@@ -48,13 +48,8 @@ void Commissioning::commission(const descriptor::Mode& start_mode) {
 }
 
 void Commissioning::ended(const descriptor::Mode& start_mode, const std::string& failure) {
-  std::string missing = failure;
-  // A plan may have taken one down after its own step was done.
-  for (const auto& step : start_mode.commission) {
-    const Member* subject = craft_.member(craft_.mission.find_subsystem(step.subsystem)->subsystem.id);
-    if (missing.empty() && (subject == nullptr || subject->state() != step.state))
-      missing = step.subsystem + " is not " + std::string{to_text(step.state)};
-  }
+  // A plan may have taken one down after its own step was done, or a link may have been lost.
+  const std::string missing = failure.empty() ? missing_from(craft_, links_, start_mode) : failure;
   succeeded_ = missing.empty();
   if (succeeded_) return craft_.tell("commissioned: mode " + craft_.mode->name);
   craft_.tell("commissioning stopped: " + missing);

@@ -14,7 +14,8 @@ namespace hirosco::supervisor {
 /// that an operator would use (decision 5). Thread: the supervisor's.
 class Commissioning final : public Undertaking {
  public:
-  explicit Commissioning(const Means& means) : craft_{means.craft}, runner_{means}, itself_{means} {}
+  explicit Commissioning(const Means& means)
+      : craft_{means.craft}, links_{means.links}, runner_{means}, itself_{means} {}
 
   /// `failed` is called when the supervisor itself cannot be commissioned.
   void start(std::function<void()> failed);
@@ -35,6 +36,7 @@ class Commissioning final : public Undertaking {
   void ended(const descriptor::Mode& start_mode, const std::string& failure);
 
   Craft& craft_;
+  const LinkGraph& links_;
   ProcedureRunner runner_;
   ProcedureRunner itself_;  ///< which no stop ends
   bool begins_{false};  ///< the others follow when the supervisor itself is there

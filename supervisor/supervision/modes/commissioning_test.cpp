@@ -24,6 +24,12 @@ struct CommissioningTest : PartsTest {
     mode.establish = {1};
     commissioning.start([this] { ++failures; });
   }
+  /// As the mode wants them.
+  void all_are_there() {
+    set(arm, Operational, 2);
+    set(camera, SafeOperational);
+    parts.graph.set_up(1, true);
+  }
   void answer_all() {
     while (!desk.answers.empty()) desk.answer(true);
   }
@@ -35,8 +41,7 @@ TEST_F(CommissioningTest, TheSupervisorComesFirstThenAllMembersStageByStageThenT
     EXPECT_EQ(desk.sent.size(), own + 1);
     desk.answer(true);
   }
-  set(arm, Operational);
-  set(camera, SafeOperational);
+  all_are_there();
   answer_all();
   desk.sent.erase(desk.sent.begin(), desk.sent.begin() + 4);
   EXPECT_THAT(desk.sent, ElementsAre("10 SET_STATE 3", "12 SET_STATE 3", "10 CONFIGURE 2", "12 CONFIGURE 1", "1 LINK 1",
@@ -48,12 +53,22 @@ TEST_F(CommissioningTest, TheSupervisorComesFirstThenAllMembersStageByStageThenT
 
 TEST_F(CommissioningTest, WhoWasTakenDownAfterItsOwnStepIsMissed) {
   start();
-  set(arm, Operational);
+  all_are_there();
   set(camera, ErrorOperational);
   answer_all();
   EXPECT_FALSE(commissioning.succeeded());
   EXPECT_TRUE(was_told("commissioning stopped: CAMERA is not SafeOperational"));
   EXPECT_TRUE(craft.failed());
+}
+
+TEST_F(CommissioningTest, WhoIsInAnotherConfigurationOrHasLostItsLinkAgainIsMissedToo) {
+  start();
+  all_are_there();
+  set(arm, Operational, 1);
+  parts.graph.set_up(1, false);
+  answer_all();
+  EXPECT_FALSE(commissioning.succeeded());
+  EXPECT_TRUE(was_told("commissioning stopped: ARM is not in configuration COUPLED; link 1 is not up"));
 }
 
 TEST_F(CommissioningTest, AMemberThatFailsEndsIt) {

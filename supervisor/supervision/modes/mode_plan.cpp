@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/modes/mode_plan.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -72,6 +72,20 @@ struct Target {
   return wanted != nullptr && member->configuration() == wanted->id;
 }
 
+/// Empty: it is left where it is, as the ground link in a mode that does not name it.
+[[nodiscard]] std::optional<Target> target_of(const Craft& craft, const descriptor::Mode& mode, const Member& member) {
+  const descriptor::SubsystemDescriptor& subsystem = member.descriptor();
+  const auto named = std::ranges::find(mode.commission, subsystem.name, &descriptor::CommissionStep::subsystem);
+  if (named != mode.commission.end()) return Target{subsystem.find_configuration(named->configuration), named->state};
+  if (craft.is_ground_link(member)) return std::nullopt;
+  return Target{};
+}
+
+[[nodiscard]] bool is_there(const Member& member, const Target& target) {
+  if (member.state() != target.state) return false;
+  return target.configuration == nullptr || member.configuration() == target.configuration->id;
+}
+
 class Planner {
  public:
   Planner(const Craft& craft, const LinkGraph& links, const descriptor::Mode& mode)
@@ -102,21 +116,9 @@ class Planner {
   }
 
  private:
-  /// Empty: it is left where it is, as the ground link in a mode that does not name it.
   [[nodiscard]] std::optional<Target> target_of(const Member& member) const {
-    const descriptor::SubsystemDescriptor& subsystem = member.descriptor();
-    const auto named = std::ranges::find(mode_.commission, subsystem.name, &descriptor::CommissionStep::subsystem);
-    if (named != mode_.commission.end())
-      return Target{subsystem.find_configuration(named->configuration), named->state};
-    if (craft_.is_ground_link(member)) return std::nullopt;
-    return Target{};
+    return hirosco::supervisor::target_of(craft_, mode_, member);
   }
-
-  [[nodiscard]] static bool is_there(const Member& member, const Target& target) {
-    if (member.state() != target.state) return false;
-    return target.configuration == nullptr || member.configuration() == target.configuration->id;
-  }
-
   [[nodiscard]] bool is_wanted(std::uint8_t link) const {
     return std::ranges::find(mode_.establish, link) != mode_.establish.end();
   }
@@ -234,6 +236,20 @@ std::vector<std::string> interlocks_against(const Craft& craft, const descriptor
       against.push_back(fmt::format("it {} {}", excludes ? "excludes" : "needs", to_string(interlock)));
   }
   return against;
+}
+
+std::string missing_from(const Craft& craft, const LinkGraph& links, const descriptor::Mode& mode) {
+  std::vector<std::string> missing;
+  for (const Member& member : craft.members) {
+    const auto target = target_of(craft, mode, member);
+    if (!target || target->configuration == nullptr || is_there(member, *target)) continue;
+    const std::string& name = member.descriptor().name;
+    if (member.state() != target->state) missing.push_back(fmt::format("{} is not {}", name, to_text(target->state)));
+    else missing.push_back(fmt::format("{} is not in configuration {}", name, target->configuration->name));
+  }
+  for (const std::uint8_t id : mode.establish)
+    if (!links.is_up(id)) missing.push_back(fmt::format("link {} is not up", id));
+  return fmt::format("{}", fmt::join(missing, "; "));
 }
 
 ModePlan plan_mode(const Craft& craft, const LinkGraph& links, const PowerLedger& power, const descriptor::Mode& mode) {

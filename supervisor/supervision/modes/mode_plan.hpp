@@ -62,6 +62,10 @@ enum class Judged : std::uint8_t { Everybody, WhomItDoesNotCommission };
 [[nodiscard]] std::vector<std::string> interlocks_against(const Craft& craft, const descriptor::Mode& mode,
                                                           Judged judged);
 
+/// What of `mode` is not there: whom it commissions, each in its state and configuration, and the links that it establishes. By the rule
+/// by which plan_mode() leaves out what is there already. In words; empty: the mode is there. Pure. Thread: the supervisor's.
+[[nodiscard]] std::string missing_from(const Craft& craft, const LinkGraph& links, const descriptor::Mode& mode);
+
 /// What brings the craft into `mode` from where it is. A mode that commissions somebody is one of the whole craft: who is not named goes
 /// Offline, but for the ground link, and links that it does not establish are given back. Who has to move takes its real-time
 /// network along. A mode that commissions nobody moves nobody.

@@ -126,6 +126,35 @@ TEST_F(ModePlanTest, WhoIsThereAlreadyIsNotMoved) {
   EXPECT_TRUE(plan(coupled).moved.empty());
 }
 
+/// In all states, configurations and standings of a link.
+TEST_F(ModePlanTest, TheModeIsThereWhereNobodyWouldHaveToMoveIntoItAndNowhereElse) {
+  int there = 0;
+  for (const auto& state : EnumTexts<State>::table)
+    for (const std::uint8_t configuration : {std::uint8_t{0}, std::uint8_t{1}, std::uint8_t{2}})
+      for (const bool up : {false, true}) {
+        couple();
+        set(arm, state.value, configuration);
+        parts.graph.set_up(2, up);
+        const std::string missing = missing_from(craft, parts.graph, coupled);
+        EXPECT_EQ(missing.empty(), plan(coupled).moved.empty())
+            << state.text << " " << +configuration << " " << missing;
+        there += missing.empty() ? 1 : 0;
+      }
+  EXPECT_EQ(there, 1);
+}
+
+TEST_F(ModePlanTest, AllThatIsMissingOfAModeIsNamed) {
+  couple();
+  EXPECT_EQ(missing_from(craft, parts.graph, coupled), "");
+  set(arm, Operational, 1);
+  set(hand, SafeOperational);
+  parts.graph.set_up(1, false);
+  EXPECT_EQ(missing_from(craft, parts.graph, coupled),
+            "ARM is not in configuration COUPLED; HAND is not Operational; link 1 is not up");
+  craft.member(hand)->died();
+  EXPECT_NE(missing_from(craft, parts.graph, coupled).find("HAND is not Operational"), std::string::npos);
+}
+
 TEST_F(ModePlanTest, AModeThatCommissionsNobodyMovesNobody) {
   couple();
   watching.commission.clear();

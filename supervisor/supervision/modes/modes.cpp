@@ -100,13 +100,8 @@ void Modes::change(const descriptor::Mode& mode, ModePlan plan, const Call& call
 }
 
 void Modes::ended(const descriptor::Mode& mode, const std::string& failure) {
-  std::string missing = failure;
-  // Whoever was taken down, or fell, after its own step was done.
-  for (const auto& step : mode.commission) {
-    const Member* subject = std::as_const(craft_).member(craft_.mission.find_subsystem(step.subsystem)->subsystem.id);
-    if (missing.empty() && (subject == nullptr || subject->state() != step.state))
-      missing = step.subsystem + " is not " + std::string{to_text(step.state)};
-  }
+  // Whoever was taken down, fell, or lost its link after its own step was done.
+  const std::string missing = failure.empty() ? missing_from(craft_, parts_.means.links, mode) : failure;
   if (!missing.empty()) return fall_back(missing, StatesFollow::Here);
   craft_.changing_to = nullptr;
   moved_.clear();

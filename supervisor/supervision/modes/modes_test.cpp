@@ -287,6 +287,21 @@ TEST_F(ModeChangeTest, WhoeverFailsOnTheWayEndsItInTheInitialModeWithEverybodyOf
   EXPECT_TRUE(was_told("the change to mode narrow stopped: HAND PostOperational: "));
 }
 
+TEST_F(ModeChangeTest, WhoFellBackToAnotherConfigurationOnTheWayIsNotWhereTheModeWantsIt) {
+  begin();
+  for (int step = 0; step < 60 && end.empty(); ++step) {
+    for (const Received& each : received(hand)) {
+      if (each.text.starts_with("SET_STATE")) set(hand, static_cast<State>(each.text.back() - '0'), 9);
+      verify(hand, each.request, 7);
+    }
+    own_step();
+  }
+  EXPECT_NE(end, "done");
+  EXPECT_EQ(craft.mode->name, "open");
+  EXPECT_TRUE(fenced(hand));
+  EXPECT_TRUE(was_told("the change to mode narrow stopped: HAND is not in configuration ONLY"));
+}
+
 TEST_F(ModeChangeTest, ItEndsInTheOldModeTheNewOneOrSafeWhateverHappensAtAnyOfItsSteps) {
   using Disturb = void (*)(ModeChangeTest&);
   const std::pair<const char*, Disturb> disturbances[]{
