@@ -83,6 +83,19 @@ TEST_F(Made, EveryKindHasATemplateAndNothingOfItsWordsIsLeft) {
   }
 }
 
+TEST(NewFolder, OfEachKindHasAMissionWhoseInitialModePermitsToReadADescriptorAgain) {
+  for (const NewKind& kind : new_kinds()) {
+    std::stringstream text;
+    text << std::ifstream{fs::path{HIROSCO_SOURCE_DIR} / "templates" / kind.name / "mission.xml"}.rdbuf();
+    const std::string mission = text.str();
+    const auto begin = mission.find("<Mode name=\"commissioning\">");
+    ASSERT_NE(begin, std::string::npos) << kind.name;
+    EXPECT_NE(mission.find("<Modes initial=\"commissioning\""), std::string::npos) << kind.name;
+    const std::string initial = mission.substr(begin, mission.find("</Mode>", begin) - begin);
+    EXPECT_NE(initial.find(" REREAD "), std::string::npos) << kind.name;
+  }
+}
+
 TEST_F(Made, WordsOfItsOwnAreReplacedAndFilesOfItsOwnAreAsTheyAre) {
   fs::create_directory(folder_ / "template");
   std::ofstream{folder_ / "template/newpart.txt"} << "newpart has @joints@ joints";

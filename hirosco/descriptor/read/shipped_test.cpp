@@ -62,6 +62,19 @@ TEST(ShippedMissions, EveryNumberFromOutsideHasARange) {
   EXPECT_EQ(numbers.without_range, "");
 }
 
+/// The mission that is taught from, where somebody tries it first (docs/adr/0095).
+TEST(ShippedMissions, HelloPermitsToReadADescriptorAgainInItsInitialMode) {
+  for (const auto& [file, mission] : shipped_missions()) {
+    if (file.parent_path().filename() != "hello") continue;
+    const Mode& initial = *mission.find_mode(mission.initial_mode);
+    EXPECT_TRUE(std::ranges::any_of(initial.permits, [](const Permit& permit) {
+      return std::ranges::find(permit.functions, "REREAD") != permit.functions.end();
+    }));
+    return;
+  }
+  FAIL() << "there is no such mission";
+}
+
 /// Asked of what is shipped: permission takes the word of the descriptor for it, and a log that stands still refuses all else.
 TEST(ShippedMissions, WhatStopsOrEndsTheFlightOrReplacesTheLogWaitsForNoDisk) {
   for (const auto& [file, mission] : shipped_missions())
