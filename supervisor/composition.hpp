@@ -52,7 +52,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
         descriptors{{craft, own, own_telecommands, under_way, stored, outside.readings}},
         memory{outside.journal,
                {&adoption, &modes, &links, &telecommands, &safe_all, &own, &commanded, &restarts, &power, &replacement,
-                &subscriptions, &stored, &ground_loss}} {
+                &subscriptions, &stored, &ground_loss, &losses}} {
     if (outside.journal != nullptr) craft.remembers = [this] { memory.note(); };
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
@@ -130,7 +130,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
   // subsystem handling, status
   GroundLinkCare ground_link{means, under_way, adoption};
   Restoration restoration{means, own, under_way};
-  LinkLosses losses{means, own, links};
+  LinkLosses losses{means, own};
   Processes processes{{craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link,
                        ground_loss, restarts, restoration, resources, replacement, stored}};
   Replacement replacement{{craft, own, processes, reactions, under_way}};

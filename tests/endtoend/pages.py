@@ -9,7 +9,7 @@ import pathlib
 import struct
 import time
 
-MAGIC, VERSION = 0x48495243, 7
+MAGIC, VERSION = 0x48495243, 8
 PERIOD_S = 0.001
 ABOVE_CYCLES = 97             # the guard has 90, devices 85, cycles at most 80
 

@@ -289,6 +289,7 @@ static void read_link(void) {
   age_ = is_new ? 0 : age_ + (age_ < 1000000000);
   fresh_ = attached && consumer_.count != 0 && age_ <= age_cycles * factor_ && (status == 1 || status == 2);
   int stale = (state_ == 4 || state_ == 5) && !fresh_;
+  store32(vital_ + 4716, stale ? 2 : fresh_ ? 1 : 0);
   uint8_t age[4];
   put32(age, age_);
   if (stale) inhibit(link_bit);
@@ -449,11 +450,11 @@ int main(int argc, char** argv) {
   if (!descriptor || !channel || !vital || !permit)
     return fprintf(stderr, "lantern: the supervisor starts it: --descriptor FILE --channel FD --vital FD --permit FD\n"), 2;
   channel_ = atoi(channel);
-  vital_ = page(vital, 4720, 1), permit_ = page(permit, 56, 0);
+  vital_ = page(vital, 4976, 1), permit_ = page(permit, 56, 0);
   if (!vital_ || !permit_ || load32(vital_) != 0x48495243 || load32(permit_) != 0x48495243)
     return fprintf(stderr, "lantern: what should be the supervisor's pages are none\n"), 3;
   if (load32(vital_ + 4) != 7 || load32(permit_ + 4) != 7)
-    return fprintf(stderr, "lantern: the supervisor's pages are of version %u, this program's of version 7\n", load32(permit_ + 4)), 3;
+    return fprintf(stderr, "lantern: the supervisor's pages are of version %u, this program's of version 8\n", load32(permit_ + 4)), 3;
   const char* instance = getenv("HIROSCO_INSTANCE");
   size_t named = strlen(address_);
   if (instance && *instance) snprintf(address_ + named, sizeof address_ - named, ".%s", instance);

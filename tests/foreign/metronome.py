@@ -24,7 +24,7 @@ from metronome_services import (BUSY, CYCLIC, ERROR, NOT_NOW, OFFLINE, OPERATION
 
 WAYS = {(0, 3): [1, 2, 3], (3, 0): [7, 8, 9, 0], (3, 4): [4], (3, 6): [6], (3, 7): [7], (4, 0): [7, 8, 9, 0], (4, 3): [7, 3], (4, 5): [5],
         (4, 6): [6], (4, 7): [7], (5, 4): [4], (5, 6): [6], (6, 0): [7, 8, 9, 0], (6, 3): [7, 3], (6, 7): [7], (7, 0): [8, 9, 0], (7, 3): [3]}
-MAGIC, VERSION, VITAL_OCTETS, PERMIT_OCTETS = 0x48495243, 7, 4720, 56
+MAGIC, VERSION, VITAL_OCTETS, PERMIT_OCTETS = 0x48495243, 8, 4976, 56
 VALID, DEGRADED, FAULT = 1, 2, 4
 SILENCE_S = 2
 M64 = (1 << 64) - 1

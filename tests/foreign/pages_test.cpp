@@ -67,8 +67,9 @@ TEST(InterfacePages, VitalPage) {
                                HIROSCO_PLACE(VitalPage, incoming),
                                HIROSCO_PLACE(VitalPage, counters),
                                HIROSCO_PLACE(VitalPage, life),
-                               HIROSCO_PLACE(VitalPage, latencies)});
-  EXPECT_EQ(sizeof(VitalPage), 4720U) << "a field more: docs/interfaces lacks it";
+                               HIROSCO_PLACE(VitalPage, latencies),
+                               HIROSCO_PLACE(VitalPage, judged)});
+  EXPECT_EQ(sizeof(VitalPage), 4976U) << "a field more: docs/interfaces lacks it";
   EXPECT_EQ(table("octets: vital page")[0].at(4).substr(0, 10), "0x48495243");
   EXPECT_EQ(page_magic, 0x48495243U);
   EXPECT_EQ(number_of(table("octets: vital page")[1].at(4)), page_version);
@@ -77,6 +78,7 @@ TEST(InterfacePages, VitalPage) {
                  HIROSCO_PLACE(IncomingLink, latency_mean_ns), HIROSCO_PLACE(IncomingLink, latency_max_ns),
                  HIROSCO_PLACE(IncomingLink, jitter_ns), HIROSCO_PLACE(IncomingLink, age_us)});
   expect_octets("link latencies", {HIROSCO_PLACE(LinkLatencies, period_ns), HIROSCO_PLACE(LinkLatencies, counts)});
+  expect_numbers("judgements", {{link_not_judged, "not judged"}, {link_valid, "valid"}, {link_stale, "stale"}});
   using pus::CounterBlock;
   expect_octets("counter block", {HIROSCO_PLACE(CounterBlock, used), HIROSCO_PLACE(CounterBlock, sequence),
                                   HIROSCO_PLACE(CounterBlock, spare), HIROSCO_PLACE(CounterBlock, types)});

@@ -11,6 +11,7 @@ from duties import LATE_S, STANDS_IN_MEMORY, Flown, duty
 from partners import FAULT, STOPPING, VALID, PlayedConsumer, PlayedProducer, Sleeper
 
 REFUSED = (4, 0x0107, b"\0")
+JUDGED = 4716  # of the vital page: what is made of each set
 
 
 def required(judged):
@@ -202,6 +203,7 @@ def consume(judged):
             agreed = min(flown.links[each.get("name")].agreement.producer_ns, 0xFFFFFFFF)
             expect(period in (0, agreed), f"latencies in the page are of a period of {period} ns, agreed are {agreed}")
             expect(not period or sum(counts), "latencies in the page have a period and no counts after 0.3 s of samples")
+            expect(craft.vital.u32(JUDGED + 4 * i) in (0, 1), f"{each.get('name')} is judged {craft.vital.u32(JUDGED + 4 * i)} in the page, with fresh samples")
 
 
 def age_s(judged, each):
@@ -212,7 +214,7 @@ def age_s(judged, each):
 @duty("link.stale")
 def stale(judged):
     names = judged.described.required_sets()
-    for each in required(judged):
+    for place, each in enumerate(required(judged)[:64]):
         name, event = each.get("name"), 0xF200 + names.index(each.get("name"))
         for words, harm, alarm in (("samples stop", lambda p: setattr(p, "running", False), True), ("the producer tells a fault", lambda p: p.tell(FAULT), True),
                                    ("a status word that is none", lambda p: p.page.set64(72 if p.agreement.kind < 3 else 136, 1), True),
@@ -235,6 +237,8 @@ def stale(judged):
                 found = craft.until(lambda: craft.inhibited() & 2, limit)
                 expect(found != holds, f"{name}, {words}: {'inhibited although it holds' if holds else f'not inhibited by link within {limit:.2f} s'}")
                 craft.wait(0.2)
+                told = craft.vital.u32(JUDGED + 4 * place)
+                expect(told in (0, 2), f"{name}, {words}: judged {told} in the page")
                 if found:
                     producer.running = True
                     producer.tell(VALID)

@@ -15,7 +15,11 @@
 namespace hirosco {
 namespace {
 constexpr unsigned reason_shift = 16;
+
+void judge(VitalPage& page, std::size_t place, LinkJudgement judgement) noexcept {
+  if (place < page.judged.size()) page.judged[place].store(judgement, std::memory_order_relaxed);
 }
+}  // namespace
 
 void CycleInputs::begin() {
   input_was_stale_.assign(parts_.plan.inputs.size(), 0);
@@ -25,6 +29,7 @@ void CycleInputs::begin() {
   awaits_device_ = false;
   awaits_first_answer_.store(!parts_.plan.devices.empty(), std::memory_order_relaxed);
   never_answered_.store(0, std::memory_order_relaxed);
+  for (auto& judged : parts_.vital.judged) judged.store(link_not_judged, std::memory_order_relaxed);
 }
 
 std::optional<CycleInputs::NeverAnswered> CycleInputs::never_answered() const noexcept {
@@ -49,10 +54,13 @@ void CycleInputs::read_links(TimePoint started, bool counts) noexcept {
     const bool inhibits = input.terms().missing == descriptor::MissingPolicy::Inhibit;
     if (input.awaits_first(control.controlling(), counts)) {
       if (inhibits) control.inhibit(inhibited_while_awaited);
+      judge(parts_.vital, i, link_not_judged);
       continue;
     }
     const bool stale = control.controlling() && input.stale() && (input.attached() || input.terms().required);
     if (stale && inhibits) control.inhibit(inhibited_by_link);
+    // Ahead of the event: who hears that must not find here what held before.
+    judge(parts_.vital, i, stale ? link_stale : input.stale() ? link_not_judged : link_valid);
     if (stale && !input.ended() && input_was_stale_[i] == 0) {
       const double age = input.port()->age_cycles();
       parts_.reports.raise(parts_.plan.input_stale_events[i], {&age, 1});

@@ -12,6 +12,7 @@
 #include "hirosco/subsystem/cycle/cycle_plan.hpp"
 #include "hirosco/subsystem/cycle/report_writer.hpp"
 #include "hirosco/subsystem/cycle/self_test_run.hpp"
+#include "hirosco/subsystem/pages/pages.hpp"
 
 namespace hirosco {
 
@@ -25,6 +26,7 @@ class CycleInputs {
     ControlState& control;
     SelfTestRun& self_test;
     ReportWriter& reports;
+    VitalPage& vital;
   };
   explicit CycleInputs(const Parts& parts) : parts_{parts} {}
 

@@ -202,6 +202,7 @@ TEST_F(LentImages, AreLookedAtWhereTheyWereMade) {
     EXPECT_EQ(viewer.number, number);
     EXPECT_EQ(viewer.wrong, 0u);
     EXPECT_TRUE(viewer.view.valid());
+    EXPECT_EQ(viewer_rig.vital.judged[0].load(), link_valid);
     EXPECT_EQ(viewer.view.count(), number);
     EXPECT_EQ(viewer.view.age_cycles(), 0u);
   }

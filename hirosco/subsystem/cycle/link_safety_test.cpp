@@ -158,6 +158,32 @@ TEST_F(Links, AStaleRequiredLinkInhibitsAndIsReportedOnce) {
   EXPECT_EQ(rig.inhibited(), inhibited_by_link);  // latched
 }
 
+TEST_F(Links, TheVitalPageTellsWhatTheCycleMakesOfTheSetFromItsSilenceToItsReturn) {
+  const auto after = [this](int cycles) {
+    rig.cycle(cycles);
+    return rig.vital.judged[0].load();
+  };
+  EXPECT_EQ(after(1), link_not_judged) << "nobody controls by what is not there";
+  operate();
+  EXPECT_EQ(after(3), link_valid);
+  EXPECT_EQ(after(1), link_stale);
+  sample(0.5);
+  EXPECT_EQ(after(1), link_valid) << "what inhibits lasts, what is judged does not";
+  sample(0.5, LinkStatus::Fault);
+  EXPECT_EQ(after(1), link_stale) << "a fault is no return, however new";
+  sample(0.5, LinkStatus::Degraded);
+  EXPECT_EQ(after(1), link_valid);
+  rig.detach(1);
+  rig.settle();
+  EXPECT_EQ(after(1), link_stale);
+}
+
+TEST_F(Links, TheVitalPageTellsNothingOfASetWhoseFirstSampleIsAwaited) {
+  hand = rig.attach(1, Role::Consumer, "HAND", hand_fields, nullptr, 4ms);
+  ASSERT_EQ(rig.set_state_now(State::SafeOperational), "1 3 7");
+  EXPECT_EQ(rig.vital.judged[0].load(), link_not_judged);
+}
+
 TEST_F(Links, ASlowerProducerMayTakeItsOwnPeriods) {
   hand = rig.attach(1, Role::Consumer, "HAND", hand_fields, nullptr, 4ms);
   go(State::SafeOperational);

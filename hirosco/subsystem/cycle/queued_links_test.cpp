@@ -208,6 +208,7 @@ TEST_F(QueuedLinks, OfAConsumerThatWasAwayTooLongLoseTheOldestAndTellHowMany) {
   }
   EXPECT_EQ(estimator.wrong, 0u);
   EXPECT_EQ(estimator_rig.vital.incoming[0].lost.load(), lost) << "told on its page";
+  EXPECT_EQ(estimator_rig.vital.judged[0].load(), link_valid);
 }
 
 TEST_F(QueuedLinks, OfASetThatOthersHaveTheNewestOfBringEachAllTheSame) {

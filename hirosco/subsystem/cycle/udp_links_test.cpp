@@ -122,12 +122,14 @@ TEST_F(UdpLinks, BringWhatTheProducerMadeOnceItHasBeenToldOfItsConsumer) {
   joint_rig->cycle(3);
   observer_rig.cycle();
   EXPECT_FALSE(observer.joint.valid()) << "nobody was reached yet";
+  EXPECT_EQ(observer_rig.vital.judged[0].load(), link_not_judged);
   ASSERT_EQ(reach(), "1 3 7");
   for (const double angle : {0.5, -1.0, 3.25}) {
     joint.angle.store(angle);
     joint_rig->cycle();
     observer_rig.cycle();
     EXPECT_TRUE(observer.joint.valid());
+    EXPECT_EQ(observer_rig.vital.judged[0].load(), link_valid) << "which nobody else can see";
     EXPECT_EQ(observer.joint.value().angle, angle);
   }
   EXPECT_EQ(observer.joint.lost(), 0u);

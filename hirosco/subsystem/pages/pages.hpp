@@ -20,7 +20,7 @@
 namespace hirosco {
 
 inline constexpr std::uint32_t page_magic = 0x48495243;  // "HIRC"
-inline constexpr std::uint32_t page_version = 7;
+inline constexpr std::uint32_t page_version = 8;
 
 /// A real-time link as its consumer sees it, since the link was made.
 struct IncomingLink {
@@ -56,6 +56,13 @@ inline constexpr std::size_t latency_bins = 9;
 struct LinkLatencies {
   std::atomic<std::uint32_t> period_ns{0};  ///< of the producer: what the bins are parts of; 0 = nothing is counted
   std::array<std::atomic<std::uint32_t>, latency_bins> counts{};  ///< of samples in each bin
+};
+
+/// Values of VitalPage::judged: what a consumer's cycle makes of a set that it requires, whatever its samples travel by (docs/adr/0166).
+enum LinkJudgement : std::uint32_t {
+  link_not_judged = 0,  ///< not valid, and nobody controls by it, or its first sample is still awaited
+  link_valid = 1,  ///< as its author sees it
+  link_stale = 2,  ///< too old, reported faulty or absent while it controls: NAME_STALE, unless it was ended in order
 };
 
 /// A number of 16 bits beside its complement: damage shows.  Realtime: wait-free.
@@ -108,6 +115,8 @@ struct VitalPage {
   std::atomic<std::uint32_t> life{
       0};  ///< marked by the system when the process ends (hirosco/utilities/os/life.hpp); 0: nobody holds it
   std::array<LinkLatencies, told_incoming_links> latencies;  ///< of each of `incoming`
+  /// LinkJudgement of each of `incoming`, from the beginning of a cycle on.
+  std::array<std::atomic<std::uint32_t>, told_incoming_links> judged{};
 };
 
 /// Values of PermitPage::powered.

@@ -61,6 +61,7 @@ TEST(VitalPage, AsItIsMadeTellsOfNothing) {
     EXPECT_EQ(link.period_ns.load(), 0u);
     for (const auto& count : link.counts) EXPECT_EQ(count.load(), 0u);
   }
+  for (const auto& judged : page.judged) EXPECT_EQ(judged.load(), link_not_judged);
 }
 
 TEST(LatencyBin, BoundsDoubleUpToTwoPeriodsAndBelongToTheBinBelow) {
@@ -90,8 +91,8 @@ TEST(VitalPage, HasABitOfItsOwnForEachReasonToInhibit) {
 }
 
 TEST(VitalPage, IsOfTheVersionThatDecodersOfOthersKnow) {
-  EXPECT_EQ(VitalPage{}.version, 7u) << "tests/endtoend/pages.py";
-  EXPECT_EQ(PermitPage{}.version, 7u);
+  EXPECT_EQ(VitalPage{}.version, 8u) << "tests/endtoend/pages.py";
+  EXPECT_EQ(PermitPage{}.version, 8u);
 }
 
 /// The finisher of SplitMix64 (Steele, Lea, Flood 2014): its first numbers of the seeds 0 and 1, as others print them.

@@ -21,8 +21,8 @@ MemberStatistics statistics_of(const VitalPage& page) noexcept {
   found.inhibited_at_cycle = read(page.inhibited_at_cycle);
   for (std::size_t i = 0; i < found.incoming.size(); ++i) {
     const IncomingLink& link = page.incoming[i];
-    found.incoming[i] = {read(link.link),           read(link.lost),      read(link.latency_mean_ns),
-                         read(link.latency_max_ns), read(link.jitter_ns), read(link.age_us)};
+    found.incoming[i] = {read(link.link),      read(link.lost),   read(link.latency_mean_ns), read(link.latency_max_ns),
+                         read(link.jitter_ns), read(link.age_us), read(page.judged[i])};
   }
   return found;
 }

@@ -26,6 +26,7 @@ struct MemberStatistics {
     std::uint32_t latency_max_ns{0};
     std::uint32_t jitter_ns{0};
     std::uint32_t age_us{0};
+    std::uint32_t judged{0};  ///< LinkJudgement; 0 where it does not get across
   };
   std::uint32_t inhibited{0};  ///< bits of Inhibition
   bool realtime{false};

@@ -157,13 +157,14 @@ TEST_F(MemberPortTest, StatisticsOfEachIncomingLinkStandInItsPlace) {
     link.latency_max_ns = 10 * i + 4;
     link.jitter_ns = 10 * i + 5;
     link.age_us = 10 * i + 6;
+    vital.judged[i] = 10 * i + 7;
   }
   const MemberStatistics found = port->statistics().value();
   for (std::uint32_t i = 0; i < told_incoming_links; ++i) {
     const auto& link = found.incoming[i];
-    EXPECT_THAT(
-        (std::array{link.link, link.lost, link.latency_mean_ns, link.latency_max_ns, link.jitter_ns, link.age_us}),
-        ElementsAre(10 * i + 1, 10 * i + 2, 10 * i + 3, 10 * i + 4, 10 * i + 5, 10 * i + 6));
+    EXPECT_THAT((std::array{link.link, link.lost, link.latency_mean_ns, link.latency_max_ns, link.jitter_ns,
+                            link.age_us, link.judged}),
+                ElementsAre(10 * i + 1, 10 * i + 2, 10 * i + 3, 10 * i + 4, 10 * i + 5, 10 * i + 6, 10 * i + 7));
   }
 }
 

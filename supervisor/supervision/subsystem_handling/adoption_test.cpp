@@ -37,7 +37,8 @@ struct AdoptionTest : PartsTest {
   descriptor::Mission next_mission = mission;
   Memory notes{&journal,
                {&parts.adoption, &parts.modes, &parts.links, &parts.telecommands, &parts.safe_all, &parts.own,
-                &parts.commanded, &parts.restarts, &parts.power, &parts.replacement, &parts.ground_loss}};
+                &parts.commanded, &parts.restarts, &parts.power, &parts.replacement, &parts.ground_loss,
+                 &parts.losses}};
   std::set<std::uint16_t> gone;
   std::vector<std::unique_ptr<Next>> nexts;
 
@@ -108,6 +109,60 @@ TEST_F(AdoptionTest, WhoWasStoppedBeforeTakesOverNothingHoweverManySupervisorsDi
     EXPECT_EQ(against(next, camera), "") << "the ground link was spared";
     ASSERT_TRUE(next.memory.note());
   }
+}
+
+/// ARM holds over what HAND sends, of which two supervisors know one after the other.
+struct WhatIsHeldOverMeanwhile : AdoptionTest {
+  static constexpr std::uint8_t into_arm = 2;  ///< link
+  static constexpr Duration held_for = 700ms;
+  void SetUp() override {
+    AdoptionTest::SetUp();
+    craft.mission.links[1].on_loss = descriptor::OnLoss::Hold;
+    craft.mission.links[1].hold = held_for;
+    next_mission = craft.mission;
+    start_all(Operational);
+    set(arm, Operational, 2);
+    parts.graph.set_up(into_arm, true);
+    judges(link_stale);
+    parts.own.start(craft.mode_epoch);
+    parts.losses.lost(into_arm);
+    ASSERT_TRUE(was_told(lost));
+    story.clear();
+    ASSERT_TRUE(notes.note());
+  }
+  void judges(LinkJudgement judgement) {
+    played[arm].vital->incoming[0].link = into_arm;
+    played[arm].vital->judged[0] = judgement;
+  }
+  void after(Duration span, SupervisorParts& next) {
+    wait(span);
+    next.craft.now = clock.now();
+    next.losses.watch(clock.now());
+  }
+  static constexpr const char* lost = "ARM has lost HAND_STATE of HAND: hold";
+  static constexpr const char* down = "ARM: HAND_STATE did not come back in time";
+};
+
+TEST_F(WhatIsHeldOverMeanwhile, EndsWithItsTimeHoweverManySupervisorsDie) {
+  for (int death = 0; death < 3; ++death) {
+    SupervisorParts& next = go_on();
+    after(200ms, next);
+    EXPECT_FALSE(was_told(down));
+    ASSERT_TRUE(next.memory.note());
+  }
+  after(held_for - 3 * 200ms, go_on());
+  EXPECT_TRUE(was_told(down));
+  EXPECT_FALSE(was_told(lost)) << "it was told";
+}
+
+TEST_F(WhatIsHeldOverMeanwhile, IsBackUnderASupervisorThatHasNeverSeenItsLink) {
+  SupervisorParts& next = go_on();
+  after(200ms, next);
+  ASSERT_FALSE(next.links.can_look(into_arm));
+  judges(link_valid);
+  after(200ms, next);
+  after(1h, next);
+  EXPECT_FALSE(was_told(down));
 }
 
 TEST_F(AdoptionTest, WhoHasJustBegunOrWasLetGoIsFreeUnderTheNextSupervisor) {

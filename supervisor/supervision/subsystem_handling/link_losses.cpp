@@ -28,8 +28,8 @@ void LinkLosses::lost(std::uint8_t id) {
   own_.announce("LINK_LOST", {static_cast<double>(id), static_cast<double>(consumer.apid())});
   craft_.tell(fmt::format("{} has lost {} of {}: {}", link.to, link.requires_, link.from, to_text(link.on_loss)),
               consumer.apid());
-  if (link.on_loss == OnLoss::Hold) holds_[id] = {craft_.now, craft_.now + link.hold};
-  if (link.on_loss == OnLoss::Ignore) holds_[id] = {craft_.now, TimePoint::max()};  // told once
+  if (link.on_loss == OnLoss::Hold) holds_[id] = craft_.now + link.hold;
+  if (link.on_loss == OnLoss::Ignore) holds_[id] = TimePoint::max();  // told once
   if (link.on_loss == OnLoss::Fallback) fall_back(link, consumer);
 }
 
@@ -85,9 +85,28 @@ void LinkLosses::fall_back(const descriptor::MissionLink& link, Member& consumer
                          .knows_of_no_stop = true});
 }
 
-bool LinkLosses::is_back(std::uint8_t link, TimePoint since) const {
-  const auto glance = links_.glance(link);
-  return means_.links.is_up(link) && glance && glance->sampled_at > since;
+std::uint32_t LinkLosses::judgement_of(const descriptor::MissionLink& link) {
+  const Member& consumer = consumer_of(link);
+  const std::uint8_t in_use = means_.links.link_into(consumer.apid(), link.requires_);
+  const auto statistics = consumer.statistics();
+  if (!statistics || !means_.links.is_up(in_use)) return link_not_judged;
+  const auto found = std::ranges::find(statistics->incoming, in_use, &MemberStatistics::Incoming::link);
+  return found != statistics->incoming.end() ? found->judged : std::uint32_t{link_not_judged};
+}
+
+bool LinkLosses::is_back(const descriptor::MissionLink& link) {
+  if (judgement_of(link) != link_valid) return false;
+  const auto& in_use = *craft_.mission.find_link(means_.links.link_into(consumer_of(link).apid(), link.requires_));
+  return !craft_.member(craft_.mission.find_subsystem(in_use.from)->subsystem.id)->recovery.going_down();
+}
+
+/// No plan may have taken its producer down, which may have left in good order, and the event of a consumer that says so may have come
+/// while nobody could answer it. Whom somebody has stopped misses nothing that is there and old: it goes where that leads it.
+bool LinkLosses::is_missed(const descriptor::MissionLink& link) {
+  const Member& consumer = consumer_of(link);
+  if (consumer.state() != State::Operational || !is_needed(link)) return false;
+  if (!means_.links.is_up(means_.links.link_into(consumer.apid(), link.requires_))) return true;
+  return judgement_of(link) == link_stale && !craft_.guard.fenced(consumer.apid());
 }
 
 /// Its consumer may have another configuration by now, or have gone down in good order.
@@ -100,17 +119,12 @@ bool LinkLosses::is_needed(const descriptor::MissionLink& link) {
 
 void LinkLosses::watch(TimePoint now) {
   std::erase_if(fallbacks_, [](const auto& entry) { return !entry.second.runner.running(); });
-  // However it went: no plan may have taken its producer down, which may have left in good order.
-  for (const descriptor::MissionLink& link : craft_.mission.links) {
-    if (link.on_loss == OnLoss::Down) continue;
-    const Member& consumer = consumer_of(link);
-    const std::uint8_t in_use = means_.links.link_into(consumer.apid(), link.requires_);
-    if (consumer.state() == State::Operational && is_needed(link) && !means_.links.is_up(in_use)) lost(link.id);
-  }
+  for (const descriptor::MissionLink& link : craft_.mission.links)
+    if (link.on_loss != OnLoss::Down && is_missed(link)) lost(link.id);
   std::vector<std::uint8_t> over;
   std::erase_if(holds_, [&](const auto& entry) {
-    if (is_back(entry.first, entry.second.since)) return true;
-    if (now < entry.second.until) return false;
+    if (is_back(*craft_.mission.find_link(entry.first))) return true;
+    if (now < entry.second) return false;
     over.push_back(entry.first);
     return true;
   });
@@ -129,6 +143,19 @@ void LinkLosses::bring_down(const descriptor::MissionLink& link, const std::stri
   ProcedureStep down = step("shut_down_network", consumer.apid(), {});
   down.occasion.plan = fmt::format("on loss of link {}", link.id);
   ProcedureRunner{means_}.start({.stages = {{down}}});
+}
+
+void LinkLosses::note(OctetWriter& writer) const {
+  writer.put(static_cast<std::uint16_t>(holds_.size()));
+  for (const auto& [link, until] : holds_) writer.put(link).put(until.time_since_epoch().count());
+}
+
+void LinkLosses::recall(OctetReader& reader) {
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    const auto id = reader.get<std::uint8_t>();
+    const TimePoint until{Duration{reader.get<std::int64_t>()}};
+    if (craft_.mission.find_link(id) != nullptr) holds_[id] = until;
+  }
 }
 
 bool LinkLosses::cancel(std::string_view why) {

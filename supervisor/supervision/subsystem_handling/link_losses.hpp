@@ -10,17 +10,16 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/procedures/procedure_runner.hpp"
-#include "supervisor/supervision/realtime_links/link_commands.hpp"
+#include "supervisor/supervision/succession/journal.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
 
 /// What the mission says of a link whose set is lost to its consumer (docs/adr/0077): it goes on for a while, or without it, or in another
 /// configuration. None of it lets anybody move: the cycle's own inhibit, and the guard, are not asked. Thread: the supervisor's.
-class LinkLosses final : public Watch, public Undertaking, public LossHandling {
+class LinkLosses final : public Watch, public Undertaking, public LossHandling, public Remembered {
  public:
-  LinkLosses(const Means& means, OwnSubsystem& own, const LinkCommands& links)
-      : means_{means}, craft_{means.craft}, own_{own}, links_{links} {}
+  LinkLosses(const Means& means, OwnSubsystem& own) : means_{means}, craft_{means.craft}, own_{own} {}
 
   void lost(std::uint8_t link) override;
   bool answers(std::uint16_t apid, std::string_view event) override;
@@ -29,6 +28,9 @@ class LinkLosses final : public Watch, public Undertaking, public LossHandling {
   void watch(TimePoint now) override;
   bool cancel(std::string_view why) override;
   void all_stopped(std::string_view why) override { static_cast<void>(cancel(why)); }
+  /// What is held over, and until when: its time goes on while no supervisor is there.
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
 
  private:
   struct Fallback {
@@ -36,22 +38,22 @@ class LinkLosses final : public Watch, public Undertaking, public LossHandling {
     ProcedureRunner runner;
     std::uint64_t fences{0};  ///< when it began
   };
-  struct Hold {
-    TimePoint since{};
-    TimePoint until{};
-  };
   [[nodiscard]] Member& consumer_of(const descriptor::MissionLink& link);
   void fall_back(const descriptor::MissionLink& link, Member& consumer);
-  /// Its set is there again, newer than the loss.
-  [[nodiscard]] bool is_back(std::uint8_t link, TimePoint since) const;
+  /// What the consumer makes of the set, by whichever link it comes, as its own page says: whatever samples travel by, and whoever
+  /// made the link. Of a set without a link that is up: not judged.
+  [[nodiscard]] std::uint32_t judgement_of(const descriptor::MissionLink& link);
+  /// The consumer has its set again, from somebody who is not on his way down.
+  [[nodiscard]] bool is_back(const descriptor::MissionLink& link);
+  /// Whom it drives acts without it, however that came about.
+  [[nodiscard]] bool is_missed(const descriptor::MissionLink& link);
   [[nodiscard]] bool is_needed(const descriptor::MissionLink& link);
   void bring_down(const descriptor::MissionLink& link, const std::string& why);
 
   Means means_;
   Craft& craft_;
   OwnSubsystem& own_;
-  const LinkCommands& links_;
-  std::map<std::uint8_t, Hold> holds_;  ///< by link; of what is ignored without an end
+  std::map<std::uint8_t, TimePoint> holds_;  ///< until when, by link; of what is ignored without an end
   std::map<std::uint16_t, Fallback> fallbacks_;  ///< that run, by consumer
 };
 

@@ -36,7 +36,7 @@ struct LinkLossesTest : PartsTest {
   }
   explicit LinkLossesTest(OnLoss on_loss) : PartsTest{mission_that_says(on_loss)} {}
   PlayedDesk desk;
-  LinkLosses losses{means_with(desk), parts.own, parts.links};
+  LinkLosses losses{means_with(desk), parts.own};
 
   void SetUp() override {
     PartsTest::SetUp();
@@ -49,6 +49,11 @@ struct LinkLossesTest : PartsTest {
     story.clear();
   }
   void producer_dies() { parts.graph.forget(into_arm); }
+  /// ARM's cycle, on its page. Nobody can look at the link itself here, as at one by UDP, or one that another supervisor has made.
+  void judges(LinkJudgement judgement, std::uint8_t of_link = into_arm) {
+    played[arm].vital->incoming[0].link = of_link;
+    played[arm].vital->judged[0] = judgement;
+  }
   [[nodiscard]] std::ptrdiff_t times_told() const {
     return std::ranges::count_if(story, [](const std::string& line) { return line.starts_with("ARM has lost "); });
   }
@@ -133,6 +138,58 @@ TEST_F(WhatIsHeldOver, IsAnsweredWhenItsConsumerTellsOfItAndNoOtherEventIs) {
   EXPECT_EQ(times_told(), 1);
 }
 
+TEST_F(WhatIsHeldOver, IsBackWhenItsConsumerHasItAgainWhateverSamplesTravelBy) {
+  for (std::ptrdiff_t loss = 1; loss <= 3; ++loss) {
+    judges(link_stale);
+    EXPECT_TRUE(losses.answers(arm, "HAND_STATE_STALE"));
+    EXPECT_EQ(times_told(), loss);
+    wait(100ms);
+    losses.watch(clock.now());
+    judges(link_valid);
+    losses.watch(clock.now());
+    wait(held_for);
+    losses.watch(clock.now());
+  }
+  EXPECT_THAT(desk.sent, IsEmpty());
+  EXPECT_FALSE(guard.fenced(arm));
+}
+
+TEST_F(WhatIsHeldOver, IsNotBackWithALinkThatIsUpAndOfWhichItsConsumerSaysNothing) {
+  for (const auto& [judgement, of_link] :
+       {std::pair{link_not_judged, into_arm}, std::pair{link_stale, into_arm}, std::pair{link_valid, into_hand}}) {
+    losses.lost(into_arm);
+    judges(judgement, of_link);
+    wait(held_for);
+    losses.watch(clock.now());
+    EXPECT_THAT(desk.sent, ElementsAre("10 SET_STATE 6", "11 SET_STATE 6")) << judgement << ": who joins them is up";
+    desk.sent.clear();
+    for (const std::uint16_t apid : {arm, hand}) craft.member(apid)->recovery.started();
+  }
+}
+
+TEST_F(WhatIsHeldOver, IsNotBackFromWhoIsOnItsWayDownAndNotOldYet) {
+  ASSERT_TRUE(craft.member(hand)->recovery.goes_down());
+  losses.lost(into_arm);
+  judges(link_valid);
+  losses.watch(clock.now());
+  judges(link_stale);
+  wait(held_for);
+  losses.watch(clock.now());
+  EXPECT_EQ(times_told(), 1) << "one loss";
+  EXPECT_THAT(desk.sent, ElementsAre("10 SET_STATE 6"));
+}
+
+TEST_F(WhatIsHeldOver, IsMissedWhereItIsOldThoughNobodyHeardTheEvent) {
+  judges(link_stale);
+  guard.fence(arm);
+  losses.watch(clock.now());
+  EXPECT_THAT(story, IsEmpty()) << "it was stopped";
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  losses.watch(clock.now());
+  losses.watch(clock.now());
+  EXPECT_EQ(times_told(), 1);
+}
+
 // --- ignore ---------------------------------------------------------------------------------------------------------
 
 struct WhatIsIgnored : LinkLossesTest {
@@ -148,6 +205,17 @@ TEST_F(WhatIsIgnored, IsToldOnceAndTakesNobodyDownHoweverLongItLasts) {
   EXPECT_THAT(story, ElementsAre("ARM has lost HAND_STATE of HAND: ignore"));
   EXPECT_THAT(desk.sent, IsEmpty());
   EXPECT_FALSE(guard.fenced(arm));
+}
+
+TEST_F(WhatIsIgnored, IsToldAgainWhenItWasBackAndIsLostAgain) {
+  for (std::ptrdiff_t loss = 1; loss <= 3; ++loss) {
+    judges(link_stale);
+    losses.watch(clock.now());
+    losses.watch(clock.now());
+    EXPECT_EQ(times_told(), loss);
+    judges(link_valid);
+    losses.watch(clock.now());
+  }
 }
 
 // --- fallback -------------------------------------------------------------------------------------------------------
