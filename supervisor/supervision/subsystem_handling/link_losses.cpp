@@ -25,6 +25,8 @@ void LinkLosses::lost(std::uint8_t id) {
   if (link.on_loss == OnLoss::Down || craft_.shutting_down || !consumer.alive() || consumer.recovery.running()) return;
   const auto before = fallbacks_.find(consumer.apid());
   if (holds_.contains(id) || (before != fallbacks_.end() && before->second.runner.running())) return;
+  // A change of mode has its members in hand: what is missed after it still is found then (watch()). The cycle inhibits meanwhile.
+  if (link.on_loss == OnLoss::Fallback && craft_.changing_to != nullptr) return;
   own_.announce("LINK_LOST", {static_cast<double>(id), static_cast<double>(consumer.apid())});
   craft_.tell(fmt::format("{} has lost {} of {}: {}", link.to, link.requires_, link.from, to_text(link.on_loss)),
               consumer.apid());

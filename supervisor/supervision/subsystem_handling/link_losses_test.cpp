@@ -310,6 +310,35 @@ TEST_F(WhoFallsBack, IsEndedByAChangeOfModeAndByARecovery) {
   EXPECT_EQ(desk.sent.size(), 1U);
 }
 
+/// Its own fences would pass for a stop by somebody else after the change, and it would not go on acting.
+TEST_F(WhoFallsBack, DoesSoAfterAChangeOfModeAndGoesOnActingWhateverIsLostMeanwhile) {
+  for (const bool silent : {false, true}) {
+    SCOPED_TRACE(silent ? "its producer says nothing" : "its producer is gone");
+    desk.sent.clear();
+    desk.answers.clear();
+    story.clear();
+    set(arm, Operational, coupled);
+    parts.graph.set_up(into_arm, silent);
+    judges(silent ? link_stale : link_not_judged);
+    static_cast<void>(guard.release(arm, guard.fences(arm)));
+    craft.member(arm)->fences_when_free = guard.fences(arm);
+    craft.changing_to = &craft.mission.modes[1];
+    for (int step = 0; step < 5; ++step) {
+      losses.watch(clock.now());
+      EXPECT_TRUE(losses.answers(arm, "HAND_STATE_STALE")) << "no plan begins, either";
+    }
+    EXPECT_THAT(story, IsEmpty());
+    EXPECT_EQ(guard.fences(arm), craft.member(arm)->fences_when_free);
+    EXPECT_THAT(desk.sent, IsEmpty());
+    craft.changing_to = nullptr;
+    losses.watch(clock.now());
+    EXPECT_EQ(times_told(), 1);
+    all_obey();
+    EXPECT_THAT(desk.sent,
+                ElementsAre("10 SET_STATE 4", "10 SET_STATE 3", "10 CONFIGURE 1", "10 SET_STATE 4", "10 SET_STATE 5"));
+  }
+}
+
 TEST_F(WhoFallsBack, AndCannotGoesDown) {
   producer_dies();
   losses.lost(into_arm);
