@@ -77,7 +77,8 @@ def parameters(root):
         name = inside + node.get("name")
         if node.tag == "StructRef" and not len(node):
             return  # the framework's, named for its id
-        yield [name, node.get("id", ""), form(node), node.get("unit", ""), span(node), node.get("init", ""), node.get("writable", ""), comment]
+        yield [name, node.get("id", ""), form(node), node.get("unit", ""), span(node), node.get("init", ""),
+               node.get("writable") or ("never: a protection" if node.get("protection") == "yes" else ""), comment]
         for child, about in told(node):
             yield from rows(child, about, name + ".")
     for node, comment in told(root):
@@ -102,12 +103,12 @@ def everywhere(root):
 def functions(root):
     for node, comment, configuration in everywhere(root):
         if node.tag == "Function":
-            yield [node.get("name"), "8,1", node.get("states", "as ST[08]"), arguments(node), words(node.findtext("Description")) or comment, configuration]
+            yield [node.get("name"), "8,1", node.get("states", "as ST[08]"), arguments(node), node.get("sets", ""), words(node.findtext("Description")) or comment, configuration]
         if node.tag == "CustomService":
             for request in node:
                 if request.tag == "Request":
                     yield [request.get("name"), f"{node.get('type')},{request.get('subtype')}", request.get("states", ""), arguments(request),
-                           words(request.findtext("Description")) or comment, configuration]
+                           request.get("sets", ""), words(request.findtext("Description")) or comment, configuration]
 
 
 def events(root):
@@ -134,7 +135,7 @@ def failures(root):
 
 
 TABLES = [("Parameters", ["parameter", "id", "type", "unit", "range", "begins as", "writable in", "what"], parameters),
-          ("Functions and requests", ["name", "service", "states", "arguments", "what", "configuration"], functions),
+          ("Functions and requests", ["name", "service", "states", "arguments", "sets besides", "what", "configuration"], functions),
           ("Events", ["event", "id", "severity", "arguments", "what", "configuration"], events),
           ("Failure codes", ["name", "code", "what"], failures),
           ("Configurations", ["configuration", "id", "period / us", "priority", "power / W", "devices", "links", "what"], configurations)]

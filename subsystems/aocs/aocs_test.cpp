@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/aocs/aocs.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -9,6 +10,7 @@
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/tried_functions.hpp"
 
 namespace hirosco {
 namespace {
@@ -96,6 +98,13 @@ TEST_F(AocsTest, FloatingFreeItDoesNotEvenSpeakToItsWheels) {
   cycle(20);
   EXPECT_FALSE(mode);
   EXPECT_EQ(now("DESATURATE").substr(0, 8), "1 4:8002");
+}
+
+TEST_F(AocsTest, WhatFunctionsSayThatTheySetTheySet) {
+  operate(station_keeping);
+  const testing::TriedFunctions functions{rig, [this] { cycle(); }, [this] { cycle(3); }};
+  EXPECT_THAT(functions.untold(), ::testing::IsEmpty());
+  EXPECT_THAT(functions.idle(), ::testing::IsEmpty());
 }
 
 TEST_F(AocsTest, TellsOnceThatItHasSettled) {

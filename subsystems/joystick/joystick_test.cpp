@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/joystick/joystick.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/tried_functions.hpp"
 
 namespace hirosco {
 namespace {
@@ -83,6 +85,18 @@ TEST_F(JoystickTest, StandaloneShowsTheCommandedTorque) {
   EXPECT_EQ(shown_n_m, (std::array{0.5, -0.25}));
   EXPECT_EQ(now("CENTRE"), "1 3 7");
   EXPECT_EQ(shown_n_m, (std::array{0.0, 0.0}));
+}
+
+TEST_F(JoystickTest, EachFunctionThatChangesAProtectionSaysSoInTheDescriptor) {
+  operate(1);
+  const testing::TriedFunctions functions{rig,
+                                          [this] {
+                                            command(State::SafeOperational);
+                                            command(State::Operational);
+                                          },
+                                          [this] { cycle(5); }};
+  EXPECT_THAT(functions.untold(), ::testing::IsEmpty());
+  EXPECT_THAT(functions.idle(), ::testing::IsEmpty());
 }
 
 TEST_F(JoystickTest, WhatCanHaveNoEffectIsRefused) {

@@ -8,6 +8,7 @@
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/tried_functions.hpp"
 
 namespace hirosco {
 namespace {
@@ -138,6 +139,19 @@ TEST_F(ManipulatorTest, AMotionThatTheTorqueLimitEndsSaysSo) {
   torque_n_m = {0.0, 13.0};
   cycle(6);
   EXPECT_EQ(rig.outcome(request), "1 3 8:8003");
+}
+
+/// What is set and not said is lost in a crash, and the arm moves again without it.
+TEST_F(ManipulatorTest, EachFunctionThatChangesAProtectionSaysSoInTheDescriptor) {
+  operate(1);
+  const testing::TriedFunctions functions{rig,
+                                          [this] {
+                                            command(State::SafeOperational);
+                                            command(State::Operational);
+                                          },
+                                          [this] { cycle(5); }};
+  EXPECT_THAT(functions.untold(), ::testing::IsEmpty());
+  EXPECT_THAT(functions.idle(), ::testing::IsEmpty());
 }
 
 TEST_F(ManipulatorTest, NewGainsAreReportedDoneWhenTheLawHasThem) {

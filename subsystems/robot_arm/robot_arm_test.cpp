@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "hirosco/subsystem/testing/tried_functions.hpp"
 #include "subsystems/robot_arm/testing/flown.hpp"
 
 /// One class, robots with 1, 3, 6 and 16 joints: what differs between them is their URDF file and their descriptor.
@@ -175,6 +176,20 @@ TEST_F(RobotArmTest, SetsNoTorqueLimitBelowWhatItHolds) {
   const auto taken = flown.rig.call("SET_TORQUE_LIMIT", {0.6});
   flown.cycle(3);
   EXPECT_EQ(flown.rig.outcome(taken), "1 3 7");
+}
+
+/// What is set and not said is lost in a crash, and the arm moves again without it: through a volume that it kept out of.
+TEST_F(RobotArmTest, EachFunctionThatChangesAProtectionSaysSoInTheDescriptor) {
+  flown.operate();
+  const hirosco::testing::TriedFunctions functions{flown.rig,
+                                                   [this] {
+                                                     flown.plant.place(start);
+                                                     flown.command(State::SafeOperational);
+                                                     flown.command(State::Operational);
+                                                   },
+                                                   [this] { flown.cycle(5); }};
+  EXPECT_THAT(functions.untold(), ::testing::IsEmpty());
+  EXPECT_THAT(functions.idle(), ::testing::IsEmpty());
 }
 
 TEST_F(RobotArmTest, GoesStraightWithinTwoMillimetres) {

@@ -50,13 +50,12 @@ constexpr std::size_t most_setting_octets = 800;
   return data;
 }
 
-[[nodiscard]] bool sets_a_protection(const descriptor::Function& function,
-                                     const descriptor::SubsystemDescriptor& subsystem) {
-  return std::ranges::any_of(function.arguments, [&](const descriptor::Function::Argument& argument) {
-    const std::string_view name = std::string_view{argument.of}.substr(0, argument.of.find('.'));
-    const auto* parameter = subsystem.find_parameter(name);
-    return !name.empty() && parameter != nullptr && parameter->protection;
-  });
+/// A function, or a request of a service of its own: both may set what nobody sets again.
+[[nodiscard]] const descriptor::Function* function_of(const pus::TelecommandView& telecommand,
+                                                      const descriptor::SubsystemDescriptor& subsystem) {
+  const auto call = called_function(telecommand);
+  return call ? subsystem.find_function(call->name)
+              : subsystem.find_request(telecommand.service(), telecommand.subtype());
 }
 
 [[nodiscard]] bool is_parameter_write(const pus::TelecommandView& telecommand) {
@@ -84,11 +83,10 @@ void CommandedState::lower(State most) noexcept {
 bool CommandedState::concerns(const pus::TelecommandView& telecommand,
                               const descriptor::SubsystemDescriptor& subsystem) {
   if (is_parameter_write(telecommand) || is_event_switch(telecommand) || is_definition(telecommand)) return true;
-  const auto call = called_function(telecommand);
-  if (!call) return false;
-  if (call->name == "SET_STATE" || call->name == "CONFIGURE") return call->first_argument.has_value();
-  const auto* function = subsystem.find_function(call->name);
-  return function != nullptr && sets_a_protection(*function, subsystem);
+  if (const auto call = called_function(telecommand); call && (call->name == "SET_STATE" || call->name == "CONFIGURE"))
+    return call->first_argument.has_value();
+  const auto* function = function_of(telecommand, subsystem);
+  return function != nullptr && !function->unrepeated.empty();
 }
 
 Kept CommandedState::completed(const pus::TelecommandView& telecommand,
@@ -97,13 +95,18 @@ Kept CommandedState::completed(const pus::TelecommandView& telecommand,
   if (is_parameter_write(telecommand)) set_parameters(data, subsystem);
   else if (is_event_switch(telecommand)) switch_events(data, telecommand.subtype() == EventReports::enable_reports);
   else if (is_definition(telecommand)) return define(telecommand.subtype(), data, subsystem);
-  else if (const auto call = called_function(telecommand)) {
-    if (call->name == "SET_STATE" && call->first_argument) enter(static_cast<State>(*call->first_argument));
-    else if (call->name == "CONFIGURE" && call->first_argument) configure(*call->first_argument, subsystem);
-    else if (const auto* function = subsystem.find_function(call->name); function != nullptr)
-      protection_was_set_ = protection_was_set_ || sets_a_protection(*function, subsystem);
-  } else return Kept::NoMatter;
+  else if (const auto call = called_function(telecommand); call && call->name == "SET_STATE" && call->first_argument)
+    enter(static_cast<State>(*call->first_argument));
+  else if (call && call->name == "CONFIGURE" && call->first_argument) configure(*call->first_argument, subsystem);
+  else if (function_of(telecommand, subsystem) != nullptr) may_have_set(telecommand, subsystem);
+  else return Kept::NoMatter;
   return Kept::Yes;
+}
+
+void CommandedState::may_have_set(const pus::TelecommandView& telecommand,
+                                  const descriptor::SubsystemDescriptor& subsystem) {
+  if (const auto* function = function_of(telecommand, subsystem); function != nullptr)
+    unrepeated_.insert(function->unrepeated.begin(), function->unrepeated.end());
 }
 
 /// What a state gives back is gone with it: in Offline the values, below Safe-Operational, but by CONFIGURE, the configuration.
@@ -119,7 +122,7 @@ void CommandedState::enter(State state) noexcept {
   structures_.clear();
   if (state != State::Offline && !from_offline) return;
   parameters_.clear();
-  protection_was_set_ = false;
+  unrepeated_.clear();
 }
 
 void CommandedState::configure(std::uint8_t id, const descriptor::SubsystemDescriptor& subsystem) {
@@ -270,6 +273,13 @@ std::vector<std::string> CommandedState::out_of_reach(const descriptor::Subsyste
   return names;
 }
 
+std::vector<std::string> CommandedState::unrepeated_names(const descriptor::SubsystemDescriptor& subsystem) const {
+  std::vector<std::string> names;
+  for (const std::uint16_t parameter : unrepeated_)
+    if (parameter < subsystem.parameters.size()) names.push_back(subsystem.parameters[parameter].field.name);
+  return names;
+}
+
 namespace {
 
 void put_octets(OctetWriter& writer, Octets octets) {
@@ -285,7 +295,8 @@ void put_octets(OctetWriter& writer, Octets octets) {
 
 void CommandedState::note(OctetWriter& writer) const {
   writer.put(static_cast<std::uint8_t>(state_)).put(configuration_);
-  writer.put(static_cast<std::uint8_t>(protection_was_set_ ? 1 : 0));
+  writer.put(static_cast<std::uint16_t>(unrepeated_.size()));
+  for (const std::uint16_t parameter : unrepeated_) writer.put(parameter);
   writer.put(static_cast<std::uint16_t>(parameters_.size()));
   for (const ParameterValue& each : parameters_) {
     writer.put(each.id);
@@ -308,7 +319,8 @@ void CommandedState::recall(OctetReader& reader) {
   const auto state = reader.get<std::uint8_t>();
   if (state <= static_cast<std::uint8_t>(State::SoftwareDeinit)) state_ = static_cast<State>(state);
   configuration_ = reader.get<std::uint8_t>();
-  protection_was_set_ = reader.get<std::uint8_t>() != 0;
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left)
+    unrepeated_.insert(reader.get<std::uint16_t>());
   for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
     const auto id = reader.get<std::uint32_t>();
     parameters_.push_back({id, get_octets(reader)});

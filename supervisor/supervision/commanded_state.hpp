@@ -36,8 +36,15 @@ class CommandedState {
   [[nodiscard]] State state() const noexcept { return state_; }
   /// In force by CONFIGURE; 0 = none.
   [[nodiscard]] std::uint8_t configuration() const noexcept { return configuration_; }
-  /// A function has set a protection: what it stands at is lost with the process, and nobody sets it but that function.
-  [[nodiscard]] bool protection_was_set() const noexcept { return protection_was_set_; }
+  /// Parameters that functions have set and nobody sets again (Function::unrepeated): what they stood at is lost with the process.
+  [[nodiscard]] const std::set<std::uint16_t>& unrepeated() const noexcept { return unrepeated_; }
+  [[nodiscard]] std::vector<std::string> unrepeated_names(const descriptor::SubsystemDescriptor& subsystem) const;
+  /// Whether it was done, or how much of it, is not known: what a function would have set counts as set.
+  void may_have_set(const pus::TelecommandView& telecommand, const descriptor::SubsystemDescriptor& subsystem);
+  /// What another record of the same process has of it counts, too.
+  void may_have_set(const CommandedState& other) {
+    unrepeated_.insert(other.unrepeated_.begin(), other.unrepeated_.end());
+  }
   /// Nothing above this. Of what is neither on the way up nor at its end, Error-Operational say, Pre-Operational is left.
   void lower(State most) noexcept;
 
@@ -81,7 +88,7 @@ class CommandedState {
 
   State state_{State::Offline};
   std::uint8_t configuration_{0};
-  bool protection_was_set_{false};
+  std::set<std::uint16_t> unrepeated_;
   std::vector<ParameterValue> parameters_;  ///< in the order in which they were set; no id twice
   std::set<std::uint16_t> silent_events_;  ///< whose reports are off
   std::vector<Structure> structures_;

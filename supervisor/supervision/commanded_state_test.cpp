@@ -28,6 +28,7 @@ struct CommandedStateTest : ::testing::Test {
   static constexpr std::uint8_t single = 1, in_force = 2;
   static constexpr std::uint8_t gains = 20, gain_p = 21, gain_i = 22, first_table = 30;
   static constexpr std::uint32_t table_octets = 200;
+  static constexpr std::uint8_t own_service = 200;
   descriptor::SubsystemDescriptor subsystem = testing::small_mission().subsystems[0].subsystem;
   CommandedState commanded;
 
@@ -65,9 +66,15 @@ struct CommandedStateTest : ::testing::Test {
     limit.protection = true;
     subsystem.parameters.insert(subsystem.parameters.end(), {only_operational, limit});
     auto sets = testing::function("SET_LIMIT", in_states({Operational}));
-    sets.arguments.resize(1);
-    sets.arguments[0].of = "LIMIT";
+    sets.unrepeated = {static_cast<std::uint16_t>(subsystem.parameters.size() - 1)};
     subsystem.functions.push_back(sets);
+    auto request = testing::function("TABLES", in_states({Operational}));
+    request.service = own_service;
+    request.unrepeated = {1, 2};
+    descriptor::CustomService own;
+    own.type = own_service;
+    own.requests = {request};
+    subsystem.services = {own};
     descriptor::HousekeepingStructure housekeeping;
     housekeeping.id = known_structure;
     subsystem.housekeeping = {housekeeping};
@@ -133,9 +140,26 @@ TEST_F(CommandedStateTest, WhatIsNotedIsRecalledWholeAndNothingElseIsLeft) {
   EXPECT_TRUE(reader.exhausted());
   EXPECT_EQ(commanded.state(), Operational);
   EXPECT_EQ(commanded.configuration(), in_force);
-  EXPECT_TRUE(commanded.protection_was_set());
+  EXPECT_THAT(commanded.unrepeated_names(subsystem), ElementsAre("LIMIT"));
   EXPECT_EQ(settings(commanded), settings(noted));
   EXPECT_THAT(commanded.out_of_reach(subsystem), ElementsAre("LATE"));
+}
+
+TEST_F(CommandedStateTest, WhatFunctionsAndRequestsSetIsRememberedByNameUntilItsValuesAreGivenBack) {
+  up();
+  EXPECT_TRUE(concerns(8, 1, call_data("SET_LIMIT")));
+  EXPECT_TRUE(concerns(own_service, 1, {}));
+  EXPECT_FALSE(concerns(8, 1, call_data("MOVE_TO")));
+  EXPECT_FALSE(concerns(own_service, 2, {}));
+  completed(8, 1, call_data("MOVE_TO"));
+  EXPECT_THAT(commanded.unrepeated_names(subsystem), IsEmpty());
+  completed(own_service, 1, {});
+  completed(8, 1, call_data("SET_LIMIT"));
+  EXPECT_THAT(commanded.unrepeated_names(subsystem), ElementsAre("TABLE0", "TABLE1", "LIMIT"));
+  state(PreOperational);
+  EXPECT_THAT(commanded.unrepeated_names(subsystem), Not(IsEmpty()));
+  state(Offline);
+  EXPECT_THAT(commanded.unrepeated_names(subsystem), IsEmpty());
 }
 
 TEST_F(CommandedStateTest, AStateThatThereIsNotIsRecalledAsOffline) {

@@ -56,8 +56,10 @@ void CommandedStates::forwarded(std::uint16_t apid, const pus::TelecommandView& 
   const bool steers = call && (call->name == "SET_STATE" || call->name == "CONFIGURE");
   if (steers && !origin.is_supervisor()) overrule(apid);
   if (const auto state = state_asked(telecommand)) lower_record(apid, *state);
-  if ((telecommand.ack() & pus::ack_completion) == 0 || !has_room_for(telecommand.packet().size()))
+  if ((telecommand.ack() & pus::ack_completion) == 0 || !has_room_for(telecommand.packet().size())) {
+    members_[apid].commanded.may_have_set(telecommand, member->subsystem);
     return tell_not_kept(apid, telecommand);
+  }
   open_.push_back({apid, pus::request_of(telecommand), {telecommand.packet().begin(), telecommand.packet().end()}});
 }
 
@@ -83,8 +85,9 @@ void CommandedStates::hear(std::uint16_t from, const pus::TelemetryView& report)
   const auto& subsystem = craft_.mission.find_subsystem(from)->subsystem;
   if (!failed) {
     if (members_[from].commanded.completed(telecommand, subsystem) == Kept::NoRoom) tell_not_kept(from, telecommand);
-  } else if (report.subtype() == 8 && telecommand.service() != 8) {
-    tell_not_kept(from, telecommand);  // part of it may be in force
+  } else if (report.subtype() == 8) {  // part of it may be in force
+    members_[from].commanded.may_have_set(telecommand, subsystem);
+    if (telecommand.service() != 8) tell_not_kept(from, telecommand);
   }
 }
 
@@ -153,12 +156,21 @@ void CommandedStates::recall(OctetReader& reader) {
 
 CommandedState CommandedStates::of(std::uint16_t apid) const {
   const auto found = members_.find(apid);
-  return found != members_.end() ? found->second.commanded : CommandedState{};
+  CommandedState state = found != members_.end() ? found->second.commanded : CommandedState{};
+  // Who dies with it has perhaps done it, and nobody will say so any more.
+  const auto* member = craft_.mission.find_subsystem(apid);
+  for (const Open& each : open_)
+    if (each.apid == apid && member != nullptr)
+      state.may_have_set(*pus::TelecommandView::parse(each.packet), member->subsystem);
+  return state;
 }
 
 CommandedState CommandedStates::of_partner(std::uint16_t apid) const {
   const auto found = members_.find(apid);
-  return found != members_.end() && is_just_now(found->second) ? *found->second.before_loss : of(apid);
+  if (found == members_.end() || !is_just_now(found->second)) return of(apid);
+  CommandedState state = *found->second.before_loss;
+  state.may_have_set(of(apid));
+  return state;
 }
 
 bool CommandedStates::is_just_now(const Member& member) const {

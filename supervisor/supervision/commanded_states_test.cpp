@@ -52,8 +52,7 @@ struct CommandedStatesTest : PartsTest {
     add(3, in_states({Operational}));
     add(4, 0, true);
     auto limit = function("SET_LIMIT", in_states({Operational}));
-    limit.arguments.resize(1);
-    limit.arguments[0].of = "P4";
+    limit.unrepeated = {static_cast<std::uint16_t>(subsystem.parameters.size() - 1)};
     subsystem.functions.push_back(limit);
     descriptor::HousekeepingStructure structure;
     structure.id = declared;
@@ -88,6 +87,9 @@ struct CommandedStatesTest : PartsTest {
     configure(2);
     state(SafeOperational);
     state(Operational);
+  }
+  [[nodiscard]] std::vector<std::string> not_repeated() {
+    return commanded.of(arm).unrepeated_names(craft.member(arm)->descriptor());
   }
   /// "20,3: 01...", what is sent in this state.
   std::vector<std::string> settings(State in = PreOperational) {
@@ -172,13 +174,42 @@ TEST_F(CommandedStatesTest, WhatAConfigurationSetsItselfIsNotOurs) {
   EXPECT_THAT(settings(), IsEmpty());
 }
 
-TEST_F(CommandedStatesTest, AProtectionThatAFunctionHasSetIsKnown) {
+TEST_F(CommandedStatesTest, WhatAFunctionHasSetIsKnown) {
   up();
-  EXPECT_FALSE(commanded.of(arm).protection_was_set());
+  EXPECT_THAT(not_repeated(), IsEmpty());
   done(8, 1, call_data("SET_LIMIT"));
-  EXPECT_TRUE(commanded.of(arm).protection_was_set());
+  EXPECT_THAT(not_repeated(), ElementsAre("P4"));
   state(Offline);
-  EXPECT_FALSE(commanded.of(arm).protection_was_set());
+  EXPECT_THAT(not_repeated(), IsEmpty());
+}
+
+/// Safe is to take for set what may be: each end that such a telecommand has, and none.
+TEST_F(CommandedStatesTest, WhatAFunctionMayHaveSetCountsUnlessItWasRefused) {
+  up();
+  for (const std::uint8_t refused : {std::uint8_t{2}, std::uint8_t{4}}) {
+    verify(arm, leaves(8, 1, call_data("SET_LIMIT")), refused, pus::FailureCode::NotPermittedNow);
+    EXPECT_THAT(not_repeated(), IsEmpty()) << int{refused};
+  }
+  const auto under_way = leaves(8, 1, call_data("SET_LIMIT"));
+  EXPECT_THAT(not_repeated(), ElementsAre("P4")) << "who dies now has perhaps done it";
+  EXPECT_THAT(commanded.of_partner(arm).unrepeated_names(craft.member(arm)->descriptor()), ElementsAre("P4"));
+  verify(arm, under_way, 4, pus::FailureCode::NotPermittedNow);
+  EXPECT_THAT(not_repeated(), IsEmpty());
+  verify(arm, leaves(8, 1, call_data("SET_LIMIT")), 8, pus::FailureCode::Aborted);
+  EXPECT_THAT(not_repeated(), ElementsAre("P4")) << "it was begun";
+  state(Offline);
+  EXPECT_THAT(not_repeated(), IsEmpty());
+  leaves(8, 1, call_data("SET_LIMIT"), 0);
+  EXPECT_THAT(not_repeated(), ElementsAre("P4")) << "nobody will say whether it was done";
+}
+
+TEST_F(CommandedStatesTest, WhatWasSetSinceALinkWentStaleIsLostLikeWhatWasSetBefore) {
+  up();
+  commanded.lower(arm, SafeOperational, "HAND_STATE_STALE");
+  done(8, 1, call_data("SET_LIMIT"));
+  const auto before = commanded.of_partner(arm);
+  EXPECT_EQ(before.state(), Operational);
+  EXPECT_THAT(before.unrepeated_names(craft.member(arm)->descriptor()), ElementsAre("P4"));
 }
 
 TEST_F(CommandedStatesTest, StructuresComeBackAsTheyWereWithTheConfigurationThatTheyBelongTo) {

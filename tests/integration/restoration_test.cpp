@@ -200,6 +200,17 @@ TEST_F(RestorationTest, WhatProtectsIsNotLoosenedByIt) {
   EXPECT_TRUE(flight.story().has("MANIPULATOR comes back to Safe-Operational only"));
 }
 
+/// None of its arguments is of what it sets: three limits in one parameter (docs/adr/0170).
+TEST_F(RestorationTest, LimitsThatAFunctionSetsByItsCodeAloneAreNotLoosenedByItEither) {
+  ASSERT_TRUE(flight.craft().command("MANIPULATOR", "SET_TEMP_LIMITS", {40.0, 50.0, 60.0}).completed);
+  flight.craft().kill("MANIPULATOR");
+  flight.craft().run(3s);
+  EXPECT_EQ(flight.state("MANIPULATOR"), State::SafeOperational) << flight.story().text();
+  EXPECT_FALSE(may_move("MANIPULATOR"));
+  EXPECT_TRUE(flight.story().has(
+      "MANIPULATOR comes back to Safe-Operational only, without what functions had set: TEMP_LIMITS"));
+}
+
 TEST_F(RestorationTest, TheOperatorsWordCountsMore) {
   flight.craft().kill("MANIPULATOR");
   ASSERT_TRUE(flight.run_until_state("JOYSTICK", State::PreOperational, 3s)) << flight.story().text();

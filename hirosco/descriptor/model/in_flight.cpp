@@ -85,6 +85,10 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
   });
 }
 
+[[nodiscard]] bool has(const auto& list, const auto& wanted, const auto& name) {
+  return std::ranges::find(list, wanted, name) != list.end();
+}
+
 /// Collects what differs. Each struct is taken apart by all of its members: one that is added has to be decided on here.
 class Comparison {
  public:
@@ -97,18 +101,15 @@ class Comparison {
   template <class T>
   void lists(const std::vector<T>& flown, const std::vector<T>& fresh, const std::string& kind, auto&& name, auto&& at,
              std::string_view why, auto&& pair) {
-    const auto has = [&](const std::vector<T>& list, const auto& wanted) {
-      return std::ranges::any_of(list, [&](const T& each) { return name(each) == wanted; });
-    };
     bool whole = true;
     const auto told = [&](const T& which, const char* how) {
       found_.push_back({at(which), kind + name(which) + how, why});
       whole = false;
     };
     for (const T& each : fresh)
-      if (!has(flown, name(each))) told(each, " is new");
+      if (!has(flown, name(each), name)) told(each, " is new");
     for (const T& each : flown)
-      if (!has(fresh, name(each))) told(each, " is gone");
+      if (!has(fresh, name(each), name)) told(each, " is gone");
     if (!whole) return;
     for (std::size_t i = 0; i < flown.size() && i < fresh.size(); ++i) {
       if (name(flown[i]) != name(fresh[i])) return told(fresh[i], " has another place in the order");
@@ -147,10 +148,12 @@ class Comparison {
         });
   }
   void function(const Function& flown, const Function& fresh, const std::string& kind) {
-    [[maybe_unused]] const auto& [name, service, subtype, states, essential, confirm, args, text, at, sets] = fresh;
+    [[maybe_unused]] const auto& [name, service, subtype, states, essential, confirm, args, text, at, sets,
+                                  unrepeated] = fresh;
     const std::string what = kind + name;
     unless(flown.service == service && flown.subtype == subtype, at, what + ": its type", code_why);
     unless(flown.states == states && flown.essential == essential, at, what + ": when it is permitted", safety_why);
+    unless(flown.unrepeated == unrepeated, at, what + ": which parameters it sets", safety_why);
     arguments(flown.arguments, args, what);
   }
   void functions(const std::vector<Function>& flown, const std::vector<Function>& fresh, const std::string& kind) {

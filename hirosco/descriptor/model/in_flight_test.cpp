@@ -150,6 +150,11 @@ TEST(InFlight, WhatMemoryThreadsLinksAndGuardWereMadeByIsRefusedByName) {
             "required set IN: field Y is new"},
            {R"(<Requires name="IN" age="3">)", R"(<Requires name="IN" age="3" missing="hold">)",
             "required set IN: what is without it"},
+           {R"(<Function name="TURN" states="Operational">)",
+            R"(<Function name="TURN" states="Operational" sets="GAIN">)", "function TURN: which parameters it sets"},
+           {R"(<Request name="LOOK" subtype="1" states="Operational">)",
+            R"(<Request name="LOOK" subtype="1" states="Operational" sets="SEEN">)",
+            "service GAZE: request LOOK: which parameters it sets"},
            {R"(name="FAST" id="1")", R"(name="FAST" id="2")", "configuration FAST: its id"}}) {
     const SubsystemDescriptor fresh = read(changed(edit.from, edit.to, flown_text));
     EXPECT_THAT(all(obstacles(read(flown_text), fresh)), HasSubstr(edit.told)) << edit.from;

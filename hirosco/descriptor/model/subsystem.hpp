@@ -79,6 +79,9 @@ struct Function {
   std::string description;
   Location at;
   std::uint32_t sets{0};  ///< of ST[20]: the parameter that it sets, by ParameterId::wire(); 0: it is no setting
+  /// Parameters that it sets and nobody sets again after a crash: those of its `sets`, and protections that an argument is `of`.
+  /// Indices into `parameters` of its own descriptor, ascending. Who ran it moves again by command only (docs/adr/0170).
+  std::vector<std::uint16_t> unrepeated{};
   [[nodiscard]] bool permitted_in(State state) const noexcept { return (states >> static_cast<int>(state) & 1) != 0; }
 };
 

@@ -49,6 +49,7 @@ void CustomServiceReader::read_request(const xml::Element& element, CustomServic
   request.states =
       read_states(attributes, "states",
                   {State::PreOperational, State::SafeOperational, State::Operational, State::ErrorOperational});
+  functions_.read_sets(attributes, request);
   Unique names{"argument name", "E0201"};
   each_child(
       element, problems_,

@@ -10,6 +10,7 @@ namespace hirosco::descriptor::detail {
 
 /// A parameter's own name goes before members of that name: it is listed first, and is not ambiguous.
 void References::index(std::size_t own) {
+  own_ = own;
   const auto add = [this](const std::string& text, std::size_t parameter, std::optional<std::uint16_t> member) {
     references_[text].push_back({text, static_cast<std::uint16_t>(parameter), member, {}});
   };

@@ -72,6 +72,7 @@ SubsystemDescriptor SubsystemReader::read(const xml::Element& root) {
   for (const xml::Element* element : bumpless) bumpless_.read(*element);
   service_list_.check(root);
   parameters_.check_foreign();
+  functions_.check_protections();
   events_.imply_framework_events();
   fields_.check_enumerations();
   check_addresses(subsystem_, problems_);

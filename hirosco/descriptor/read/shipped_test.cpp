@@ -103,12 +103,28 @@ TEST(ShippedMissions, AProtectionIsSetByOneFunctionAtMostAndByNoTelecommandForPa
       for (const Parameter& parameter : member.subsystem.parameters) {
         if (!parameter.protection) continue;
         EXPECT_FALSE(parameter.writable()) << member.subsystem.name << " " << parameter.field.name;
+        const auto index = &parameter - member.subsystem.parameters.data();
         const auto raises = [&](const Function& function) {
-          return std::ranges::any_of(function.arguments,
-                                     [&](const auto& argument) { return argument.of == parameter.field.name; });
+          return std::ranges::find(function.unrepeated, index) != function.unrepeated.end();
         };
         EXPECT_LE(std::ranges::count_if(member.subsystem.functions, raises), 1) << parameter.field.name;
       }
+}
+
+/// Read as text and not by the reader, which has made of it what the supervisor goes by: whoever sets one of these is not brought back to move
+/// by itself (docs/adr/0170). That nobody else changes a protection is tried beside each subsystem: hirosco/subsystem/testing/tried_functions.hpp.
+TEST(ShippedMissions, WhatFunctionsOfArmsSetIsLostInACrashAndSaid) {
+  std::map<std::string, std::string> said;
+  for (const auto& [file, mission] : shipped_missions())
+    for (const auto& member : mission.subsystems)
+      for (const Function& function : member.subsystem.functions)
+        for (const std::uint16_t parameter : function.unrepeated)
+          said[function.name + " " + member.subsystem.parameters[parameter].field.name] = file.string();
+  for (const char* wanted :
+       {"SET_TEMP_LIMITS TEMP_LIMITS", "SET_GAINS KP", "SET_GAINS KD", "SET_TORQUE_LIMIT TORQUE_LIMIT",
+        "KEEP_OUT KEPT_OUT", "SET_CONTACT CONTACT_WATCH", "SET_PAYLOAD PAYLOAD", "SET_TOOL TOOL_PLACE",
+        "SET_FORCE_SCALE FORCE_SCALE", "PASSIVITY PASSIVITY", "POINT_TO REFERENCE", "POINT_HERE REFERENCE"})
+    EXPECT_TRUE(said.contains(wanted)) << wanted;
 }
 
 }  // namespace

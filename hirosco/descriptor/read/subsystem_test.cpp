@@ -118,6 +118,34 @@ TEST(SubsystemDescriptor, AParameterIsWritableInTheStatesItNamesOnly) {
   EXPECT_TRUE(robot.find_parameter("TORQUE_LIMIT")->protection);
 }
 
+TEST(SubsystemDescriptor, AFunctionLeavesBehindWhatItSaysThatItSetsAndTheProtectionsThatItsArgumentsAreOf) {
+  const std::string text = R"(<Subsystem name="S" id="10">
+    <ParamRef name="PLAIN" id="1" type="DOUBLE" minimum="0" maximum="1"/>
+    <ParamRef name="LIMIT" id="2" type="DOUBLE" minimum="0" maximum="1" protection="yes"/>
+    <ParamRef name="LIMITS" id="3" type="FLOAT" count="3" protection="yes"/>
+    <StructRef name="LOAD" id="1"><ParamRef name="MASS" id="4" type="DOUBLE"/><ParamRef name="PLACE" id="5" type="DOUBLE"/></StructRef>
+    <ParamRef name="FIXED" id="6" type="DOUBLE" init="2" minimum="2" maximum="2" protection="yes"/>
+    <ParamRef name="BY_MODE" id="7" type="DOUBLE" minimum="0" maximum="2" protection="yes"/>
+    <FunctionService>
+      <Function name="MOVE"><Argument name="V" of="PLAIN"/></Function>
+      <Function name="SET" sets="LOAD.PLACE LOAD.MASS"><Argument name="V" of="LIMIT"/></Function>
+    </FunctionService>
+    <CustomService name="C" type="200"><Request name="ALL" subtype="1" sets="LIMITS"/></CustomService>
+    <Configuration name="A" id="1" sampling_us="1000"><Set parameter="BY_MODE" value="1"/></Configuration>
+  </Subsystem>)";
+  const auto reading = read_text(text);
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, text_source(text));
+  const auto names = [&](const Function& function) {
+    std::string all;
+    for (const std::uint16_t parameter : function.unrepeated)
+      all += reading.value->parameters[parameter].field.name + " ";
+    return all;
+  };
+  EXPECT_EQ(names(*reading.value->find_function("MOVE")), "");
+  EXPECT_EQ(names(*reading.value->find_function("SET")), "LIMIT LOAD ");
+  EXPECT_EQ(names(*reading.value->find_request(200, 1)), "LIMITS ");
+}
+
 TEST(SubsystemDescriptor, AnArgumentOfAParameterHasItsRange) {
   const SubsystemDescriptor robot = read_subsystem(data / "coronagraph.xml", file_system()).value.value();
   const Function::Argument& limit = robot.find_function("SET_TORQUE_LIMIT")->arguments.at(0);

@@ -29,17 +29,21 @@ Restoration::Loss Restoration::look(std::uint16_t apid) const {
     const Member* one = craft_.member(member);
     if (one == nullptr || craft_.is_ground_link(*one)) continue;
     const CommandedState* pending = means_.commanded.wanted(member);
-    loss.members.emplace(member, pending != nullptr ? *pending
-                                 : member == apid   ? means_.commanded.of(member)
-                                                    : means_.commanded.of_partner(member));
+    CommandedState& before = loss.members[member];
+    before = pending != nullptr ? *pending
+             : member == apid   ? means_.commanded.of(member)
+                                : means_.commanded.of_partner(member);
+    before.may_have_set(means_.commanded.of(member));  // on its way back, perhaps
   }
   return loss;
 }
 
 void Restoration::answered(std::uint16_t apid) {
-  means_.commanded.ended(apid);
   const auto most = means_.restarts.take_most(apid);
   auto found = losses_.extract(apid);
+  if (!found.empty())  // of one that hung it is the record of before
+    for (auto& [member, commanded] : found.mapped().members) commanded.may_have_set(means_.commanded.of(member));
+  means_.commanded.ended(apid);
   // The ground link comes back by itself in every mission (docs/adr/0043), and what hung on it waits for the ground.
   if (craft_.is_ground_link(*craft_.member(apid))) return;
   if (most.value_or(State::Offline) == State::Offline || found.empty()) {
@@ -50,10 +54,14 @@ void Restoration::answered(std::uint16_t apid) {
   Loss& loss = found.mapped();
   for (auto& [member, commanded] : loss.members) {
     commanded.lower(*most);
-    if (commanded.protection_was_set() && commanded.state() == State::Operational) {
+    if (const auto names = commanded.unrepeated_names(craft_.member(member)->descriptor());
+        !names.empty() && commanded.state() != State::Offline) {
+      const bool moved = commanded.state() == State::Operational;
       commanded.lower(State::SafeOperational);
-      craft_.tell(craft_.name_of(member) + " comes back to Safe-Operational only: a function had set a protection",
-                  member);
+      craft_.tell(
+          fmt::format("{} comes back {} functions had set: {}", craft_.name_of(member),
+                      moved ? "to Safe-Operational only, without what" : "without what", fmt::join(names, ", ")),
+          member);
     }
     for (const std::string& parameter : commanded.out_of_reach(craft_.member(member)->descriptor()))
       craft_.tell(craft_.name_of(member) + " comes back without " + parameter + ": it is set in Operational only",

@@ -65,6 +65,18 @@ struct RestorationTest : PartsTest {
     for (const State each : {SafeOperational, Operational})
       if (each <= state) completes(apid, 8, 1, state_call(each));
   }
+  /// Its function SET_LIMITS sets LIMITS.
+  void hand_has_limits() {
+    auto& subsystem = craft.mission.subsystems[1].subsystem;
+    descriptor::Parameter limits;
+    limits.field.name = "LIMITS";
+    limits.id = 4;
+    limits.protection = true;
+    subsystem.parameters.push_back(limits);
+    auto sets = function("SET_LIMITS", in_states({Operational}));
+    sets.unrepeated = {static_cast<std::uint16_t>(subsystem.parameters.size() - 1)};
+    subsystem.functions.push_back(sets);
+  }
   /// Its plan has answered its death by a restart up to this state.
   void dies(std::uint16_t apid, State most = Operational) {
     parts.resources.release(apid);
@@ -115,22 +127,51 @@ TEST_F(RestorationTest, TheSettingsOfBeforeAreSentInPreOperational) {
               ElementsAre("11 SET_STATE 3", "11 CONFIGURE 1", "11 TC[5,6] 0 ms", "11 SET_STATE 4", "11 SET_STATE 5"));
 }
 
-TEST_F(RestorationTest, WhomAFunctionHadProtectedDoesNotMoveAgainByItself) {
-  auto& subsystem = craft.mission.subsystems[1].subsystem;
-  descriptor::Parameter limit;
-  limit.field.name = "LIMIT";
-  limit.id = 4;
-  limit.protection = true;
-  subsystem.parameters.push_back(limit);
-  auto sets = function("SET_LIMIT", in_states({Operational}));
-  sets.arguments.resize(1);
-  sets.arguments[0].of = "LIMIT";
-  subsystem.functions.push_back(sets);
-  completes(hand, 8, 1, call_data("SET_LIMIT"));
+TEST_F(RestorationTest, WhomAFunctionHadProtectedDoesNotMoveAgainByItselfAndWhatIsLostIsTold) {
+  hand_has_limits();
+  completes(hand, 8, 1, call_data("SET_LIMITS"));
   begins();
   all_obey();
   EXPECT_EQ(desk.sent.back(), "11 SET_STATE 4");
-  EXPECT_TRUE(was_told("HAND comes back to Safe-Operational only: a function had set a protection"));
+  EXPECT_TRUE(was_told("HAND comes back to Safe-Operational only, without what functions had set: LIMITS"));
+}
+
+TEST_F(RestorationTest, WhatIsLostIsToldOfWhoWasNotToMoveToo) {
+  hand_has_limits();
+  completes(hand, 8, 1, state_call(SafeOperational));
+  completes(hand, 8, 1, call_data("SET_LIMITS"));
+  dies(hand);
+  EXPECT_TRUE(was_told("HAND comes back without what functions had set: LIMITS"));
+}
+
+TEST_F(RestorationTest, WhoDiesBeforeItHasSaidThatItsLimitsAreSetDoesNotMoveAgainByItself) {
+  hand_has_limits();
+  leaves(hand, 8, 1, call_data("SET_LIMITS"));
+  begins();
+  all_obey();
+  EXPECT_EQ(desk.sent.back(), "11 SET_STATE 4");
+}
+
+TEST_F(RestorationTest, WhoseLimitsAreSetOnItsWayBackAndDiesAgainDoesNotMoveAgainByItself) {
+  hand_has_limits();
+  begins();
+  desk.answer(true);
+  completes(hand, 8, 1, call_data("SET_LIMITS"));
+  dies(hand);
+  desk.answers.clear();
+  starts(hand);
+  restoration.watch(clock.now());
+  all_obey();
+  EXPECT_EQ(desk.sent.back(), "11 SET_STATE 4");
+}
+
+TEST_F(RestorationTest, WhoseLimitsWereSetWhileItCountedAsHangingDoesNotMoveAgainByItself) {
+  hand_has_limits();
+  restoration.lost(hand);
+  leaves(hand, 8, 1, call_data("SET_LIMITS"));
+  begins();
+  all_obey();
+  EXPECT_EQ(desk.sent.back(), "11 SET_STATE 4");
 }
 
 TEST_F(RestorationTest, WhatCanBeSetInOperationalOnlyIsToldAsMissing) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/descriptor/read/detail/element_reader.hpp"
@@ -14,7 +15,7 @@
 
 namespace hirosco::descriptor::detail {
 
-/// Reads functions, and the arguments of whatever is called by name.
+/// Reads functions, and the arguments of whatever is called by name. Knows who sets which parameter (docs/adr/0170).
 class FunctionReader {
  public:
   FunctionReader(Problems& problems, SubsystemDescriptor& subsystem, FieldReader& fields, References& references)
@@ -23,9 +24,15 @@ class FunctionReader {
   void read_argument(const xml::Element& element, Function& function, Unique& names);
   /// Reports a name that another has.
   void claim_name(const xml::Element& element, const Function& function);
+  /// Parameters that it sets by its code.
+  void read_sets(Attributes& attributes, Function& function);
+  /// Once all is read: somebody sets each protection that has a range.
+  void check_protections();
 
  private:
-  void read_range_of(Attributes& attributes, Function::Argument& argument, const std::string& function);
+  void read_range_of(Attributes& attributes, Function::Argument& argument, Function& function);
+  void claim_parameter(const ParameterRef& parameter, const xml::Attribute& at, const Function& function);
+  [[nodiscard]] bool is_set(const ParameterRef& value) const;
   void check_arguments(const xml::Element& element, const Function& function);
   void read_fallback(Attributes& attributes, Function::Argument& argument);
 
@@ -34,7 +41,8 @@ class FunctionReader {
   FieldReader& fields_;
   References& references_;
   Unique function_names_{"function name", "E0201"};
-  std::map<std::uint16_t, std::string> raised_by_;  ///< the function whose argument is first `of` a parameter
+  std::map<std::uint16_t, std::string> raised_by_;  ///< the function whose `sets` or argument first names a parameter
+  std::vector<ParameterRef> set_;  ///< all that functions and requests name so
 };
 
 /// Reads the services of a subsystem's own.

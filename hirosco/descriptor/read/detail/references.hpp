@@ -24,6 +24,8 @@ class References {
   /// What each <ParamRef> of the element names.
   void read_sampled(const xml::Element& element, std::vector<ParameterRef>& into, std::string_view user);
   [[nodiscard]] std::size_t octets_of(const ParameterRef& reference) const;
+  /// The author's, not one that every subsystem has.
+  [[nodiscard]] bool is_own(const ParameterRef& reference) const noexcept { return reference.parameter < own_; }
 
  private:
   /// The `name` attribute resolved against the parameters.
@@ -32,6 +34,7 @@ class References {
 
   Problems& problems_;
   const SubsystemDescriptor& subsystem_;
+  std::size_t own_{0};
   std::map<std::string, std::vector<ParameterRef>, std::less<>> references_;  ///< by every spelling
 };
 
