@@ -15,6 +15,7 @@ using robot_arm::LawKind;
 using robot_arm::millimetres;
 using robot_arm::Trouble;
 using robot_arm::UrdfArm;
+using robot_arm::Yielding;
 
 std::unique_ptr<Subsystem> make_robot_arm() { return std::make_unique<RobotArm>(); }
 
@@ -193,7 +194,9 @@ Outcome RobotArm::may_change_law() const noexcept {
 Outcome RobotArm::move(Begin begin, const FunctionValues& values, const Call& call) noexcept {
   if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
   const Outcome begun = (guidance_.*begin)(values);
-  if (begun.kind != Outcome::Kind::Refused) motion_ = call;
+  if (begun.kind == Outcome::Kind::Refused) return begun;
+  yielding_.arm(Yielding::Before::Stands);
+  motion_ = call;
   return begun;
 }
 
@@ -219,6 +222,7 @@ void RobotArm::bind_settings() {
   on_function("KEEP_OUT", [this](const robot_arm::KeepOut& numbers) { return obstacles_.keep_out(numbers); });
   on_function("SET_CONTACT", [this](std::uint8_t reaction, double limit) -> Outcome {
     parameters_.contact.store({reaction, limit});
+    yielding_.arm(Yielding::Before::Counts);
     return ok();
   });
   on_function("SET_PAYLOAD", [this](double mass_kg, std::array<double, 3> place_m) -> Outcome {

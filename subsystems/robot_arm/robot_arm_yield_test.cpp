@@ -170,6 +170,60 @@ TEST_F(RobotArmYields, RefusesASpringThatIsTooStiffAndNamesIt) {
   EXPECT_THAT(asked("IMPEDANCE_J", hard), StartsWith("1 4:800b"));
 }
 
+/// Somebody leans on a standing arm, which is told, and then it is to move towards him.
+TEST_F(RobotArmYields, PressesWhoLeansOnItNoHarderThanItsLimitOnceMoreHoweverOftenItIsToMove) {
+  const double effort = flown.model.joints()[0].limits.effort.value(), from = place()[0];
+  double most = 0;
+  const auto lean = [&](int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      flown.outside[0] = 0.4 * effort + 200 * std::max(0.0, from - place()[0]);
+      most = std::max(most, flown.outside[0] / effort);
+      flown.cycle();
+    }
+  };
+  lean(500);
+  ASSERT_EQ(flown.rig.events(1025), 1);
+  for (int told = 2; told <= 4; ++told) {
+    const auto motion = flown.move_j(goal, 0.5);
+    lean(1000);
+    EXPECT_EQ(flown.rig.outcome(motion), "1 3 8:8004") << told;
+    EXPECT_EQ(flown.rig.events(1025), told);
+  }
+  EXPECT_LT(most, 0.7);
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+  // What counts is said anew: who is clamped is let go of.
+  ASSERT_EQ(react_by(2), "1 3 7");
+  lean(50);
+  const auto refused = flown.move_j(goal);
+  lean(3);
+  EXPECT_THAT(flown.rig.outcome(refused), StartsWith("1 4:800c"));
+}
+
+/// A load that nobody declared, beyond the limit: it is told once, moved with, and whoever is met besides counts.
+TEST_F(RobotArmYields, MovesWithALoadThatNobodyDeclaredAndStopsForWhatComesToIt) {
+  const double effort = flown.model.joints()[0].limits.effort.value();
+  flown.outside[0] = 0.35 * effort;
+  flown.cycle(500);
+  ASSERT_EQ(flown.rig.events(1025), 1);
+  const auto motion = flown.move_j(goal, 0.5);
+  flown.finish(motion);
+  EXPECT_EQ(flown.rig.outcome(motion), "1 3 5:0001 7");
+  const auto next = flown.move_j(start, 0.5);
+  flown.cycle(500);
+  flown.outside[0] += 0.33 * effort;
+  flown.cycle(50);
+  EXPECT_EQ(flown.rig.outcome(next), "1 3 8:8004");
+  EXPECT_EQ(flown.rig.events(1025), 2);
+  // From the other side nothing stood there.
+  flown.outside[0] = 0.35 * effort;
+  flown.cycle(1000);
+  const auto last = flown.move_j(goal, 0.5);
+  flown.cycle(500);
+  flown.outside[0] = -0.35 * effort;
+  flown.cycle(100);
+  EXPECT_EQ(flown.rig.outcome(last), "1 3 8:8004");
+}
+
 TEST_F(RobotArmYields, StandsBeforeItIsLedIntoItself) {
   ASSERT_EQ(react_by(2), "1 3 7");
   EXPECT_EQ(met(), "1 3 8:8004");

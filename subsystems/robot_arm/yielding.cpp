@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/yielding.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -12,6 +13,8 @@ namespace {
 
 /// An external torque has to last for a contact, so many cycles.
 constexpr std::uint32_t contact_after_cycles = 3;
+/// A load that stood is gone when so much of the limit is left of it.
+constexpr double gone_share = 0.5;
 /// In which it lets go of whoever it met.
 constexpr double let_go_s = 0.05;
 
@@ -21,7 +24,7 @@ void Yielding::engage() noexcept {
   parts_.guidance.engage();
   parts_.obstacles.tell(parts_.drives.measured().position);
   parts_.control.laws().reset();
-  contact_cycles_ = 0;
+  arm(Before::Counts);
 }
 
 /// The setpoint of whoever gave way is elsewhere than the arm: a hard law begins where the arm is, and so does any after it was led.
@@ -31,7 +34,7 @@ void Yielding::take_law(LawKind kind) noexcept {
     parts_.guidance.setpoints().settle(measured.position, measured.velocity);
   if (kind == LawKind::Float) parts_.guidance.engage();
   parts_.control.laws().set(kind, kind == LawKind::Float ? let_go_s : Laws::smooth_s);
-  contact_cycles_ = 0;
+  arm(Before::Counts);
 }
 
 void Yielding::stand() noexcept {
@@ -41,24 +44,50 @@ void Yielding::stand() noexcept {
 
 // --- a contact -----------------------------------------------------------------------------------------------------------
 
+/// Of a load that stands no more is borne than the limit, and never so much that the torque limit had to find what comes to it: one motion
+/// behind the other presses no harder than the first.
+void Yielding::arm(Before load) noexcept {
+  contact_cycles_ = 0;
+  borne_.resize(0);
+  if (load == Before::Counts) return;
+  const double limit = parts_.parameters.contact.load().limit;
+  const double most = std::min(limit, std::max(0.0, parts_.parameters.torque_limit.load() - limit));
+  const Bounds bounds = parts_.known.bounds();
+  borne_.setZero(static_cast<Eigen::Index>(bounds.size()));
+  for (std::size_t joint = 0; joint < bounds.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    const double share = parts_.model.external()[i] / bounds[joint].effort;
+    if (std::abs(share) > limit) borne_[i] = std::clamp(share, -most, most);
+  }
+}
+
+/// Away from where a load stood nothing more is let through than without it.
+double Yielding::counts_from(Eigen::Index joint, double share, double limit) noexcept {
+  if (borne_.size() == 0) return limit;
+  double& borne = borne_[joint];
+  if (share * (borne > 0 ? 1 : -1) < gone_share * limit) borne = 0;
+  return limit + std::abs(borne);
+}
+
 std::optional<Yielding::Contact> Yielding::meet() noexcept {
   const ContactValues values = parts_.parameters.contact.load();
   if (values.reaction == static_cast<std::uint8_t>(Reaction::None)) return std::nullopt;
   const JointVector& external = parts_.model.external();
   const Bounds bounds = parts_.known.bounds();
   std::size_t worst = 0;
-  double most = 0;
-  for (std::size_t i = 0; i < bounds.size(); ++i) {
-    const double share = std::abs(external[static_cast<Eigen::Index>(i)]) / bounds[i].effort;
-    if (share > most) most = share, worst = i;
+  double most = 0, limit = values.limit;
+  for (std::size_t joint = 0; joint < bounds.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    const double share = external[i] / bounds[joint].effort;
+    const double its = counts_from(i, share, values.limit);
+    if (std::abs(share) - its > most) most = std::abs(share) - its, worst = joint, limit = its;
   }
-  if (most <= values.limit) {
+  if (most <= 0) {
     contact_cycles_ = 0;
     return std::nullopt;
   }
   if (++contact_cycles_ != contact_after_cycles || parts_.control.floats()) return std::nullopt;
-  return Contact{worst, external[static_cast<Eigen::Index>(worst)], values.limit * bounds[worst].effort,
-                 values.reaction};
+  return Contact{worst, external[static_cast<Eigen::Index>(worst)], limit * bounds[worst].effort, values.reaction};
 }
 
 void Yielding::react(const Doing& doing) noexcept {

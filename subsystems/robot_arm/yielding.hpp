@@ -37,7 +37,7 @@ class Yielding {
     Float,  ///< gives way from then on
     Retract,  ///< backs off by the way it came, then stands
   };
-  /// N m or N of the joint, from 0, that feels most of it.
+  /// N m or N of the joint, from 0, that feels most of it; the limit with what stood there when its motion began.
   struct Contact {
     std::size_t joint{0};
     double torque{0};
@@ -58,6 +58,11 @@ class Yielding {
   /// Comes to rest; who is led stands where he is.
   void stand() noexcept;
 
+  /// What acts from outside already counts from now on, too; or stands beside, where a motion begins with it, and what comes to it counts.
+  enum class Before : std::uint8_t { Counts, Stands };
+  /// Whoever is met from now on is told, whatever was told before.
+  void arm(Before load) noexcept;
+
   /// Each cycle: what it met, once for each time; nothing mostly.
   [[nodiscard]] std::optional<Contact> meet() noexcept;
   /// Who backs off and meets somebody else stands; so does who is stopped, and who stood: it is not he who went there.
@@ -72,9 +77,11 @@ class Yielding {
 
  private:
   [[nodiscard]] Outcome soften(LawKind kind, const Impedance& impedance) noexcept;
+  [[nodiscard]] double counts_from(Eigen::Index joint, double share, double limit) noexcept;
 
   Parts parts_;
   std::uint32_t contact_cycles_{0};
+  JointVector borne_;  ///< shares of efforts, of a load that stood when a motion began; of no length: none
 };
 
 }  // namespace hirosco::robot_arm
