@@ -20,12 +20,21 @@ std::optional<Finding> LimitWatch::update(const JointVector* setpoint) noexcept 
 Outcome LimitWatch::set_torque_limit(double share) noexcept {
   const JointVector& torque = parts_.drives.measured().torque;
   if (torque.size() == 0) return refused(pus::FailureCode::NotPermittedNow);
+  if (const Outcome may = below(share, torque); may.kind == Outcome::Kind::Refused) return may;
+  parts_.parameters.torque_limit.store(share);
+  return ok();
+}
+
+Outcome LimitWatch::may_hold(const JointVector& torque) const noexcept {
+  return below(parts_.parameters.torque_limit.load(), torque);
+}
+
+Outcome LimitWatch::below(double share, const JointVector& torque) const noexcept {
   const Bounds bounds = parts_.known.bounds();
   for (std::size_t i = 0; i < bounds.size(); ++i)
     if (!(std::abs(torque[static_cast<Eigen::Index>(i)]) < share * bounds[i].effort))
       return refused(Trouble::load_above_limit, "joint", static_cast<std::int64_t>(i + 1));
-  parts_.parameters.torque_limit.store(share);
-  return ok();
+  return running;
 }
 
 }  // namespace hirosco::robot_arm

@@ -29,10 +29,14 @@ class LimitWatch {
   /// Each cycle: what is to be told now; nothing mostly. `setpoint` null: nobody is to follow it.
   [[nodiscard]] std::optional<Finding> update(const JointVector* setpoint) noexcept;
 
+  /// Running where each joint may hold so much; refused with the first that may not.
+  [[nodiscard]] Outcome may_hold(const JointVector& torque) const noexcept;
   /// A limit that the arm's present load exceeds already would only stop it.
   [[nodiscard]] Outcome set_torque_limit(double share) noexcept;
 
  private:
+  [[nodiscard]] Outcome below(double share, const JointVector& torque) const noexcept;
+
   Parts parts_;
   Watch watch_;
 };

@@ -14,6 +14,7 @@ void OnBoardModel::begin(double cycle_s) {
   const robotics::Model& model = parts_.known.model();
   dynamics_.emplace(model, robotics::Base::Fixed);
   observer_.emplace(model.joint_count(), cycle_s, observer_gain_per_s);
+  updated_ = false;
 }
 
 void OnBoardModel::update() noexcept {
@@ -34,6 +35,7 @@ void OnBoardModel::update() noexcept {
                    JointVector::Zero(known.model().joint_count()), of_payload);
   observer_->update(measured, *dynamics_, of_payload);
   parts_.parameters.external_torque.store(joints_of(observer_->external()));
+  updated_ = true;
 }
 
 void OnBoardModel::forget_external() noexcept {
@@ -43,6 +45,15 @@ void OnBoardModel::forget_external() noexcept {
 Payload OnBoardModel::payload() const noexcept {
   const auto values = parts_.parameters.payload.load();
   return {values.mass_kg, {values.place_m[0], values.place_m[1], values.place_m[2]}};
+}
+
+JointVector OnBoardModel::held(const Payload& payload) noexcept {
+  const auto gravity = parts_.parameters.gravity_m_s2.load();
+  robotics::Coordinates held;
+  dynamics_->bias(held);
+  Law::add_payload(payload, parts_.known.tip(), {gravity[0], gravity[1], gravity[2]}, *dynamics_,
+                   JointVector::Zero(held.size()), held);
+  return held;
 }
 
 }  // namespace hirosco::robot_arm

@@ -27,6 +27,8 @@ class OnBoardModel {
   void begin(double cycle_s);
   /// Takes what is measured, and tells what follows.
   void update() noexcept;
+  /// There was an update() since begin().
+  [[nodiscard]] bool updated() const noexcept { return updated_; }
   /// Something else hangs at the tool: what acts from outside is felt anew.
   void forget_external() noexcept;
 
@@ -35,12 +37,15 @@ class OnBoardModel {
   /// N m or N of each joint, in the direction in which it would accelerate it.
   [[nodiscard]] const JointVector& external() const noexcept { return observer_->external(); }
   [[nodiscard]] Payload payload() const noexcept;
+  /// What each joint would hold in the posture of update() if this hung at the tool.
+  [[nodiscard]] JointVector held(const Payload& payload) noexcept;
 
  private:
   Parts parts_;
   std::optional<robotics::Dynamics> dynamics_;
   std::optional<MomentumObserver> observer_;
   robotics::State state_;
+  bool updated_{false};
 };
 
 }  // namespace hirosco::robot_arm

@@ -11,6 +11,7 @@ namespace hirosco {
 
 using robot_arm::Excess;
 using robot_arm::Guidance;
+using robot_arm::JointVector;
 using robot_arm::LawKind;
 using robot_arm::millimetres;
 using robot_arm::Trouble;
@@ -200,6 +201,20 @@ Outcome RobotArm::move(Begin begin, const FunctionValues& values, const Call& ca
   return begun;
 }
 
+/// A load that is not there would lift who is led or soft; the law of positions keeps its place whatever is declared.
+Outcome RobotArm::take_payload(double mass_kg, const std::array<double, 3>& place_m) noexcept {
+  if (!model_.updated()) return refused(pus::FailureCode::NotPermittedNow);
+  if (control_.floats()) return refused(Trouble::led, "HOLD first");
+  if (motion_ || stop_ || !guidance_.at_rest()) return refused(pus::FailureCode::Busy);
+  if (control_.gives_way()) return refused(Trouble::soft, "POSITION_CONTROL first");
+  const JointVector held = model_.held({mass_kg, {place_m[0], place_m[1], place_m[2]}});
+  if (const Outcome may = limits_.may_hold(held); may.kind == Outcome::Kind::Refused) return may;
+  control_.take_load(held - model_.held(model_.payload()));
+  parameters_.payload.store({mass_kg, place_m});
+  model_.forget_external();
+  return ok();
+}
+
 void RobotArm::place_tool(const std::array<double, 3>& place_m) noexcept {
   guidance_.setpoints().set_tool({robotics::Matrix3::Identity(), {place_m[0], place_m[1], place_m[2]}});
   control_.laws().set_tool({place_m[0], place_m[1], place_m[2]});
@@ -226,10 +241,7 @@ void RobotArm::bind_settings() {
     return ok();
   });
   on_function("SET_PAYLOAD", [this](double mass_kg, std::array<double, 3> place_m) -> Outcome {
-    parameters_.payload.store({mass_kg, place_m});
-    model_.forget_external();
-    control_.forget_learnt();
-    return ok();
+    return take_payload(mass_kg, place_m);
   });
   on_function("SET_TOOL", [this](std::array<double, 3> place_m) -> Outcome {
     if (!guidance_.begun()) return refused(pus::FailureCode::NotPermittedNow);

@@ -224,6 +224,61 @@ TEST_F(RobotArmYields, MovesWithALoadThatNobodyDeclaredAndStopsForWhatComesToIt)
   EXPECT_EQ(flown.rig.outcome(last), "1 3 8:8004");
 }
 
+/// MASS and PLACE.
+const std::vector<double> two_kg{2, 0, 0, 0};
+
+/// The load is there, and was learnt; or it is not, and what was said of it is wrong.
+TEST_F(RobotArmYields, TakesALoadThatIsDeclaredWithoutAStepAndStaysWhereItIs) {
+  robotics::Dynamics dynamics{flown.model, robotics::Base::Fixed};
+  dynamics.update({.q = start, .qd = JointVector::Zero(6)});
+  robotics::Coordinates weight = robotics::Coordinates::Zero(6);
+  robot_arm::Law::add_payload({2}, flown.model.find_frame("tool").value(), {0, 0, -9.81}, dynamics,
+                              JointVector::Zero(6), weight);
+  for (const double hangs : {1.0, 0.0}) {
+    Flown arm{6, std::string{folder} + "robot_arm.urdf"};
+    arm.plant.place(start);
+    arm.operate();
+    arm.rig.call_with("SET_CONTACT", {Value{Number{std::uint8_t{0}}}, Value{0.3}});
+    arm.outside = -hangs * weight;
+    arm.cycle(3000);
+    ASSERT_LT(arm.off(start), 1e-3);
+    const auto taken = arm.ask("SET_PAYLOAD", two_kg);
+    JointVector last = arm.commanded;
+    double steepest = 0, farthest = 0;
+    for (int i = 0; i < 1000; ++i) {
+      arm.cycle();
+      for (Eigen::Index j = 0; j < 6; ++j)
+        steepest = std::max(steepest, std::abs(arm.commanded[j] - last[j]) /
+                                          arm.model.joints()[static_cast<std::size_t>(j)].limits.effort.value());
+      last = arm.commanded;
+      farthest = std::max(farthest, arm.off(start));
+    }
+    EXPECT_EQ(arm.rig.outcome(taken), "1 3 7") << hangs;
+    EXPECT_LT(steepest, 0.01) << hangs;
+    EXPECT_LT(farthest, 3e-3) << hangs;
+  }
+}
+
+/// Where it is led or held by springs a load that is not there would lift it, and a posture that its drives cannot hold it with is none for it.
+TEST_F(RobotArmYields, TakesNoLoadWhileItMovesOrGivesWayNorOneThatItsDrivesCannotHold) {
+  EXPECT_THAT(asked("SET_PAYLOAD", {10, 0.5, 0.5, 0.5}), StartsWith("1 4:8005"));
+  const auto motion = flown.move_j(goal, 0.5);
+  flown.cycle(100);
+  EXPECT_THAT(asked("SET_PAYLOAD", two_kg), StartsWith("1 4:0108"));
+  flown.finish(motion);
+  ASSERT_EQ(asked("IMPEDANCE_J", soft), "1 3 7");
+  const JointVector there = place();
+  EXPECT_THAT(asked("SET_PAYLOAD", two_kg), StartsWith("1 4:800d"));
+  flown.cycle(500);
+  EXPECT_LT(flown.off(there), 0.02);
+  ASSERT_EQ(asked("POSITION_CONTROL", {}), "1 3 7");
+  flown.cycle(200);
+  ASSERT_EQ(react_by(2), "1 3 7");
+  flown.outside[0] = 60;
+  flown.cycle(200);
+  EXPECT_THAT(asked("SET_PAYLOAD", {10, 0, 0, 0}), StartsWith("1 4:800c"));
+}
+
 TEST_F(RobotArmYields, StandsBeforeItIsLedIntoItself) {
   ASSERT_EQ(react_by(2), "1 3 7");
   EXPECT_EQ(met(), "1 3 8:8004");

@@ -6,10 +6,6 @@ namespace hirosco::robot_arm {
 
 void TorqueControl::begin(double cycle_s) { laws_.emplace(parts_.known.model(), parts_.known.tip(), cycle_s); }
 
-void TorqueControl::forget_learnt() noexcept {
-  if (laws_) laws_->forget_learnt();  // else it would be held twice
-}
-
 Laws::Settings TorqueControl::settings() noexcept {
   const Parameters& values = parts_.parameters;
   const auto gravity = values.gravity_m_s2.load();

@@ -29,8 +29,8 @@ class TorqueControl {
   /// In configure().  Realtime: allocates. Thread: the service loop.
   void begin(double cycle_s);
   [[nodiscard]] bool begun() const noexcept { return laws_.has_value(); }
-  /// What hangs at the tool is known from now on.
-  void forget_learnt() noexcept;
+  /// What hangs at the tool is known from now on and takes so much more, N m or N of each joint.
+  void take_load(const JointVector& torque) noexcept { laws_->take_load(torque, settings()); }
 
   /// A cycle of the law: what it finds is put out and told.
   void control() noexcept;

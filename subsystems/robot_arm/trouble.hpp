@@ -20,6 +20,7 @@ enum class Trouble : std::uint16_t {
   too_near = 0x800A,  ///< to itself, or to a volume that it keeps out of
   too_stiff = 0x800B,  ///< a spring that would swing faster than the law may
   led = 0x800C,  ///< it gives way to whoever leads it: HOLD first
+  soft = 0x800D,  ///< springs hold it, and would move: POSITION_CONTROL first
 };
 
 }  // namespace hirosco::robot_arm

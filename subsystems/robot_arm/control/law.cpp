@@ -27,6 +27,13 @@ constexpr double most_beyond = 1.5;
 
 }  // namespace
 
+JointVector learnt_of(const JointVector& learnt, const JointVector& torque) noexcept {
+  JointVector part = torque;
+  for (Eigen::Index i = 0; i < part.size(); ++i)
+    part[i] = std::clamp(torque[i], std::min(0.0, learnt[i]), std::max(0.0, learnt[i]));
+  return part;
+}
+
 Law::Law(const robotics::Model& model, robotics::FrameId tip, double cycle_s)
     : model_{&model}, tip_{tip}, cycle_s_{cycle_s} {
   reset();
@@ -35,6 +42,19 @@ Law::Law(const robotics::Model& model, robotics::FrameId tip, double cycle_s)
 void Law::reset() noexcept {
   integral_.setZero(model_->joint_count());
   saturated_ = false;
+}
+
+void Law::let_go_of(const JointVector& torque, const Settings& settings) noexcept {
+  if (integral_.isZero(0) || !torque.allFinite()) return;  // nor is any mass known before
+  const double w = settings.bandwidth_rad_s;
+  robotics::MassMatrix moved = mass_;
+  for (Eigen::Index i = 0; i < moved.rows(); ++i) moved(i, i) += rotor_of(settings, i);
+  JointVector given;
+  given.noalias() = moved.lazyProduct(integral_);
+  JointVector part = learnt_of(w * w * w * given, torque);
+  const Eigen::LLT<robotics::MassMatrix> factors{moved};
+  factors.solveInPlace(part);
+  if (part.allFinite()) integral_ -= part / (w * w * w);
 }
 
 void Law::learn(const JointVector& error, const Setpoint& wanted, const Measured& measured,

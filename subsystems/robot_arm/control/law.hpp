@@ -15,6 +15,9 @@ struct Payload {
   Vector3 place_m{Vector3::Zero()};  ///< of its centre of mass, in the tip's frame
 };
 
+/// Of what was learnt of a load, joint by joint, what this torque is of it: none of it has the other's sign, and none is more than was learnt.
+[[nodiscard]] JointVector learnt_of(const JointVector& learnt, const JointVector& torque) noexcept;
+
 /// Computed torque: the on-board model turns wanted accelerations into torques. An error of position meets one and the same answer
 /// in every joint, whatever it carries: as a mass on a spring that is critically damped, with an integral that takes what the model
 /// does not know. All three poles are at -bandwidth.
@@ -32,6 +35,8 @@ class Law {
 
   /// Forgets what the integral had learnt.
   void reset() noexcept;
+  /// What the integral gives of such torques it gives no more: somebody else does, from now on.
+  void let_go_of(const JointVector& torque, const Settings& settings) noexcept;
   /// Within the joints' efforts. `dynamics` was updated with what is measured, gravity included.
   [[nodiscard]] JointVector torque(const Setpoint& wanted, const Measured& measured, robotics::Dynamics& dynamics,
                                    const Payload& payload, Bounds bounds, const Settings& settings) noexcept;

@@ -47,6 +47,13 @@ void Laws::set_tool(const Vector3& place_m) noexcept {
   changed_ = true;
 }
 
+void Laws::take_load(const JointVector& torque, const Settings& settings) noexcept {
+  law_.let_go_of(torque, settings.position);
+  carried_ -= learnt_of(carried_, torque);
+  fade_s_ = smooth_s;
+  changed_ = true;
+}
+
 void Laws::carry(const JointVector& answer, Bounds bounds) noexcept {
   if (!answer.allFinite()) return;
   for (Eigen::Index i = 0; i < answer.size(); ++i) {

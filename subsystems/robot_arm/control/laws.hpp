@@ -6,7 +6,7 @@
 
 namespace hirosco::robot_arm {
 
-/// All laws of an arm, one of them in force. Whatever is changed by set() and set_tool() makes no step in torque: what was
+/// All laws of an arm, one of them in force. Whatever is changed by set(), set_tool() and take_load() makes no step in torque: what was
 /// put out last is kept, and what the new law would have had instead comes in by and by. Who gives way keeps what the law of
 /// positions had learnt of a load that the model does not know, as a constant: an arm that is let go neither sinks nor climbs there.
 class Laws {
@@ -19,8 +19,8 @@ class Laws {
 
   /// Begins anew with the law of positions: for an arm that its brakes held.
   void reset() noexcept;
-  /// What was learnt of what hangs at the tool is known from now on.
-  void forget_learnt() noexcept { law_.reset(); }
+  /// What hangs at the tool is known from now on and takes so much more: what of it was learnt before is not held twice.
+  void take_load(const JointVector& torque, const Settings& settings) noexcept;
   static constexpr double smooth_s = 0.3;
   void set(LawKind kind, double over_s = smooth_s) noexcept;
   void set(LawKind kind, const Impedance& impedance) noexcept;

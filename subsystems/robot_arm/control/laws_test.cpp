@@ -28,6 +28,7 @@ struct LawsTest : ::testing::Test {
   Laws::Settings settings{.position = {.rotor = rotors, .gravity_m_s2 = {0, 0, -9.81}}};
   Impedance impedance{vector_of(std::array{200.0, 200.0, 100.0, 20.0, 20.0, 20.0}), 400, 20, 0.7};
   Setpoint wanted;
+  Payload payload;
   Plant plant{model};
   const JointVector zeros = JointVector::Zero(6);
   const JointVector start = vector_of(std::array{0.3, 0.9, 0.8, -0.5, 0.4, 0.2});
@@ -46,7 +47,14 @@ struct LawsTest : ::testing::Test {
   }
   JointVector torque(const Measured& measured) {
     update(dynamics, measured);
-    return laws.torque(wanted, measured, dynamics, {}, bounds, settings);
+    return laws.torque(wanted, measured, dynamics, payload, bounds, settings);
+  }
+  /// What so much takes at the tool, of all joints, at rest where the plant is.
+  JointVector weight(double mass_kg) {
+    update(of_plant, {plant.measured().position, zeros, zeros});
+    robotics::Coordinates torque = robotics::Coordinates::Zero(6);
+    Law::add_payload({mass_kg}, tip, settings.position.gravity_m_s2, of_plant, zeros, torque);
+    return torque;
   }
   /// Cycles with what acts from outside.
   void run(double seconds, const JointVector* outside = nullptr) {
@@ -91,6 +99,69 @@ TEST_F(LawsTest, ChangeWithoutAStepInTorqueFromEachToEach) {
       EXPECT_LT(steepest(400), 0.05) << static_cast<int>(from) << " to " << static_cast<int>(to);
       wanted.position = start;
     }
+}
+
+/// A load is there or not, was learnt or not, and is said to be there, to be another or to be gone, in each law: what is put out has no step, and what
+/// was learnt of a load is not held twice.
+TEST_F(LawsTest, TakeALoadThatIsDeclaredWithoutAStepAndHoldNoneTwice) {
+  constexpr std::array all{LawKind::Position, LawKind::JointImpedance, LawKind::ToolImpedance, LawKind::Float};
+  constexpr double hangs_kg = 2;
+  plant.friction_factor = 0;
+  plant.step_s = 250e-6;
+  for (const LawKind kind : all)
+    for (const bool hangs : {true, false})
+      for (const double declared_kg : {hangs_kg, 6.0, 0.0}) {
+        const std::string what =
+            std::to_string(static_cast<int>(kind)) + (hangs ? " hangs " : " nothing ") + std::to_string(declared_kg);
+        laws.reset();
+        payload = {};
+        plant.place(start);
+        JointVector load = zeros;
+        JointVector last;
+        double steepest = 0;
+        const auto cycle = [&] {
+          if (hangs) load = -weight(hangs_kg);
+          const JointVector now = torque(plant.measured());
+          for (std::size_t j = 0; last.size() > 0 && j < 6; ++j) {
+            const auto at = static_cast<Eigen::Index>(j);
+            steepest = std::max(steepest, std::abs(now[at] - last[at]) / bounds[j].effort);
+          }
+          last = now;
+          plant.step(now, cycle_s, &load);
+        };
+        for (int i = 0; i < 6000; ++i) cycle();
+        laws.set(kind, impedance);
+        for (int i = 0; i < 500; ++i) cycle();
+        const JointVector before = plant.measured().position;
+        steepest = 0;
+        laws.take_load(weight(declared_kg) - weight(payload.mass_kg), settings);
+        payload = {declared_kg};
+        cycle();
+        EXPECT_LT(steepest, 0.004) << what;
+        for (int i = 0; i < 600; ++i) cycle();
+        EXPECT_LT(steepest, 0.01) << what;
+        if (kind == LawKind::Position || (hangs && declared_kg == hangs_kg)) {
+          EXPECT_LT((plant.measured().position - before).cwiseAbs().maxCoeff(), 0.01) << what;
+        }
+      }
+}
+
+/// Soft right behind what was said of its load: the share that it carried goes with what the integral gave.
+TEST_F(LawsTest, GoSoftBehindADeclaredLoadWithoutASurplus) {
+  plant.friction_factor = 0;
+  plant.step_s = 250e-6;
+  JointVector load = zeros;
+  const auto cycle = [&] {
+    load = -weight(2);
+    plant.step(torque(plant.measured()), cycle_s, &load);
+  };
+  for (int i = 0; i < 4000; ++i) cycle();
+  laws.take_load(weight(2), settings);
+  payload = {2};
+  for (int i = 0; i < 10; ++i) cycle();
+  laws.set(LawKind::ToolImpedance, {impedance.joint_n_m_rad, 200, 20, 0.7});
+  for (int i = 0; i < 2000; ++i) cycle();
+  EXPECT_LT((plant.measured().position - start).cwiseAbs().maxCoeff(), 0.01);
 }
 
 /// Pushed with a random force for a second and then left alone: what it has of motion is never more than was

@@ -64,6 +64,7 @@ TEST(Control, UsesNoHeapInACycle) {
         laws.set(static_cast<LawKind>(i / 50 % 4), impedance);
         EXPECT_FALSE(laws.compliance().too_stiff(laws.kind(), impedance, dynamics, {}, 1e3));
       }
+      if (i % 70 == 0) laws.take_load(of_payload, {});
       EXPECT_TRUE(laws.torque(now, measured, dynamics, payload, bounds, {}).allFinite());
       EXPECT_GT(clearance.nearest(now.position).distance_m, 0);
       EXPECT_GT(clearance.nearer(now.position, setpoints.braked()).distance_m, 0);
