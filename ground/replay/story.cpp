@@ -333,6 +333,13 @@ class Teller {
     const auto described = std::ranges::find(subsystem->events, event.id, &descriptor::Event::id);
     if (described == subsystem->events.end()) return text;
     for (const auto& argument : described->arguments) {
+      if (argument.text) {
+        const auto words = values.find(argument.name);
+        if (words == values.end() || !words->is_string()) continue;
+        text +=
+            fmt::format("{}{} '{}'", text.empty() ? "" : ", ", lower_case(argument.name), words->get<std::string>());
+        continue;
+      }
       const auto value = number_in(values, argument.name.c_str());
       if (!value) continue;
       // The text of the event has the names of enumerations.

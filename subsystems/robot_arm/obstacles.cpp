@@ -55,10 +55,8 @@ Outcome Obstacles::keep_out(const KeepOut& numbers) noexcept {
   return ok();
 }
 
-double Obstacles::tell(const JointVector& position) noexcept {
-  const double now_m = clearance_->nearest(position).distance_m;
-  parameters_.clearance_m.store(now_m);
-  return now_m;
+void Obstacles::tell(const JointVector& position) noexcept {
+  parameters_.clearance_m.store(clearance_->nearest(position).distance_m);
 }
 
 std::optional<Obstacles::Nearest> Obstacles::watch(const Setpoints& setpoints) noexcept {
@@ -69,10 +67,10 @@ std::optional<Obstacles::Nearest> Obstacles::watch(const Setpoints& setpoints) n
   return ahead;
 }
 
-std::optional<Obstacles::Nearest> Obstacles::watch_led(const Measured& measured, bool floats) noexcept {
-  const double now_m = floats ? tell(measured.position) : clearance_->nearest(measured.position).distance_m;
-  const Nearest ahead = clearance_->nearest(measured.position + ahead_s * measured.velocity);
-  if (ahead.distance_m >= parameters_.clearance_limit_m.load() || ahead.distance_m >= now_m) return std::nullopt;
+std::optional<Obstacles::Nearest> Obstacles::watch_led(const Measured& measured) noexcept {
+  tell(measured.position);
+  const Nearest ahead = nearer(measured.position, measured.position + ahead_s * measured.velocity);
+  if (ahead.distance_m == HUGE_VAL) return std::nullopt;
   return ahead;
 }
 

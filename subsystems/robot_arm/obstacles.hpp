@@ -40,16 +40,16 @@ class Obstacles {
   /// These volumes from now on, in the base's axes.
   [[nodiscard]] Outcome keep_out(const KeepOut& numbers) noexcept;
 
-  /// Tells how near they are with the joints there, m, and says it.
-  double tell(const JointVector& position) noexcept;
+  /// Tells how near they are with the joints there.
+  void tell(const JointVector& position) noexcept;
   /// Who would be nearer at `goal` than they may, and than they are at `now`; infinitely far: nobody.
   [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& goal) noexcept {
     return clearance_->nearer(now, goal);
   }
   /// Each cycle: who would meet, if it is not braked now. Who is too near already may go away.
   [[nodiscard]] std::optional<Nearest> watch(const Setpoints& setpoints) noexcept;
-  /// Each cycle in which it gives way: who would meet soon. `floats`: it has no other setpoint than where it is.
-  [[nodiscard]] std::optional<Nearest> watch_led(const Measured& measured, bool floats) noexcept;
+  /// Each cycle in which it gives way: who would meet soon. CLEARANCE tells of where it is.
+  [[nodiscard]] std::optional<Nearest> watch_led(const Measured& measured) noexcept;
 
  private:
   Parameters& parameters_;

@@ -155,14 +155,14 @@ void RobotArm::watch(bool follows) noexcept {
 /// Comes to rest before links meet, or one of them what it is to keep out of; who is led stands there.
 void RobotArm::watch_clearance() noexcept {
   if (const auto ahead = obstacles_.watch(guidance_.setpoints())) {
-    raise(too_near_, ahead->distance_m);
+    raise(too_near_, ahead->distance_m, PairNames{std::string_view{ahead->names}});
     end_motion(Trouble::too_near, ahead->names, millimetres(ahead->distance_m));
     guidance_.setpoints().brake();
   }
   if (!control_.gives_way()) return;
-  if (const auto ahead = obstacles_.watch_led(drives_.measured(), control_.floats())) {
-    raise(too_near_, ahead->distance_m);
-    end_motion(Trouble::too_near, ahead->names);
+  if (const auto ahead = obstacles_.watch_led(drives_.measured())) {
+    raise(too_near_, ahead->distance_m, PairNames{std::string_view{ahead->names}});
+    end_motion(Trouble::too_near, ahead->names, millimetres(ahead->distance_m));
     yielding_.take_law(LawKind::Position);
   }
 }

@@ -68,7 +68,8 @@ class RobotArm final : public robotics::MovingSubsystem {
   /// Besides, how it reacts.
   Event<std::uint8_t, double, double, std::uint8_t> contact_{"CONTACT"};
   Event<double> retracted_{"RETRACTED"};  ///< how far, rad or m
-  Event<double> too_near_{"TOO_NEAR"};  ///< m
+  using PairNames = Text<64>;
+  Event<double, PairNames> too_near_{"TOO_NEAR"};  ///< m, and who
 
   // Each refers to some of those before it.
   robot_arm::UrdfArm known_;

@@ -296,6 +296,71 @@ TEST_F(RobotArmYields, StandsBeforeItIsLedIntoItself) {
   EXPECT_EQ(flown.rig.inhibited(), 0u);
 }
 
+/// Four slides along one axis: "near" in front of one post of the base, "tool" in front of another, so far apart with all of them at 0.
+std::string slides(double near_m, double tool_m) {
+  const auto box = [](double x, double y) {
+    return "<collision><origin xyz='" + std::to_string(x) + " " + std::to_string(y) +
+           " 0'/><geometry><box size='0.1 0.1 0.1'/></geometry></collision>";
+  };
+  const auto link = [](const std::string& name, const std::string& shapes) {
+    return "<link name='" + name +
+           "'><inertial><mass value='1'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' "
+           "izz='0.01'/></inertial>" +
+           shapes + "</link>";
+  };
+  const auto joint = [](const std::string& name, const std::string& parent, const std::string& child) {
+    return "<joint name='" + name + "' type='prismatic'><parent link='" + parent + "'/><child link='" + child +
+           "'/><axis xyz='1 0 0'/><limit lower='-0.3' upper='0.3' velocity='1' effort='50'/>"
+           "<dynamics damping='0.2' friction='0.1'/></joint>";
+  };
+  return "<robot name='slides'>" + link("base", box(0, 0) + box(0, 1)) + link("one", "") +
+         link("near", box(0.1 + near_m, 0)) + link("two", "") + link("tool", box(0.1 + tool_m, 1)) +
+         joint("a", "base", "one") + joint("b", "one", "near") + joint("c", "near", "two") + joint("d", "two", "tool") +
+         "</robot>";
+}
+
+/// Somebody leads the last slide towards its post. How near it came, and what TOO_NEAR said.
+struct Led {
+  double least_m{HUGE_VAL};
+  std::string pair;
+};
+Led led(const std::string& name, double near_m, double tool_m, const JointVector& from) {
+  Flown flown{4, robot_arm::testing::file_with(name, slides(near_m, tool_m))};
+  flown.plant.place(from);
+  flown.operate();
+  const auto float_from_now = flown.rig.call_with("SET_CONTACT", {Value{Number{std::uint8_t{2}}}, Value{0.3}});
+  flown.cycle(3);
+  EXPECT_EQ(flown.rig.outcome(float_from_now), "1 3 7");
+  flown.outside[3] = -18;
+  Led found;
+  for (int i = 0; i < 1000; ++i) {
+    flown.cycle();
+    found.least_m = std::min(found.least_m, tool_m + flown.plant.measured().position.sum());
+  }
+  EXPECT_EQ(flown.rig.events(1025), 1) << "it was let go of";
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+  const auto told = std::ranges::find(flown.rig.raised, std::uint16_t{1026}, &testing::Raised::id);
+  if (told == flown.rig.raised.end()) return found;
+  const auto words = std::span{told->auxiliary}.subspan(sizeof(double));
+  EXPECT_EQ(words.size(), 64u);
+  found.pair = fixed_words(words);
+  return found;
+}
+
+/// Its limit is a third of 30 mm.
+TEST(RobotArmThatIsLed, StandsBeforeTwoMeetThatAreBuiltNearEachOther) {
+  const Led found = led("built_near.urdf", 0.2, 0.03, JointVector::Zero(4));
+  EXPECT_EQ(found.pair, "base and tool");
+  EXPECT_GT(found.least_m, 0.005);
+}
+
+/// One pair stands at 12 mm, where the limit is 20: it hides no other that closes from 30.
+TEST(RobotArmThatIsLed, StandsBeforeTwoMeetThoughTwoOthersAreNearerAlready) {
+  const Led found = led("hidden.urdf", 0.1, 0.2, vector_of(std::array{0.0, -0.088, 0.0, -0.082}));
+  EXPECT_EQ(found.pair, "base and tool");
+  EXPECT_GT(found.least_m, 0.014);
+}
+
 /// What the descriptor leaves out, the arm does not have.
 TEST(RobotArmWithoutImpedance, HasNoneWhereItsDescriptorOffersNone) {
   std::string text = robot_arm::testing::descriptor_for(6, std::string{folder} + "robot_arm.urdf");

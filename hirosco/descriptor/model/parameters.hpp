@@ -51,7 +51,7 @@ struct Field {
   std::optional<Number> maximum;  ///< inclusive, in `unit`
   std::string enumeration;  ///< name of an Enumeration; empty = none
   Location at;
-  bool text{false};  ///< the octets are words up to the first zero; of the framework's events only
+  bool text{false};  ///< the octets are words up to the first zero; of events only
   std::uint16_t text_octets{0};  ///< of TEXT: most octets that the words take
   /// Values: the elements of an array, one for anything else.
   [[nodiscard]] std::uint32_t values() const noexcept { return type == Type::Text ? 1 : count; }

@@ -37,21 +37,25 @@ Field FieldReader::read(Attributes& attributes, Says says, NameKind kind) {
   field.name = attributes.name("name", kind);
   if (const auto* type = attributes.required("type"); type != nullptr) {
     field.type = attributes.one_of("type", Type::Double);
-    const bool numbers_only = says == Says::Nothing || says == Says::Words || says == Says::Range || says == Says::Lent;
+    const bool told = says == Says::Told && field.type == Type::Text;
+    const bool numbers_only = says == Says::Nothing || says == Says::Told || says == Says::Range || says == Says::Lent;
     if (field.type == Type::Struct) {
       problems_.add(*type, "E0104", fmt::format("'{}' is a type of <StructRef> only", type->value));
       field.type = Type::Double;
-    } else if (!is_carried(field.type) && numbers_only) {
+    } else if (!is_carried(field.type) && numbers_only && !told) {
       problems_.add(*type, "E0104",
                     fmt::format("'{}' is a type of parameters, of a function's arguments and of an own service only",
                                 type->value),
-                    "real-time links, devices and events carry numbers: a switch as UINT8");
+                    "real-time links, devices and events carry numbers: a switch as UINT8; an event may carry a TEXT");
       field.type = Type::Double;
     }
   }
   if (field.type == Type::Text) {
     static_assert(max_text_octets + sizeof(std::uint16_t) == max_argument_octets);
-    field.text_octets = attributes.required_integer<std::uint16_t>("octets", 1, max_text_octets);
+    const auto octets = attributes.required_integer<std::uint16_t>("octets", 1, max_text_octets);
+    // As the framework's own events have it: so many octets, read as words by whoever is told of them.
+    if (says == Says::Told) field.type = Type::Uint8, field.count = octets, field.text = true;
+    else field.text_octets = octets;
     return field;
   }
   field.count = attributes.integer_or<std::uint32_t>("count", 1, says == Says::Lent ? max_lent_count : max_count, 1);
@@ -60,7 +64,7 @@ Field FieldReader::read(Attributes& attributes, Says says, NameKind kind) {
   if (field.unit.size() > 32)
     problems_.add(*attributes.element().find("unit"), "E0114", "a unit has at most 32 octets");
   const bool all = says == Says::WordsAndRange || says == Says::Argument;
-  if (all || says == Says::Words || says == Says::Report) read_words(attributes, field);
+  if (all || says == Says::Told || says == Says::Report) read_words(attributes, field);
   if (all || says == Says::Range) check_field_range(attributes, field);
   return field;
 }

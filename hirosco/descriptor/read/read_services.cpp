@@ -89,7 +89,7 @@ void EventReader::read(const xml::Element& element, const Services& services) {
   Unique names{"argument name", "E0201"};
   each_child(
       element, problems_,
-      {{"Argument", [&](const xml::Element& child) { fields_.read_plain(child, event.arguments, names, Says::Words); },
+      {{"Argument", [&](const xml::Element& child) { fields_.read_plain(child, event.arguments, names, Says::Told); },
         max_arguments}});
   std::size_t octets = 0;
   for (const Field& argument : event.arguments) octets += argument.octets();

@@ -33,10 +33,14 @@ class EventPort {
   std::uint16_t id_{0};
 };
 
+/// What an event may tell.
+template <class T>
+concept ToldType = layout_detail::FieldType<T> || layout_detail::TextOf<T>::value;
+
 /// `Event<std::uint8_t, double> torque_exceeded_{"TORQUE_LIMIT_EXCEEDED"};` with one type for each <Argument>, in their
-/// order: a number, an enumeration or a std::array of those. A member like a parameter: `use_event(torque_exceeded_)` in
+/// order: a number, an enumeration, a std::array of those, or a Text. A member like a parameter: `use_event(torque_exceeded_)` in
 /// Software-Init, `raise(torque_exceeded_, 1, 12.5)` in the cycle.
-template <layout_detail::FieldType... Arguments>
+template <ToldType... Arguments>
 class Event final : public EventPort {
  public:
   static_assert(((layout_detail::ArrayOf<Arguments>::count != 0) && ...),
@@ -56,9 +60,13 @@ class Event final : public EventPort {
  private:
   template <class T>
   static void put(OctetWriter& writer, const T& value) noexcept {
-    if constexpr (layout_detail::ArrayOf<T>::value)
+    if constexpr (layout_detail::TextOf<T>::value) {
+      const std::string_view words = value.view();
+      writer.put(std::as_bytes(std::span{words}));
+      for (std::size_t i = words.size(); i < T::max_size(); ++i) writer.put(std::uint8_t{0});
+    } else if constexpr (layout_detail::ArrayOf<T>::value) {
       for (const auto& element : value) put(writer, element);
-    else writer.put(static_cast<typename layout_detail::NumberOf<T>::type>(value));
+    } else writer.put(static_cast<typename layout_detail::NumberOf<T>::type>(value));
   }
   static constexpr std::array<NativeField, sizeof...(Arguments)> fields{layout_detail::field_at<Arguments>(0)...};
 };

@@ -113,12 +113,36 @@ TEST_F(Events, WithArrayArgumentsArriveWhole) {
   EXPECT_EQ(arrays.reports(5, 2).at(1), "000700050006000708") << "from the service loop, too";
 }
 
+TEST_F(Events, TellWordsThatAreCutWhereTheyAreLonger) {
+  struct Words : Subsystem {
+    Event<Text<6>, std::uint8_t> near{"NEAR"};
+    Result<Step> software_init() override {
+      use_event(near);
+      return done;
+    }
+    Result<> pre_operational(const Cycle& cycle) noexcept override {
+      if (cycle.first) raise(near, Text<6>{std::string_view{"arm"}}, 4);
+      if (cycle.first) raise(near, Text<6>{std::string_view{"forearm"}}, 5);
+      return ok();
+    }
+  } author;
+  Rig words{author, R"(<Subsystem name="WORDS" id="10">
+    <EventService><Event name="NEAR" id="7" severity="low">
+      <Argument name="WHO" type="TEXT" octets="6"/><Argument name="AXIS" type="UINT8"/></Event></EventService>
+    <Configuration name="ONE" id="1" sampling_us="1000"/></Subsystem>)"};
+  words.bring_to(State::PreOperational);
+  words.settle();
+  EXPECT_THAT(words.reports(5, 2), ::testing::ElementsAre("000761726d00000004", "0007666f7265617205"));
+}
+
 TEST(TypedEvents, ThatAreNotTheDescriptorsFailSoftwareInitAllAtOnce) {
   struct Wrong : Subsystem {
     Event<> none{"NONE"};
     Event<std::uint16_t> axis{"AXIS_STUCK"};
     Event<std::uint8_t, double> force{"FORCE"};
+    Event<Text<6>> near{"NEAR"};
     Result<Step> software_init() override {
+      use_event(near);
       use_event(none);
       use_event(axis);
       use_event(force);
@@ -127,17 +151,20 @@ TEST(TypedEvents, ThatAreNotTheDescriptorsFailSoftwareInitAllAtOnce) {
   } author;
   Rig rig{author, R"(<Subsystem name="WRONG" id="10"><EventService>
       <Event name="AXIS_STUCK" id="7" severity="low"><Argument name="AXIS" type="UINT8"/></Event>
-      <Event name="FORCE" id="8" severity="low"><Argument name="AXIS" type="UINT8"/></Event></EventService>
+      <Event name="FORCE" id="8" severity="low"><Argument name="AXIS" type="UINT8"/></Event>
+      <Event name="NEAR" id="9" severity="low"><Argument name="WHO" type="TEXT" octets="5"/></Event></EventService>
     <Configuration name="ONE" id="1" sampling_us="1000"/></Subsystem>)"};
   rig.set_state_now(State::PreOperational);
   EXPECT_EQ(rig.state(), State::Offline);
   std::string all;
   for (const auto& text : rig.explanations) all += text;
-  EXPECT_THAT(all,
-              ::testing::AllOf(::testing::HasSubstr("declares no event 'NONE'"),
-                               ::testing::HasSubstr("AXIS_STUCK: its arguments are (std::uint16_t), the descriptor "
-                                                    "declares (UINT8)"),
-                               ::testing::HasSubstr("FORCE: its arguments are (std::uint8_t, double)")));
+  EXPECT_THAT(
+      all, ::testing::AllOf(::testing::HasSubstr("declares no event 'NONE'"),
+                            ::testing::HasSubstr("AXIS_STUCK: its arguments are (std::uint16_t), the descriptor "
+                                                 "declares (UINT8)"),
+                            ::testing::HasSubstr("FORCE: its arguments are (std::uint8_t, double)"),
+                            ::testing::HasSubstr("NEAR: its arguments are (Text<6>), the descriptor declares (TEXT of "
+                                                 "5 octets)")));
 }
 
 /// Raises as many events as one cycle can, and reports progress without end.

@@ -106,14 +106,15 @@ void Introduction::use_event(EventPort& event) {
   if (declared == nullptr)
     return mistake("use_event: the descriptor declares no event '" + std::string{event.name()} + "'");
   const bool same = std::ranges::equal(event.arguments(), declared->arguments, [](const NativeField& n, const auto& d) {
-    return n.type == d.type && n.count == d.count;
+    return n.type == (d.text ? Type::Text : d.type) && n.count == d.count;
   });
   used_events_.push_back(declared->id);
   if (same) return event.bind(declared->id);
   std::string native, wanted;
   for (const auto& field : event.arguments()) native.append(native.empty() ? "" : ", ").append(cpp_text(field));
   for (const auto& field : declared->arguments)
-    wanted.append(wanted.empty() ? "" : ", ").append(descriptor_text(field.type, field.count));
+    wanted.append(wanted.empty() ? "" : ", ")
+        .append(descriptor_text(field.text ? Type::Text : field.type, field.count));
   mistake("use_event " + std::string{event.name()} + ": its arguments are (" + native + "), the descriptor declares (" +
           wanted + ")");
 }

@@ -12,7 +12,7 @@
 namespace hirosco::descriptor::detail {
 
 /// What a field says besides name, type, count and unit.
-enum class Says { Nothing, Words, Range, WordsAndRange, Argument, Report, Lent };
+enum class Says { Nothing, Told, Range, WordsAndRange, Argument, Report, Lent };
 
 /// Reads what has a name and a type, wherever it stands; remembers which enumerations give their values names.
 class FieldReader {
