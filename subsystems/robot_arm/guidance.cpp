@@ -23,7 +23,7 @@ void Guidance::begin(double cycle_s) {
   cycle_s_ = cycle_s;
   setpoints_.emplace(parts_.known.model(), parts_.known.tip(), parts_.known.bounds(), cycle_s_);
   retracting_ = false;
-  jog_left_s_ = 0;
+  end_jog();
 }
 
 void Guidance::engage() noexcept {
@@ -98,15 +98,17 @@ Outcome Guidance::start(const Result<>& planned) noexcept {
   line_to_.reset();
   half_reported_ = false;
   arrives_ = true;
-  settled_s_ = waited_s_ = jog_left_s_ = 0;
+  settled_s_ = waited_s_ = 0;
+  end_jog();
   return running;
 }
 
-Outcome Guidance::start_jog(double seconds) noexcept {
+Outcome Guidance::start_jog(Setpoints::Kind kind, double seconds) noexcept {
   line_to_.reset();
   arrives_ = false;
   settled_s_ = waited_s_ = 0;
   jog_left_s_ = seconds;
+  jog_ = kind;
   return running;
 }
 
@@ -131,14 +133,14 @@ Outcome Guidance::move_l(const FunctionValues& values) noexcept {
 Outcome Guidance::jog_j(const FunctionValues& values) noexcept {
   const std::size_t joints = parts_.known.joints();
   setpoints_->jog(vector_of(std::span{values}.first(joints)));
-  return start_jog(values[joints]);
+  return start_jog(Setpoints::Kind::JointJog, values[joints]);
 }
 
 Outcome Guidance::jog_l(const FunctionValues& values) noexcept {
   Vector6 twist;
   twist << values[3], values[4], values[5], values[0], values[1], values[2];
   setpoints_->jog(twist);
-  return start_jog(values[6]);
+  return start_jog(Setpoints::Kind::TipJog, values[6]);
 }
 
 }  // namespace hirosco::robot_arm

@@ -51,8 +51,10 @@ class Guidance {
   [[nodiscard]] Outcome move_l(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome jog_j(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome jog_l(const FunctionValues& values) noexcept;
+  /// The motion that was begun last is a jog of this kind: another one may take its place, from the velocities that it has.
+  [[nodiscard]] bool jogs(Setpoints::Kind kind) const noexcept { return jog_ == kind; }
   /// Whatever its time was: nobody waits for it any more.
-  void end_jog() noexcept { jog_left_s_ = 0; }
+  void end_jog() noexcept { jog_left_s_ = 0, jog_.reset(); }
 
   // --- in each cycle ------------------------------------------------------------------------------------------------------
   /// `led`: it is to be wherever it is.
@@ -71,7 +73,7 @@ class Guidance {
  private:
   [[nodiscard]] bool in_range(const JointVector& goal) const noexcept;
   [[nodiscard]] Outcome start(const Result<>& planned) noexcept;
-  [[nodiscard]] Outcome start_jog(double seconds) noexcept;
+  [[nodiscard]] Outcome start_jog(Setpoints::Kind kind, double seconds) noexcept;
   [[nodiscard]] End arrive(bool gives_way) noexcept;
 
   Parts parts_;
@@ -81,6 +83,7 @@ class Guidance {
   double waited_s_{0};  ///< behind the end of a path
   double settled_s_{0};  ///< at the goal
   double jog_left_s_{0};
+  std::optional<Setpoints::Kind> jog_;
   bool retracting_{false};
   bool half_reported_{false};
   bool arrives_{false};  ///< its motion has a goal

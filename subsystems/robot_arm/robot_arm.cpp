@@ -201,6 +201,15 @@ Outcome RobotArm::move(Begin begin, const FunctionValues& values, const Call& ca
   return begun;
 }
 
+/// Who jogs on says so before the time of what he said last is over: that is done then, and nothing stands still between them.
+Outcome RobotArm::jog(Begin begin, robot_arm::Setpoints::Kind kind, const FunctionValues& values,
+                      const Call& call) noexcept {
+  if (!motion_ || stop_ || !guidance_.jogs(kind)) return move(begin, values, call);
+  finish(*motion_);
+  motion_ = call;
+  return (guidance_.*begin)(values);
+}
+
 /// A load that is not there would lift who is led or soft; the law of positions keeps its place whatever is declared.
 Outcome RobotArm::take_payload(double mass_kg, const std::array<double, 3>& place_m) noexcept {
   if (!model_.updated()) return refused(pus::FailureCode::NotPermittedNow);
@@ -225,10 +234,13 @@ void RobotArm::bind_motions() {
               [this](const FunctionValues& values, Call call) { return move(&Guidance::move_j, values, call); });
   on_function("MOVE_L",
               [this](const FunctionValues& values, Call call) { return move(&Guidance::move_l, values, call); });
-  on_function("JOG_J",
-              [this](const FunctionValues& values, Call call) { return move(&Guidance::jog_j, values, call); });
-  on_function("JOG_L",
-              [this](const FunctionValues& values, Call call) { return move(&Guidance::jog_l, values, call); });
+  using Kind = robot_arm::Setpoints::Kind;
+  on_function("JOG_J", [this](const FunctionValues& values, Call call) {
+    return jog(&Guidance::jog_j, Kind::JointJog, values, call);
+  });
+  on_function("JOG_L", [this](const FunctionValues& values, Call call) {
+    return jog(&Guidance::jog_l, Kind::TipJog, values, call);
+  });
   bind_hold_and_stop();
 }
 

@@ -56,6 +56,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   [[nodiscard]] Outcome may_move() const noexcept;
   [[nodiscard]] Outcome may_change_law() const noexcept;
   Outcome move(Begin begin, const FunctionValues& values, const Call& call) noexcept;
+  Outcome jog(Begin begin, robot_arm::Setpoints::Kind kind, const FunctionValues& values, const Call& call) noexcept;
   [[nodiscard]] Outcome take_payload(double mass_kg, const std::array<double, 3>& place_m) noexcept;
   void place_tool(const std::array<double, 3>& place_m) noexcept;
 

@@ -258,6 +258,47 @@ TEST_F(RobotArmTest, IsDoneWithALineOnceTheToolItselfIsMeasuredThere) {
   EXPECT_EQ(other.rig.outcome(again), done);
 }
 
+/// In short pieces, each said before the one before is over; who says no other has an arm that stands.
+TEST_F(RobotArmTest, JogsOnWithoutAHaltWhileItIsToldToAndStandsWithinAMomentOnceNobodyDoes) {
+  const std::vector<double> joints{0.3, 0, 0, 0, 0, 0, 0.3}, tool{0, 0, 0.05, 0, 0, 0, 0.3};
+  for (const auto& [function, other, numbers] :
+       {std::tuple{"JOG_J", "JOG_L", joints}, std::tuple{"JOG_L", "JOG_J", tool}}) {
+    Flown arm{6, std::string{folder} + "robot_arm.urdf"};
+    arm.plant.place(start);
+    arm.operate();
+    auto request = arm.ask(function, numbers);
+    arm.cycle(200);
+    double slowest = HUGE_VAL;
+    for (int i = 0; i < 10; ++i) {
+      const auto next = arm.ask(function, numbers);
+      for (int j = 0; j < 150; ++j) {
+        arm.cycle();
+        slowest = std::min(slowest, arm.plant.measured().velocity.cwiseAbs().maxCoeff());
+      }
+      EXPECT_EQ(arm.rig.outcome(request), "1 3 7") << function;
+      EXPECT_EQ(arm.rig.outcome(next), "1 3") << function;
+      request = next;
+    }
+    EXPECT_GT(slowest, 0.03) << function;
+    const auto refused = arm.ask(other, numbers == joints ? tool : joints);
+    arm.cycle(3);
+    EXPECT_THAT(arm.rig.outcome(refused), StartsWith("1 4:0108")) << function;
+    arm.cycle(600);
+    EXPECT_EQ(arm.rig.outcome(request), "1 3 7") << function;
+    const JointVector there = arm.plant.measured().position;
+    arm.cycle(200);
+    EXPECT_LT(arm.off(there), 1e-3) << function;
+  }
+}
+
+TEST_F(RobotArmTest, JogsNoLongerThanASecondAtAWord) {
+  for (const char* function : {"JOG_J", "JOG_L"}) {
+    const auto* declared = flown.rig.subsystem.descriptor().find_function(function);
+    EXPECT_TRUE(pus::encode_call(*declared, std::vector{0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 1.0})) << function;
+    EXPECT_FALSE(pus::encode_call(*declared, std::vector{0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 1.01})) << function;
+  }
+}
+
 TEST_F(RobotArmTest, RefusesAGoalInWhichItMeetsItselfAndNamesWho) {
   flown.operate();
   const auto request = flown.move_j(vector_of(std::array{0.0, 0.0, 2.6, 2.2, 0.0, 0.0}));

@@ -15,7 +15,7 @@ const page_folder = process.env.HIROSCO_PAGE;
 const of_page = (file) => import(pathToFileURL(join(process.env.HIROSCO_SOURCES, 'ground/web/page', file)));
 const {beyond_rad, reach} = await of_page('scene/reach.js');
 const {goal_texts, led_value, number_in, numbers_in} = await of_page('parts/numbers.js');
-const {jog_of, paces, push_of} = await of_page('parts/jog_steps.js');
+const {jog_of, paces, push_of, renewed_after_ms} = await of_page('parts/jog_steps.js');
 const {in_words, ticks_text} = await of_page('format.js');
 const {borne_by, missed_words, MissedLately, rate_of, share_text} = await of_page('parts/missed.js');
 const {cube_as_seen, cube_px, direction_of, turned_by, words_of: seen_from} = await of_page('scene/view_cube.js');
@@ -272,13 +272,12 @@ describe('numbers in words', () => {
 });
 
 describe('the pushes of a tool', () => {
-  const action = {arguments: [{name: 'LINEAR', count: 3, unit: 'm/s', min: -1, max: 0.03}, {name: 'ANGULAR', count: 3, unit: 'rad/s', min: -2, max: 2}, {name: 'SECONDS', unit: 's', min: 0.01, max: 30}]};
+  const action = {arguments: [{name: 'LINEAR', count: 3, unit: 'm/s', min: -1, max: 0.03}, {name: 'ANGULAR', count: 3, unit: 'rad/s', min: -2, max: 2}, {name: 'SECONDS', unit: 's', min: 0.01, max: 1}]};
 
   it('are there for a telecommand of two velocities and a time, and for no other', () => {
     assert.equal(jog_of(action).linear.name, 'LINEAR');
-    assert.equal(jog_of({arguments: action.arguments.slice(0, 2)}), null);
-    assert.equal(jog_of({arguments: [{name: 'VELOCITY', count: 6, unit: 'rad/s'}, {name: 'SECONDS', unit: 's'}]}), null);
-    assert.equal(jog_of({}), null);
+    const joints = {arguments: [{name: 'VELOCITY', count: 6, unit: 'rad/s'}, {name: 'SECONDS', unit: 's'}]};
+    for (const other of [{arguments: action.arguments.slice(0, 2)}, joints, {}]) assert.equal(jog_of(other), null);
   });
 
   it('go along one axis or about it, to one side, and no faster than the descriptor permits', () => {
@@ -286,6 +285,7 @@ describe('the pushes of a tool', () => {
     assert.deepEqual(push_of(jog, {turning: false, axis: 1, side: -1}, fine), {LINEAR: [0, -0.005, 0], ANGULAR: [0, 0, 0], SECONDS: 0.4});
     assert.deepEqual(push_of(jog, {turning: true, axis: 2, side: 1}, fine), {LINEAR: [0, 0, 0], ANGULAR: [0, 0, 0.05], SECONDS: 0.4});
     assert.deepEqual(push_of(jog, {turning: false, axis: 0, side: 1}, coarse).LINEAR, [0.03, 0, 0]);
+    for (const pace of paces) assert.equal(renewed_after_ms(pace), 500 * push_of(jog, {turning: false, axis: 0, side: 1}, pace).SECONDS, 'renewed in its middle');
   });
 });
 

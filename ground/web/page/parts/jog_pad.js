@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Buttons that push a tool along and about the axes of its base: each push is one telecommand, and while a button is held the next follows
-// when the one before is done. Who lets go sends no other; the arm brakes by itself.
+// in the middle of the one before, which it renews. Who lets go sends no other, nor does a page that is lost; the arm brakes by itself.
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {finished, say, send} from '../commanding.js';
 import {html} from '../html.js';
 import {may_send} from '../people.js';
 import {operator, replay} from '../store.js';
-import {axes, paces, push_of} from './jog_steps.js';
+import {axes, paces, push_of, renewed_after_ms} from './jog_steps.js';
 
 const pace_words = (pace) => `${pace.m_s * 1000} mm/s, ${pace.rad_s} rad/s for ${pace.s} s`;
 
@@ -24,13 +24,22 @@ export function JogPad({subsystem, action, jog}) {
     if (held.current?.busy || locked) return;
     const mine = held.current = {busy: true, down: true};
     set_pushing(way);
+    // Whichever of them fails, no other follows, and it is said once.
+    const fail = (words) => {
+      if (!mine.failed) say(`${subsystem} ${action.name}: ${words}`, 'bad');
+      mine.failed = true;
+      mine.down = false;
+    };
+    const judge = (outcome) => { if (outcome.stage === 'failed') fail(outcome.reason ?? `code ${outcome.code}`); };
     try {
+      let last;
       do {
-        const outcome = await finished(await send(subsystem, action.name, push_of(jog, way, pace)));
-        if (outcome.stage === 'failed') throw new Error(outcome.reason ?? `code ${outcome.code}`);
+        last = finished(await send(subsystem, action.name, push_of(jog, way, pace))).then(judge);
+        await Promise.race([last, new Promise((resolve) => setTimeout(resolve, renewed_after_ms(pace)))]);
       } while (mine.down && held.current === mine);
+      await last;
     } catch (error) {
-      say(`${subsystem} ${action.name}: ${error.message}`, 'bad');
+      fail(error.message);
     }
     mine.busy = false;
     set_pushing(null);

@@ -14,6 +14,8 @@ export function jog_of(action) {
 
 /// How far a push goes: metres a second and radians a second, for so long.
 export const paces = [{name: 'fine', m_s: 0.005, rad_s: 0.05, s: 0.4}, {name: 'medium', m_s: 0.02, rad_s: 0.1, s: 0.5}, {name: 'coarse', m_s: 0.05, rad_s: 0.25, s: 1}];
+/// While a button is held the next push is sent so long after the one before: in its middle, so that one that comes late finds it under way.
+export const renewed_after_ms = (pace) => 500 * pace.s;
 export const axes = ['x', 'y', 'z'];
 
 const within = ({min = -Infinity, max = Infinity}, value) => Math.max(min, Math.min(max, value));
