@@ -4,13 +4,8 @@
 from dataclasses import dataclass
 
 SUPERVISION, CYCLE = "supervisor/supervision", "hirosco/subsystem/cycle/cycle.cpp"
-<<<<<<< HEAD
-GATE = "hirosco/subsystem/cycle/actuator_gate.cpp"
-GUARD, LOOP_WATCH = "supervisor/guard/guard.cpp", "supervisor/guard/loop_watch.cpp"
-=======
 PERMIT, SAYS = "hirosco/subsystem/cycle/permit_watch.cpp", "hirosco/subsystem/cycle/report_writer.cpp"
-GUARD, WATCHING = "supervisor/guard/guard.cpp", "supervisor/guard/watching.cpp"
->>>>>>> a3d260ac (The cycle is composed of a class for each concern: permission, inputs, what passes to an actuator, what is said, what is measured, a takeover)
+GUARD, LOOP_WATCH = "supervisor/guard/guard.cpp", "supervisor/guard/loop_watch.cpp"
 MANIPULATOR = "subsystems/manipulator/manipulator.cpp"
 PERMISSION, LINK_ENDS = f"{SUPERVISION}/data_handling/permission.cpp", "hirosco/subsystem/service_loop/link_ends.cpp"
 RECEPTION, GROUND_LINK = f"{SUPERVISION}/data_handling/reception.cpp", "subsystems/communication/ground_link.cpp"
