@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "hirosco/data_transfer/device/device_memory_name.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
@@ -17,9 +18,24 @@
 namespace hirosco::testing {
 namespace {
 
+/// The folders of flights stay, those of tests do not.
+class UniqueNames {
+ public:
+  ~UniqueNames() {
+    for (int number = 0; number < next_; ++number) remove_device_memory_folder(name(number));
+  }
+  std::string next() { return name(next_++); }
+
+ private:
+  [[nodiscard]] static std::string name(int number) {
+    return "ways-" + std::to_string(::getpid()) + "-" + std::to_string(number);
+  }
+  std::atomic<int> next_{0};
+};
+
 std::string unique_name() {
-  static std::atomic<int> number{0};
-  return "ways-" + std::to_string(::getpid()) + "-" + std::to_string(number++);
+  static UniqueNames names;
+  return names.next();
 }
 
 std::string free_port(int kind) {

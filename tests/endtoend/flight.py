@@ -77,11 +77,11 @@ def listens(port):
 
 
 def segments():
-    """Named shared memory of the project on this computer."""
+    """Named shared memory of the project on this computer. The folders of device addresses stay (docs/adr/0169)."""
+    memory = pathlib.Path("/dev/shm")
     with contextlib.suppress(FileNotFoundError):
-        memory = pathlib.Path("/dev/shm")
-        named = [path for path in memory.iterdir() if path.name.startswith("hirosco")]
-        return sorted(str(path.relative_to(memory)) for top in named for path in ([top] if top.is_file() else top.iterdir()))
+        return sorted(str(path.relative_to(memory)) for top in memory.glob("hirosco*") for path in [top, *top.rglob("*")]
+                      if not path.is_dir())
     return []
 
 

@@ -174,21 +174,42 @@ sockaddr_in in_this_computer(std::uint16_t port) {
   return address;
 }
 
+/// Behind each name of a device.
+std::string suffix_of_flight() {
+  const char* const instance = std::getenv("HIROSCO_INSTANCE");
+  return instance == nullptr || *instance == '\0' ? "" : std::string{"."} + instance;
+}
+
+/// Where it may make files.
+std::string own_folder() { return "/dev/shm/hirosco/rokviss-robot" + suffix_of_flight(); }
+
+void attack_segment(const Report& report, const std::string& what, const std::string& segment) {
+  const std::string here = own_folder() + "/mine";
+  const int file = ::open(segment.c_str(), O_RDWR | O_CLOEXEC);
+  report.tried(what + ": open " + segment, file >= 0);
+  report.tried(what + ": cut short when opened " + segment, file >= 0 && ::ftruncate(file, 0) == 0);
+  if (file >= 0) ::close(file);
+  report.tried(what + ": link " + segment, ::link(segment.c_str(), here.c_str()) == 0);
+  report.tried(what + ": cut short " + segment, ::truncate(segment.c_str(), 0) == 0);
+  report.tried(what + ": shut " + segment, ::chmod(segment.c_str(), 0) == 0);
+  report.tried(what + ": move " + segment, ::rename(segment.c_str(), here.c_str()) == 0);
+  report.tried(what + ": remove " + segment, ::unlink(segment.c_str()) == 0);
+}
+
+/// The frames of another's device: who cuts them short ends everybody who maps them, that member and its device (docs/adr/0169).
+void attack_frames(const Report& report) {
+  attack_segment(report, "frames", "/dev/shm/hirosco/rokviss-joystick" + suffix_of_flight() + "/frames");
+  report.tried("frames: a folder beside its own", ::mkdir("/dev/shm/hirosco/mine", 0700) == 0);
+  // What is its own it reaches.
+  const int own = ::open((own_folder() + "/frames").c_str(), O_RDWR | O_CLOEXEC);
+  report.tried("own frames", own >= 0);
+  if (own >= 0) ::close(own);
+}
+
 /// The second inhibits, which would let its robot go on, and the ground's port, by which it would let itself go (docs/adr/0150).
 void attack_inhibits(const Report& report) {
-  const char* const instance = std::getenv("HIROSCO_INSTANCE");
-  const std::string behind = instance == nullptr || *instance == '\0' ? "" : std::string{"."} + instance;
-  for (const char* const device : {"rokviss-robot", "rokviss-joystick"}) {
-    const std::string segment = std::string{"/dev/shm/hirosco."} + device + "-enable" + behind;
-    const std::string here = std::string{"/dev/shm/hirosco/mine-"} + device;
-    const int file = ::open(segment.c_str(), O_RDWR | O_CLOEXEC);
-    if (file >= 0) ::close(file);
-    report.tried("inhibits: open " + segment, file >= 0);
-    report.tried("inhibits: link " + segment, ::link(segment.c_str(), here.c_str()) == 0);
-    report.tried("inhibits: cut short " + segment, ::truncate(segment.c_str(), 0) == 0);
-    report.tried("inhibits: shut " + segment, ::chmod(segment.c_str(), 0) == 0);
-    report.tried("inhibits: move " + segment, ::rename(segment.c_str(), here.c_str()) == 0);
-  }
+  for (const char* const device : {"rokviss-robot", "rokviss-joystick"})
+    attack_segment(report, "inhibits", std::string{"/dev/shm/hirosco."} + device + "-enable" + suffix_of_flight());
   constexpr std::uint16_t telecommands = 10025;
   const sockaddr_in there = in_this_computer(telecommands);
   const auto* const to = reinterpret_cast<const sockaddr*>(&there);
@@ -197,10 +218,6 @@ void attack_inhibits(const Report& report) {
   const int datagrams = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   report.tried("inhibits: send a datagram", ::sendto(datagrams, "x", 1, 0, to, sizeof there) == 1);
   report.tried("inhibits: a UNIX socket", ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0) >= 0);
-  // What is its own it reaches.
-  const int own = ::open(("/dev/shm/hirosco/rokviss-robot" + behind).c_str(), O_RDWR | O_CLOEXEC);
-  report.tried("own frames", own >= 0);
-  if (own >= 0) ::close(own);
 }
 
 /// What its sandbox is to refuse (docs/adr/0081).
@@ -270,6 +287,7 @@ void* turn(void* argument) {
     const Report report{"hostile-report"};
     attack_others(report);
     attack_inhibits(report);
+    attack_frames(report);
     attack_descriptor(report, "hirosco-permit", permit);
     const auto regions = read_only_regions();
     for (const Region& region : regions) attack_mapping(report, region);

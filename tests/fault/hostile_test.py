@@ -49,9 +49,10 @@ class Hostile(unittest.TestCase):
         flight.measure(f"{len(lines) - 1} attempts on pages and links of others")
         self.assertGreaterEqual(len([line for line in lines if line.startswith("hirosco-permit")]), 12)
         self.assertGreaterEqual(len([line for line in lines if line.startswith("others: ")]), 12)
-        inhibits = [line.split()[2].rstrip(":") for line in lines if line.startswith("inhibits: open ")]
-        self.assertEqual([path for path in inhibits if pathlib.Path(path).exists()], inhibits, "there to be opened")
-        self.assertEqual(len(inhibits), 2, "its own and another's")
+        for what, how_many in (("inhibits", 2), ("frames", 1)):     # inhibits of its own device and another's; frames of another's
+            found = [line.split()[2].rstrip(":") for line in lines if line.startswith(f"{what}: open ")]
+            self.assertEqual([path for path in found if pathlib.Path(path).is_file()], found, "there to be opened")
+            self.assertEqual(len(found), how_many, what)
         for tried in ("connect to the ground's telecommand port", "send a datagram"):
             self.assertIn(f"inhibits: {tried}: refused", lines)
         done = ["own frames: DONE", "look-alike: DONE"]

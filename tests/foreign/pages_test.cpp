@@ -415,7 +415,8 @@ TEST(InterfacePages, SharedMemoryFlows) {
   const std::string address = "interface-page-" + std::to_string(::getpid());
   auto subsystem = SharedMemoryFlow::open(address, FlowSide::Subsystem).value();
   auto device = SharedMemoryFlow::open(address, FlowSide::Device).value();
-  const int file = ::open(("/dev/shm/hirosco/" + address).c_str(), O_RDONLY | O_CLOEXEC);
+  const std::string folder = "/dev/shm/hirosco/" + address;
+  const int file = ::open((folder + "/frames").c_str(), O_RDONLY | O_CLOEXEC);
   ASSERT_GE(file, 0);
   struct stat status{};
   ASSERT_EQ(::fstat(file, &status), 0);
@@ -442,6 +443,9 @@ TEST(InterfacePages, SharedMemoryFlows) {
   }
   ::munmap(const_cast<unsigned char*>(memory), 2432);
   ::close(file);
+  subsystem.reset();
+  device.reset();
+  EXPECT_EQ(::rmdir(folder.c_str()), 0) << "it stays, and is empty";
 }
 
 TEST(InterfacePages, Streams) {

@@ -75,11 +75,12 @@ struct SharedMemoryFlow::Segment {
 Result<std::unique_ptr<DataFlow>> SharedMemoryFlow::open(const std::string& address, FlowSide side, FlowHolder holder) {
   if (address.empty() || address.size() > 200 || address.find('\0') != std::string::npos)
     return fail(ErrorCode::InvalidArgument, "address of shared memory");
-  if (holder == FlowHolder::Subsystem) make_device_memory_folder();
   const std::string path = device_memory_file(address, holder);
   // A peer that closes holds both locks for a moment, so a claim that fails is tried again before it is believed.
   Result<std::unique_ptr<SharedMemoryFlow>> opened = fail(ErrorCode::Unavailable, "shared memory");
   for (int i = 0; i < opening_attempts; ++i) {
+    // Each time anew: a flight of this name that ends takes away what is empty.
+    if (holder == FlowHolder::Subsystem) HIROSCO_TRY(make_device_memory_folder(address));
     opened = try_open(path, side);
     if (opened || (opened.error().code != ErrorCode::AlreadyExists && opened.error().code != ErrorCode::Unavailable))
       break;
@@ -91,7 +92,8 @@ Result<std::unique_ptr<DataFlow>> SharedMemoryFlow::open(const std::string& addr
 
 Result<std::unique_ptr<SharedMemoryFlow>> SharedMemoryFlow::try_open(const std::string& path, FlowSide side) {
   FileDescriptor file{::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)};
-  if (!file) return fail(ErrorCode::SystemFailure, "open shared memory", errno);
+  if (!file)
+    return fail(errno == ENOENT ? ErrorCode::Unavailable : ErrorCode::SystemFailure, "open shared memory", errno);
   if (!lock_side(file.get(), side == FlowSide::Subsystem ? 0 : 1))
     return fail(ErrorCode::AlreadyExists, "this side of the flow is open");
   if (!names(path, file.get())) return fail(ErrorCode::Unavailable, "shared memory was removed");

@@ -18,7 +18,8 @@ namespace hirosco {
 /// is used again. send and receive make no system call, but for the one that wakes a waiting peer.
 class SharedMemoryFlow final : public DataFlow {
  public:
-  /// `address`: 1 .. 200 characters, "/" becomes ".". AlreadyExists: another live flow has this side. Realtime: blocks.
+  /// `address`: 1 .. 200 characters, "/" becomes "." (device_memory_name.hpp). AlreadyExists: another live flow has this side.
+  /// Realtime: blocks.
   [[nodiscard]] static Result<std::unique_ptr<DataFlow>> open(const std::string& address, FlowSide side,
                                                               FlowHolder holder = FlowHolder::Subsystem);
   ~SharedMemoryFlow() override;

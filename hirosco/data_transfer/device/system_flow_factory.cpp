@@ -18,10 +18,14 @@ namespace {
 
 }  // namespace
 
+std::string flight_instance() { return told(flight_instance_variable); }
+
+std::string instance_suffix(const std::string& instance) { return instance.empty() ? "" : "." + instance; }
+
 SystemFlowFactory::SystemFlowFactory()
-    : SystemFlowFactory{told(flight_instance_variable), read_device_networks(told(device_networks_variable))} {}
+    : SystemFlowFactory{flight_instance(), read_device_networks(told(device_networks_variable))} {}
 SystemFlowFactory::SystemFlowFactory(const std::string& instance, std::vector<DeviceNetwork> networks)
-    : suffix_{instance.empty() ? "" : "." + instance}, networks_{std::move(networks)} {}
+    : suffix_{instance_suffix(instance)}, networks_{std::move(networks)} {}
 
 Result<std::unique_ptr<DataFlow>> SystemFlowFactory::do_open(const FlowAddress& address, FlowSide side) {
   const FlowMeans* means = find_flow_means(address.transfer);

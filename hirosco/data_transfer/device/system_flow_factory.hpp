@@ -16,6 +16,11 @@ inline constexpr const char* flight_instance_variable = "HIROSCO_INSTANCE";
 /// In the environment of every process of a flight: the networks on which its devices may be (device_network.hpp, adr 0112).
 inline constexpr const char* device_networks_variable = "HIROSCO_DEVICE_NETWORKS";
 
+/// The flight that this process belongs to, by its environment; empty: one that has its mission's name.
+[[nodiscard]] std::string flight_instance();
+/// What stands behind each name of a device in the flight of this instance.
+[[nodiscard]] std::string instance_suffix(const std::string& instance);
+
 /// The flows of the real set, by means of transfer (`flow_means.hpp`). NotPermitted for means that are not built in. Names of
 /// shared memory, queues, sockets and pseudo-terminals belong to the instance of the flight, so that two flights of one mission do not share their
 /// devices.  Realtime: blocks, allocates. Thread: any.

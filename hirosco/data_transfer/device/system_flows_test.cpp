@@ -20,6 +20,7 @@
 #include <string>
 #include <thread>
 
+#include "hirosco/data_transfer/device/device_memory_name.hpp"
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/data_transfer/device/testing/flow_conformance.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
@@ -27,10 +28,26 @@
 namespace hirosco::testing {
 namespace {
 
-/// Tests of several checkouts may run side by side.
+/// Tests of several checkouts may run side by side. The folders of flights stay, those of tests do not.
+class UniqueNames {
+ public:
+  ~UniqueNames() {
+    for (int number = 0; number < next_; ++number)
+      for (const char* instance : {"", "one", "two", "twin"})
+        remove_device_memory_folder(name(number) + instance_suffix(instance));
+  }
+  std::string next() { return name(next_++); }
+
+ private:
+  [[nodiscard]] static std::string name(int number) {
+    return "test-" + std::to_string(::getpid()) + "-" + std::to_string(number);
+  }
+  std::atomic<int> next_{0};
+};
+
 std::string unique_name() {
-  static std::atomic<int> number{0};
-  return "test-" + std::to_string(::getpid()) + "-" + std::to_string(number++);
+  static UniqueNames names;
+  return names.next();
 }
 
 /// A port that the system says is free.
@@ -187,11 +204,45 @@ TEST(SharedMemoryFlow, LeavesNoNameBehindWhenBothSidesHaveClosed) {
   auto subsystem = factory.open(address, FlowSide::Subsystem).value();
   auto device = factory.open(address, FlowSide::Device).value();
   subsystem.reset();
-  const std::string file = "/dev/shm/hirosco/" + address.address;
-  EXPECT_TRUE(std::filesystem::exists(file));
+  const std::filesystem::path folder = "/dev/shm/hirosco/" + address.address;
+  EXPECT_TRUE(std::filesystem::exists(folder / "frames"));
   device.reset();
-  EXPECT_FALSE(std::filesystem::exists(file));
-  EXPECT_TRUE(std::filesystem::exists("/dev/shm/hirosco")) << "whoever is let in there would not be in another";
+  EXPECT_FALSE(std::filesystem::exists(folder / "frames"));
+  EXPECT_TRUE(std::filesystem::exists(folder)) << "whoever is let in there would not be in another";
+}
+
+TEST(SharedMemoryFlow, HasAFolderForEachAddressWhoeverComesFirst) {
+  namespace fs = std::filesystem;
+  SystemFlowFactory factory;
+  for (const FlowSide side : {FlowSide::Subsystem, FlowSide::Device}) {
+    const FlowAddress address = SharedMemoryTraits::address();
+    const auto first = factory.open({address.transfer, "a/" + address.address}, side);
+    ASSERT_TRUE(first);
+    const fs::path folder = "/dev/shm/hirosco/a." + address.address;
+    EXPECT_EQ(fs::status(folder).permissions(), fs::perms::all | fs::perms::sticky_bit) << "whatever the mask";
+    remove_device_memory_folder("a." + address.address);
+    EXPECT_TRUE(fs::exists(folder / "frames")) << "in use";
+    fs::remove_all(folder);
+    EXPECT_TRUE(factory.open({address.transfer, "a." + address.address}, side))
+        << "one that was taken away is made again";
+    remove_device_memory_folder("a." + address.address);
+    EXPECT_FALSE(fs::exists(folder));
+  }
+}
+
+TEST(SharedMemoryFlow, IsOpenedInNoFolderThatALinkOrAnAddressLeadsTo) {
+  SystemFlowFactory factory{""};
+  const FlowAddress address = SharedMemoryTraits::address();
+  make_device_memory_folder(address.address).value();
+  const std::filesystem::path folder = device_memory_folder(address.address), link = folder.string() + "-link";
+  std::filesystem::create_symlink(folder, link);
+  EXPECT_EQ(factory.open({address.transfer, link.filename()}, FlowSide::Device).error().code, ErrorCode::Mismatch);
+  remove_device_memory_folder(link.filename());
+  EXPECT_TRUE(std::filesystem::is_symlink(link)) << "it is nobody's folder";
+  std::filesystem::remove(link);
+  for (const char* way_out : {".", "..", "/", "./", "//"})
+    EXPECT_EQ(factory.open({address.transfer, way_out}, FlowSide::Device).error().code, ErrorCode::InvalidArgument)
+        << way_out;
 }
 
 /// Closes both sides at the same time, so often that they meet. `remove` takes away what they left and says how much that was; returns the sum.
@@ -216,7 +267,7 @@ int left_by_two_that_close_at_once(const FlowAddress& address, const std::functi
 
 TEST(SharedMemoryFlow, LeavesNoNameBehindWhenBothSidesCloseAtOnce) {
   const FlowAddress address = SharedMemoryTraits::address();
-  const std::string file = "/dev/shm/hirosco/" + address.address;
+  const std::string file = "/dev/shm/hirosco/" + address.address + "/frames";
   EXPECT_EQ(left_by_two_that_close_at_once(address, [&] { return std::filesystem::remove(file) ? 1 : 0; }), 0);
 }
 
@@ -238,7 +289,7 @@ TEST(SharedMemoryFlow, OfTheSupervisorsSideIsNotWhereThoseOfSubsystemsAre) {
   address.holder = FlowHolder::Supervisor;
   auto held = factory.open(address, FlowSide::Subsystem);
   ASSERT_TRUE(held) << "not the same though it has the same address";
-  EXPECT_TRUE(std::filesystem::exists("/dev/shm/hirosco/" + address.address + ".twin"));
+  EXPECT_TRUE(std::filesystem::exists("/dev/shm/hirosco/" + address.address + ".twin/frames"));
   EXPECT_TRUE(std::filesystem::exists("/dev/shm/hirosco." + address.address + ".twin"));
   auto device = factory.open(address, FlowSide::Device).value();
   ASSERT_TRUE((*held)->send(std::array{std::byte{1}}));

@@ -11,6 +11,7 @@
 
 #include "hirosco/data_transfer/device/device_memory_name.hpp"
 #include "hirosco/data_transfer/device/device_network.hpp"
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/descriptor/model/setting_files.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 
@@ -45,7 +46,6 @@ void add_internet_address(const descriptor::Endnode& endnode, SandboxSockets& so
 }
 
 void add_address(const descriptor::Endnode& endnode, Sandbox& sandbox) {
-  if (endnode.transfer == Transfer::SharedMemory) add_once(device_memory_folder, sandbox.writable);
   // Queues lie in no folder that programs see, but where one is shown, that is the one whose files they are.
   if (endnode.transfer == Transfer::MessageQueue) {
     add_once("/dev/mqueue", sandbox.writable);
@@ -83,7 +83,21 @@ bool is_script(const std::filesystem::path& program) {
   return file.get() == '#' && file.get() == '!';
 }
 
-Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program) {
+std::vector<std::string> memory_addresses(const descriptor::MissionSubsystem& subsystem, const std::string& instance) {
+  std::vector<std::string> addresses;
+  const auto add = [&](const descriptor::Endnode& endnode) {
+    if (endnode.transfer == Transfer::SharedMemory) add_once(endnode.address + instance_suffix(instance), addresses);
+  };
+  for (const auto& configuration : subsystem.subsystem.configurations)
+    for (const auto& use : configuration.devices) {
+      add(use.endnode);
+      for (const auto& other : use.fall_backs) add(other);
+    }
+  return addresses;
+}
+
+Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program,
+                   const std::string& instance) {
   Sandbox sandbox;
   for (const char* library : {"/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/lib32"}) {
     sandbox.executable.emplace_back(library);  // the loader stands there, too
@@ -110,6 +124,16 @@ Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::fil
       add_address(use.endnode, sandbox);
       for (const auto& other : use.fall_backs) add_address(other, sandbox);
     }
+  for (const std::string& address : memory_addresses(subsystem, instance))
+    add_once(device_memory_folder(address), sandbox.writable);
+  return sandbox;
+}
+
+Sandbox make_sandbox(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program,
+                     const std::string& instance) {
+  Sandbox sandbox = sandbox_of(subsystem, program, instance);
+  for (const std::string& address : memory_addresses(subsystem, instance))
+    if (!make_device_memory_folder(address)) std::erase(sandbox.writable, device_memory_folder(address));
   return sandbox;
 }
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/utilities/os/process.hpp"
@@ -16,8 +17,18 @@ namespace hirosco::supervisor {
 
 /// Its program, descriptors, libraries, files of its settings and what those bring along to read, what its devices' transfers need to write, the
 /// sockets of those, of links by UDP and of the ground link, and nothing else: where the supervisor's side holds an endnode it lets nobody in
-/// (docs/adr/0150). Opens no file.
-[[nodiscard]] Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program);
+/// (docs/adr/0150). In a flight of this instance, which is part of where frames in shared memory are. Opens no file.
+[[nodiscard]] Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program,
+                                 const std::string& instance);
+
+/// The addresses of all its endnodes in shared memory, with those that it falls back to, in a flight of this instance.
+[[nodiscard]] std::vector<std::string> memory_addresses(const descriptor::MissionSubsystem& subsystem,
+                                                        const std::string& instance);
+
+/// The same sandbox, with the folders of its frames made, as what is not there is let in by no rule (docs/adr/0169). Where one cannot be
+/// it is let in elsewhere only: it is told why when it opens that device.
+[[nodiscard]] Sandbox make_sandbox(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program,
+                                   const std::string& instance);
 
 /// What it reaches beyond what is its own, because the system knows no narrower rule, in words; empty: nothing.
 [[nodiscard]] std::string left_open(const Sandbox& sandbox);

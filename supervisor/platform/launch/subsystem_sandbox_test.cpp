@@ -29,14 +29,20 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::Not;
 
+descriptor::Endnode endnode_at(Transfer transfer, const std::string& address) {
+  descriptor::Endnode made;
+  made.transfer = transfer;
+  made.address = address;
+  return made;
+}
+
 descriptor::MissionSubsystem with_device(Transfer transfer, const char* address) {
   descriptor::MissionSubsystem made;
   made.subsystem.file = "/missions/arm.xml";
   made.subsystem.devices.resize(1);
   descriptor::Configuration configuration;
   descriptor::DeviceUse use;
-  use.endnode.transfer = transfer;
-  use.endnode.address = address;
+  use.endnode = endnode_at(transfer, address);
   configuration.devices.push_back(use);
   made.subsystem.configurations.push_back(configuration);
   return made;
@@ -46,7 +52,7 @@ TEST(SubsystemSandbox, NamesItsProgramAndDescriptorsAndNothingToWriteButWhatItsD
   auto plain = with_device(Transfer::Udp, "127.0.0.1:5000");
   plain.subsystem.commands.resize(1);
   plain.subsystem.commands[0].file = "/missions/hand.xml";
-  const Sandbox sandbox = sandbox_of(plain, "/opt/hirosco/bin/arm");
+  const Sandbox sandbox = sandbox_of(plain, "/opt/hirosco/bin/arm", {});
   EXPECT_THAT(sandbox.executable, Contains("/opt/hirosco/bin/arm"));
   EXPECT_THAT(sandbox.readable, Contains("/missions/arm.xml"));
   EXPECT_THAT(sandbox.readable, Contains("/missions/hand.xml"));
@@ -55,15 +61,42 @@ TEST(SubsystemSandbox, NamesItsProgramAndDescriptorsAndNothingToWriteButWhatItsD
 }
 
 TEST(SubsystemSandbox, OpensTheFolderThatADevicesTransferWritesTo) {
-  EXPECT_THAT(sandbox_of(with_device(Transfer::SharedMemory, "arm"), "/bin/arm").writable,
-              ElementsAre("/dev/null", "/dev/shm/hirosco"));
-  EXPECT_THAT(sandbox_of(with_device(Transfer::Unix, "/run/arm/socket"), "/bin/arm").writable,
+  EXPECT_THAT(sandbox_of(with_device(Transfer::SharedMemory, "arm"), "/bin/arm", {}).writable,
+              ElementsAre("/dev/null", "/dev/shm/hirosco/arm"));
+  EXPECT_THAT(sandbox_of(with_device(Transfer::Unix, "/run/arm/socket"), "/bin/arm", {}).writable,
               ElementsAre("/dev/null", "/run/arm"));
+}
+
+TEST(SubsystemSandbox, OpensTheFolderOfEachAddressOfItsOwnFlightAndNotTheOneThatAllAreIn) {
+  auto arm = with_device(Transfer::SharedMemory, "arm");
+  auto& uses = arm.subsystem.configurations[0].devices;
+  uses[0].fall_backs = {endnode_at(Transfer::SharedMemory, "arm-b"), endnode_at(Transfer::Unix, "/run/arm/socket")};
+  arm.subsystem.configurations.push_back(with_device(Transfer::SharedMemory, "hand").subsystem.configurations[0]);
+  arm.subsystem.configurations.push_back(arm.subsystem.configurations[0]);
+  EXPECT_THAT(memory_addresses(arm, "twin"), ElementsAre("arm.twin", "arm-b.twin", "hand.twin"));
+  EXPECT_THAT(sandbox_of(arm, "/bin/arm", "twin").writable,
+              ElementsAre("/dev/null", "/run/arm", "/dev/shm/hirosco/arm.twin", "/dev/shm/hirosco/arm-b.twin",
+                          "/dev/shm/hirosco/hand.twin"));
+}
+
+TEST(SubsystemSandbox, IsMadeWithTheFoldersOfItsFramesAndWithoutWhatOnlyHasTheNameOfOne) {
+  const std::string address = "made." + std::to_string(::getpid());
+  const std::string link = device_memory_folder(address + "-link");
+  auto arm = with_device(Transfer::SharedMemory, address.c_str());
+  for (const std::string& other : {address + "-b", address + "-link", std::string{".."}})
+    arm.subsystem.configurations[0].devices[0].fall_backs.push_back(endnode_at(Transfer::SharedMemory, other));
+  make_device_memory_folder(address).value();
+  std::filesystem::create_symlink("/dev/shm", link);
+  EXPECT_THAT(make_sandbox(arm, "/bin/arm", {}).writable,
+              ElementsAre("/dev/null", device_memory_folder(address), device_memory_folder(address + "-b")));
+  EXPECT_TRUE(std::filesystem::is_directory(device_memory_folder(address + "-b")));
+  std::filesystem::remove(link);
+  for (const char* which : {"", "-b"}) remove_device_memory_folder(address + which);
 }
 
 TEST(SubsystemSandbox, LetsMakeTheSocketsOfItsDevicesLinksAndGroundLinkAndNoOthers) {
   const auto sockets = [](Transfer transfer, const char* address) {
-    return sandbox_of(with_device(transfer, address), "/bin/arm").sockets;
+    return sandbox_of(with_device(transfer, address), "/bin/arm", {}).sockets;
   };
   EXPECT_EQ(sockets(Transfer::SharedMemory, "arm"), SandboxSockets{});
   EXPECT_EQ(sockets(Transfer::Serial, "/dev/ttyS0@115200"), SandboxSockets{});
@@ -75,16 +108,16 @@ TEST(SubsystemSandbox, LetsMakeTheSocketsOfItsDevicesLinksAndGroundLinkAndNoOthe
       << "finds out by a datagram from where it would speak";
   auto linked = with_device(Transfer::SharedMemory, "arm");
   linked.links_by_udp = true;
-  EXPECT_EQ(sandbox_of(linked, "/bin/arm").sockets, (SandboxSockets{.datagrams = true}));
+  EXPECT_EQ(sandbox_of(linked, "/bin/arm", {}).sockets, (SandboxSockets{.datagrams = true}));
   auto ground = descriptor::MissionSubsystem{};
   ground.subsystem.file = "/missions/link.xml";
   ground.carries_ground = true;
-  EXPECT_EQ(sandbox_of(ground, "/bin/link").sockets, (SandboxSockets{.datagrams = true, .streams = true}));
+  EXPECT_EQ(sandbox_of(ground, "/bin/link", {}).sockets, (SandboxSockets{.datagrams = true, .streams = true}));
 }
 
 TEST(SubsystemSandbox, SaysWhatItCannotNarrowDown) {
   const auto open = [](Transfer transfer, const char* address) {
-    return left_open(sandbox_of(with_device(transfer, address), "/bin/arm"));
+    return left_open(sandbox_of(with_device(transfer, address), "/bin/arm", {}));
   };
   EXPECT_EQ(open(Transfer::SharedMemory, "arm"), "");
   EXPECT_EQ(open(Transfer::Tcp, "127.0.0.1:5000"), "");
@@ -99,7 +132,7 @@ TEST(SubsystemSandbox, LetsReadWhatASettingOfADeviceNamesAsAFileAndNothingElseTh
   auto arm = with_device(Transfer::Udp, "127.0.0.1:5000");
   arm.subsystem.configurations[0].devices[0].settings = {
       {"MODEL_FILE", "../robots/arm.urdf", {}}, {"MODEL_NAME", "secret.txt", {}}, {"MAP_FILE", "/maps/all", {}}};
-  const Sandbox sandbox = sandbox_of(arm, "/bin/arm");
+  const Sandbox sandbox = sandbox_of(arm, "/bin/arm", {});
   EXPECT_THAT(sandbox.readable, Contains("/robots/arm.urdf"));
   EXPECT_THAT(sandbox.readable, Contains("/maps/all"));
   EXPECT_THAT(sandbox.readable, Not(Contains("/missions/secret.txt")));
@@ -124,7 +157,7 @@ struct RobotOnDisk {
 
 TEST(SubsystemSandbox, LetsReadTheMeshesBesideARobotsFileThatItNames) {
   const RobotOnDisk disk;
-  const Sandbox sandbox = sandbox_of(disk.arm, "/bin/arm");
+  const Sandbox sandbox = sandbox_of(disk.arm, "/bin/arm", {});
   EXPECT_THAT(sandbox.readable, Contains(disk.place_of("arm.urdf")));
   EXPECT_THAT(sandbox.readable, Contains(disk.place_of("parts/a.stl")));
   EXPECT_THAT(sandbox.readable, Not(Contains(::testing::HasSubstr("b.stl"))));
@@ -136,21 +169,21 @@ TEST(SubsystemSandbox, IsMadeWithoutAFileBeingOpenedSoThatADiskThatStandsStillHo
   ASSERT_GE(::inotify_add_watch(watch.get(), disk.folder.path().c_str(), IN_OPEN | IN_ACCESS), 0);
   std::array<char, 4096> events{};
   const auto opened = [&] { return ::read(watch.get(), events.data(), events.size()) > 0; };
-  const Sandbox before = sandbox_of(disk.arm, "/bin/arm");
+  const Sandbox before = sandbox_of(disk.arm, "/bin/arm", {});
   EXPECT_FALSE(opened());
   static_cast<void>(std::ifstream{disk.robot}.get());
   EXPECT_TRUE(opened()) << "who opens one is seen";
   // A file that never answers who reads it.
   std::filesystem::remove(disk.robot);
   ASSERT_EQ(::mkfifo(disk.robot.c_str(), 0600), 0);
-  EXPECT_EQ(sandbox_of(disk.arm, "/bin/arm").readable, before.readable);
+  EXPECT_EQ(sandbox_of(disk.arm, "/bin/arm", {}).readable, before.readable);
 }
 
 /// Apart (CMakeLists.txt), where the system has what a sandbox needs.
 TEST(SubsystemInItsSandbox, ReadsTheRobotsFileAndItsMeshAndNothingElseInTheFolder) {
   for (const std::string& lack : isolation_lacks()) ASSERT_TRUE(lack.starts_with("every real-time priority")) << lack;
   const RobotOnDisk disk;
-  const PreparedSandbox prepared{sandbox_of(disk.arm, {})};
+  const PreparedSandbox prepared{sandbox_of(disk.arm, {}, {})};
   const auto opens = [&](const char* name) {
     const FileDescriptor file{::open(disk.place_of(name).c_str(), O_RDONLY | O_CLOEXEC)};
     return static_cast<bool>(file);
@@ -169,30 +202,39 @@ TEST(SubsystemInItsSandbox, ReadsTheRobotsFileAndItsMeshAndNothingElseInTheFolde
 }
 
 /// Apart (CMakeLists.txt), as above.
-TEST(SubsystemInItsSandbox, OpensTheFramesOfItsDeviceAndNoSecondInhibit) {
+TEST(SubsystemInItsSandbox, OpensTheFramesOfItsDeviceAndNoSecondInhibitNorThoseOfAnother) {
   const std::string address = "sandboxed." + std::to_string(::getpid());
-  make_device_memory_folder();
   SystemFlowFactory flows{""};
-  const FlowAddress frames{Transfer::SharedMemory, address};
+  const FlowAddress frames{Transfer::SharedMemory, address}, others{Transfer::SharedMemory, address + "-other"};
   const FlowAddress held{
       .transfer = Transfer::SharedMemory, .address = address + "-enable", .holder = FlowHolder::Supervisor};
-  auto device = flows.open(frames, FlowSide::Device), guarded = flows.open(held, FlowSide::Device);
+  const PreparedSandbox prepared{make_sandbox(with_device(Transfer::SharedMemory, address.c_str()), {}, {})};
+  auto device = flows.open(frames, FlowSide::Device), guarded = flows.open(held, FlowSide::Device),
+       another = flows.open(others, FlowSide::Device);
   ASSERT_TRUE(device);
   ASSERT_TRUE(guarded);
-  const PreparedSandbox prepared{sandbox_of(with_device(Transfer::SharedMemory, address.c_str()), {})};
+  ASSERT_TRUE(another);
   const pid_t child = ::fork();
   if (child == 0) {
     if (prepared.enter() != 0) ::_exit(99);
     auto own = flows.open(frames, FlowSide::Subsystem);
     if (!own || !(*own)->send(std::array{std::byte{7}})) ::_exit(1);
-    const std::string segment = device_memory_file(held.address, held.holder);
-    for (const int how : {O_RDWR, O_RDONLY}) {
-      const FileDescriptor file{::open(segment.c_str(), how | O_CLOEXEC)};
-      if (file) ::_exit(2);
+    const std::string here = device_memory_folder(address) + "/mine";
+    for (const FlowAddress& not_its : {held, others}) {
+      const std::string segment = device_memory_file(not_its.address, not_its.holder);
+      for (const int how : {O_RDWR, O_RDONLY, O_WRONLY}) {
+        const FileDescriptor file{::open(segment.c_str(), how | O_CLOEXEC)};
+        if (file) ::_exit(2);
+      }
+      if (flows.open(not_its, FlowSide::Subsystem)) ::_exit(3);
+      if (::rename(segment.c_str(), here.c_str()) == 0) ::_exit(4);
+      if (::link(segment.c_str(), here.c_str()) == 0) ::_exit(5);
+      if (::unlink(segment.c_str()) == 0) ::_exit(6);
     }
-    if (flows.open(held, FlowSide::Subsystem)) ::_exit(3);
-    if (::rename(segment.c_str(), device_memory_file("mine", FlowHolder::Subsystem).c_str()) == 0) ::_exit(4);
-    if (::link(segment.c_str(), device_memory_file("mine", FlowHolder::Subsystem).c_str()) == 0) ::_exit(5);
+    if (flows.open({Transfer::SharedMemory, address + "-made"}, FlowSide::Subsystem)) ::_exit(7);
+    if (::symlink("/dev/shm", (device_memory_folder(address) + "-link").c_str()) == 0) ::_exit(8);
+    // That of the next process of its device, which a rule would not be about.
+    if (::rename(device_memory_folder(address).c_str(), here.c_str()) == 0) ::_exit(9);
     ::_exit(0);
   }
   int status = 0;
@@ -201,6 +243,8 @@ TEST(SubsystemInItsSandbox, OpensTheFramesOfItsDeviceAndNoSecondInhibit) {
   EXPECT_EQ(WEXITSTATUS(status), 0);
   std::array<std::byte, 8> buffer{};
   EXPECT_EQ((*device)->receive(buffer).value().octets, 1U);
+  for (auto* flow : {&device, &another}) flow->value().reset();
+  for (const FlowAddress& made : {frames, others}) remove_device_memory_folder(made.address);
 }
 
 TEST(SubsystemSandbox, KnowsAScriptByItsFirstLine) {

@@ -20,7 +20,6 @@
 #include <string_view>
 
 #include "hirosco/data_transfer/channel/socket_channel.hpp"
-#include "hirosco/data_transfer/device/device_memory_name.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/installation.hpp"
@@ -164,7 +163,7 @@ void SystemLauncher::drop(const descriptor::MissionSubsystem& subsystem, const s
 
 std::string SystemLauncher::shut_out(const descriptor::MissionSubsystem& flown,
                                      const descriptor::MissionSubsystem& fresh) {
-  const Sandbox had = sandbox_of(flown, {}), wants = sandbox_of(fresh, {});
+  const Sandbox had = sandbox_of(flown, {}, instance_), wants = sandbox_of(fresh, {}, instance_);
   for (const std::string& place : wants.writable)
     if (std::ranges::find(had.writable, place) == had.writable.end()) return place;
   if (wants.sockets.local && !had.sockets.local) return "UNIX sockets";
@@ -176,7 +175,8 @@ std::string SystemLauncher::shut_out(const descriptor::MissionSubsystem& flown,
 }
 
 std::string SystemLauncher::left_open(const descriptor::MissionSubsystem& subsystem) const {
-  return sandbox_is_off() || subsystem.carries_ground ? "" : supervisor::left_open(sandbox_of(subsystem, {}));
+  return sandbox_is_off() || subsystem.carries_ground ? ""
+                                                      : supervisor::left_open(sandbox_of(subsystem, {}, instance_));
 }
 
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
@@ -225,9 +225,8 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   if (image != nullptr) start.image = image->descriptor();
   if (image != nullptr && script) start.inherited.push_back({image->descriptor(), script_number});
   if (!sandbox_is_off() && !script) {
-    // Of one that runs from memory no file is executed. What is not there cannot be let in.
-    make_device_memory_folder();
-    sandbox.emplace(sandbox_of(subsystem, image != nullptr ? "" : program));
+    // Of one that runs from memory no file is executed.
+    sandbox.emplace(make_sandbox(subsystem, image != nullptr ? "" : program, instance_));
     start.sandbox = &*sandbox;
   }
   // What it writes is shown with its name, within limits. The terminal of whoever flies is not its own: by it, whoever has it stops him (docs/adr/0164).

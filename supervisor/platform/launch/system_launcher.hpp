@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/os/process.hpp"
 #include "supervisor/keeper/kept_store.hpp"
@@ -63,6 +64,7 @@ class SystemLauncher final : public FlightLauncher {
             const MemoryHandle& permit, const FileDescriptor& errors);
   [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;
 
+  const std::string instance_{flight_instance()};  ///< part of where the frames of devices are
   SealedMemory memory_;
   StandardError errors_;
   std::map<std::uint32_t, FileDescriptor> memory_use_;  ///< statm of each process, and our own

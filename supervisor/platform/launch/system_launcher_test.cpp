@@ -24,6 +24,7 @@
 #include <string>
 
 #include "hirosco/data_transfer/channel/socket_channel.hpp"
+#include "hirosco/data_transfer/device/device_memory_name.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
 
@@ -201,6 +202,35 @@ TEST_F(ManifestStart, OfAnotherFileIsRefused) {
   EXPECT_EQ(launcher.refuse(mission.subsystems[0]).value().why.code, ErrorCode::Mismatch);
   is_now("/bin/true");
   EXPECT_EQ(run(), 0);
+}
+
+/// Of LAMP, with a device in shared memory there.
+descriptor::MissionSubsystem in_memory(const descriptor::MissionSubsystem& lamp, const std::string& address) {
+  descriptor::MissionSubsystem made = lamp;
+  descriptor::DeviceUse use;
+  use.endnode.transfer = Transfer::SharedMemory;
+  use.endnode.address = address;
+  made.subsystem.configurations.emplace_back().devices.push_back(use);
+  return made;
+}
+
+TEST_F(ManifestStart, FindsTheFolderOfItsDeviceAndOfItsFallBackInPlaceWhoeverComesFirst) {
+  const std::string address = "launched." + std::to_string(::getpid());
+  mission.subsystems[0] = in_memory(mission.subsystems[0], address);
+  auto& use = mission.subsystems[0].subsystem.configurations[0].devices[0];
+  use.fall_backs = {use.endnode};
+  use.fall_backs[0].address += "-b";
+  EXPECT_EQ(run(), 0);
+  for (const char* which : {"", "-b"}) {
+    EXPECT_EQ(std::filesystem::is_directory(device_memory_folder(address + which)), !sandbox_is_off()) << which;
+    remove_device_memory_folder(address + which);
+  }
+}
+
+TEST_F(ManifestStart, ShutsOutOfTheFramesOfADeviceThatItsDescriptorDidNotName) {
+  const auto lamp = in_memory(mission.subsystems[0], "lamp"), other = in_memory(mission.subsystems[0], "other");
+  EXPECT_EQ(launcher.shut_out(lamp, lamp), "");
+  EXPECT_EQ(launcher.shut_out(lamp, other), "/dev/shm/hirosco/other");
 }
 
 TEST_F(ManifestStart, ThatFailsForWantOfADescriptorAtWhicheverStepLeavesNoProcessBehind) {
