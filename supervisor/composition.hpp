@@ -110,8 +110,8 @@ struct SupervisorParts final : OwnSubsystem::Author {
       ground_route,
       {&traffic, &commanded, &stored, &replies, &subscriptions, &reception, &power, &own_telecommands, &links}};
   Retrieval retrieval;
-  Reception reception{
-      {craft, own, telecommands, telemetry, reactions, ground_loss, unanswered, traffic, subscriptions, stored, adoption}};
+  Reception reception{{craft, own, telecommands, telemetry, reactions, ground_loss, unanswered, traffic, subscriptions,
+                       stored, adoption}};
   // real-time links, resource management
   LinkCommands links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};

@@ -33,8 +33,8 @@ TEST(FlightLock, OfAnotherVersionIsNotGoneBy) {
 
 TEST(FlightLock, ThatIsNoneIsNotGoneBy) {
   for (const char* text : {"", "\n", "4711\n", "4711 2500\n", "x 2500 CRAFT 1\n", "0 2500 CRAFT 1\n",
-                           "-1 2500 CRAFT 1\n", "4711 -1 CRAFT 1\n", "4711 2500ms CRAFT 1\n",
-                           "4711 2500 CRAFT one\n", "4711 2500 CRAFT 1 more\n", "99999999999 2500 CRAFT 1\n"})
+                           "-1 2500 CRAFT 1\n", "4711 -1 CRAFT 1\n", "4711 2500ms CRAFT 1\n", "4711 2500 CRAFT one\n",
+                           "4711 2500 CRAFT 1 more\n", "99999999999 2500 CRAFT 1\n"})
     EXPECT_FALSE(lock_from_text(text)) << text;
 }
 
