@@ -19,7 +19,7 @@
 ///   TM[129,2]  the answer: its request id u32, 1 or 0 u8, failure code of the refusal u16 (0 = none)
 ///   TM[129,3]  copy of a telecommand that the supervisor has received from a ground, to every ground: the whole packet
 ///   TC[129,4]  what would SET_MODE do now?  mode u8
-///   TM[129,5]  the answer, also beside a SET_MODE that is refused: mode u8; how many reasons are against it u8 (0 = it is
+///   TM[129,5]  the answer, also beside a SET_MODE or ENTER_MODE that is refused: mode u8; how many reasons are against it u8 (0 = it is
 ///              possible), each as words; how many steps it would take u8, each its stage u8 from 1, its subject's APID u16, words.
 ///              A stage begins when the one before has ended.
 ///   TC[129,6]  what would a plan do now about this event?  APID of whose event u16, its number u16; nothing is done
