@@ -12,7 +12,6 @@ namespace hirosco {
 using robot_arm::Excess;
 using robot_arm::Guidance;
 using robot_arm::JointVector;
-using robot_arm::LawKind;
 using robot_arm::millimetres;
 using robot_arm::Trouble;
 using robot_arm::UrdfArm;
@@ -163,7 +162,7 @@ void RobotArm::watch_clearance() noexcept {
   if (const auto ahead = obstacles_.watch_led(drives_.measured())) {
     raise(too_near_, ahead->distance_m, PairNames{std::string_view{ahead->names}});
     end_motion(Trouble::too_near, ahead->names, millimetres(ahead->distance_m));
-    yielding_.take_law(LawKind::Position);
+    yielding_.stand_apart();
   }
 }
 

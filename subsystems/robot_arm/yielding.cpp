@@ -42,12 +42,18 @@ void Yielding::stand() noexcept {
   else parts_.guidance.setpoints().brake();
 }
 
+void Yielding::stand_apart() noexcept {
+  take_law(LawKind::Position);
+  stands_apart_ = true;
+}
+
 // --- a contact -----------------------------------------------------------------------------------------------------------
 
 /// Of a load that stands no more is borne than the limit, and never so much that the torque limit had to find what comes to it: one motion
 /// behind the other presses no harder than the first.
 void Yielding::arm(Before load) noexcept {
   contact_cycles_ = 0;
+  stands_apart_ = false;
   borne_.resize(0);
   if (load == Before::Counts) return;
   const double limit = parts_.parameters.contact.load().limit;
@@ -87,17 +93,22 @@ std::optional<Yielding::Contact> Yielding::meet() noexcept {
     return std::nullopt;
   }
   if (++contact_cycles_ != contact_after_cycles || parts_.control.floats()) return std::nullopt;
-  return Contact{worst, external[static_cast<Eigen::Index>(worst)], limit * bounds[worst].effort, values.reaction};
+  return Contact{worst, external[static_cast<Eigen::Index>(worst)], limit * bounds[worst].effort,
+                 static_cast<std::uint8_t>(reaction())};
+}
+
+Yielding::Reaction Yielding::reaction() const noexcept {
+  return stands_apart_ ? Reaction::Stop : static_cast<Reaction>(parts_.parameters.contact.load().reaction);
 }
 
 void Yielding::react(const Doing& doing) noexcept {
-  const auto reaction = static_cast<Reaction>(parts_.parameters.contact.load().reaction);
-  if (reaction == Reaction::Float && !doing.stopping) {
+  const Reaction by = reaction();
+  if (by == Reaction::Float && !doing.stopping) {
     take_law(LawKind::Float);
     return;
   }
   if (doing.stood) return;
-  if (reaction == Reaction::Retract && !doing.stopping && !parts_.guidance.retracting()) {
+  if (by == Reaction::Retract && !doing.stopping && !parts_.guidance.retracting()) {
     parts_.guidance.retract();
   } else {
     const Measured& measured = parts_.drives.measured();

@@ -57,6 +57,8 @@ class Yielding {
   void take_law(LawKind kind) noexcept;
   /// Comes to rest; who is led stands where he is.
   void stand() noexcept;
+  /// Stands before links meet: whoever leads it there has it float no more, however hard he pushes, until arm().
+  void stand_apart() noexcept;
 
   /// What acts from outside already counts from now on, too; or stands beside, where a motion begins with it, and what comes to it counts.
   enum class Before : std::uint8_t { Counts, Stands };
@@ -77,10 +79,12 @@ class Yielding {
 
  private:
   [[nodiscard]] Outcome soften(LawKind kind, const Impedance& impedance) noexcept;
+  [[nodiscard]] Reaction reaction() const noexcept;
   [[nodiscard]] double counts_from(Eigen::Index joint, double share, double limit) noexcept;
 
   Parts parts_;
   std::uint32_t contact_cycles_{0};
+  bool stands_apart_{false};
   JointVector borne_;  ///< shares of efforts, of a load that stood when a motion began; of no length: none
 };
 
