@@ -185,6 +185,8 @@ TEST_F(CommandedStatesTest, WhatAFunctionHasSetIsKnown) {
 
 /// Safe is to take for set what may be: each end that such a telecommand has, and none.
 TEST_F(CommandedStatesTest, WhatAFunctionMayHaveSetCountsUnlessItWasRefused) {
+  parts.own.start(craft.mode_epoch);
+  own_step();
   up();
   for (const std::uint8_t refused : {std::uint8_t{2}, std::uint8_t{4}}) {
     verify(arm, leaves(8, 1, call_data("SET_LIMIT")), refused, pus::FailureCode::NotPermittedNow);

@@ -85,7 +85,7 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
   });
 }
 
-[[nodiscard]] bool has(const auto& list, const auto& wanted, const auto& name) {
+[[nodiscard]] bool is_listed(const auto& list, const auto& wanted, const auto& name) {
   return std::ranges::find(list, wanted, name) != list.end();
 }
 
@@ -107,9 +107,9 @@ class Comparison {
       whole = false;
     };
     for (const T& each : fresh)
-      if (!has(flown, name(each), name)) told(each, " is new");
+      if (!is_listed(flown, name(each), name)) told(each, " is new");
     for (const T& each : flown)
-      if (!has(fresh, name(each), name)) told(each, " is gone");
+      if (!is_listed(fresh, name(each), name)) told(each, " is gone");
     if (!whole) return;
     for (std::size_t i = 0; i < flown.size() && i < fresh.size(); ++i) {
       if (name(flown[i]) != name(fresh[i])) return told(fresh[i], " has another place in the order");

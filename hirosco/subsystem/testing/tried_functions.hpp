@@ -39,7 +39,8 @@ class TriedFunctions {
         settle();
         const auto after = values();
         for (const std::size_t parameter : watched_)
-          if (before.at(parameter) != after.at(parameter)) changed_[function.name].insert(parameter);
+          if (before.at(parameter).empty() || before.at(parameter) != after.at(parameter))
+            changed_[function.name].insert(parameter);
       }
   }
 
@@ -85,9 +86,12 @@ class TriedFunctions {
           .put(ParameterId{descriptor().id, parameter.field.type, parameter.id}.wire());
       rig_.forget_telemetry();
       rig_.send(20, 1, data);
-      rig_.service();
-      const auto reports = rig_.reports(20, 2);
-      all[i] = reports.empty() ? "none" : reports.back();
+      auto reports = rig_.reports(20, 2);
+      for (int step = 0; step < 5 && reports.empty(); ++step) {
+        rig_.service();
+        reports = rig_.reports(20, 2);
+      }
+      all[i] = reports.empty() ? "" : reports.back();
     }
     return all;
   }
