@@ -111,6 +111,24 @@ TEST(ShippedMissions, AProtectionIsSetByOneFunctionAtMostAndByNoTelecommandForPa
       }
 }
 
+/// What watches an arm in all states, and no function sets: a mission that wants more has a descriptor of its own (docs/adr/0170, 0174).
+TEST(ShippedMissions, WhatStopsAnArmByItsOwnSensorsNoMissionWidens) {
+  int tried = 0;
+  for (const auto& [file, mission] : shipped_missions())
+    for (const auto& member : mission.subsystems)
+      for (const char* limit : {"LIMITS.TORQUE", "LIMITS.TORQUE_HARD", "LIMITS.SPEED", "TORQUE_HARD", "SPEED_LIMIT"}) {
+        const std::string name{limit};
+        const Parameter* parameter = member.subsystem.find_parameter(name.substr(0, name.find('.')));
+        if (parameter == nullptr || (name.find('.') != std::string::npos) == parameter->members.empty()) continue;
+        ++tried;
+        EXPECT_TRUE(parameter->protection) << file << " " << member.subsystem.name << " " << limit;
+        SubsystemDescriptor changed = member.subsystem;
+        EXPECT_FALSE(apply_change(changed, "--set", name + "=5"))
+            << file << " " << member.subsystem.name << " " << limit;
+      }
+  EXPECT_GE(tried, 6) << "of the arm that stands, and the one that floats";
+}
+
 /// Read as text and not by the reader, which has made of it what the supervisor goes by: whoever sets one of these is not brought back to move
 /// by itself (docs/adr/0170). That nobody else changes a protection is tried beside each subsystem: hirosco/subsystem/testing/tried_functions.hpp.
 TEST(ShippedMissions, WhatFunctionsOfArmsSetIsLostInACrashAndSaid) {

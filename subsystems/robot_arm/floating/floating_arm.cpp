@@ -173,9 +173,9 @@ void FloatingArm::tell_ill_conditioned(double conditioning) noexcept {
 /// Each limit is told once until the next entry into Operational; it stays in force when the actuators are inhibited.
 void FloatingArm::watch() noexcept {
   const auto shares = parameters_.limits.load();
-  const auto found =
-      watch_.update(drives_.measured(), nullptr, known_.bounds(),
-                    {.speed_share = shares[2], .torque_share = shares[0], .torque_hard_share = shares[1]});
+  const auto found = watch_.update(
+      drives_.measured(), nullptr, known_.bounds(),
+      {.speed_share = shares.speed, .torque_share = shares.torque, .torque_hard_share = shares.torque_hard});
   if (watch_.tripped()) inhibit_actuators();
   if (!found) return;
   end_motion(Trouble::limit_tripped, static_cast<std::int64_t>(found->joint + 1));

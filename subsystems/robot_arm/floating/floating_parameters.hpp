@@ -19,6 +19,10 @@ struct ErrorValues {
   double position_m;
   double orientation_deg;
 };
+/// Of a joint's effort, and of its velocity.
+struct LimitShares {
+  double torque, torque_hard, speed;
+};
 struct BasePose {
   std::array<double, 3> position_m;
   std::array<double, 4> orientation_wxyz;
@@ -52,7 +56,7 @@ struct FloatingParameters {
   Parameter<double> conditioning, progress;
   Parameter<std::uint8_t> phase, active;
   Parameter<Joints> desired_velocity;
-  Parameter<std::array<double, 3>> limits;  ///< of torque, hard of torque, of speed: shares
+  Parameter<LimitShares> limits;
   Parameter<double> tool_speed_m_s, goal_tolerance_m;
 };
 
