@@ -31,7 +31,7 @@ Result<Step> FloatingArm::software_init() {
   use_device(UrdfArm::device, drives_.port(), {robotics::urdf::model_setting, robotics::urdf::tip_setting});
   require_link("POSE", craft_.pose_port());
   for (EventPort* event : std::initializer_list<EventPort*>{&motion_done_, &conditioning_low_, &base_held_,
-                                                            &limit_exceeded_, &hard_exceeded_})
+                                                            &limit_exceeded_, &hard_exceeded_, &range_end_near_})
     use_event(*event);
   HIROSCO_TRY(known_.read(own_descriptor()));
   HIROSCO_TRY(known_.take_bounds());
@@ -84,7 +84,7 @@ Result<> FloatingArm::safe_operational(const Cycle& cycle) noexcept {
   measure(cycle);
   if (cycle.first) end_motion(pus::FailureCode::Aborted);
   guidance_.engage();
-  control();
+  control(false);
   watch();
   return ok();
 }
@@ -101,7 +101,7 @@ Result<> FloatingArm::operational(const Cycle& cycle) noexcept {
   } else {
     advance();
   }
-  control();
+  control(cycle.active && !braked_);
   watch();
   if (cycle.active && !braked_ && !may_act()) braked_ = true;
   if (braked_) inhibit_actuators();
@@ -124,8 +124,12 @@ void FloatingArm::measure(const Cycle& cycle) noexcept {
   craft_.update();
 }
 
-void FloatingArm::control() noexcept {
-  const JointVector rates = guidance_.wanted_rates();
+void FloatingArm::control(bool moves) noexcept {
+  JointVector rates = guidance_.wanted_rates();
+  if (const auto end = guidance_.end_ahead(rates)) {
+    rates.setZero();
+    if (moves) stop_before(*end);
+  }
   drives_.put_out(robot_arm::joints_of(
       robot_arm::joint_torque(craft_.model(), rates, drives_.measured().velocity, known_.bounds())));
   parameters_.desired_velocity.store(robot_arm::joints_of(rates));
@@ -163,6 +167,15 @@ bool FloatingArm::may_act() noexcept {
   if (craft_.law() != ToolLaw::AttitudeHold || conditioning >= robot_arm::least_conditioning) return true;
   tell_ill_conditioned(conditioning);
   return false;
+}
+
+/// A motion ends, and it stands there: another one may lead away. Who only holds its tool, and runs there for that, cannot go on holding it.
+void FloatingArm::stop_before(const robot_arm::EndAhead& end) noexcept {
+  if (guidance_.holds()) braked_ = true;
+  const auto number = static_cast<std::uint8_t>(end.joint + 1);
+  raise(range_end_near_, number, end.position, end.end);
+  end_motion(Trouble::out_of_range, number);
+  guidance_.stand();
 }
 
 void FloatingArm::tell_ill_conditioned(double conditioning) noexcept {

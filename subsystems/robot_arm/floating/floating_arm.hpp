@@ -36,9 +36,10 @@ class FloatingArm final : public Subsystem {
 
   void measure(const Cycle& cycle) noexcept;
   void advance() noexcept;
-  void control() noexcept;
+  void control(bool moves) noexcept;
   void watch() noexcept;
   [[nodiscard]] bool may_act() noexcept;
+  void stop_before(const robot_arm::EndAhead& end) noexcept;
   void tell_ill_conditioned(double conditioning) noexcept;
   template <FailureEnumeration Code>
   void end_motion(Code why, std::int64_t number = 0) noexcept;
@@ -51,6 +52,8 @@ class FloatingArm final : public Subsystem {
   Event<> base_held_{"BASE_IS_HELD"};
   /// Joint from 1, what was measured, the limit.
   Event<std::uint8_t, double, double> limit_exceeded_{"LIMIT_EXCEEDED"}, hard_exceeded_{"TORQUE_HARD_EXCEEDED"};
+  /// Joint from 1, where it is, the end of its range.
+  Event<std::uint8_t, double, double> range_end_near_{"RANGE_END_NEAR"};
 
   // Each refers to some of those before it.
   robot_arm::UrdfArm known_;

@@ -82,11 +82,15 @@ FloatingGuidance::News FloatingGuidance::arrive() noexcept {
   return reached ? News::Reached : News::NotReached;
 }
 
+bool FloatingGuidance::keeps_tool() const noexcept {
+  return phase_ == Phase::ToolMoves || (phase_ == Phase::Holds && parts_.craft.tracks());
+}
+
 JointVector FloatingGuidance::wanted_rates() const noexcept {
   const FloatingCraft& craft = parts_.craft;
   JointVector rates;
-  if (phase_ == Phase::ToolMoves || (phase_ == Phase::Holds && craft.tracks())) {
-    rates = tool_rates(craft.law(), craft.model(), tool_goal_, craft.attitude(), base_kept_);
+  if (keeps_tool()) {
+    rates = tool_rates(craft.law(), craft.model(), parts_.known.bounds(), tool_goal_, craft.attitude(), base_kept_);
   } else {
     const Course at = phase_ == Phase::JointsMove ? course(moved_s_, duration_s_) : Course{};
     const JointVector way = joints_goal_ - joints_from_;
@@ -94,6 +98,11 @@ JointVector FloatingGuidance::wanted_rates() const noexcept {
   }
   slow_down(rates, parts_.known.bounds());
   return rates;
+}
+
+std::optional<EndAhead> FloatingGuidance::end_ahead(const JointVector& rates) const noexcept {
+  if (!keeps_tool()) return std::nullopt;
+  return robot_arm::end_ahead(parts_.drives.measured().position, rates, parts_.known.bounds());
 }
 
 void FloatingGuidance::tell(bool braked) noexcept {

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "hirosco/subsystem/author/handler.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/floating/floating_craft.hpp"
 #include "subsystems/robot_arm/floating/floating_parameters.hpp"
+#include "subsystems/robot_arm/floating/range_ends.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
 namespace hirosco::robot_arm {
@@ -51,6 +53,9 @@ class FloatingGuidance {
   [[nodiscard]] News advance() noexcept;
   /// rad/s or m/s of each joint, none faster than it may be.
   [[nodiscard]] JointVector wanted_rates() const noexcept;
+  /// Who of them goes to an end of its range too fast to stand before it. Of a law of the tool alone: both ends of a path of joints are in range, and
+  /// so is what is between.
+  [[nodiscard]] std::optional<EndAhead> end_ahead(const JointVector& rates) const noexcept;
   /// PHASE and ERR. `braked`: the brakes hold it.
   void tell(bool braked) noexcept;
   [[nodiscard]] bool holds() const noexcept { return phase_ == Phase::Holds; }
@@ -58,6 +63,7 @@ class FloatingGuidance {
  private:
   void start(Phase phase, double duration_s) noexcept;
   [[nodiscard]] News arrive() noexcept;
+  [[nodiscard]] bool keeps_tool() const noexcept;
 
   Parts parts_;
   double cycle_s_{0.001};

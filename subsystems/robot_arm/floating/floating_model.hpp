@@ -22,6 +22,7 @@ class FloatingModel {
   /// Where the base is, and the joints. OutOfRange: the robot as a whole has no inertia against a rotation.
   [[nodiscard]] Result<> update(const robotics::Pose& base, const JointVector& position) noexcept;
 
+  [[nodiscard]] const JointVector& position() const noexcept { return state_.q; }
   [[nodiscard]] const robotics::Pose& tool() const noexcept { return tool_; }
   /// Generalised Jacobian: from joint velocities to the tool's twist [ω; v] when nothing holds the base.
   [[nodiscard]] const Twists& tool_of_free() const noexcept { return free_; }

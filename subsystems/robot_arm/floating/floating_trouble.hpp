@@ -9,7 +9,7 @@ namespace hirosco::robot_arm {
 /// Failure codes of floating_arm.xml: why a function was refused or ended without its effect.
 enum class FloatingTrouble : std::uint16_t {
   goal_not_reached = 0x8001,
-  out_of_range = 0x8002,
+  out_of_range = 0x8002,  ///< a joint would leave its range, or come to its end
   limit_tripped = 0x8003,
   too_fast = 0x8004,  ///< joints or tool would be faster than they may
   another_law = 0x8005,  ///< not in this configuration

@@ -7,6 +7,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "subsystems/robot_arm/floating/range_ends.hpp"
+
 namespace hirosco::robot_arm {
 namespace {
 
@@ -16,14 +18,30 @@ constexpr double velocity_per_s = 40;  ///< of joints
 /// Damping of least squares: of a matrix without base rates, and with them, whose rows are small.
 constexpr double tool_damping = 1e-3, base_damping = 1e-4;
 
-[[nodiscard]] JointVector least_squares(const FloatingModel::Twists& rows, const Vector6& wanted,
-                                        double damping) noexcept {
-  robotics::Matrix6 square;
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) square(i, j) = rows.row(i).dot(rows.row(j)) + (i == j ? damping * damping : 0);
-  const Vector6 weights = Eigen::LDLT<robotics::Matrix6>{square}.solve(wanted);
-  JointVector rates = JointVector::Zero(rows.cols());
-  for (int i = 0; i < 6; ++i) rates += weights[i] * rows.row(i).transpose();
+/// Who goes towards an end of its range counts for less, and then others do it; each time fewer joints are left. Far from all ends the weights
+/// are 1, and what comes out is what comes out without them, bit by bit.
+[[nodiscard]] JointVector least_squares(const FloatingModel::Twists& rows, const Vector6& wanted, double damping,
+                                        const JointVector& position, Bounds bounds) noexcept {
+  JointVector weight = JointVector::Ones(rows.cols()), rates;
+  for (Eigen::Index pass = 0; pass <= rows.cols(); ++pass) {
+    FloatingModel::Twists weighted = rows;
+    for (Eigen::Index joint = 0; joint < rows.cols(); ++joint) weighted.col(joint) *= weight[joint];
+    robotics::Matrix6 square;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) square(i, j) = weighted.row(i).dot(rows.row(j)) + (i == j ? damping * damping : 0);
+    const Vector6 along = Eigen::LDLT<robotics::Matrix6>{square}.solve(wanted);
+    rates = JointVector::Zero(rows.cols());
+    for (int i = 0; i < 6; ++i) rates += along[i] * weighted.row(i).transpose();
+    bool more = false;
+    for (std::size_t joint = 0; joint < bounds.size(); ++joint) {
+      const auto i = static_cast<Eigen::Index>(joint);
+      const double least = weight_near_end(bounds[joint], position[i], rates[i]);
+      if (!(least < weight[i])) continue;
+      weight[i] = least;
+      more = true;
+    }
+    if (!more) break;
+  }
   return rates;
 }
 
@@ -37,18 +55,18 @@ Vector3 rotation_between(const robotics::Matrix3& is, const robotics::Matrix3& w
   return 2 * std::atan2(sine, off.w()) / sine * off.vec();
 }
 
-JointVector tool_rates(ToolLaw law, const FloatingModel& model, const ToolGoal& goal, const robotics::Matrix3& base,
-                       const robotics::Matrix3& base_kept) noexcept {
+JointVector tool_rates(ToolLaw law, const FloatingModel& model, Bounds bounds, const ToolGoal& goal,
+                       const robotics::Matrix3& base, const robotics::Matrix3& base_kept) noexcept {
   Vector6 wanted;
   wanted.tail<3>() = goal.velocity_m_s + error_per_s * (goal.pose.position - model.tool().position);
   wanted.head<3>() = error_per_s * rotation_between(model.tool().rotation, goal.pose.rotation);
   if (law != ToolLaw::AttitudeHold)
-    return least_squares(law == ToolLaw::FixedBase ? model.tool_of_fixed() : model.tool_of_free(), wanted,
-                         tool_damping);
+    return least_squares(law == ToolLaw::FixedBase ? model.tool_of_fixed() : model.tool_of_free(), wanted, tool_damping,
+                         model.position(), bounds);
   FloatingModel::Twists both = model.tool_of_free();
   both.topRows<3>() = model.base().topRows<3>();
   wanted.head<3>() = attitude_per_s * (base.transpose() * rotation_between(base, base_kept));
-  return least_squares(both, wanted, base_damping);
+  return least_squares(both, wanted, base_damping, model.position(), bounds);
 }
 
 void slow_down(JointVector& rates, Bounds bounds) noexcept {

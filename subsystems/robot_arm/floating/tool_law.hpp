@@ -27,9 +27,10 @@ struct ToolGoal {
 /// By which rotation, rad, `is` is behind `wanted`, in the axes in which both stand.
 [[nodiscard]] Vector3 rotation_between(const robotics::Matrix3& is, const robotics::Matrix3& wanted) noexcept;
 
-/// Joint velocities by damped least squares. `base_kept`: the attitude that AttitudeHold keeps, `base`: the one that is.
+/// Joint velocities by damped least squares, weighted near the ends of ranges (range_ends.hpp). `base_kept`: the attitude that AttitudeHold keeps,
+/// `base`: the one that is.
 /// Realtime: wait-free.
-[[nodiscard]] JointVector tool_rates(ToolLaw law, const FloatingModel& model, const ToolGoal& goal,
+[[nodiscard]] JointVector tool_rates(ToolLaw law, const FloatingModel& model, Bounds bounds, const ToolGoal& goal,
                                      const robotics::Matrix3& base, const robotics::Matrix3& base_kept) noexcept;
 
 /// All slower by one factor, so that none is faster than its own. What is no number becomes a stop.

@@ -11,6 +11,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "robotics/dynamics/integrator.hpp"
 #include "subsystems/robot_arm/floating/base_estimate.hpp"
@@ -38,6 +39,11 @@ const JointVector stretched = joints({0.3, 0.35, 0.2, 1.1, -0.3, 0.5, 0.1});
   FloatingModel model{servicer(), servicer().find_frame("tool").value()};
   EXPECT_TRUE(model.update(base, q));
   return model;
+}
+
+[[nodiscard]] Bounds bounds() {
+  static const std::vector<JointBounds> all = testing::bounds_of(servicer());
+  return all;
 }
 
 TEST(BaseEstimate, IsAMeanFromItsFirstSamplesOnAndKeepsASixthOfTheNoise) {
@@ -135,7 +141,7 @@ TEST(ToolLaw, InertialTrackGoesToItsGoalWhateverTheBaseDoes) {
   const FloatingModel model = model_at(ready);
   ToolGoal goal{model.tool(), {0.01, -0.02, 0.005}};
   const robotics::Matrix3 upright = robotics::Matrix3::Identity();
-  const JointVector rates = tool_rates(ToolLaw::InertialTrack, model, goal, upright, upright);
+  const JointVector rates = tool_rates(ToolLaw::InertialTrack, model, bounds(), goal, upright, upright);
   const Vector6 twist = model.tool_of_free() * rates;
   EXPECT_NEAR((twist.tail<3>() - goal.velocity_m_s).norm(), 0, 1e-5);
   EXPECT_NEAR(twist.head<3>().norm(), 0, 1e-5);
@@ -146,13 +152,13 @@ TEST(ToolLaw, AttitudeHoldMovesTheToolAndTurnsTheBaseBack) {
   const FloatingModel model = model_at(ready);
   ToolGoal goal{model.tool(), {0.01, -0.02, 0.005}};
   const robotics::Matrix3 upright = robotics::Matrix3::Identity();
-  JointVector rates = tool_rates(ToolLaw::AttitudeHold, model, goal, upright, upright);
+  JointVector rates = tool_rates(ToolLaw::AttitudeHold, model, bounds(), goal, upright, upright);
   EXPECT_NEAR(((model.tool_of_free() * rates).tail<3>() - goal.velocity_m_s).norm(), 0, 1e-5);
   EXPECT_NEAR((model.base().topRows<3>() * rates).norm(), 0, 1e-7);
   // Off by 1 mrad about x it turns back with half of that in a second.
   const robotics::Matrix3 off = Eigen::AngleAxisd{1e-3, Vector3::UnitX()}.toRotationMatrix();
   goal.velocity_m_s.setZero();
-  rates = tool_rates(ToolLaw::AttitudeHold, model, goal, off, upright);
+  rates = tool_rates(ToolLaw::AttitudeHold, model, bounds(), goal, off, upright);
   EXPECT_NEAR((model.base().topRows<3>() * rates - Vector3{-5e-4, 0, 0}).norm(), 0, 1e-7);
 }
 
@@ -179,6 +185,11 @@ TEST(Course, GoesFromRestToRest) {
   EXPECT_NEAR(course(10, 20).per_s, fastest_of_course / 20, 1e-15);
   EXPECT_EQ(course(20, 20).share, 1);
   EXPECT_EQ(course(25, 20).per_s, 0);
+  // Never behind its beginning or beyond its end: joints whose goal is in range stay there on the way.
+  for (double t = 0; t < 25; t += 0.25) {
+    EXPECT_LE(course(t, 20).share, course(t + 0.25, 20).share);
+    EXPECT_TRUE(course(t, 20).share >= 0 && course(t, 20).share <= 1);
+  }
   for (double t = 0.5; t < 20; t += 0.5)
     EXPECT_NEAR(course(t, 20).per_s, (course(t + 1e-5, 20).share - course(t - 1e-5, 20).share) / 2e-5, 1e-8);
 }
@@ -214,7 +225,7 @@ TEST(ToolLaw, KeepsTheFiguresOfTheDesignOnItsOwnModel) {
       most_error_m = std::max(most_error_m, (goal.pose.position - model.tool().position).norm());
       most_turn_deg = std::max(most_turn_deg, rotation_between(base.rotation, robotics::Matrix3::Identity()).norm() *
                                                   180 / std::numbers::pi);
-      JointVector rates = tool_rates(each.law, model, goal, base.rotation, robotics::Matrix3::Identity());
+      JointVector rates = tool_rates(each.law, model, bounds, goal, base.rotation, robotics::Matrix3::Identity());
       slow_down(rates, bounds);
       drives.torque = joint_torque(model, rates, state.qd, bounds);
       ASSERT_TRUE(integrator.step(state, t, cycle_s, drives));
