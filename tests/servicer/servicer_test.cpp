@@ -91,6 +91,24 @@ TEST(Servicer, MovesItsToolAndLeavesItsBaseUnturned) {
   EXPECT_LT(craft.base_deg(), 0.01);
 }
 
+/// From where two such moves have led, the wrist 0.1 rad before its end: on the way of the third one it would be passed.
+TEST(Servicer, StopsItsToolBeforeAJointsEndAndIsLedBack) {
+  ServicerCraft craft{
+      {.mission = mission, .mode = "joints", .posture = "0.238,0.548,-0.470,-2.054,-0.039,2.800,0.022"}};
+  constexpr std::size_t wrist = 5;
+  double farthest = 0;
+  craft.each_cycle([&] { farthest = std::max(farthest, craft.robot().position(wrist)); });
+  const auto stopped = craft.craft().command("MCS", "MOVE_TOOL", {-0.35, 0.0, -0.35, 25.0}, 40s);
+  EXPECT_TRUE(stopped.started);
+  EXPECT_EQ(stopped.failure, pus::FailureCode{0x8002}) << "OUT_OF_RANGE";
+  EXPECT_TRUE(craft.flight().story().has("RANGE_END_NEAR")) << craft.flight().story().text();
+  EXPECT_LT(farthest, 2.9);
+  EXPECT_EQ(craft.flight().inhibited("MCS"), 0u) << "it stands by its law";
+  EXPECT_TRUE(craft.craft().command("MCS", "MOVE_TOOL", {0.02, 0.0, 0.02, within_s}, 20s).completed)
+      << craft.flight().story().text();
+  craft.each_cycle([] {});
+}
+
 /// The design's own stretched pose: the smallest singular value is 0.014.
 TEST(Servicer, DoesNotHoldItsAttitudeFromAStretchedPosture) {
   ServicerCraft craft{{.mission = mission, .mode = "approach", .posture = "0.3,0.35,0.2,1.1,-0.3,0.5,0.1"}};
