@@ -26,9 +26,9 @@ using namespace std::chrono_literals;
 
 constexpr int wait_ms = 10'000;
 
-struct Pipe {
+struct HeldPipe {
   FileDescriptor read, write;
-  Pipe() {
+  HeldPipe() {
     std::array<int, 2> ends{-1, -1};
     if (::pipe(ends.data()) != 0) return;
     read.reset(ends[0]);
@@ -59,7 +59,7 @@ struct Pipe {
 }
 
 TEST(LineWriter, WritesWhatIsSaidInItsOrder) {
-  const Pipe pipe;
+  const HeldPipe pipe;
   LineWriter writer{pipe.write.get()};
   EXPECT_TRUE(writer.say("one\n"));
   EXPECT_TRUE(writer.say("two\n"));
@@ -68,7 +68,7 @@ TEST(LineWriter, WritesWhatIsSaidInItsOrder) {
 }
 
 TEST(LineWriter, WhoSpeaksToAFullPipeGoesOnAndWhatHadNoRoomIsCountedOnceSomebodyReads) {
-  const Pipe pipe;
+  const HeldPipe pipe;
   const std::size_t before = pipe.fill();
   LineWriter writer{pipe.write.get()};
   constexpr std::size_t said = 1000;
@@ -112,7 +112,7 @@ TEST(LineWriter, ATerminalThatIsHeldByCtrlSHoldsUpNobodyAndHasItAllWhenItGoesOn)
 }
 
 TEST(LineWriter, APipeWhoseReaderIsGoneEndsNobody) {
-  Pipe pipe;
+  HeldPipe pipe;
   pipe.read.reset();
   ASSERT_NE(::signal(SIGPIPE, SIG_DFL), SIG_ERR);
   LineWriter writer{pipe.write.get()};
@@ -121,7 +121,7 @@ TEST(LineWriter, APipeWhoseReaderIsGoneEndsNobody) {
 }
 
 TEST(LineWriter, ItsEndWaitsForNobodyWhoReadsNothing) {
-  const Pipe pipe;
+  const HeldPipe pipe;
   ASSERT_GT(pipe.fill(), 0U);
   {
     LineWriter writer{pipe.write.get()};
@@ -131,7 +131,7 @@ TEST(LineWriter, ItsEndWaitsForNobodyWhoReadsNothing) {
 }
 
 TEST(LineWriter, ALineThatIsTooLongIsCutOffAndOneLineAllTheSame) {
-  const Pipe pipe;
+  const HeldPipe pipe;
   LineWriter writer{pipe.write.get()};
   EXPECT_TRUE(writer.say(std::string(3 * LineWriter::longest, 'x') + "\n"));
   EXPECT_EQ(read_until(pipe.read, "\n"), std::string(LineWriter::longest - 4, 'x') + "...\n");
