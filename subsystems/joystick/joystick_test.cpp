@@ -88,7 +88,7 @@ TEST_F(JoystickTest, StandaloneShowsTheCommandedTorque) {
 }
 
 TEST_F(JoystickTest, EachFunctionThatChangesAProtectionSaysSoInTheDescriptor) {
-  operate(1);
+  operate(2);  // alone it shows no force that could be scaled or held back
   const testing::TriedFunctions functions{rig,
                                           [this] {
                                             command(State::SafeOperational);

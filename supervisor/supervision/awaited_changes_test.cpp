@@ -13,7 +13,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr std::uint16_t winch = 10, winch = 11, ground = 7;
+constexpr std::uint16_t winch = 10, lift = 11, ground = 7;
 
 struct AwaitedChangesTest : ::testing::Test {
   AwaitedChanges awaited;
@@ -30,7 +30,7 @@ struct AwaitedChangesTest : ::testing::Test {
 
 TEST_F(AwaitedChangesTest, EndWithTheReportOfWhoWasAskedToWhoAsked) {
   ASSERT_TRUE(awaited.add({winch, 5, ground, {1, 2}, {std::byte{9}}}));
-  EXPECT_FALSE(awaited.take(winch, end(5)));
+  EXPECT_FALSE(awaited.take(lift, end(5)));
   EXPECT_FALSE(awaited.take(winch, end(6)));
   EXPECT_FALSE(awaited.take(winch, end(5, 8)));
   const auto ended = awaited.take(winch, end(5));
@@ -49,15 +49,15 @@ TEST_F(AwaitedChangesTest, OneThatWasToldAsUnknownIsAwaitedOn) {
 TEST_F(AwaitedChangesTest, OfWhoDiesWhatFunctionsMayHaveChangedIsLeft) {
   ASSERT_TRUE(awaited.add({winch, 5, ground, {1}}));
   ASSERT_TRUE(awaited.add({winch, 6, ground, {2}, {std::byte{9}}}));
-  ASSERT_TRUE(awaited.add({winch, 7, ground, {3}}));
+  ASSERT_TRUE(awaited.add({lift, 7, ground, {3}}));
   EXPECT_THAT(awaited.take_all_of(winch), ElementsAre(1));
   EXPECT_THAT(awaited.take_all_of(winch), IsEmpty());
-  EXPECT_THAT(awaited.take_all_of(winch), ElementsAre(3));
+  EXPECT_THAT(awaited.take_all_of(lift), ElementsAre(3));
 }
 
 TEST_F(AwaitedChangesTest, TheNextSupervisorAwaitsThem) {
   ASSERT_TRUE(awaited.add({winch, 5, ground, {1, 2}, {std::byte{9}, std::byte{8}}}));
-  ASSERT_TRUE(awaited.add({winch, 7, ground, {3}}));
+  ASSERT_TRUE(awaited.add({lift, 7, ground, {3}}));
   std::vector<std::byte> noted(256);
   OctetWriter writer{noted};
   awaited.note(writer);
@@ -66,7 +66,7 @@ TEST_F(AwaitedChangesTest, TheNextSupervisorAwaitsThem) {
   next.recall(reader);
   EXPECT_TRUE(reader.exhausted());
   EXPECT_THAT(next.take(winch, end(5))->values, ElementsAre(std::byte{9}, std::byte{8}));
-  EXPECT_THAT(next.take_all_of(winch), ElementsAre(3));
+  EXPECT_THAT(next.take_all_of(lift), ElementsAre(3));
 }
 
 TEST_F(AwaitedChangesTest, HaveRoomForSoManyAndAreNotedInSoManyOctets) {

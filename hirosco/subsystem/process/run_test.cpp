@@ -68,7 +68,8 @@ struct BuiltApart : ::testing::Test {
 TEST_F(BuiltApart, PagesOfAnotherVersionEndItWithAWordOfWhatToDo) {
   page->version = page_version + 1;
   EXPECT_EXIT(run(), ::testing::ExitedWithCode(3),
-              "the supervisor's pages are of version 8, this program's of version 7: build both from one hirosco");
+              "the supervisor's pages are of version " + std::to_string(page_version + 1) +
+                  ", this program's of version " + std::to_string(page_version) + ": build both from one hirosco");
 }
 
 TEST_F(BuiltApart, AMessageOfAnotherVersionIsRefusedByNameOnce) {
