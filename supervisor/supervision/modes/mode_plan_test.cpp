@@ -238,8 +238,9 @@ TEST_F(ModePlanTest, WhoeverIsToComeUpNeedsPowerAndWhoeverGoesDownDoesNot) {
   EXPECT_THAT(plan(watching).against, ElementsAre("CAMERA needs 20 W, 19.5 W of 19.5 W are free: dusk"));
   EXPECT_TRUE(plan(coupled).against.empty()) << "they are there";
   set(arm, SafeOperational, 2);
-  EXPECT_THAT(plan(coupled).against, ElementsAre("ARM needs 60 W, 19.5 W of 19.5 W are free: dusk"))
-      << "it would act again";
+  EXPECT_THAT(plan(coupled).against, ElementsAre("ARM needs 60 W, 19.5 W of 19.5 W are free: dusk",
+                                                 "HAND needs 20 W, 0 W of 19.5 W are free: dusk"))
+      << "it would act again, and who is coupled to it";
   watching.commission.clear();
   EXPECT_TRUE(plan(watching).against.empty());
 }

@@ -35,10 +35,10 @@ struct AdoptionTest : PartsTest {
   std::vector<std::byte> journal_memory = std::vector<std::byte>(std::size_t{1} << 18);
   Journal journal{journal_memory};
   descriptor::Mission next_mission = mission;
-  Memory notes{
-      &journal,
-      {&parts.adoption, &parts.modes, &parts.links, &parts.telecommands, &parts.safe_all, &parts.own, &parts.commanded,
-       &parts.restarts, &parts.power, &parts.replacement, &parts.ground_loss, &parts.losses}};
+  Memory notes{&journal,
+               {&parts.adoption, &parts.modes, &parts.links, &parts.telecommands, &parts.safe_all, &parts.own,
+                &parts.commanded, &parts.restarts, &parts.power, &parts.replacement, &parts.subscriptions,
+                &parts.stored, &parts.ground_loss, &parts.losses}};
   std::set<std::uint16_t> gone;
   std::vector<std::unique_ptr<Next>> nexts;
 
