@@ -71,16 +71,32 @@ void InverseKinematics::rates(Dynamics& dynamics, const Vector6& twist, const Jo
   }
 }
 
+Vector6 InverseKinematics::left(const Pose& tip, const JointVector& q) noexcept {
+  state_.q = q;
+  dynamics_.update(state_);
+  const Pose now = dynamics_.frame_pose(tip_);
+  Vector6 left;
+  left.head<3>() = rotation_vector(tip.rotation * now.rotation.transpose());
+  left.tail<3>() = tip.position - now.position;
+  return left;
+}
+
+double InverseKinematics::smallest_singular_value(const JointVector& q) noexcept {
+  state_.q = q;
+  dynamics_.update(state_);
+  Jacobian jacobian;
+  if (!dynamics_.generalised_jacobian(tip_, jacobian)) return 0;
+  Matrix6 square;
+  square.noalias() = jacobian.lazyProduct(jacobian.transpose());
+  const Eigen::SelfAdjointEigenSolver<Matrix6> parts{square, Eigen::EigenvaluesOnly};
+  return std::sqrt(std::max(0.0, parts.eigenvalues()[std::max(0, 6 - model_->joint_count())]));
+}
+
 Result<int> InverseKinematics::solve(const Pose& tip, const JointVector& posture, JointVector& q) noexcept {
   const auto joints = model_->joints();
   JointVector qd;
   for (int iteration = 0; iteration <= options_.most_iterations; ++iteration) {
-    state_.q = q;
-    dynamics_.update(state_);
-    const Pose now = dynamics_.frame_pose(tip_);
-    Vector6 error;
-    error.head<3>() = rotation_vector(tip.rotation * now.rotation.transpose());
-    error.tail<3>() = tip.position - now.position;
+    Vector6 error = left(tip, q);
     if (error.cwiseAbs().maxCoeff() <= options_.tolerance) return iteration;
     error *= std::min(1.0, longest_step / error.norm());
     rates(dynamics_, error, q, posture, qd);

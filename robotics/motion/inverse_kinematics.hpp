@@ -32,6 +32,10 @@ class InverseKinematics {
   /// Where the joints are with the tip in a place, of a base that is fixed at the inertial origin: from `q`, on the branch that is nearest.
   /// How many iterations it took. Unavailable: not reached; `q` is as near as it came.
   [[nodiscard]] Result<int> solve(const Pose& tip, const JointVector& posture, JointVector& q) noexcept;
+  /// What is left to a place, of a base as solve() has it: how it is to be turned about the inertial axes, rad, and the way, m.
+  [[nodiscard]] Vector6 left(const Pose& tip, const JointVector& q) noexcept;
+  /// Of the Jacobian there, of such a base: 0 in a singular posture. Of fewer than 6 joints, the one with which the last of them moves the tip.
+  [[nodiscard]] double smallest_singular_value(const JointVector& q) noexcept;
 
  private:
   const Model* model_;

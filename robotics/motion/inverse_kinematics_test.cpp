@@ -76,6 +76,22 @@ TEST(InverseKinematics, WhatIsOutOfReachIsSaid) {
   EXPECT_LE(q.cwiseAbs().maxCoeff(), 2.5);
 }
 
+TEST(InverseKinematics, SaysHowFarAPlaceAndASingularPostureAre) {
+  const auto model = seven_joints();
+  Dynamics dynamics{model, Base::Fixed};
+  InverseKinematics inverse{model, {0}, {}};
+  EXPECT_GT(inverse.smallest_singular_value(bent()), 0.01);
+  EXPECT_LT(inverse.smallest_singular_value(JointVector::Zero(7)), 1e-6) << "stretched out";
+  dynamics.update(at(bent()));
+  Pose there = dynamics.frame_pose({0});
+  there.position.y() += 0.2;
+  there.rotation = Eigen::AngleAxisd{0.3, Vector3::UnitZ()} * there.rotation;
+  Vector6 wanted = Vector6::Zero();
+  wanted[2] = 0.3;
+  wanted[4] = 0.2;
+  EXPECT_LT((inverse.left(there, bent()) - wanted).norm(), 1e-9);
+}
+
 TEST(InverseKinematics, JointsMoveTheTipAndWhatIsLeftOverGoesToThePosture) {
   const auto model = seven_joints();
   for (const Base base : {Base::Fixed, Base::Free}) {

@@ -4,8 +4,6 @@
 
 #include <span>
 
-#include "subsystems/robot_arm/trouble.hpp"
-
 namespace hirosco::robot_arm {
 namespace {
 
@@ -16,14 +14,16 @@ constexpr double patience_s = 3;
 constexpr double longest_motion_s = 60;
 /// Of a line, before it is given up; of its end, where the tool has to be measured.
 constexpr double most_off_line_m = 0.002, most_off_end_m = 0.001;
+constexpr const char* singular_there = "a singular posture has the tool there";
 
 }  // namespace
 
 void Guidance::begin(double cycle_s) {
   cycle_s_ = cycle_s;
   setpoints_.emplace(parts_.known.model(), parts_.known.tip(), parts_.known.bounds(), cycle_s_);
+  pose_search_.emplace(parts_.known.model(), parts_.known.tip(), parts_.known.bounds());
   retracting_ = false;
-  end_jog();
+  end_motion();
 }
 
 void Guidance::engage() noexcept {
@@ -58,6 +58,10 @@ void Guidance::tell() noexcept {
 
 Guidance::News Guidance::look(bool gives_way) noexcept {
   if (setpoints_->off_line_m() > most_off_line_m) return {.end = End::LineLost};
+  if (searched_) {
+    const std::optional<Reason> why = search();
+    return why ? News{.end = End::NoWay, .why = *why} : News{};
+  }
   News news;
   if (arrives_ && !half_reported_ && setpoints_->progress() >= 0.5) half_reported_ = news.half_way = true;
   if (setpoints_->at_rest()) news.end = arrive(gives_way);
@@ -70,7 +74,7 @@ Guidance::End Guidance::arrive(bool gives_way) noexcept {
   const JointVector left = setpoints_->now().position - parts_.drives.measured().position;
   // A long arm's joints are all there, and its tool is not.
   const auto tool = parts_.parameters.tool.load().position_m;
-  const bool at_end = !line_to_ || (Vector3{tool[0], tool[1], tool[2]} - *line_to_).norm() <= most_off_end_m;
+  const bool at_end = !tool_to_ || (Vector3{tool[0], tool[1], tool[2]} - *tool_to_).norm() <= most_off_end_m;
   const bool there = gives_way || (at_end && left.cwiseAbs().maxCoeff() <= tolerance);
   settled_s_ = there ? settled_s_ + cycle_s_ : 0;
   waited_s_ += cycle_s_;
@@ -95,16 +99,16 @@ Outcome Guidance::start(const Result<>& planned) noexcept {
     setpoints_->rest(setpoints_->now().position);
     return refused(Trouble::too_slow, "it would take longer, s", static_cast<std::int64_t>(longest_motion_s));
   }
-  line_to_.reset();
+  tool_to_.reset();
   half_reported_ = false;
   arrives_ = true;
   settled_s_ = waited_s_ = 0;
-  end_jog();
+  end_motion();
   return running;
 }
 
 Outcome Guidance::start_jog(Setpoints::Kind kind, double seconds) noexcept {
-  line_to_.reset();
+  tool_to_.reset();
   arrives_ = false;
   settled_s_ = waited_s_ = 0;
   jog_left_s_ = seconds;
@@ -112,21 +116,68 @@ Outcome Guidance::start_jog(Setpoints::Kind kind, double seconds) noexcept {
   return running;
 }
 
+/// Where it may not stand: nearer to itself, or to what it keeps out of, than it may be and than it is.
+std::optional<Guidance::Reason> Guidance::forbids(const JointVector& goal) noexcept {
+  const auto there = parts_.obstacles.nearer(setpoints_->now().position, goal);
+  if (there.distance_m == HUGE_VAL) return std::nullopt;
+  return Reason{Trouble::too_near, there.names, millimetres(there.distance_m)};
+}
+
 Outcome Guidance::move_j(const FunctionValues& values) noexcept {
   const std::size_t joints = parts_.known.joints();
   const JointVector goal = vector_of(std::span{values}.first(joints));
   if (!in_range(goal)) return refused(Trouble::out_of_range);
-  if (const auto there = parts_.obstacles.nearer(setpoints_->now().position, goal); there.distance_m < HUGE_VAL)
-    return refused(Trouble::too_near, there.names, millimetres(there.distance_m));
+  if (const auto why = forbids(goal)) return refused(why->trouble, why->text, why->number);
   return start(setpoints_->go(goal, values[joints]));
 }
 
-Outcome Guidance::move_l(const FunctionValues& values) noexcept {
+Result<robotics::Pose> Guidance::pose_of(const FunctionValues& values) const noexcept {
   const robotics::Quaternion wanted{values[3], values[4], values[5], values[6]};
-  if (!(wanted.norm() > 0.5 && wanted.norm() < 1.5)) return refused(Trouble::no_goal, "no orientation");
-  const robotics::Pose goal{wanted.normalized().toRotationMatrix(), {values[0], values[1], values[2]}};
-  const Outcome started = start(setpoints_->go_straight(goal, {values[7], values[8]}));
-  if (started.kind != Outcome::Kind::Refused) line_to_ = goal.position;
+  if (!(wanted.norm() > 0.5 && wanted.norm() < 1.5)) return fail(ErrorCode::InvalidArgument, "no orientation");
+  return robotics::Pose{wanted.normalized().toRotationMatrix(), {values[0], values[1], values[2]}};
+}
+
+Outcome Guidance::move_p(const FunctionValues& values) noexcept {
+  const Result<robotics::Pose> goal = pose_of(values);
+  if (!goal) return refused(Trouble::no_goal, goal.error().text);
+  pose_search_->begin(setpoints_->tip_with(*goal), setpoints_->now().position);
+  end_motion();
+  tool_to_.reset();
+  arrives_ = true;
+  searched_ = Searched{goal->position, values[7]};
+  return running;
+}
+
+/// It stands meanwhile, and has a reason, or goes, in that cycle in which there is an answer.
+std::optional<Guidance::Reason> Guidance::search() noexcept {
+  const PoseSearch::Found found = pose_search_->step();
+  if (found == PoseSearch::Found::NotYet) return std::nullopt;
+  const Searched wanted = *searched_;
+  searched_.reset();
+  if (found == PoseSearch::Found::Nothing) return no_posture();
+  const JointVector& goal = pose_search_->posture();
+  if (pose_search_->singular()) return Reason{Trouble::singular, singular_there};
+  if (auto why = forbids(goal)) return why;
+  const Outcome started = start(setpoints_->go(goal, wanted.speed_share));
+  if (started.kind == Outcome::Kind::Refused)
+    return Reason{static_cast<Trouble>(started.code), started.reason.text, started.reason.value};
+  tool_to_ = wanted.tool_m;
+  return std::nullopt;
+}
+
+std::optional<Guidance::Reason> Guidance::no_posture() noexcept {
+  if (const auto joint = pose_search_->joint_at_its_end())
+    return Reason{Trouble::out_of_range, "before it is there ends the range of joint",
+                  static_cast<std::int64_t>(*joint + 1)};
+  if (pose_search_->nearly() && pose_search_->singular()) return Reason{Trouble::singular, singular_there};
+  return Reason{Trouble::out_of_reach, "as near as it comes, mm", millimetres(pose_search_->off_m())};
+}
+
+Outcome Guidance::move_l(const FunctionValues& values) noexcept {
+  const Result<robotics::Pose> goal = pose_of(values);
+  if (!goal) return refused(Trouble::no_goal, goal.error().text);
+  const Outcome started = start(setpoints_->go_straight(*goal, {values[7], values[8]}));
+  if (started.kind != Outcome::Kind::Refused) tool_to_ = goal->position;
   return started;
 }
 

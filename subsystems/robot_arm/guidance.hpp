@@ -6,10 +6,12 @@
 #include <optional>
 
 #include "hirosco/subsystem/author/handler.hpp"
+#include "subsystems/robot_arm/control/pose_search.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/obstacles.hpp"
 #include "subsystems/robot_arm/parameters.hpp"
+#include "subsystems/robot_arm/trouble.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
 namespace hirosco::robot_arm {
@@ -29,11 +31,19 @@ class Guidance {
     Reached,
     NotReached,  ///< its path has ended, and it is not there
     LineLost,  ///< the joints cannot follow
+    NoWay,  ///< it was judged before it went, and stands
+  };
+  /// Why there is no way.
+  struct Reason {
+    Trouble trouble{};
+    const char* text{""};
+    std::int64_t number{0};
   };
   /// What a cycle has brought, in the order in which it is told.
   struct News {
     bool half_way{false};  ///< once in a motion that has a goal
     End end{End::None};
+    Reason why{};  ///< of NoWay
   };
   explicit Guidance(const Parts& parts) noexcept : parts_{parts} {}
 
@@ -48,13 +58,15 @@ class Guidance {
 
   // --- functions: refused, or running; all numbers in the order of the descriptor -----------------------------------------
   [[nodiscard]] Outcome move_j(const FunctionValues& values) noexcept;
+  /// The posture is looked for while it stands, in the next cycles, and judged before it goes.
+  [[nodiscard]] Outcome move_p(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome move_l(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome jog_j(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome jog_l(const FunctionValues& values) noexcept;
   /// The motion that was begun last is a jog of this kind: another one may take its place, from the velocities that it has.
   [[nodiscard]] bool jogs(Setpoints::Kind kind) const noexcept { return jog_ == kind; }
-  /// Whatever its time was: nobody waits for it any more.
-  void end_jog() noexcept { jog_left_s_ = 0, jog_.reset(); }
+  /// Whatever its time was, and whatever was looked for: nobody waits for it any more.
+  void end_motion() noexcept { jog_left_s_ = 0, jog_.reset(), searched_.reset(); }
 
   // --- in each cycle ------------------------------------------------------------------------------------------------------
   /// `led`: it is to be wherever it is.
@@ -72,13 +84,24 @@ class Guidance {
 
  private:
   [[nodiscard]] bool in_range(const JointVector& goal) const noexcept;
+  [[nodiscard]] Result<robotics::Pose> pose_of(const FunctionValues& values) const noexcept;
+  [[nodiscard]] std::optional<Reason> forbids(const JointVector& goal) noexcept;
+  [[nodiscard]] std::optional<Reason> search() noexcept;
+  [[nodiscard]] std::optional<Reason> no_posture() noexcept;
   [[nodiscard]] Outcome start(const Result<>& planned) noexcept;
   [[nodiscard]] Outcome start_jog(Setpoints::Kind kind, double seconds) noexcept;
   [[nodiscard]] End arrive(bool gives_way) noexcept;
 
   Parts parts_;
   std::optional<Setpoints> setpoints_;
-  std::optional<Vector3> line_to_;  ///< where the tool is to be at the end of its line
+  std::optional<PoseSearch> pose_search_;
+  /// MOVE_P whose posture is looked for.
+  struct Searched {
+    Vector3 tool_m{Vector3::Zero()};  ///< where the tool is to be
+    double speed_share{0};
+  };
+  std::optional<Searched> searched_;
+  std::optional<Vector3> tool_to_;  ///< where the tool is to be at the end of a motion that has a pose for a goal
   double cycle_s_{0.001};
   double waited_s_{0};  ///< behind the end of a path
   double settled_s_{0};  ///< at the goal

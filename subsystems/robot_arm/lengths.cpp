@@ -45,6 +45,7 @@ Result<> check_lengths(std::size_t joints, const descriptor::SubsystemDescriptor
       Length{arguments_of("JOG_J"), joints + 1, "JOG_J takes a number for each joint, and SECONDS"},
       Length{by_joint ? arguments_of("IMPEDANCE_J") : joints + 1, joints + 1,
              "IMPEDANCE_J takes a number for each joint, and DAMPING"},
+      Length{arguments_of("MOVE_P"), 8, "MOVE_P takes POSITION[3], ORIENTATION[4], SPEED"},
       Length{arguments_of("MOVE_L"), 9, "MOVE_L takes POSITION[3], ORIENTATION[4], SPEED, TURNING"},
       Length{arguments_of("JOG_L"), 7, "JOG_L takes LINEAR[3], ANGULAR[3], SECONDS"},
   };

@@ -125,6 +125,7 @@ void RobotArm::tell(const Guidance::News& news) noexcept {
       return;
     case Guidance::End::NotReached: end_motion(Trouble::goal_not_reached); return;
     case Guidance::End::LineLost: lose_line(); return;
+    case Guidance::End::NoWay: end_motion(news.why.trouble, news.why.text, news.why.number); return;
   }
 }
 
@@ -231,6 +232,8 @@ void RobotArm::place_tool(const std::array<double, 3>& place_m) noexcept {
 void RobotArm::bind_motions() {
   on_function("MOVE_J",
               [this](const FunctionValues& values, Call call) { return move(&Guidance::move_j, values, call); });
+  on_function("MOVE_P",
+              [this](const FunctionValues& values, Call call) { return move(&Guidance::move_p, values, call); });
   on_function("MOVE_L",
               [this](const FunctionValues& values, Call call) { return move(&Guidance::move_l, values, call); });
   using Kind = robot_arm::Setpoints::Kind;

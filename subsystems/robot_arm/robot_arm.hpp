@@ -40,7 +40,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   Result<> error_operational(const Cycle& cycle) noexcept override;
   Result<Step> self_test(const Cycle& cycle) noexcept override { return self_check_.step(cycle); }
   void stand() noexcept override { yielding_.stand(); }
-  void motion_ended() noexcept override { guidance_.end_jog(); }
+  void motion_ended() noexcept override { guidance_.end_motion(); }
 
   void bind_motions();
   void bind_settings();

@@ -21,6 +21,8 @@ enum class Trouble : std::uint16_t {
   too_stiff = 0x800B,  ///< a spring that would swing faster than the law may
   led = 0x800C,  ///< it gives way to whoever leads it: HOLD first
   soft = 0x800D,  ///< springs hold it, and would move: POSITION_CONTROL first
+  out_of_reach = 0x800E,  ///< no posture has the tool there
+  singular = 0x800F,  ///< a small way of the tool would be a long one of joints there
 };
 
 }  // namespace hirosco::robot_arm

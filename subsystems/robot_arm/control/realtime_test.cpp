@@ -6,6 +6,7 @@
 #include "robotics/shapes/clearance.hpp"
 #include "subsystems/robot_arm/control/laws.hpp"
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
+#include "subsystems/robot_arm/control/pose_search.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
 #include "subsystems/robot_arm/control/watch.hpp"
 #include "subsystems/robot_arm/testing/plant.hpp"
@@ -30,6 +31,7 @@ TEST(Control, UsesNoHeapInACycle) {
   robotics::Clearance clearance{
       model, robotics::read_collision_shapes(testing::six_axes, text, descriptor::file_system()).value.value().hulls};
   clearance.set_limit(0.02);
+  PoseSearch search{model, tip, bounds};
   Watch watch;
   const JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
   const JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
@@ -41,6 +43,9 @@ TEST(Control, UsesNoHeapInACycle) {
     const RealtimeScope scope;
     robotics::Pose pose = setpoints.tool();
     pose.position.z() += 0.1;
+    search.begin(setpoints.tip_with(pose), setpoints.now().position);
+    while (search.step() == PoseSearch::Found::NotYet) {}
+    EXPECT_FALSE(search.singular());
     switch (kind) {
       case Kind::Rest: break;
       case Kind::JointPath: EXPECT_TRUE(setpoints.go(goal, 1)); break;

@@ -66,6 +66,10 @@ class Setpoints {
   [[nodiscard]] std::optional<std::size_t> joint_in_the_way() const noexcept;
   /// Where the tool of the setpoint is.
   [[nodiscard]] robotics::Pose tool() noexcept;
+  /// Where the tip is when the tool is there.
+  [[nodiscard]] robotics::Pose tip_with(const robotics::Pose& tool) const noexcept {
+    return tool * robotics::inverse(tool_);
+  }
   /// Where the tool is in the tip's frame; while nothing moves.
   void set_tool(const robotics::Pose& in_tip) noexcept { tool_ = in_tip; }
 

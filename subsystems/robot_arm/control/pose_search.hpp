@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "robotics/motion/inverse_kinematics.hpp"
+#include "subsystems/robot_arm/control/joints.hpp"
+
+namespace hirosco::robot_arm {
+
+/// With which the joints of a pose are looked for, and of a line: as it is gone, and so little at a time that it fits into a cycle.
+inline constexpr robotics::InverseKinematicsOptions a_little_at_a_time{
+    .singular = 0.02, .damping = 0.02, .tolerance = 1e-7, .most_iterations = 3};
+
+/// Looks for the posture with the tip in a pose, on the branch that is nearest to where the arm stands, a little in each cycle. The same pose from the
+/// same place is the same posture.
+class PoseSearch {
+ public:
+  enum class Found : std::uint8_t { NotYet, Posture, Nothing };
+
+  PoseSearch(const robotics::Model& model, robotics::FrameId tip, Bounds bounds)
+      : bounds_{bounds}, kinematics_{model, tip, a_little_at_a_time} {}
+
+  void begin(const robotics::Pose& tip, const JointVector& from) noexcept;
+  /// A little farther: at most 50 times until it is NotYet no more.
+  [[nodiscard]] Found step() noexcept;
+
+  /// What was found; of nothing, as near as it came.
+  [[nodiscard]] const JointVector& posture() const noexcept { return posture_; }
+  /// It is so near to a singular posture that a small way of the tool is a long one of joints.
+  [[nodiscard]] bool singular() noexcept;
+  /// Of nothing: who is at an end of its range; nobody: it is out of reach.
+  [[nodiscard]] std::optional<std::size_t> joint_at_its_end() const noexcept;
+  /// Of nothing: it came so near that a singular posture alone keeps it from being there.
+  [[nodiscard]] bool nearly() noexcept;
+  /// How far the tip is from the pose, m.
+  [[nodiscard]] double off_m() noexcept { return kinematics_.left(tip_, posture_).tail<3>().norm(); }
+
+ private:
+  Bounds bounds_;
+  robotics::InverseKinematics kinematics_;
+  robotics::Pose tip_{};
+  JointVector from_, posture_;
+  int steps_{0};
+};
+
+/// Who is at an end of its range there: the one that is nearest to it.
+[[nodiscard]] std::optional<std::size_t> at_its_end(Bounds bounds, const JointVector& posture) noexcept;
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "subsystems/robot_arm/testing/flown.hpp"
+
+/// Poses of the tool as goals: judged before the arm moves.
+namespace hirosco {
+namespace {
+
+using robot_arm::JointVector;
+using robot_arm::vector_of;
+using robot_arm::testing::Flown;
+using robot_arm::testing::folder;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+struct RobotArmPose : ::testing::Test {
+  Flown flown{6, std::string{folder} + "robot_arm.urdf"};
+  robotics::Dynamics dynamics{flown.model, robotics::Base::Fixed};
+  JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
+  JointVector beside = vector_of(std::array{0.6, 0.3, 0.9, -0.3, 1.0, 0.6});
+  const std::string done = "1 3 5:0001 7";
+
+  void SetUp() override {
+    flown.plant.place(start);
+    flown.operate();
+  }
+  [[nodiscard]] robotics::Pose flange_at(const JointVector& q) {
+    dynamics.update({.q = q, .qd = JointVector::Zero(6)});
+    return dynamics.frame_pose(flown.model.find_frame("tool").value());
+  }
+  [[nodiscard]] robotics::Pose flange() { return flange_at(flown.plant.measured().position); }
+  [[nodiscard]] static double turned(const robotics::Pose& from, const robotics::Pose& to) {
+    return Eigen::AngleAxisd{robotics::Matrix3{from.rotation.transpose() * to.rotation}}.angle();
+  }
+  hirosco::testing::Sent ask(const char* function, const robotics::Pose& pose, std::vector<double> speeds) {
+    const robotics::Quaternion wxyz{pose.rotation};
+    std::vector<double> numbers{pose.position.x(), pose.position.y(), pose.position.z(), wxyz.w(),
+                                wxyz.x(),          wxyz.y(),          wxyz.z()};
+    numbers.insert(numbers.end(), speeds.begin(), speeds.end());
+    return flown.ask(function, numbers);
+  }
+  hirosco::testing::Sent move_p(const robotics::Pose& pose) { return ask("MOVE_P", pose, {1}); }
+  [[nodiscard]] static std::string hex_of(const std::string& words) {
+    return testing::hex(std::as_bytes(std::span{words}));
+  }
+  /// A ball of 5 cm there, that no link comes near.
+  void keep_out(const robotics::Vector3& there) {
+    std::vector<std::optional<Value>> numbers;
+    for (const double number : {there.x(), there.y(), there.z(), there.x(), there.y(), there.z(), 0.05})
+      numbers.emplace_back(number);
+    numbers.resize(28, Value{0.0});
+    const auto set = flown.rig.call_with("KEEP_OUT", numbers);
+    flown.cycle(5);
+    ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
+  }
+};
+
+TEST_F(RobotArmPose, IsReachedWithinAMillimetreAndAMilliradianAndInTheSamePostureEachTime) {
+  const robotics::Pose wanted = flange_at(beside);
+  std::vector<JointVector> postures;
+  for (int i = 0; i < 2; ++i) {
+    const auto there = move_p(wanted);
+    flown.finish(there);
+    EXPECT_EQ(flown.rig.outcome(there), done);
+    EXPECT_LE((flange().position - wanted.position).norm(), 1e-3);
+    flown.cycle(1000);
+    EXPECT_LE(turned(flange(), wanted), 1e-3);
+    postures.push_back(flown.plant.measured().position);
+    const auto back = flown.move_j(start);
+    flown.finish(back);
+    EXPECT_EQ(flown.rig.outcome(back), done);
+  }
+  EXPECT_LT((postures[0] - postures[1]).cwiseAbs().maxCoeff(), 1e-3);
+}
+
+TEST_F(RobotArmPose, WhereItIsAlreadyIsDoneAtOnce) {
+  const auto request = move_p(flange_at(start));
+  flown.cycle(100);
+  EXPECT_EQ(flown.rig.outcome(request), done);
+  EXPECT_LT(flown.off(start), 1e-3);
+}
+
+/// What is in the way of a pose, how it is told, and in which words.
+TEST_F(RobotArmPose, ThatCannotBeTakenIsToldWithItsReasonAndNothingMoves) {
+  robotics::Pose far = flange_at(start), beyond = flange_at(start);
+  far.position *= 2.5;
+  beyond.rotation = beyond.rotation * Eigen::AngleAxisd{3.05, robotics::Vector3::UnitY()};  // twist would be at 3.15
+  JointVector parallel = start;
+  parallel[4] = 0;  // the axes of bend and twist fall together
+  for (const auto& [wanted, code, words] :
+       {std::tuple{far, "800e", "as near as it comes"}, std::tuple{beyond, "8002", "ends the range of joint"},
+        std::tuple{flange_at(parallel), "800f", "a singular posture"}}) {
+    const auto request = move_p(wanted);
+    flown.cycle(60);
+    EXPECT_THAT(flown.rig.outcome(request), StartsWith(std::string{"1 3 8:"} + code)) << words;
+    EXPECT_THAT(flown.rig.outcome(request), HasSubstr(hex_of(words)));
+    flown.cycle(200);
+    EXPECT_LT(flown.off(start), 1e-3) << words;
+  }
+  const auto nowhere = flown.ask("MOVE_P", {0.5, 0, 0.5, 0, 0, 0, 0, 1});
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(nowhere), StartsWith("1 4:8009"));
+}
+
+TEST_F(RobotArmPose, InWhichItWouldBeTooNearIsToldWithThePairAndNothingMoves) {
+  keep_out(flange_at(beside).position);
+  const auto request = move_p(flange_at(beside));
+  flown.cycle(60);
+  EXPECT_THAT(flown.rig.outcome(request), StartsWith("1 3 8:800a"));
+  EXPECT_THAT(flown.rig.outcome(request), HasSubstr(hex_of(" and ")));
+  flown.cycle(200);
+  EXPECT_LT(flown.off(start), 1e-3);
+}
+
+TEST_F(RobotArmPose, ThatIsLookedForIsGivenUpByHold) {
+  robotics::Pose far = flange_at(start);
+  far.position *= 2.5;
+  const auto request = move_p(far);
+  flown.cycle(10);
+  EXPECT_EQ(flown.rig.outcome(request), "1 3");
+  const auto other = flown.move_j(start);
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(other), StartsWith("1 4:0108"));
+  const auto hold = flown.rig.call("HOLD");
+  flown.cycle(3);
+  EXPECT_EQ(flown.rig.outcome(hold), "1 3 7");
+  EXPECT_EQ(flown.rig.outcome(request), "1 3 8:0204");
+  const auto next = move_p(flange_at(beside));
+  flown.finish(next);
+  EXPECT_EQ(flown.rig.outcome(next), done);
+}
+
+}  // namespace
+}  // namespace hirosco
