@@ -14,6 +14,9 @@ constexpr double patience_s = 3;
 constexpr double longest_motion_s = 60;
 /// Of a line, before it is given up; of its end, where the tool has to be measured.
 constexpr double most_off_line_m = 0.002, most_off_end_m = 0.001;
+constexpr const char* would_last = "it would take longer, s";
+constexpr const char* ends_range = "on the line ends the range of joint";
+constexpr const char* ends_reach = "on the line is a singular posture, or it leads out of reach, after mm";
 constexpr const char* singular_there = "a singular posture has the tool there";
 
 }  // namespace
@@ -62,6 +65,10 @@ Guidance::News Guidance::look(bool gives_way) noexcept {
     const std::optional<Reason> why = search();
     return why ? News{.end = End::NoWay, .why = *why} : News{};
   }
+  if (!line_judged_) {
+    const std::optional<Reason> why = judge_line();
+    return why ? News{.end = End::NoWay, .why = *why} : News{};
+  }
   News news;
   if (arrives_ && !half_reported_ && setpoints_->progress() >= 0.5) half_reported_ = news.half_way = true;
   if (setpoints_->at_rest()) news.end = arrive(gives_way);
@@ -97,7 +104,7 @@ Outcome Guidance::start(const Result<>& planned) noexcept {
   if (!planned) return refused(Trouble::no_goal, planned.error().text, planned.error().value);
   if (setpoints_->duration_s() > longest_motion_s) {
     setpoints_->rest(setpoints_->now().position);
-    return refused(Trouble::too_slow, "it would take longer, s", static_cast<std::int64_t>(longest_motion_s));
+    return refused(Trouble::too_slow, would_last, static_cast<std::int64_t>(longest_motion_s));
   }
   tool_to_.reset();
   half_reported_ = false;
@@ -177,8 +184,27 @@ Outcome Guidance::move_l(const FunctionValues& values) noexcept {
   const Result<robotics::Pose> goal = pose_of(values);
   if (!goal) return refused(Trouble::no_goal, goal.error().text);
   const Outcome started = start(setpoints_->go_straight(*goal, {values[7], values[8]}));
-  if (started.kind != Outcome::Kind::Refused) tool_to_ = goal->position;
+  if (started.kind == Outcome::Kind::Refused) return started;
+  tool_to_ = goal->position;
+  line_judged_ = false;
   return started;
+}
+
+/// It stands until it was walked along in advance; whoever may not go stands on.
+std::optional<Guidance::Reason> Guidance::judge_line() noexcept {
+  const Line& line = setpoints_->line();
+  if (line.found() == Line::Found::NotYet) return std::nullopt;
+  line_judged_ = true;
+  if (line.found() == Line::Found::Nothing) {
+    if (const auto joint = line.joint_in_the_way())
+      return Reason{Trouble::line_lost, ends_range, static_cast<std::int64_t>(*joint + 1)};
+    return Reason{Trouble::line_lost, ends_reach, millimetres(line.free_m())};
+  }
+  std::optional<Reason> why = forbids(line.posture());
+  if (!why && line.duration_s() > longest_motion_s)
+    why = Reason{Trouble::too_slow, would_last, static_cast<std::int64_t>(longest_motion_s)};
+  if (why) setpoints_->rest(setpoints_->now().position);
+  return why;
 }
 
 Outcome Guidance::jog_j(const FunctionValues& values) noexcept {

@@ -66,7 +66,7 @@ class Guidance {
   /// The motion that was begun last is a jog of this kind: another one may take its place, from the velocities that it has.
   [[nodiscard]] bool jogs(Setpoints::Kind kind) const noexcept { return jog_ == kind; }
   /// Whatever its time was, and whatever was looked for: nobody waits for it any more.
-  void end_motion() noexcept { jog_left_s_ = 0, jog_.reset(), searched_.reset(); }
+  void end_motion() noexcept { jog_left_s_ = 0, jog_.reset(), searched_.reset(), line_judged_ = true; }
 
   // --- in each cycle ------------------------------------------------------------------------------------------------------
   /// `led`: it is to be wherever it is.
@@ -88,6 +88,7 @@ class Guidance {
   [[nodiscard]] std::optional<Reason> forbids(const JointVector& goal) noexcept;
   [[nodiscard]] std::optional<Reason> search() noexcept;
   [[nodiscard]] std::optional<Reason> no_posture() noexcept;
+  [[nodiscard]] std::optional<Reason> judge_line() noexcept;
   [[nodiscard]] Outcome start(const Result<>& planned) noexcept;
   [[nodiscard]] Outcome start_jog(Setpoints::Kind kind, double seconds) noexcept;
   [[nodiscard]] End arrive(bool gives_way) noexcept;
@@ -101,6 +102,7 @@ class Guidance {
     double speed_share{0};
   };
   std::optional<Searched> searched_;
+  bool line_judged_{true};
   std::optional<Vector3> tool_to_;  ///< where the tool is to be at the end of a motion that has a pose for a goal
   double cycle_s_{0.001};
   double waited_s_{0};  ///< behind the end of a path

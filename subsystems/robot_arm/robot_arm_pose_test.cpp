@@ -115,6 +115,33 @@ TEST_F(RobotArmPose, InWhichItWouldBeTooNearIsToldWithThePairAndNothingMoves) {
   EXPECT_LT(flown.off(start), 1e-3);
 }
 
+/// The line is walked along before the arm goes: whatever ends it is told while the arm stands.
+TEST_F(RobotArmPose, AtTheEndOfALineThatCannotBeFollowedIsToldWithItsReasonAndNothingMoves) {
+  robotics::Pose far = flange_at(start), beyond = flange_at(start);
+  far.position *= 2.5;
+  beyond.rotation = beyond.rotation * Eigen::AngleAxisd{3.05, robotics::Vector3::UnitY()};  // twist would be at 3.15
+  for (const auto& [wanted, words] :
+       {std::pair{far, "it leads out of reach, after mm"}, std::pair{beyond, "ends the range of joint"}}) {
+    const auto request = ask("MOVE_L", wanted, {0.25, 0.5});
+    flown.cycle(400);
+    EXPECT_THAT(flown.rig.outcome(request), StartsWith("1 3 8:8008")) << words;
+    EXPECT_THAT(flown.rig.outcome(request), HasSubstr(hex_of(words)));
+    EXPECT_LT(flown.off(start), 1e-3) << words;
+  }
+  robotics::Pose wanted = flange_at(start);
+  wanted.position += robotics::Vector3{-0.2, 0.15, 0.1};
+  keep_out(wanted.position);
+  const auto request = ask("MOVE_L", wanted, {0.25, 0.5});
+  flown.cycle(150);
+  EXPECT_THAT(flown.rig.outcome(request), StartsWith("1 3 8:800a"));
+  EXPECT_THAT(flown.rig.outcome(request), HasSubstr(hex_of(" and ")));
+  EXPECT_EQ(flown.rig.events(1026), 0) << "it was not stopped on its way";
+  EXPECT_LT(flown.off(start), 1e-3);
+  const auto next = flown.move_j(beside);
+  flown.finish(next);
+  EXPECT_EQ(flown.rig.outcome(next), done) << "it stood, and nothing is left of the line";
+}
+
 TEST_F(RobotArmPose, ThatIsLookedForIsGivenUpByHold) {
   robotics::Pose far = flange_at(start);
   far.position *= 2.5;

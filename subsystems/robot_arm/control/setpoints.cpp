@@ -7,15 +7,14 @@
 namespace hirosco::robot_arm {
 namespace {
 
-/// How fast the pace on a line recovers after a joint was at its velocity.
-constexpr double pace_per_s = 2;
 /// With which a setpoint that is beside its line comes back to it, 1/s.
 constexpr double back_to_line_per_s = 50;
-/// Near a singular posture a line is gone slowly rather than left.
-constexpr double on_line_singular = 0.02, on_line_damping = 0.02;
-/// On a line the speed is reached in this time, the acceleration in this share of it.
-constexpr double ramp_s = 0.4;
-constexpr double ramp_share = 0.25;
+/// Behind the end of a line: who is not on it by then, within the last digits, stands as near as it is.
+constexpr double longest_settling_s = 0.5;
+/// It goes no slower for what its survey has not seen.
+constexpr double slowest_pace = 0.01;
+/// Of the accelerations, while it brakes on its way: what is left of them is for what a cycle changes of that way.
+constexpr double braking_share = 0.95;
 constexpr double no_way = 1e-9;
 /// It goes back with this share of the velocities, until it is so near to its end, and no longer than so.
 constexpr double retract_share = 0.25;
@@ -23,11 +22,6 @@ constexpr double near_enough = 1e-3;
 constexpr double longest_retract_s = 10;
 /// As fast as that it may brake, of the accelerations.
 constexpr double halting = 4;
-
-[[nodiscard]] Vector3 rotation_vector(const robotics::Matrix3& rotation) noexcept {
-  const Eigen::AngleAxisd turned{rotation};
-  return turned.angle() * turned.axis();
-}
 
 }  // namespace
 
@@ -37,7 +31,7 @@ Setpoints::Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds
       cycle_s_{cycle_s},
       dynamics_{model, robotics::Base::Fixed},
       kinematics_{model, tip, {}},
-      on_line_{model, tip, {.singular = on_line_singular, .damping = on_line_damping}} {
+      line_{model, tip, bounds} {
   JointVector zeros;
   zeros.setZero(model.joint_count());
   jog_ = posture_ = met_ = end_ = zeros;
@@ -74,6 +68,7 @@ Result<> Setpoints::go(const JointVector& goal, double speed_share) noexcept {
   }
   HIROSCO_TRY_LET(path_,
                   robotics::PointToPoint::plan_straight(now_.position, goal, std::span{limits}.first(bounds_.size())));
+  duration_s_ = path_.duration_s();
   kind_ = Kind::JointPath;
   braking_ = false;
   path_s_ = 0;
@@ -81,25 +76,15 @@ Result<> Setpoints::go(const JointVector& goal, double speed_share) noexcept {
   return ok();
 }
 
-Result<> Setpoints::go_straight(const robotics::Pose& goal, const LineSpeed& speed) noexcept {
-  from_ = tool();
-  way_m_ = goal.position - from_.position;
-  const Vector3 turn = rotation_vector(goal.rotation * from_.rotation.transpose());
-  angle_ = turn.norm();
-  axis_ = angle_ > no_way ? Vector3{turn / angle_} : Vector3::UnitZ();
-  const double length = way_m_.norm();
-  if (length < no_way && angle_ < no_way) return fail(ErrorCode::InvalidArgument, "it is there already");
-  // From 0 to 1, as fast as the slower of the two goes.
-  const double rate = std::min(length > no_way ? speed.linear_m_s / length : HUGE_VAL,
-                               angle_ > no_way ? speed.angular_rad_s / angle_ : HUGE_VAL);
-  line_rate_ = rate;
-  const double acceleration = rate / ramp_s;
-  const std::array limits{robotics::MotionLimits{rate, acceleration, acceleration / (ramp_share * ramp_s)}};
-  HIROSCO_TRY_LET(path_, robotics::PointToPoint::plan(JointVector::Zero(1), JointVector::Ones(1), limits));
+Result<> Setpoints::go_straight(const robotics::Pose& goal, const Line::Speed& speed) noexcept {
+  HIROSCO_TRY(line_.plan(tool(), goal, tool_, speed, now_.position));
+  path_ = line_.path();
+  duration_s_ = path_.duration_s();
   kind_ = Kind::Line;
   braking_ = false;
   path_s_ = 0;
   pace_ = 1;
+  path_.at(0, sample_);
   posture_ = now_.position;
   return ok();
 }
@@ -175,11 +160,11 @@ robotics::Pose Setpoints::tool() noexcept {
 JointVector Setpoints::braked() const noexcept {
   constexpr double farther = 1.5;
   if (kind_ == Kind::Rest) return now_.position;
-  if (kind_ == Kind::Line) return now_.position + farther * ramp_s / 2 * now_.velocity;
-  double longest_s = 0;
+  double longest_s = kind_ == Kind::Line ? Line::ramp_s : 0;
   for (std::size_t i = 0; i < bounds_.size(); ++i)
     longest_s =
         std::max(longest_s, std::abs(now_.velocity[static_cast<Eigen::Index>(i)]) / bounds_[i].motion.acceleration);
+  if (kind_ == Kind::Line) return now_.position + farther * longest_s / 2 * now_.velocity;
   if (kind_ == Kind::JointPath) {
     robotics::PointToPoint::Sample sample;
     path_.at(path_s_ + farther * pace_ * longest_s / 2, sample);
@@ -206,23 +191,35 @@ const Setpoint& Setpoints::advance() noexcept {
   return now_;
 }
 
+/// How fast the time of a path may go slower, 1/s: where the joints are braked on it already, by what is left of their accelerations.
+double Setpoints::slowing() const noexcept {
+  double slowing = pace_ / cycle_s_;
+  robotics::PointToPoint::Sample sample;
+  for (const double ahead_s : {0.0, pace_ * cycle_s_}) {
+    path_.at(path_s_ + ahead_s, sample);
+    for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+      const auto i = static_cast<Eigen::Index>(joint);
+      const double speed = std::abs(sample.velocity[i]);
+      const double braked = sample.velocity[i] * sample.acceleration[i] < 0 ? std::abs(sample.acceleration[i]) : 0;
+      const double left = braking_share * bounds_[joint].motion.acceleration - pace_ * pace_ * braked;
+      if (speed > 0) slowing = std::min(slowing, std::max(0.0, left) / speed);
+    }
+  }
+  return slowing;
+}
+
 /// Braked, the arm stays on its path: its time goes slower, as fast as the joints' accelerations permit.
 void Setpoints::advance_path() noexcept {
-  double slowing = 0;
+  double slower = 0;
   if (braking_) {
-    path_.at(path_s_, sample_);
-    slowing = pace_ / cycle_s_;
-    for (std::size_t i = 0; i < bounds_.size(); ++i) {
-      const double speed = std::abs(sample_.velocity[static_cast<Eigen::Index>(i)]);
-      if (speed > 0) slowing = std::min(slowing, bounds_[i].motion.acceleration / speed);
-    }
-    pace_ = std::max(0.0, pace_ - slowing * cycle_s_);
+    slower = slowing();
+    pace_ = std::max(0.0, pace_ - slower * cycle_s_);
   }
   path_s_ += pace_ * cycle_s_;
   path_.at(path_s_, sample_);
   now_.position = sample_.position;
   now_.velocity = pace_ * sample_.velocity;
-  now_.acceleration = pace_ * pace_ * sample_.acceleration - slowing * sample_.velocity;
+  now_.acceleration = pace_ * pace_ * sample_.acceleration - slower * sample_.velocity;
   if (path_s_ >= path_.duration_s() || pace_ <= 0) come_to_rest();
 }
 
@@ -252,36 +249,73 @@ std::optional<std::size_t> Setpoints::joint_in_the_way() const noexcept {
   return std::nullopt;
 }
 
-void Setpoints::keep_pace(double wanted) noexcept {
-  const double fastest = braking_ ? 0.0 : 1.0;
-  const double limit = std::min(fastest, wanted);
-  pace_ = limit < pace_ ? std::max(limit, pace_ - (braking_ ? 1 / ramp_s : 20.0) * cycle_s_)
-                        : std::min(limit, pace_ + pace_per_s * cycle_s_);
+/// `onward`: what the joints do at full pace, besides what brings them back to the line. Braked, the pace is the least that their accelerations permit.
+void Setpoints::keep_pace(const JointVector& onward, const JointVector& back) noexcept {
+  const double most = line_.pace(path_s_);
+  if (!braking_) {
+    pace_ = std::min(most, pace_ + line_.change_per_s(path_s_) * cycle_s_);
+    return;
+  }
+  double least = std::max(0.0, pace_ - cycle_s_ / Line::ramp_s);
+  for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    if (std::abs(onward[i]) < no_way) continue;
+    const double step = braking_share * bounds_[joint].motion.acceleration * cycle_s_;
+    const double kept = now_.velocity[i] - back[i];
+    least = std::max(least, std::min((kept - step) / onward[i], (kept + step) / onward[i]));
+  }
+  pace_ = std::min({least, pace_, most});
+}
+
+/// The survey has looked at some places; what lies between them keeps velocities and accelerations as well, and goes on slower.
+void Setpoints::keep_limits(JointVector& rates) noexcept {
+  double speed_share = 1, change_share = 1;
+  for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    const double most = bounds_[joint].motion.velocity;
+    if (std::abs(rates[i]) > most) speed_share = std::min(speed_share, most / std::abs(rates[i]));
+  }
+  rates *= speed_share;
+  const JointVector change = rates - now_.velocity;
+  for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+    const double its = std::abs(change[static_cast<Eigen::Index>(joint)]);
+    const double most = bounds_[joint].motion.acceleration * cycle_s_;
+    if (its > most) change_share = std::min(change_share, most / its);
+  }
+  rates = now_.velocity + change_share * change;
+  if (speed_share < 1 || change_share < 1)
+    pace_ = std::max(std::min(pace_, slowest_pace), pace_ - 2 * line_.change_per_s(path_s_) * cycle_s_);
 }
 
 void Setpoints::advance_line() noexcept {
+  if (path_s_ <= 0 && line_.found() != Line::Found::Way) {
+    if (!braking_) line_.survey();
+    if (braking_ || line_.found() == Line::Found::Nothing) come_to_rest();
+    if (line_.found() != Line::Found::Way) return;
+    pace_ = line_.pace(0);
+    duration_s_ = line_.duration_s();
+    return;
+  }
   path_s_ += pace_ * cycle_s_;
   path_.at(path_s_, sample_);
-  const double share = sample_.position[0], rate = pace_ * sample_.velocity[0];
-  const robotics::Pose here = tool();
-  const robotics::Matrix3 rotation = Eigen::AngleAxisd{share * angle_, axis_} * from_.rotation;
-  const Vector3 beside = from_.position + share * way_m_ - here.position;
+  const double share = sample_.position[0], rate = sample_.velocity[0];
+  const robotics::Pose here = tool(), wanted = line_.at(share);
+  const Vector3 beside = wanted.position - here.position;
   off_line_m_ = beside.norm();
   Vector6 twist;
-  twist.head<3>() = rate * angle_ * axis_ + back_to_line_per_s * rotation_vector(rotation * here.rotation.transpose());
-  twist.tail<3>() = rate * way_m_ + back_to_line_per_s * beside;
+  twist.head<3>() = back_to_line_per_s * rotation_vector(wanted.rotation * here.rotation.transpose());
+  twist.tail<3>() = back_to_line_per_s * beside;
+  const JointVector back = tip_rates(line_.kinematics(), twist, now_.position);
   // Joints that the tool leaves free are drawn while it goes, and stand when it does.
-  const JointVector drawn = now_.position + rate / line_rate_ * (posture_ - now_.position);
-  JointVector rates = tip_rates(on_line_, twist, drawn);
-  double permitted = 1;
-  for (std::size_t i = 0; i < bounds_.size(); ++i) {
-    const double speed = std::abs(rates[static_cast<Eigen::Index>(i)]);
-    if (speed > bounds_[i].motion.velocity) permitted = std::min(permitted, bounds_[i].motion.velocity / speed);
-  }
-  keep_pace(pace_ * permitted < pace_ ? pace_ * permitted : 1.0);
-  follow(rates * permitted);
-  if (pace_ <= 0 || (path_s_ >= path_.duration_s() && beside.norm() < 1e-7 && rates.cwiseAbs().maxCoeff() < 1e-5))
-    come_to_rest();
+  const JointVector drawn = now_.position + rate / line_.rate() * (posture_ - now_.position);
+  const JointVector onward = tip_rates(line_.kinematics(), rate * line_.twist(), drawn);
+  keep_pace(onward, back);
+  JointVector rates = pace_ * onward + back;
+  keep_limits(rates);
+  follow(rates);
+  const bool there = beside.norm() < 1e-7 && rates.cwiseAbs().maxCoeff() < 1e-5;
+  const double behind_s = path_s_ - path_.duration_s();
+  if ((braking_ && pace_ <= 0) || (behind_s >= 0 && (there || behind_s >= longest_settling_s))) come_to_rest();
 }
 
 /// Towards the velocities that are wanted, within acceleration, and so that each can be braked away before its range ends.

@@ -8,6 +8,7 @@
 
 #include "robotics/motion/inverse_kinematics.hpp"
 #include "subsystems/robot_arm/control/joints.hpp"
+#include "subsystems/robot_arm/control/line.hpp"
 #include "subsystems/robot_arm/control/trail.hpp"
 
 namespace hirosco::robot_arm {
@@ -24,12 +25,10 @@ class Setpoints {
   void rest(const JointVector& position) noexcept;
   /// All joints at once, each by the same share of its way, jerk-limited, with this share of their velocities. InvalidArgument: as of PointToPoint.
   [[nodiscard]] Result<> go(const JointVector& goal, double speed_share) noexcept;
-  /// The tool on a straight line, turning about one axis meanwhile. InvalidArgument: there is no way, or no speed.
-  struct LineSpeed {
-    double linear_m_s{0};
-    double angular_rad_s{0};
-  };
-  [[nodiscard]] Result<> go_straight(const robotics::Pose& goal, const LineSpeed& speed) noexcept;
+  /// The tool on a straight line: it stands until line() has found whether it can, and rests where it cannot. InvalidArgument: as of Line.
+  [[nodiscard]] Result<> go_straight(const robotics::Pose& goal, const Line::Speed& speed) noexcept;
+  /// The last one.
+  [[nodiscard]] const Line& line() const noexcept { return line_; }
   /// With these velocities from now on, until brake(); of the joints, or a twist [ω; v] of the tool in the axes of the base.
   void jog(const JointVector& velocity) noexcept;
   void jog(const Vector6& twist) noexcept;
@@ -57,11 +56,13 @@ class Setpoints {
   [[nodiscard]] double progress() const noexcept;
   /// Of the last retreat: how far it went, rad or m.
   [[nodiscard]] double retracted_by() const noexcept { return apart(now_.position, met_); }
-  [[nodiscard]] double duration_s() const noexcept { return path_.duration_s(); }
+  [[nodiscard]] double duration_s() const noexcept { return duration_s_; }
   /// How far the setpoint's tool is from where its line has it, m; 0 without one.
   [[nodiscard]] double off_line_m() const noexcept { return off_line_m_; }
   /// How far its line has led it.
-  [[nodiscard]] double gone_m() const noexcept { return kind_ == Kind::Line ? sample_.position[0] * way_m_.norm() : 0; }
+  [[nodiscard]] double gone_m() const noexcept {
+    return kind_ == Kind::Line ? sample_.position[0] * line_.length_m() : 0;
+  }
   /// Of a line that cannot be followed: who is near an end of its range and on the way there; nobody: a singular posture is in the way.
   [[nodiscard]] std::optional<std::size_t> joint_in_the_way() const noexcept;
   /// Where the tool of the setpoint is.
@@ -81,7 +82,9 @@ class Setpoints {
   [[nodiscard]] JointVector tip_rates(const robotics::InverseKinematics& kinematics, const Vector6& twist,
                                       const JointVector& posture) noexcept;
   void follow(const JointVector& velocity) noexcept;
-  void keep_pace(double wanted) noexcept;
+  [[nodiscard]] double slowing() const noexcept;
+  void keep_pace(const JointVector& onward, const JointVector& back) noexcept;
+  void keep_limits(JointVector& rates) noexcept;
   void come_to_rest() noexcept;
 
   robotics::FrameId tip_;
@@ -89,7 +92,7 @@ class Setpoints {
   double cycle_s_;
   robotics::Dynamics dynamics_;
   robotics::InverseKinematics kinematics_;
-  robotics::InverseKinematics on_line_;  ///< who leaves a line has lost it, so it goes slower instead
+  Line line_;
   robotics::State state_;
   Setpoint now_;
   Kind kind_{Kind::Rest};
@@ -98,14 +101,10 @@ class Setpoints {
   double urgency_{1};  ///< factor of accelerations while it halts
   robotics::PointToPoint path_{};
   robotics::PointToPoint::Sample sample_{};
+  double duration_s_{0};
   double path_s_{0};  ///< how far on its path, in its own time
   double pace_{1};  ///< of that time
   robotics::Pose tool_{};
-  robotics::Pose from_{};  ///< of a line
-  Vector3 way_m_{Vector3::Zero()};
-  Vector3 axis_{Vector3::UnitZ()};
-  double angle_{0};
-  double line_rate_{1};  ///< of its share in full motion, 1/s
   double off_line_m_{0};
   JointVector posture_;
   JointVector jog_;
