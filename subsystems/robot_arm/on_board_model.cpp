@@ -26,10 +26,7 @@ void OnBoardModel::update() noexcept {
   dynamics_->set_gravity({gravity[0], gravity[1], gravity[2]});
   dynamics_->update(state_);
   const robotics::Pose tip = dynamics_->frame_pose(known.tip());
-  const auto place = parts_.parameters.tool_place_m.load();
-  const Vector3 tool = tip * Vector3{place[0], place[1], place[2]};
-  const robotics::Quaternion turned{tip.rotation};
-  parts_.parameters.tool.store({{tool.x(), tool.y(), tool.z()}, {turned.w(), turned.x(), turned.y(), turned.z()}});
+  parts_.parameters.tool.store(values_of(tip * pose_of(parts_.parameters.tool_place.load())));
   robotics::Coordinates of_payload = robotics::Coordinates::Zero(known.model().joint_count());
   Law::add_payload(payload(), known.tip(), {gravity[0], gravity[1], gravity[2]}, *dynamics_,
                    JointVector::Zero(known.model().joint_count()), of_payload);

@@ -20,7 +20,7 @@ struct Parameters {
     publish("DES_VELOCITY", desired_velocity);
     publish("EXTERNAL_TORQUE", external_torque);
     publish("TOOL", tool);
-    publish("TOOL_PLACE", tool_place_m);
+    publish("TOOL_PLACE", tool_place);
     publish("MOTION", motion);
     publish("PAYLOAD", payload);
     publish("CONTACT_WATCH", contact);
@@ -46,12 +46,12 @@ struct Parameters {
 
   Parameter<CurrentValues> current;
   Parameter<Joints> rotor_inertia, desired_position, desired_velocity, external_torque, joint_stiffness;
-  Parameter<ToolValues> tool;
+  Parameter<ToolValues> tool, tool_place;
   Parameter<MotionValues> motion;
   Parameter<PayloadValues> payload;
   Parameter<ContactValues> contact;
   Parameter<LawValues> law;
-  Parameter<std::array<double, 3>> gravity_m_s2, tool_place_m;
+  Parameter<std::array<double, 3>> gravity_m_s2;
   Parameter<double> bandwidth_rad_s, acceleration, jerk, goal_tolerance;
   Parameter<double> torque_limit, torque_hard, speed_limit, following_limit;
   Parameter<double> clearance_limit_m, clearance_m;

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/robot_arm.hpp"
 
+#include <cmath>
 #include <initializer_list>
+#include <numeric>
 #include <string_view>
 
 #include "subsystems/robot_arm/lengths.hpp"
@@ -44,7 +46,7 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   control_.begin(cycle_s);
   guidance_.begin(cycle_s);
   static_cast<void>(obstacles_.keep_out(parameters_.keep_out.load()));
-  place_tool(parameters_.tool_place_m.load());
+  place_tool(parameters_.tool_place.load());
   limits_.arm();
   forget_motion();
   return ok();
@@ -224,9 +226,23 @@ Outcome RobotArm::take_payload(double mass_kg, const std::array<double, 3>& plac
   return ok();
 }
 
-void RobotArm::place_tool(const std::array<double, 3>& place_m) noexcept {
-  guidance_.setpoints().set_tool({robotics::Matrix3::Identity(), {place_m[0], place_m[1], place_m[2]}});
-  control_.laws().set_tool({place_m[0], place_m[1], place_m[2]});
+/// Springs are the same along and about all axes: for them it is no matter how the tool is turned.
+void RobotArm::place_tool(const robot_arm::ToolValues& in_tip) noexcept {
+  const robotics::Pose place = robot_arm::pose_of(in_tip);
+  guidance_.setpoints().set_tool(place);
+  control_.laws().set_tool(place.position);
+}
+
+Outcome RobotArm::take_tool(const robot_arm::ToolValues& in_tip) noexcept {
+  if (!guidance_.begun()) return refused(pus::FailureCode::NotPermittedNow);
+  if (motion_ || stop_ || !guidance_.at_rest()) return refused(pus::FailureCode::Busy);
+  const double norm = std::sqrt(std::inner_product(in_tip.orientation_wxyz.begin(), in_tip.orientation_wxyz.end(),
+                                                   in_tip.orientation_wxyz.begin(), 0.0));
+  if (norm != 0 && !(norm > 0.5 && norm < 1.5)) return refused(Trouble::no_goal, "no orientation");
+  const robot_arm::ToolValues taken = robot_arm::values_of(robot_arm::pose_of(in_tip));
+  parameters_.tool_place.store(taken);
+  place_tool(taken);
+  return ok();
 }
 
 void RobotArm::bind_motions() {
@@ -257,12 +273,8 @@ void RobotArm::bind_settings() {
   on_function("SET_PAYLOAD", [this](double mass_kg, std::array<double, 3> place_m) -> Outcome {
     return take_payload(mass_kg, place_m);
   });
-  on_function("SET_TOOL", [this](std::array<double, 3> place_m) -> Outcome {
-    if (!guidance_.begun()) return refused(pus::FailureCode::NotPermittedNow);
-    if (motion_ || stop_ || !guidance_.at_rest()) return refused(pus::FailureCode::Busy);
-    parameters_.tool_place_m.store(place_m);
-    place_tool(place_m);
-    return ok();
+  on_function("SET_TOOL", [this](std::array<double, 3> place_m, std::array<double, 4> wxyz) -> Outcome {
+    return take_tool({place_m, wxyz});
   });
 }
 

@@ -58,7 +58,8 @@ class RobotArm final : public robotics::MovingSubsystem {
   Outcome move(Begin begin, const FunctionValues& values, const Call& call) noexcept;
   Outcome jog(Begin begin, robot_arm::Setpoints::Kind kind, const FunctionValues& values, const Call& call) noexcept;
   [[nodiscard]] Outcome take_payload(double mass_kg, const std::array<double, 3>& place_m) noexcept;
-  void place_tool(const std::array<double, 3>& place_m) noexcept;
+  [[nodiscard]] Outcome take_tool(const robot_arm::ToolValues& in_tip) noexcept;
+  void place_tool(const robot_arm::ToolValues& in_tip) noexcept;
 
   robot_arm::Parameters parameters_;
   Event<> motion_done_{"MOTION_DONE"};

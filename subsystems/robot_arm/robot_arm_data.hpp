@@ -22,6 +22,17 @@ struct ToolValues {
   std::array<double, 3> position_m;
   std::array<double, 4> orientation_wxyz;
 };
+/// Whoever says no orientation, all 0, has it as the tip.
+[[nodiscard]] inline robotics::Pose pose_of(const ToolValues& its) noexcept {
+  const robotics::Quaternion turned{its.orientation_wxyz[0], its.orientation_wxyz[1], its.orientation_wxyz[2],
+                                    its.orientation_wxyz[3]};
+  return {turned.norm() > 0 ? turned.normalized().toRotationMatrix() : robotics::Matrix3{robotics::Matrix3::Identity()},
+          {its.position_m[0], its.position_m[1], its.position_m[2]}};
+}
+[[nodiscard]] inline ToolValues values_of(const robotics::Pose& pose) noexcept {
+  const robotics::Quaternion turned{pose.rotation};
+  return {{pose.position.x(), pose.position.y(), pose.position.z()}, {turned.w(), turned.x(), turned.y(), turned.z()}};
+}
 struct MotionValues {
   std::uint8_t kind;  ///< of MOTIONS
   double duration_s;

@@ -142,6 +142,43 @@ TEST_F(RobotArmPose, AtTheEndOfALineThatCannotBeFollowedIsToldWithItsReasonAndNo
   EXPECT_EQ(flown.rig.outcome(next), done) << "it stood, and nothing is left of the line";
 }
 
+/// A tool beside the flange and turned against it: what poses, lines and TOOL are of.
+TEST_F(RobotArmPose, IsThatOfTheToolAsItIsPlacedAndTurned) {
+  const robotics::Pose in_flange{Eigen::AngleAxisd{0.5, robotics::Vector3::UnitX()}.toRotationMatrix(), {0.02, 0.1, 0}};
+  const auto set = ask("SET_TOOL", in_flange, {});
+  flown.cycle(3);
+  ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
+  const robotics::Pose wanted = flange_at(beside) * in_flange;
+  const auto there = move_p(wanted);
+  flown.finish(there);
+  EXPECT_EQ(flown.rig.outcome(there), done);
+  flown.cycle(1000);
+  EXPECT_LE(((flange() * in_flange).position - wanted.position).norm(), 1e-3);
+  EXPECT_LE(turned(flange() * in_flange, wanted), 1e-3);
+  robotics::Pose lower = wanted;
+  lower.position.z() -= 0.05;
+  const auto down = ask("MOVE_L", lower, {0.1, 0.5});
+  flown.finish(down);
+  EXPECT_EQ(flown.rig.outcome(down), done);
+  flown.cycle(1000);
+  EXPECT_LE(((flange() * in_flange).position - lower.position).norm(), 1e-3);
+  EXPECT_LE(turned(flange() * in_flange, lower), 1e-3) << "it was turned as the tool all the way";
+}
+
+TEST_F(RobotArmPose, OfAToolWithoutAnOrientationIsTurnedAsTheFlange) {
+  const auto none = flown.ask("SET_TOOL", {0, 0.1, 0, 0.1, 0, 0, 0});
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(none), StartsWith("1 4:8009"));
+  const auto set = flown.rig.call_with("SET_TOOL", {Value{0.0}, Value{0.1}, Value{0.0}});
+  flown.cycle(3);
+  ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
+  const robotics::Pose wanted = flange_at(beside) * robotics::Pose{robotics::Matrix3::Identity(), {0, 0.1, 0}};
+  const auto there = move_p(wanted);
+  flown.finish(there);
+  EXPECT_EQ(flown.rig.outcome(there), done);
+  EXPECT_LE(flown.off(beside), 0.01);
+}
+
 TEST_F(RobotArmPose, ThatIsLookedForIsGivenUpByHold) {
   robotics::Pose far = flange_at(start);
   far.position *= 2.5;

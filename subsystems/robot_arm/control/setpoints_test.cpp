@@ -116,7 +116,7 @@ TEST_F(SetpointsTest, GoesStraightAndTurnsMeanwhile) {
 }
 
 TEST_F(SetpointsTest, GoesStraightWithTheToolAndNotWithTheTip) {
-  setpoints.set_tool({robotics::Matrix3::Identity(), {0.05, 0.1, 0.2}});
+  setpoints.set_tool({Eigen::AngleAxisd{0.7, Vector3::UnitZ()}.toRotationMatrix(), {0.05, 0.1, 0.2}});
   const robotics::Pose from = setpoints.tool();
   robotics::Pose goal = from;
   goal.rotation = Eigen::AngleAxisd{0.5, Vector3::UnitX()} * goal.rotation;
