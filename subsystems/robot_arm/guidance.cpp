@@ -71,7 +71,7 @@ Guidance::News Guidance::look(bool gives_way) noexcept {
   }
   News news;
   if (arrives_ && !half_reported_ && setpoints_->progress() >= 0.5) half_reported_ = news.half_way = true;
-  if (setpoints_->at_rest()) news.end = arrive(gives_way);
+  if (setpoints_->at_rest()) news.end = retreats_ && !setpoints_->retreated() ? End::NotReached : arrive(gives_way);
   return news;
 }
 
@@ -108,6 +108,7 @@ Outcome Guidance::start(const Result<>& planned) noexcept {
   }
   tool_to_.reset();
   half_reported_ = false;
+  retreats_ = false;
   arrives_ = true;
   settled_s_ = waited_s_ = 0;
   end_motion();
@@ -116,6 +117,7 @@ Outcome Guidance::start(const Result<>& planned) noexcept {
 
 Outcome Guidance::start_jog(Setpoints::Kind kind, double seconds) noexcept {
   tool_to_.reset();
+  retreats_ = false;
   arrives_ = false;
   settled_s_ = waited_s_ = 0;
   jog_left_s_ = seconds;
@@ -205,6 +207,21 @@ std::optional<Guidance::Reason> Guidance::judge_line() noexcept {
     why = Reason{Trouble::too_slow, would_last, static_cast<std::int64_t>(longest_motion_s)};
   if (why) setpoints_->rest(setpoints_->now().position);
   return why;
+}
+
+Outcome Guidance::retreat(const FunctionValues& values) noexcept {
+  const JointVector here = setpoints_->now().position;
+  setpoints_->retract(here, JointVector::Zero(here.size()), values[0]);
+  if (setpoints_->kind() != Setpoints::Kind::Retract) {
+    setpoints_->rest(here);
+    return refused(Trouble::no_goal, "it came here by no way since it entered Operational");
+  }
+  end_motion();
+  tool_to_.reset();
+  arrives_ = false;
+  settled_s_ = waited_s_ = 0;
+  retreats_ = retracting_ = true;
+  return running;
 }
 
 Outcome Guidance::jog_j(const FunctionValues& values) noexcept {

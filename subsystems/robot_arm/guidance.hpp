@@ -61,6 +61,8 @@ class Guidance {
   /// The posture is looked for while it stands, in the next cycles, and judged before it goes.
   [[nodiscard]] Outcome move_p(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome move_l(const FunctionValues& values) noexcept;
+  /// Back by the way it came.
+  [[nodiscard]] Outcome retreat(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome jog_j(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome jog_l(const FunctionValues& values) noexcept;
   /// The motion that was begun last is a jog of this kind: another one may take its place, from the velocities that it has.
@@ -111,6 +113,7 @@ class Guidance {
   std::optional<Setpoints::Kind> jog_;
   bool retracting_{false};
   bool half_reported_{false};
+  bool retreats_{false};  ///< its motion is a way back
   bool arrives_{false};  ///< its motion has a goal
 };
 

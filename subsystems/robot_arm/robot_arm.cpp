@@ -259,6 +259,8 @@ void RobotArm::bind_motions() {
   on_function("JOG_L", [this](const FunctionValues& values, Call call) {
     return jog(&Guidance::jog_l, Kind::TipJog, values, call);
   });
+  on_function("RETREAT",
+              [this](const FunctionValues& values, Call call) { return move(&Guidance::retreat, values, call); });
   bind_hold_and_stop();
 }
 

@@ -179,6 +179,33 @@ TEST_F(RobotArmPose, OfAToolWithoutAnOrientationIsTurnedAsTheFlange) {
   EXPECT_LE(flown.off(beside), 0.01);
 }
 
+TEST_F(RobotArmPose, ThatWasComeToIsLeftByTheWayItCameAndNowhereElse) {
+  const auto none = flown.ask("RETREAT", {0.1});
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(none), StartsWith("1 4:8009")) << "it has not moved yet";
+  JointVector corner = start, goal = start;
+  corner[0] += 0.2;
+  goal[0] += 0.2;
+  goal[5] += 0.2;
+  for (const JointVector& next : {corner, goal}) {
+    const auto there = flown.move_j(next);
+    flown.finish(there);
+    ASSERT_EQ(flown.rig.outcome(there), done);
+  }
+  const auto half = flown.ask("RETREAT", {0.2});
+  flown.finish(half);
+  EXPECT_EQ(flown.rig.outcome(half), "1 3 7");
+  EXPECT_LT(flown.off(corner), 0.015) << "within a place of the trail";
+  EXPECT_EQ(flown.rig.events(1027), 1);
+  const auto all = flown.ask("RETREAT", {1});
+  flown.finish(all);
+  EXPECT_EQ(flown.rig.outcome(all), "1 3 7");
+  EXPECT_LT(flown.off(start), 0.015);
+  const auto farther = flown.ask("RETREAT", {0.1});
+  flown.finish(farther);
+  EXPECT_LT(flown.off(start), 0.015) << "there is no more of it";
+}
+
 TEST_F(RobotArmPose, ThatIsLookedForIsGivenUpByHold) {
   robotics::Pose far = flange_at(start);
   far.position *= 2.5;

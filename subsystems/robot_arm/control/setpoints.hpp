@@ -54,6 +54,8 @@ class Setpoints {
   [[nodiscard]] JointVector braked() const noexcept;
   /// Of a path: 0 to 1.
   [[nodiscard]] double progress() const noexcept;
+  /// The last retreat went as far as it was to, before its time was over.
+  [[nodiscard]] bool retreated() const noexcept { return retract_left_s_ > 0; }
   /// Of the last retreat: how far it went, rad or m.
   [[nodiscard]] double retracted_by() const noexcept { return apart(now_.position, met_); }
   [[nodiscard]] double duration_s() const noexcept { return duration_s_; }
