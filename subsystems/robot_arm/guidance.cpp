@@ -16,7 +16,8 @@ constexpr double longest_motion_s = 60;
 constexpr double most_off_line_m = 0.002, most_off_end_m = 0.001;
 constexpr const char* would_last = "it would take longer, s";
 constexpr const char* ends_range = "on the line ends the range of joint";
-constexpr const char* ends_reach = "on the line is a singular posture, or it leads out of reach, after mm";
+/// No longer: a failure carries 64 octets of words.
+constexpr const char* ends_reach = "a singular posture, or it leads out of reach, after mm";
 constexpr const char* singular_there = "a singular posture has the tool there";
 
 }  // namespace

@@ -13,6 +13,7 @@ using robot_arm::JointVector;
 using robot_arm::vector_of;
 using robot_arm::testing::Flown;
 using robot_arm::testing::folder;
+using ::testing::EndsWith;
 using ::testing::StartsWith;
 
 struct RobotArmYields : ::testing::Test {
@@ -32,8 +33,8 @@ struct RobotArmYields : ::testing::Test {
     flown.cycle(3);
     return flown.rig.outcome(request);
   }
-  std::string react_by(std::uint8_t reaction) {
-    const auto request = flown.rig.call_with("SET_CONTACT", {Value{Number{reaction}}, Value{0.3}});
+  std::string react_by(std::uint8_t reaction, double limit = 0.3) {
+    const auto request = flown.rig.call_with("SET_CONTACT", {Value{Number{reaction}}, Value{limit}});
     flown.cycle(3);
     return flown.rig.outcome(request);
   }
@@ -199,10 +200,12 @@ TEST_F(RobotArmYields, PressesWhoLeansOnItNoHarderThanItsLimitOnceMoreHoweverOft
   EXPECT_THAT(flown.rig.outcome(refused), StartsWith("1 4:800c"));
 }
 
-/// A load that nobody declared, beyond the limit: it is told once, moved with, and whoever is met besides counts.
+/// A load that nobody declared, beyond the limit, and within what the law of positions may learn (0.3 of an effort): it is told once, moved with to the goal, and
+/// whoever is met besides counts.
 TEST_F(RobotArmYields, MovesWithALoadThatNobodyDeclaredAndStopsForWhatComesToIt) {
-  const double effort = flown.model.joints()[0].limits.effort.value();
-  flown.outside[0] = 0.35 * effort;
+  const double effort = flown.model.joints()[0].limits.effort.value(), load = 0.25 * effort;
+  ASSERT_EQ(react_by(1, 0.2), "1 3 7");
+  flown.outside[0] = load;
   flown.cycle(500);
   ASSERT_EQ(flown.rig.events(1025), 1);
   const auto motion = flown.move_j(goal, 0.5);
@@ -210,18 +213,37 @@ TEST_F(RobotArmYields, MovesWithALoadThatNobodyDeclaredAndStopsForWhatComesToIt)
   EXPECT_EQ(flown.rig.outcome(motion), "1 3 5:0001 7");
   const auto next = flown.move_j(start, 0.5);
   flown.cycle(500);
-  flown.outside[0] += 0.33 * effort;
+  flown.outside[0] += 0.23 * effort;
   flown.cycle(50);
   EXPECT_EQ(flown.rig.outcome(next), "1 3 8:8004");
   EXPECT_EQ(flown.rig.events(1025), 2);
-  // From the other side nothing stood there.
-  flown.outside[0] = 0.35 * effort;
+  // From the other side nothing stood there. It comes within 0.1 s: half an effort from one cycle to the next makes the arm so fast that SPEED_LIMIT leaves it to
+  // the brakes before what acts from outside is known.
+  flown.outside[0] = load;
   flown.cycle(1000);
   const auto last = flown.move_j(goal, 0.5);
+  flown.cycle(350);
+  for (int i = 1; i <= 100; ++i) {
+    flown.outside[0] = load * (1 - 0.02 * i);
+    flown.cycle();
+  }
+  flown.cycle(50);
+  EXPECT_THAT(flown.rig.outcome(last), EndsWith(" 8:8004")) << "half-way or not";
+  EXPECT_EQ(flown.rig.events(1025), 3);
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+}
+
+/// What is beyond that too moves with the arm and stops it no more, but it comes as near as it may learn to, which is not within 1 mrad, and says so.
+TEST_F(RobotArmYields, MovesWithALoadThatItCannotLearnAndSaysThatItIsNotThere) {
+  flown.outside[0] = 0.35 * flown.model.joints()[0].limits.effort.value();
   flown.cycle(500);
-  flown.outside[0] = -0.35 * effort;
-  flown.cycle(100);
-  EXPECT_EQ(flown.rig.outcome(last), "1 3 8:8004");
+  ASSERT_EQ(flown.rig.events(1025), 1);
+  const auto motion = flown.move_j(goal, 0.5);
+  flown.finish(motion);
+  EXPECT_EQ(flown.rig.outcome(motion), "1 3 5:0001 8:8001");
+  EXPECT_LT(flown.off(goal), 0.005);
+  EXPECT_EQ(flown.rig.events(1025), 1) << "what it carries it did not meet";
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
 }
 
 /// MASS and PLACE.
@@ -274,9 +296,18 @@ TEST_F(RobotArmYields, TakesNoLoadWhileItMovesOrGivesWayNorOneThatItsDrivesCanno
   ASSERT_EQ(asked("POSITION_CONTROL", {}), "1 3 7");
   flown.cycle(200);
   ASSERT_EQ(react_by(2), "1 3 7");
-  flown.outside[0] = 60;
+  // Whoever goes on with what it takes to be met has the arm as fast as SPEED_LIMIT: brakes hold it then, and nobody leads it.
+  flown.outside[0] = 50;
+  for (int i = 0; i < 200 && flown.rig.events(1025) == 0; ++i) flown.cycle();
+  const JointVector met_at = place();
+  flown.outside[0] = 20;
   flown.cycle(200);
+  ASSERT_EQ(flown.rig.inhibited(), 0u);
+  EXPECT_GT(flown.off(met_at), 0.05) << "it is led";
   EXPECT_THAT(asked("SET_PAYLOAD", {10, 0, 0, 0}), StartsWith("1 4:800c"));
+  flown.outside[0] = 0;
+  flown.cycle(1000);
+  EXPECT_THAT(asked("SET_PAYLOAD", {10, 0, 0, 0}), StartsWith("1 4:800c")) << "it floats though nobody leads it";
 }
 
 TEST_F(RobotArmYields, StandsBeforeItIsLedIntoItself) {
@@ -290,9 +321,13 @@ TEST_F(RobotArmYields, StandsBeforeItIsLedIntoItself) {
   EXPECT_EQ(flown.rig.events(1026), 1);
   flown.outside = JointVector::Zero(6);
   flown.cycle(500);
+  // What it learnt against dry friction before it stood goes by and by: a joint creeps to and fro by 1.2 mrad meanwhile, and does not go away.
   const JointVector there = place();
-  flown.cycle(500);
-  EXPECT_LT(flown.off(there), 1e-3);
+  for (int i = 0; i < 3000; ++i) {
+    flown.cycle();
+    ASSERT_LT(flown.off(there), 2e-3) << i;
+  }
+  EXPECT_EQ(flown.rig.events(1026), 1);
   EXPECT_EQ(flown.rig.inhibited(), 0u);
 }
 

@@ -34,7 +34,7 @@ Setpoints::Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds
       line_{model, tip, bounds} {
   JointVector zeros;
   zeros.setZero(model.joint_count());
-  jog_ = posture_ = met_ = end_ = zeros;
+  jog_ = posture_ = along_ = met_ = end_ = zeros;
   state_.qd = zeros;
   begin(zeros);
 }
@@ -86,6 +86,7 @@ Result<> Setpoints::go_straight(const robotics::Pose& goal, const Line::Speed& s
   pace_ = 1;
   path_.at(0, sample_);
   posture_ = now_.position;
+  along_.setZero();
   return ok();
 }
 
@@ -164,9 +165,17 @@ JointVector Setpoints::braked() const noexcept {
   for (std::size_t i = 0; i < bounds_.size(); ++i)
     longest_s =
         std::max(longest_s, std::abs(now_.velocity[static_cast<Eigen::Index>(i)]) / bounds_[i].motion.acceleration);
-  if (kind_ == Kind::Line) return now_.position + farther * longest_s / 2 * now_.velocity;
+  robotics::PointToPoint::Sample sample;
+  if (kind_ == Kind::Line) {
+    // Who is still getting faster on it comes farther than with what he has now, and brakes for longer.
+    path_.at(path_s_ + pace_ * longest_s / 2, sample);
+    for (std::size_t i = 0; i < bounds_.size(); ++i)
+      longest_s = std::max(longest_s, std::abs(along_[static_cast<Eigen::Index>(i)]) * pace_ * sample.velocity[0] /
+                                          bounds_[i].motion.acceleration);
+    path_.at(path_s_ + farther * pace_ * longest_s / 2, sample);
+    return now_.position + (sample.position[0] - sample_.position[0]) * along_;
+  }
   if (kind_ == Kind::JointPath) {
-    robotics::PointToPoint::Sample sample;
     path_.at(path_s_ + farther * pace_ * longest_s / 2, sample);
     return sample.position;
   }
@@ -309,6 +318,7 @@ void Setpoints::advance_line() noexcept {
   // Joints that the tool leaves free are drawn while it goes, and stand when it does.
   const JointVector drawn = now_.position + rate / line_.rate() * (posture_ - now_.position);
   const JointVector onward = tip_rates(line_.kinematics(), rate * line_.twist(), drawn);
+  if (rate > 0) along_ = onward / rate;
   keep_pace(onward, back);
   JointVector rates = pace_ * onward + back;
   keep_limits(rates);

@@ -109,6 +109,7 @@ class Setpoints {
   robotics::Pose tool_{};
   double off_line_m_{0};
   JointVector posture_;
+  JointVector along_;  ///< of a line: what the joints would do for the whole of it, by where it is
   JointVector jog_;
   Trail trail_;
   JointVector met_, end_;  ///< of a retreat: where it begins and ends

@@ -168,7 +168,7 @@ TEST_F(SetpointsTest, BrakesOnItsLineWithinItsAccelerationsWhereverItIsOnIt) {
     }
     ASSERT_TRUE(setpoints.at_rest());
     EXPECT_LT(off_m, 5e-4);
-    EXPECT_LE(apart(setpoints.now().position, from), apart(told, from) + 0.02) << "it said where it would rest";
+    EXPECT_LE(apart(setpoints.now().position, from), apart(told, from)) << "it said where it would rest";
   }
 }
 
