@@ -304,9 +304,8 @@ constexpr void filter_opening(Filter& made, bool queues) noexcept {
     made.begin_call(number);
     made.add(bpf_load, flags_at);
     made.add(bpf_and, O_ACCMODE | O_TRUNC);
-    for (const std::uint32_t way :
-         {std::uint32_t{O_RDONLY | O_TRUNC}, std::uint32_t{O_ACCMODE}, std::uint32_t{O_ACCMODE | O_TRUNC}}) {
-      made.add(bpf_equal, way, 0, 1);
+    for (const int way : {O_RDONLY | O_TRUNC, O_ACCMODE, O_ACCMODE | O_TRUNC}) {
+      made.add(bpf_equal, static_cast<std::uint32_t>(way), 0, 1);
       made.add(bpf_answer, refused);
     }
     made.add(bpf_answer, SECCOMP_RET_ALLOW);
@@ -316,7 +315,7 @@ constexpr void filter_opening(Filter& made, bool queues) noexcept {
   made.add(bpf_equal, SYS_openat2, 0, 1);
   made.add(bpf_answer, SECCOMP_RET_ERRNO | ENOSYS);
   if (queues) return;
-  for (const std::uint32_t number : {SYS_mq_open, SYS_mq_unlink}) {
+  for (const std::uint32_t number : {std::uint32_t{SYS_mq_open}, std::uint32_t{SYS_mq_unlink}}) {
     made.add(bpf_equal, number, 0, 1);
     made.add(bpf_answer, refused);
   }
