@@ -155,9 +155,11 @@ TEST_F(SandboxTest, GivesNoFileToAnotherToSignalAndTypesForNobody) {
   EXPECT_EQ(refused([&] { return ::fcntl(reads.get(), F_SETOWN_EX, &owner); }), by_filter);
   EXPECT_EQ(refused([&] { return ::setpgid(0, ::getpgid(other)); }), by_filter) << "is stopped with it, and stops it";
   EXPECT_EQ(refused([&] { return ::setsid(); }), by_filter);
-  for (const unsigned long request :
-       {FIOSETOWN, SIOCSPGRP, TIOCSTI, TIOCSPGRP, TIOCSCTTY, static_cast<int>(TIOCSIG), TIOCLINUX})
-    EXPECT_EQ(refused([&] { return ::ioctl(reads.get(), request, &whom); }), by_filter) << request;
+  for (const int request :
+       {FIOSETOWN, SIOCSPGRP, TIOCSTI, TIOCSPGRP, TIOCSCTTY, static_cast<int>(TIOCSIG), TIOCLINUX}) {
+    const auto number = static_cast<unsigned long>(request);
+    EXPECT_EQ(refused([&] { return ::ioctl(reads.get(), number, &whom); }), by_filter) << request;
+  }
   int waiting = -1;
   EXPECT_EQ(inside({}, [&] { return ::ioctl(reads.get(), FIONREAD, &waiting) == 0 && waiting == 0 ? 0 : 1; }), 0);
   EXPECT_EQ(inside({}, [&] { return ::fcntl(reads.get(), F_GETFL) == O_RDONLY ? 0 : 1; }), 0);
