@@ -122,8 +122,12 @@ TEST(ShippedMissions, WhatStopsAnArmByItsOwnSensorsNoMissionWidens) {
         if (parameter == nullptr || (name.find('.') != std::string::npos) == parameter->members.empty()) continue;
         ++tried;
         EXPECT_TRUE(parameter->protection) << file << " " << member.subsystem.name << " " << limit;
-        SubsystemDescriptor changed = member.subsystem;
-        EXPECT_FALSE(apply_change(changed, "--set", name + "=5"))
+        const Field* field = &parameter->field;
+        for (const auto& part : parameter->members)
+          if (part.name == name.substr(name.find('.') + 1)) field = &part;
+        ASSERT_TRUE(field->minimum && field->maximum) << file << " " << member.subsystem.name << " " << limit;
+        // A mission's <Set> beyond a range is refused by the reader.
+        EXPECT_EQ(field->minimum->real(), field->maximum->real())
             << file << " " << member.subsystem.name << " " << limit;
       }
   EXPECT_GE(tried, 6) << "of the arm that stands, and the one that floats";
