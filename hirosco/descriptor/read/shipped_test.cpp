@@ -124,7 +124,7 @@ TEST(ShippedMissions, WhatStopsAnArmByItsOwnSensorsNoMissionWidens) {
         EXPECT_TRUE(parameter->protection) << file << " " << member.subsystem.name << " " << limit;
         const Field* field = &parameter->field;
         for (const auto& part : parameter->members)
-          if (part.name == name.substr(name.find('.') + 1)) field = &part;
+          if (part.field.name == name.substr(name.find('.') + 1)) field = &part.field;
         ASSERT_TRUE(field->minimum && field->maximum) << file << " " << member.subsystem.name << " " << limit;
         // A mission's <Set> beyond a range is refused by the reader.
         EXPECT_EQ(field->minimum->real(), field->maximum->real())
