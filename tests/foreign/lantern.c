@@ -453,7 +453,7 @@ int main(int argc, char** argv) {
   vital_ = page(vital, 4976, 1), permit_ = page(permit, 56, 0);
   if (!vital_ || !permit_ || load32(vital_) != 0x48495243 || load32(permit_) != 0x48495243)
     return fprintf(stderr, "lantern: what should be the supervisor's pages are none\n"), 3;
-  if (load32(vital_ + 4) != 7 || load32(permit_ + 4) != 7)
+  if (load32(vital_ + 4) != 8 || load32(permit_ + 4) != 8)
     return fprintf(stderr, "lantern: the supervisor's pages are of version %u, this program's of version 8\n", load32(permit_ + 4)), 3;
   const char* instance = getenv("HIROSCO_INSTANCE");
   size_t named = strlen(address_);
