@@ -213,7 +213,7 @@ static int another_permit_page(int memory) {
   void* at = mmap(NULL, 56, PROT_READ, MAP_SHARED, memory, 0);
   if (at == MAP_FAILED) return 0;
   const volatile uint8_t* page = at;
-  if (load32(page) != 0x48495243 || load32(page + 4) != 7) return munmap(at, 56), 0;
+  if (load32(page) != 0x48495243 || load32(page + 4) != 8) return munmap(at, 56), 0;
   munmap((void*)(uintptr_t)permit_, 56);
   permit_ = page;
   heartbeat_ = load64(page + 32);
