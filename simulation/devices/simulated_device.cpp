@@ -37,7 +37,8 @@ Result<> SimulatedDevice::plug() {
 
 void SimulatedDevice::step(TimePoint now) {
   const WorldClock::Held held = clock_.wake(now);
-  inhibit_.prolong(held.pause + obedience_.forgive(held));
+  const Duration forgiven = obedience_.forgive(held);
+  inhibit_.prolong(held.pause + forgiven);
   // Without power it hears nothing and moves nothing; it comes back knowing nothing of what was before.
   if (switch_.step(now)) begin_anew();
   inhibit_.receive(now, plugged() && powered());
@@ -45,12 +46,15 @@ void SimulatedDevice::step(TimePoint now) {
   obedience_.watch(now);
   obedience_.choose_output(now);
   const std::int64_t due = clock_.due(now, exchanged);
+  // What the watchdog forgives, the world does not live through: a command that its subsystem had no time to follow up would drive the
+  // motors on, and a control loop left open for tens of milliseconds came back to torques beyond the hard limit.
+  const std::int64_t lived = forgiven > Duration{0} && !exchanged && active() ? 0 : due;
   const Duration cycle = clock_.world_cycle();
-  for (std::int64_t i = 0; i < due; ++i) {
+  for (std::int64_t i = 0; i < lived; ++i) {
     advance(cycle);
     obedience_.count_down(cycle);
   }
-  clock_.count(due, exchanged);
+  clock_.count(lived, exchanged);
   if (active()) obeyed_cycles_ = cycles();
   if (due > 0 || exchanged) answer(now);
   answers_.send_due(now, endnodes_.driving());

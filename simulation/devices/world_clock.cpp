@@ -13,17 +13,18 @@ constexpr std::int64_t most_cycles_at_once = 40;  // of catching up after the pr
 
 }  // namespace
 
-/// While it runs it wakes after a cycle by its own clock, after two while it is driven by exchanges; what is longer was a pause. Up to
-/// half a cycle it was jitter, which the world catches up with: its clock may not go slow by it. Woken later than that the machine starves.
+/// While it runs it wakes after a cycle by its own clock, after two while it is driven by exchanges; what is longer was a pause. The
+/// world may be ahead by less than a cycle: then the wake that was planned lay later by that. Up to half a cycle it was jitter, which the
+/// world catches up with: its clock may not go slow by it. Woken later than that the machine starves.
 WorldClock::Held WorldClock::wake(TimePoint now) noexcept {
   const TimePoint before = std::exchange(now_, now);
   if (!started_) return {};
   const Duration expected = planned_step();
-  const Duration pause = now - before - expected;
+  const Duration pause = now - std::max(before, world_time_) - expected;
   if (pause <= Duration{0}) return {};
-  // The world may be ahead by less than a cycle: then the wake that was planned lay later by that.
-  if (const Duration lost = std::min(pause, now - world_time_ - expected); lost > cycle_ / 2) world_time_ += lost;
-  return {.pause = pause, .starved = pause > cycle_ / 2 ? expected : Duration{0}};
+  const bool starves = pause > cycle_ / 2;
+  if (starves) world_time_ += pause;
+  return {.pause = pause, .starved = starves ? expected : Duration{0}};
 }
 
 /// The world's clock is the craft's: it is moved by whole cycles and never away from `now` by more than one. An exchange

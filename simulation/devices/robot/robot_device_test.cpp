@@ -196,6 +196,23 @@ TEST(Watchdog, DoesNotCountForAWhileWhatAStarvingMachineGivesTheDeviceBeforeItsS
   EXPECT_TRUE(bench.device.watchdog_tripped());
 }
 
+TEST(Watchdog, ForgivesNoStepInWhichTheWorldWouldFollowACommandThatNobodyHadTimeToFollowUp) {
+  constexpr Duration late = std::chrono::microseconds{1700};
+  RobotBench bench;
+  bench.active(5);
+  const Vec2 motor_rad = bench.device.arm().state().motor_rad;
+  const auto lived = bench.device.cycles();
+  for (int k = 0; k < 40; ++k) {
+    bench.device.step(bench.now += late);
+    ASSERT_EQ(bench.device.arm().state().motor_rad, motor_rad) << k;
+  }
+  EXPECT_EQ(bench.device.cycles(), lived);
+  bench.active(5);
+  EXPECT_GT(bench.device.cycles(), lived) << "whoever follows it up finds the world where it was";
+  EXPECT_LE(bench.device.cycles(), lived + 2);
+  EXPECT_NE(bench.device.arm().state().motor_rad, motor_rad);
+}
+
 TEST(Fence, RefusesAnOldEpochAndItDoesNotFeedTheWatchdog) {
   RobotBench bench;
   bench.active(5, 7);
