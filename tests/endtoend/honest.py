@@ -51,6 +51,7 @@ class Honest:
         self.count, self.closed, self.gaps, self.packets = 0, False, 0, 0
         self.reports = {}                                     # request id -> [(subtype, time)]
         self.by_source = collections.Counter()                # (destination, subtype) -> number
+        self.said = collections.Counter()                     # (apid, service, subtype) -> number, without housekeeping
         self.housekeeping = {}                                # (apid, structure) -> (number, source data)
         self.sequence = {}
         self.arrived = threading.Condition()
@@ -84,6 +85,8 @@ class Honest:
             self.sequence[apid] = count
             service, subtype = buffer[at + 7], buffer[at + 8]
             self.packets += 1
+            if (service, subtype) != (3, 25):
+                self.said[apid, service, subtype] += 1
             if service == 1:
                 destination = buffer[at + 11] << 8 | buffer[at + 12]
                 self.by_source[destination, subtype] += 1

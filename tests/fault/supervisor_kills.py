@@ -41,10 +41,13 @@ SWITCH_S, ROTATION_S = 0.030, 0.005    # what a change of strategy takes, and th
 PACKETS_PER_S = 1000
 
 
+NAMES = {honest.SUPERVISOR: "SUPERVISOR", honest.COMMUNICATION: "COMMUNICATION", flight.MANIPULATOR: "MANIPULATOR", flight.JOYSTICK: "JOYSTICK"}
+
+
 def name_of(request):
     """(addressee, sequence count) of a request id as the log has them."""
     apid, count = struct.unpack(">HH", request)
-    return {honest.SUPERVISOR: "SUPERVISOR", flight.MANIPULATOR: "MANIPULATOR", flight.JOYSTICK: "JOYSTICK"}[apid & 0x7FF], f"#{count & 0x3FFF}"
+    return NAMES[apid & 0x7FF], f"#{count & 0x3FFF}"
 
 
 class Client:
@@ -85,7 +88,8 @@ class Accounts(unittest.TestCase):
                 return
         self.fail("the robot does not push")
 
-    def compare(self, rokviss, ground, sent, most_silent=0):
+    def compare(self, rokviss, ground, sent, most_silent=0, before=None):
+        """`before`: the newest number of the log when nobody of the ground listened yet; what was said since then is compared, too."""
         silent, several, accepted_only, unknown, answered = [], [], [], 0, collections.Counter()
         for request, times in self.sent_at(sent).items():
             reports = ground.reports.get(request, [])
@@ -102,8 +106,12 @@ class Accounts(unittest.TestCase):
                 unknown += 8 in subtypes
                 answered[name_of(request)] += bool(subtypes)
         flight.measure(f"ended as unknown: {unknown}, without any report: {len(silent)}")
-        missing, noted = self.is_continuous(rokviss)
+        with ground.arrived:
+            heard = collections.Counter({(NAMES[apid], service, subtype): times for (apid, service, subtype), times in ground.said.items()})
+        missing, noted, said = self.is_continuous(rokviss, before)
         self.stands_in_the_log(answered, noted, missing)
+        if before is not None:
+            self.was_said(heard, said, missing, most_silent)
         self.assertEqual(several, [], "one end each")
         self.assertEqual(accepted_only, [], "what was accepted has an end")
         self.assertLessEqual(len(silent), most_silent, f"between reading and noting: {silent[:5]}")
@@ -116,10 +124,10 @@ class Accounts(unittest.TestCase):
             times.setdefault(packet[:4], []).append(at)
         return times
 
-    def is_continuous(self, rokviss):
-        """Each number of the log once, in a record or in a gap that says so. How many stand in gaps, and the telecommands that stand
-        in records: {(addressee, sequence count): times}."""
-        expected, missing, noted = None, 0, collections.Counter()
+    def is_continuous(self, rokviss, before=None):
+        """Each number of the log once, in a record or in a gap that says so. How many stand in gaps, the telecommands that stand in
+        records: {(addressee, sequence count): times}, and the reports without housekeeping after number `before`: {(source, service, subtype): times}."""
+        expected, missing, noted, said = None, 0, collections.Counter(), collections.Counter()
         for record in rokviss.records(last=10_000_000):
             number = record["number"]
             if expected is not None:
@@ -130,8 +138,23 @@ class Accounts(unittest.TestCase):
                 expected = int(record["text"].rsplit("number ", 1)[1].split('"')[0]) + 1
             elif record["kind"] == "telecommand-received":
                 noted[tuple(record["text"].split(" TC[", 1)[1].split()[1:3])] += 1
+            elif record["kind"] in ("telemetry", "event") and before is not None and number > before:
+                kind, source = record["text"].split(" TM[", 1)[1].split()[:2]
+                if kind != "3,25]":
+                    said[source, *map(int, kind.rstrip("]").split(","))] += 1
         flight.measure(f"numbers of the log that stand in gaps: {missing}")
-        return missing, noted
+        return missing, noted, said
+
+    def was_said(self, heard, said, missing, most_unheard):
+        """Whatever came to the ground without housekeeping stands in the log as often as it came, but for what its gaps say; and what
+        stands there came."""
+        unlogged = {kind: (times, said[kind]) for kind, times in heard.items() if times > said[kind]}
+        lost = sum(times - there for times, there in unlogged.values())
+        unheard = sum(max(0, there - heard[kind]) for kind, there in said.items())
+        flight.measure(f"reports that came to the ground: {sum(heard.values())}, of them not in the log: {lost}; in the log, and did not come: {unheard}")
+        self.assertGreater(sum(said.values()), 0)
+        self.assertLessEqual(lost, missing, unlogged)
+        self.assertLessEqual(unheard, most_unheard, "between noting and telling")
 
     def stands_in_the_log(self, answered, noted, missing):
         """What was answered; an essential telecommand is answered before it stands there, and is in a gap where it never came so far."""
@@ -151,6 +174,7 @@ class SupervisorKills(Accounts):
             self.rokviss, self.strategy, self.took = rokviss, ASCII, []
             rokviss.wait_commissioned()
             self.push(rokviss)
+            before = rokviss.log(last=1)[-1]["number"]
             self.ground = honest.Honest()
             self.client = Client(self.ground, pause_s=0.005 if PLAIN else 0.0025)
             strokes = {0: SupervisorKills.before_its_stop_is_done} if PLAIN else self.STROKES
@@ -165,7 +189,7 @@ class SupervisorKills(Accounts):
             sent = list(self.client.sent)
             for packet, _ in sent[-200:]:
                 self.ground.verdict(packet, 5.0)
-            self.compare(rokviss, self.ground, sent, KILLS // 50)
+            self.compare(rokviss, self.ground, sent, KILLS // 50, before)
             self.took.sort()
             rate = (len(sent) + self.ground.packets - packets) / took_s
             flight.measure(f"{KILLS} kills of the supervisor, {len(sent)} telecommands, {rate:.0f} packets/s, another one went on after "
