@@ -408,8 +408,8 @@ DEFECTS = [
            "  if (!PLANTED && !take_turn_to_close(file_.get(), octet_of_closing)) return;",
            "data_transfer_test", "SharedMemoryFlow.LeavesNoNameBehindWhenBothSidesCloseAtOnce"),
     # Whoever had a device in shared memory cut the frames of all others short, and they died of it.
-    Defect("SF13 one folder of frames for all", "supervisor/platform/launch/subsystem_sandbox.cpp",
-           "add_once(device_memory_folder(address), sandbox.writable);",
-           "add_once(PLANTED ? device_memory_root : device_memory_folder(address), sandbox.writable);",
+    Defect("SF13 one folder of frames for all", "hirosco/data_transfer/device/shared_memory_flow.cpp",
+           "let_write(device_memory_folder(address), sandbox);",
+           "let_write(PLANTED ? device_memory_root : device_memory_folder(address), sandbox);",
            "platform_test", "SubsystemSandbox.OpensTheFolder*"),
 ]

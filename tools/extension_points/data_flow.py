@@ -17,11 +17,17 @@ FILES = {"hirosco/data_transfer/device/can_gateway_flow.hpp": """\
 #include <string>
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/device/flow_access.hpp"
 
 namespace hirosco {
 
 /// Frames in order to a gateway of a CAN bus, by POSIX message queues; each side owns the queue that it reads.
 [[nodiscard]] Result<std::unique_ptr<DataFlow>> open_can_gateway_flow(const std::string& address, FlowSide side);
+
+/// All queues of the user: no rule tells one from another.
+void let_in_can_gateway(const std::string& address, Sandbox& sandbox);
+[[nodiscard]] bool is_reached_by_can_gateway(const std::string& address, const Sandbox& sandbox);
+inline constexpr FlowAccess can_gateway_access{let_in_can_gateway, is_reached_by_can_gateway};
 
 }  // namespace hirosco
 """, "hirosco/data_transfer/device/can_gateway_flow.cpp": """\
@@ -93,21 +99,32 @@ Result<std::unique_ptr<DataFlow>> open_can_gateway_flow(const std::string& addre
   return std::make_unique<CanGatewayFlow>(own, peer, queue);
 }
 
+void let_in_can_gateway(const std::string&, Sandbox& sandbox) {
+  let_write("/dev/mqueue", sandbox);
+  sandbox.queues = true;
+}
+
+bool is_reached_by_can_gateway(const std::string&, const Sandbox& sandbox) { return sandbox.queues; }
+
 }  // namespace hirosco
 """}
 EDITS = [
     ("hirosco/data_transfer/device/linux_flow_means.cpp", '#include "hirosco/data_transfer/device/datagram_flow.hpp"\n',
      '#include "hirosco/data_transfer/device/can_gateway_flow.hpp"\n#include "hirosco/data_transfer/device/datagram_flow.hpp"\n'),
     ("hirosco/data_transfer/device/linux_flow_means.cpp", "    FlowMeans{Transfer::Udp,",
-     "    FlowMeans{Transfer::Can, AddressForm::Name,\n              [](const FlowOpening& at) { return open_can_gateway_flow(at.address, at.side); }},\n    FlowMeans{Transfer::Udp,"),
+     "    FlowMeans{Transfer::Can, AddressForm::Name,\n              [](const FlowOpening& at) { return open_can_gateway_flow(at.address, at.side); },\n              can_gateway_access},\n    FlowMeans{Transfer::Udp,"),
 ]
 SOURCES = ["hirosco/data_transfer/device/linux_flow_means.cpp", "hirosco/data_transfer/device/can_gateway_flow.cpp"]
 TRY = """\
+#include <mqueue.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include "hirosco/data_transfer/device/flow_access.hpp"
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/data_transfer/device/testing/flow_conformance.hpp"
 #include "hirosco/descriptor/read/read.hpp"
+#include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
 namespace hirosco::testing {
 namespace {
@@ -132,6 +149,37 @@ TEST(CanGatewayFlow, ADescriptorMayAskForIt) {
   const auto reading = descriptor::read_subsystem(HIROSCO_SOURCE_DIR "/hirosco/descriptor/testdata/flywheel.xml", source);
   for (const auto& problem : reading.problems) ADD_FAILURE() << problem.message;
   EXPECT_TRUE(reading.value);
+}
+
+TEST(CanGatewayFlow, IsOpenedInTheSandboxOfASubsystemThatHasADeviceByItAndReachesSecondInhibitsByIt) {
+  descriptor::MissionSubsystem member;
+  member.subsystem.file = "/missions/arm.xml";
+  member.subsystem.configurations.resize(1);
+  member.subsystem.configurations[0].devices.resize(1);
+  auto& endnode = member.subsystem.configurations[0].devices[0].endnode;
+  const FlowAddress at = CanGatewayTraits::address();
+  endnode.transfer = at.transfer;
+  endnode.address = at.address;
+  const Sandbox sandbox = supervisor::make_sandbox(member, {}, {});
+  EXPECT_TRUE(is_reached({Transfer::Can, "enable"}, sandbox));
+  EXPECT_FALSE(is_reached({Transfer::Can, "enable"}, Sandbox{}));
+  for (const std::string& lack : isolation_lacks())
+    if (!lack.starts_with("every real-time priority")) GTEST_SKIP() << lack;
+  SystemFlowFactory flows{""};
+  const PreparedSandbox prepared{sandbox};
+  const auto device = flows.open(at, FlowSide::Device).value();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (prepared.enter() != 0) ::_exit(99);
+    const auto own = flows.open(at, FlowSide::Subsystem);
+    ::_exit(own && (*own)->send(std::array{std::byte{7}}) ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0) << "a call that is refused ends the process";
+  std::array<std::byte, 8> frame{};
+  EXPECT_EQ(device->receive(frame).value().octets, 1u);
+  ::mq_unlink(("/" + at.address + ".subsystem").c_str());
 }
 
 }  // namespace

@@ -9,8 +9,9 @@
 #include <cstdlib>
 #include <map>
 
-#include "hirosco/data_transfer/device/device_memory_name.hpp"
+#include "hirosco/data_transfer/device/flow_access.hpp"
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
+#include "hirosco/descriptor/model/member_reach.hpp"
 #include "hirosco/subsystem/author/ground_transport.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/installation.hpp"
@@ -18,7 +19,6 @@
 #include "simulation/devices/device_arguments.hpp"
 #include "supervisor/keeper/keeper.hpp"
 #include "supervisor/keeper/kept_endnodes.hpp"
-#include "supervisor/platform/launch/subsystem_sandbox.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/flight_lock.hpp"
 #include "tools/hirosco/instance.hpp"
@@ -86,11 +86,10 @@ void clear_sockets(const descriptor::Mission& mission, const std::filesystem::pa
 
 /// Nobody of this flight lives any more, and no other has its name. Where it is its mission's name they stay, as many as descriptors name:
 /// those of another mission that has the same devices may be the same, and somebody be let in there by now (docs/adr/0169).
-void clear_frame_folders(const descriptor::Mission& mission, const FlightEntry& flight) {
+void clear_places(const descriptor::Mission& mission, const FlightEntry& flight) {
   if (!flight.named()) return;
   for (const auto& member : mission.subsystems)
-    for (const std::string& address : supervisor::memory_addresses(member, flight.instance))
-      remove_device_memory_folder(address);
+    for (const FlowAddress& flow : descriptor::flows_of(member.subsystem)) remove_place(flow, flight.instance);
 }
 
 /// One flight of an instance at a time: the lock lives as long as the process. It tells `hirosco safe` whom to signal.
@@ -279,7 +278,7 @@ int run(const RunOptions& options) {
   const int code = supervisor::keep(std::move(plan));
   screen.reset();
   clear_sockets(*mission, folder);
-  clear_frame_folders(*mission, flight);
+  clear_places(*mission, flight);
   return code;
 }
 

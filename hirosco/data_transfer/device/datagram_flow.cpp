@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 #include "hirosco/data_transfer/device/device_socket.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
@@ -142,5 +144,22 @@ Result<std::unique_ptr<DataFlow>> open_unix_flow(const std::string& address, Flo
   return std::make_unique<DatagramFlow>(std::move(socket), unix_address(side == FlowSide::Device ? subsystem : address),
                                         false, own_path);
 }
+
+void let_in_udp(const std::string&, Sandbox& sandbox) { sandbox.sockets.datagrams = true; }
+
+bool is_reached_by_udp(const std::string& address, const Sandbox& sandbox) {
+  const auto held = read_device_address(address);
+  return held && held->loopback() && sandbox.sockets.datagrams;
+}
+
+void let_in_unix(const std::string& address, Sandbox& sandbox) {
+  std::error_code nowhere;
+  const auto place = std::filesystem::absolute(address, nowhere).parent_path();
+  if (nowhere) return;
+  let_write(place.string(), sandbox);
+  sandbox.sockets.local = true;
+}
+
+bool is_reached_by_unix(const std::string&, const Sandbox& sandbox) { return sandbox.sockets.local; }
 
 }  // namespace hirosco

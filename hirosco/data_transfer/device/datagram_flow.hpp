@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/device/flow_access.hpp"
 #include "hirosco/data_transfer/device/flow_means.hpp"
 
 namespace hirosco {
@@ -16,5 +17,14 @@ namespace hirosco {
 [[nodiscard]] Result<std::unique_ptr<DataFlow>> open_udp_flow(const FlowOpening& opening);
 /// UNIX: `address` is a path of at most 90 characters; the subsystem is at "<path>.subsystem".
 [[nodiscard]] Result<std::unique_ptr<DataFlow>> open_unix_flow(const std::string& address, FlowSide side);
+
+/// Whom a socket sends to by UDP no rule narrows down: all in this computer that listens is reached.
+void let_in_udp(const std::string& address, Sandbox& sandbox);
+[[nodiscard]] bool is_reached_by_udp(const std::string& address, const Sandbox& sandbox);
+inline constexpr FlowAccess udp_access{let_in_udp, is_reached_by_udp};
+/// Whom a UNIX socket connects to neither, but it is made beside the device's.
+void let_in_unix(const std::string& address, Sandbox& sandbox);
+[[nodiscard]] bool is_reached_by_unix(const std::string& address, const Sandbox& sandbox);
+inline constexpr FlowAccess unix_access{let_in_unix, is_reached_by_unix};
 
 }  // namespace hirosco

@@ -9,6 +9,7 @@
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/device/device_network.hpp"
+#include "hirosco/data_transfer/device/flow_access.hpp"
 
 namespace hirosco {
 
@@ -25,16 +26,20 @@ struct FlowOpening {
   std::span<const DeviceNetwork> networks{};  ///< outside this computer that it may be in
 };
 
-/// One means of transfer of the real set: a function that opens its flows, and a row in `linux_flow_means.cpp`.
+/// One means of transfer of the real set: a function that opens its flows, what that needs in a sandbox, and a row in `linux_flow_means.cpp`.
 struct FlowMeans {
   Transfer transfer;
   AddressForm form;
   Result<std::unique_ptr<DataFlow>> (*open)(const FlowOpening& opening);
+  FlowAccess access;
 };
 
 /// Those that are built in.
 [[nodiscard]] std::span<const FlowMeans> standard_flow_means() noexcept;
 /// Null: this one is not built in.
 [[nodiscard]] const FlowMeans* find_flow_means(Transfer transfer) noexcept;
+
+/// With the flight's instance in it, where it is a name; empty: of a flight that has its mission's name.
+[[nodiscard]] std::string address_in_flight(AddressForm form, std::string address, const std::string& instance);
 
 }  // namespace hirosco

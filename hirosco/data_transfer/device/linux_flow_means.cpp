@@ -16,14 +16,15 @@ namespace {
 /// A means is in force where it stands here: for descriptors, subsystems, the supervisor's inhibits and devices.
 constexpr std::array built_in_means{
     FlowMeans{Transfer::SharedMemory, AddressForm::Name,
-              [](const FlowOpening& at) { return SharedMemoryFlow::open(at.address, at.side, at.holder); }},
+              [](const FlowOpening& at) { return SharedMemoryFlow::open(at.address, at.side, at.holder); },
+              shared_memory_access},
     FlowMeans{Transfer::Unix, AddressForm::Name,
-              [](const FlowOpening& at) { return open_unix_flow(at.address, at.side); }},
-    FlowMeans{Transfer::Udp, AddressForm::HostPort, open_udp_flow},
-    FlowMeans{Transfer::Tcp, AddressForm::HostPort, open_tcp_flow},
-    FlowMeans{Transfer::Serial, AddressForm::Line, open_serial_flow},
+              [](const FlowOpening& at) { return open_unix_flow(at.address, at.side); }, unix_access},
+    FlowMeans{Transfer::Udp, AddressForm::HostPort, open_udp_flow, udp_access},
+    FlowMeans{Transfer::Tcp, AddressForm::HostPort, open_tcp_flow, tcp_access},
+    FlowMeans{Transfer::Serial, AddressForm::Line, open_serial_flow, serial_access},
     FlowMeans{Transfer::MessageQueue, AddressForm::Name,
-              [](const FlowOpening& at) { return open_message_queue_flow(at.address, at.side); }},
+              [](const FlowOpening& at) { return open_message_queue_flow(at.address, at.side); }, message_queue_access},
 };
 
 }  // namespace

@@ -146,4 +146,12 @@ Result<std::unique_ptr<DataFlow>> open_message_queue_flow(const std::string& add
   return opened;
 }
 
+void let_in_queues(const std::string&, Sandbox& sandbox) {
+  // They lie in no folder that programs see, but where one is shown, that is the one whose files they are.
+  let_write("/dev/mqueue", sandbox);
+  sandbox.queues = true;
+}
+
+bool is_reached_by_queues(const std::string&, const Sandbox& sandbox) { return sandbox.queues; }
+
 }  // namespace hirosco

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/device/flow_access.hpp"
 
 namespace hirosco {
 
@@ -14,5 +15,10 @@ namespace hirosco {
 /// the queue that it reads: the system frees it with the process.
 /// `address`: 1 .. 200 characters, "/" becomes ".". AlreadyExists: another live flow has this side.
 [[nodiscard]] Result<std::unique_ptr<DataFlow>> open_message_queue_flow(const std::string& address, FlowSide side);
+
+/// All queues of the user: no rule tells one from another.
+void let_in_queues(const std::string& address, Sandbox& sandbox);
+[[nodiscard]] bool is_reached_by_queues(const std::string& address, const Sandbox& sandbox);
+inline constexpr FlowAccess message_queue_access{let_in_queues, is_reached_by_queues};
 
 }  // namespace hirosco

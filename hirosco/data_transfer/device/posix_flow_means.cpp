@@ -11,8 +11,8 @@ namespace {
 /// With POSIX alone a device is reached by datagrams: its shared memory needs locks of an open file and a futex, which are Linux's.
 constexpr std::array built_in_means{
     FlowMeans{Transfer::Unix, AddressForm::Name,
-              [](const FlowOpening& at) { return open_unix_flow(at.address, at.side); }},
-    FlowMeans{Transfer::Udp, AddressForm::HostPort, open_udp_flow},
+              [](const FlowOpening& at) { return open_unix_flow(at.address, at.side); }, unix_access},
+    FlowMeans{Transfer::Udp, AddressForm::HostPort, open_udp_flow, udp_access},
 };
 
 }  // namespace

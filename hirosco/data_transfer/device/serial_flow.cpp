@@ -240,4 +240,19 @@ Result<std::unique_ptr<DataFlow>> open_serial_flow(const FlowOpening& opening) {
   return std::make_unique<SerialFlow>(std::move(line), opened ? std::move(*opened) : FileDescriptor{}, opening.framing);
 }
 
+namespace {
+
+[[nodiscard]] std::string file_of_line(const std::string& address) {
+  const std::string line = address.substr(0, address.rfind('@'));
+  return line.starts_with('/') ? line : "/dev/pts";
+}
+
+}  // namespace
+
+void let_in_serial(const std::string& address, Sandbox& sandbox) { let_write(file_of_line(address), sandbox); }
+
+bool is_reached_by_serial(const std::string& address, const Sandbox& sandbox) {
+  return may_write(file_of_line(address), sandbox);
+}
+
 }  // namespace hirosco

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "hirosco/data_transfer/device/flow_access.hpp"
 #include "hirosco/data_transfer/device/flow_means.hpp"
 #include "hirosco/data_transfer/device/serial_line.hpp"
 
@@ -15,5 +16,10 @@ namespace hirosco {
 /// while the one before has not gone out. AlreadyExists: a living pseudo-terminal has the name, or another process the line.
 /// Realtime: but for a driver that takes its time to open a line that was plugged in again.
 [[nodiscard]] Result<std::unique_ptr<DataFlow>> open_serial_flow(const FlowOpening& opening);
+
+/// Which pseudo-terminal a name leads to is known when it is there: all of them.
+void let_in_serial(const std::string& address, Sandbox& sandbox);
+[[nodiscard]] bool is_reached_by_serial(const std::string& address, const Sandbox& sandbox);
+inline constexpr FlowAccess serial_access{let_in_serial, is_reached_by_serial};
 
 }  // namespace hirosco

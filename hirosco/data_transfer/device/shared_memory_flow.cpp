@@ -211,4 +211,12 @@ bool SharedMemoryFlow::do_wait(Duration timeout) noexcept {
   return found;
 }
 
+void let_in_shared_memory(const std::string& address, Sandbox& sandbox) {
+  let_write(device_memory_folder(address), sandbox);
+}
+
+bool is_reached_by_shared_memory(const std::string& address, const Sandbox& sandbox) {
+  return may_write(device_memory_file(address, FlowHolder::Supervisor), sandbox);
+}
+
 }  // namespace hirosco

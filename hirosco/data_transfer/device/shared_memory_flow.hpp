@@ -8,6 +8,8 @@
 #include <string>
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/device/device_memory_name.hpp"
+#include "hirosco/data_transfer/device/flow_access.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/shared_memory.hpp"
 
@@ -47,5 +49,11 @@ class SharedMemoryFlow final : public DataFlow {
   std::uint64_t seen_sequence_{0};
   std::uint64_t peer_at_start_{0};  ///< peer's opening count when this side was opened
 };
+
+/// The folder of its frames, which is made before anybody is let in (docs/adr/0169). What the supervisor's side holds lies where nobody is.
+void let_in_shared_memory(const std::string& address, Sandbox& sandbox);
+[[nodiscard]] bool is_reached_by_shared_memory(const std::string& address, const Sandbox& sandbox);
+inline constexpr FlowAccess shared_memory_access{let_in_shared_memory, is_reached_by_shared_memory,
+                                                 make_device_memory_folder, remove_device_memory_folder};
 
 }  // namespace hirosco

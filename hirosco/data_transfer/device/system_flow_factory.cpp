@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
@@ -25,19 +24,15 @@ std::string instance_suffix(const std::string& instance) { return instance.empty
 SystemFlowFactory::SystemFlowFactory()
     : SystemFlowFactory{flight_instance(), read_device_networks(told(device_networks_variable))} {}
 SystemFlowFactory::SystemFlowFactory(const std::string& instance, std::vector<DeviceNetwork> networks)
-    : suffix_{instance_suffix(instance)}, networks_{std::move(networks)} {}
+    : instance_{instance}, networks_{std::move(networks)} {}
 
 Result<std::unique_ptr<DataFlow>> SystemFlowFactory::do_open(const FlowAddress& address, FlowSide side) {
   const FlowMeans* means = find_flow_means(address.transfer);
   if (means == nullptr)
     return fail(ErrorCode::NotPermitted, "this means of transfer is not built in",
                 std::to_underlying(address.transfer));
-  FlowOpening opening{address.address, side, address.framing, address.holder, networks_};
-  const bool line = means->form == AddressForm::Line;
-  if (means->form == AddressForm::Name || (line && !opening.address.starts_with('/')))
-    opening.address.insert(std::min(line ? opening.address.find('@') : std::string::npos, opening.address.size()),
-                           suffix_);
-  return means->open(opening);
+  return means->open(
+      {address_in_flight(means->form, address.address, instance_), side, address.framing, address.holder, networks_});
 }
 
 }  // namespace hirosco

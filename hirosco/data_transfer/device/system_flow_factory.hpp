@@ -34,7 +34,7 @@ class SystemFlowFactory final : public FlowFactory {
  private:
   [[nodiscard]] Result<std::unique_ptr<DataFlow>> do_open(const FlowAddress& address, FlowSide side) override;
 
-  std::string suffix_;
+  std::string instance_;
   std::vector<DeviceNetwork> networks_;
 };
 

@@ -217,4 +217,22 @@ Result<std::unique_ptr<DataFlow>> open_tcp_flow(const FlowOpening& opening) {
   return std::make_unique<TcpListener>(std::move(socket), opening.framing);
 }
 
+void let_in_tcp(const std::string& address, Sandbox& sandbox) {
+  const auto device = read_device_address(address);
+  if (!device) return;
+  SandboxSockets& sockets = sandbox.sockets;
+  if (std::ranges::find(sockets.ports, device->port) == sockets.ports.end()) sockets.ports.push_back(device->port);
+  if (device->loopback()) return;
+  // By a datagram it is found out from where the system would speak to a device in a network, and its own end is bound to an address of that.
+  sockets.datagrams = true;
+  sockets.own_port = true;
+}
+
+bool is_reached_by_tcp(const std::string& address, const Sandbox& sandbox) {
+  const auto held = read_device_address(address);
+  const SandboxSockets& sockets = sandbox.sockets;
+  return held && held->loopback() &&
+         (sockets.streams || std::ranges::find(sockets.ports, held->port) != sockets.ports.end());
+}
+
 }  // namespace hirosco

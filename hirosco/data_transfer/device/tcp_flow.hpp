@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "hirosco/data_transfer/device/flow_access.hpp"
 #include "hirosco/data_transfer/device/flow_means.hpp"
 
 namespace hirosco {
@@ -13,5 +14,10 @@ namespace hirosco {
 /// is sent at once (TCP_NODELAY) or let go: while 64 were not acknowledged none is, and a connection on which nothing is for half a second is left.
 /// Errors as find_route(); AlreadyExists: somebody listens there.
 [[nodiscard]] Result<std::unique_ptr<DataFlow>> open_tcp_flow(const FlowOpening& opening);
+
+/// To its port, wherever that is.
+void let_in_tcp(const std::string& address, Sandbox& sandbox);
+[[nodiscard]] bool is_reached_by_tcp(const std::string& address, const Sandbox& sandbox);
+inline constexpr FlowAccess tcp_access{let_in_tcp, is_reached_by_tcp};
 
 }  // namespace hirosco

@@ -13,4 +13,11 @@ const LinkMechanism* find_link_mechanism(LinkMechanisms mechanisms, LinkMethod m
   return found != mechanisms.end() ? *found : nullptr;
 }
 
+LinkEndsAt ends_of(LinkMechanisms mechanisms, LinkMethod method) noexcept {
+  const bool at_addresses = std::ranges::any_of(mechanisms, [&](const LinkMechanism* mechanism) {
+    return mechanism->method() == method && mechanism->ends_at() == LinkEndsAt::Addresses;
+  });
+  return at_addresses ? LinkEndsAt::Addresses : LinkEndsAt::Memory;
+}
+
 }  // namespace hirosco

@@ -88,11 +88,12 @@ class LatestReader final : public LinkReader {
 /// with the size of sample that they carry.
 class LatestLink final : public LinkMechanism {
  public:
-  explicit LatestLink(LinkMethod method = LinkMethod::SharedMemory,
-                      std::uint32_t max_payload = max_link_payload_octets) noexcept
-      : method_{method}, max_payload_{max_payload} {}
+  explicit LatestLink(LinkMethod method = LinkMethod::SharedMemory, std::uint32_t max_payload = max_link_payload_octets,
+                      LinkEndsAt ends_at = LinkEndsAt::Memory) noexcept
+      : method_{method}, ends_at_{ends_at}, max_payload_{max_payload} {}
   [[nodiscard]] LinkMethod method() const noexcept override { return method_; }
   [[nodiscard]] LinkKind kind() const noexcept override { return LinkKind::Latest; }
+  [[nodiscard]] LinkEndsAt ends_at() const noexcept override { return ends_at_; }
   /// What stands in for another method does no more than that one.
   [[nodiscard]] bool wakes() const noexcept override { return method_ == LinkMethod::SharedMemory; }
   [[nodiscard]] std::uint32_t max_payload() const noexcept override { return max_payload_; }
@@ -106,6 +107,7 @@ class LatestLink final : public LinkMechanism {
 
  private:
   LinkMethod method_;
+  LinkEndsAt ends_at_;
   std::uint32_t max_payload_;
 };
 

@@ -23,11 +23,16 @@
 /// `service_loop/link_ends.cpp` of the subsystem, after the handshake of `realtime_links/link_handshakes.cpp` of the supervisor.
 namespace hirosco {
 
+struct Sandbox;
+
 /// How samples travel.
 enum class LinkMethod : std::uint8_t { SharedMemory = 1, Udp = 2, Tcp = 3, Unix = 4, Dds = 5, Tipc = 6 };
 /// Which samples a consumer gets: the newest one, every one in order, or the newest large one, which is made and looked at
 /// in the link's own memory.
 enum class LinkKind : std::uint8_t { Latest = 1, Queued = 2, Loaned = 3 };
+
+/// Where the ends of a link stand: in memory alone, or at internet addresses, which a mission may say and of which each is a port of its subsystem's.
+enum class LinkEndsAt : std::uint8_t { Memory, Addresses };
 
 /// Octets of one sample, at most: of one that is copied, and of one that is lent.
 inline constexpr std::uint32_t max_link_payload_octets = 65'536;
@@ -175,6 +180,10 @@ class LinkMechanism {
   /// Both ends and the supervisor share memory. False: they share addresses (LinkRoute), there is nothing to hand over and
   /// nothing to look at, and the producer is told afterwards where its consumer is.
   [[nodiscard]] virtual bool in_memory() const noexcept { return true; }
+  /// What stands in for another mechanism in one process says what that one does.
+  [[nodiscard]] virtual LinkEndsAt ends_at() const noexcept { return LinkEndsAt::Memory; }
+  /// Adds what its ends need of a sandbox, and no more (docs/adr/0175). Of one that says nothing: nothing, as memory is handed over.
+  virtual void let_in(Sandbox& /*sandbox*/) const {}
   /// Its producer can wake a consumer that sleeps, where the layout says so.
   [[nodiscard]] virtual bool wakes() const noexcept { return false; }
   /// Octets of one sample, at most.
@@ -212,6 +221,8 @@ using LinkMechanisms = std::span<const LinkMechanism* const>;
 /// Null: there is none for this method and kind.
 [[nodiscard]] const LinkMechanism* find_link_mechanism(LinkMechanisms mechanisms, LinkMethod method,
                                                        LinkKind kind) noexcept;
+/// Where the ends of a link by this method stand, whatever its kind.
+[[nodiscard]] LinkEndsAt ends_of(LinkMechanisms mechanisms, LinkMethod method) noexcept;
 
 template <>
 struct EnumTexts<LinkMethod> {

@@ -16,7 +16,7 @@ const LatestLink latest_link;
 const LoanedLink loaned_link;
 const QueuedLink queued_link;
 const UdpLink udp_link;
-const LatestLink local_udp_link{LinkMethod::Udp, max_datagram_payload_octets};
+const LatestLink local_udp_link{LinkMethod::Udp, max_datagram_payload_octets, LinkEndsAt::Addresses};
 
 /// A mechanism is in force where it stands here: for descriptors, handshake, both ends and the supervisor's view.
 constexpr const LinkMechanism* built_in_mechanisms[]{

@@ -9,6 +9,7 @@
 #include "hirosco/data_transfer/link/testing/loan_conformance.hpp"
 #include "hirosco/data_transfer/link/testing/queue_conformance.hpp"
 #include "hirosco/data_transfer/link/testing/wake_conformance.hpp"
+#include "hirosco/utilities/os/sandbox.hpp"
 
 namespace hirosco::testing {
 namespace {
@@ -54,8 +55,22 @@ TEST(LinkMechanisms, AreFoundByMethodAndKindAndThereIsOneOfEach) {
     EXPECT_TRUE(twin->in_memory());
     EXPECT_EQ(twin->max_payload(), mechanism->max_payload());
     EXPECT_EQ(twin->wakes(), mechanism->wakes());
+    EXPECT_EQ(twin->ends_at(), mechanism->ends_at());
   }
   EXPECT_EQ(find_link_mechanism({}, LinkMethod::SharedMemory, LinkKind::Latest), nullptr);
+}
+
+TEST(LinkMechanisms, SayWhereTheirEndsStandAndNoneThatIsMemoryNeedsAnythingOfASandbox) {
+  EXPECT_EQ(ends_of(standard_link_mechanisms(), LinkMethod::Udp), LinkEndsAt::Addresses);
+  EXPECT_EQ(ends_of(standard_link_mechanisms(), LinkMethod::SharedMemory), LinkEndsAt::Memory);
+  EXPECT_EQ(ends_of(standard_link_mechanisms(), LinkMethod::Tipc), LinkEndsAt::Memory) << "nobody says otherwise";
+  for (const LinkMechanism* mechanism : standard_link_mechanisms()) {
+    Sandbox sandbox;
+    mechanism->let_in(sandbox);
+    EXPECT_EQ(sandbox.sockets, (SandboxSockets{.datagrams = mechanism->method() == LinkMethod::Udp}));
+    EXPECT_TRUE(sandbox.writable.empty());
+    EXPECT_FALSE(sandbox.queues);
+  }
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 const LatestLink latest_link;
 const LoanedLink loaned_link;
 const QueuedLink queued_link;
-const LatestLink local_udp_link{LinkMethod::Udp, max_datagram_payload_octets};
+const LatestLink local_udp_link{LinkMethod::Udp, max_datagram_payload_octets, LinkEndsAt::Addresses};
 
 /// With POSIX alone all members are threads of one process (docs/adr/0097): no sample leaves it, whatever method its link has.
 constexpr const LinkMechanism* local_mechanisms[]{

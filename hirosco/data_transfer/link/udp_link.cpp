@@ -19,6 +19,7 @@
 #include "hirosco/data_transfer/link/internet_address.hpp"
 #include "hirosco/data_transfer/socket_address.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/sandbox.hpp"
 
 namespace hirosco {
 namespace {
@@ -259,5 +260,7 @@ Result<std::unique_ptr<LinkReader>> UdpLink::consume(MemoryProvider&, const Memo
 Result<std::unique_ptr<LinkView>> UdpLink::look(MemoryProvider&, const MemoryHandle&) const {
   return fail(ErrorCode::Unavailable, "samples of such a link pass nobody but their consumer");
 }
+
+void UdpLink::let_in(Sandbox& sandbox) const { sandbox.sockets.datagrams = true; }
 
 }  // namespace hirosco

@@ -17,6 +17,8 @@ class UdpLink final : public LinkMechanism {
   [[nodiscard]] LinkMethod method() const noexcept override { return LinkMethod::Udp; }
   [[nodiscard]] LinkKind kind() const noexcept override { return LinkKind::Latest; }
   [[nodiscard]] bool in_memory() const noexcept override { return false; }
+  [[nodiscard]] LinkEndsAt ends_at() const noexcept override { return LinkEndsAt::Addresses; }
+  void let_in(Sandbox& sandbox) const override;
   [[nodiscard]] std::uint32_t max_payload() const noexcept override { return max_datagram_payload_octets; }
   /// Nothing is shared but addresses.
   [[nodiscard]] Result<MemoryHandle> establish(MemoryProvider& provider, const LinkLayout& layout) const override;

@@ -61,7 +61,7 @@ struct MissionSubsystem {
   /// What the files that its devices' settings name bring along (brought_files()), when they were read last (docs/adr/0144).
   std::vector<std::filesystem::path> brought{};
   bool carries_ground{false};  ///< the ground link
-  bool links_by_udp{false};  ///< a link of the mission that begins or ends here may travel so
+  std::vector<LinkMethod> link_methods{};  ///< how links of the mission that begin or end here may travel
 };
 
 /// What makes an instance of the descriptor in its file the subsystem of the mission, as words for its process: pairs

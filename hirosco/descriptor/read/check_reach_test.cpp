@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "hirosco/descriptor/model/member_reach.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/descriptor/testing.hpp"
 
@@ -63,12 +68,39 @@ TEST(SecondInhibit, OfTwoLinesIsTheOneThatIsNoSubsystems) {
           .value);
 }
 
+TEST(SecondInhibit, IsRefusedAtAPseudoTerminalsOwnNameWhereASubsystemReachesAllOfThem) {
+  EXPECT_EQ(
+      first_code(reached_by(R"(transfer="serial" address="/dev/pts/3@9600")", R"(transfer="serial" address="a@9600")")),
+      "E0349");
+}
+
+TEST(MemberReach, IsOfAllEndnodesOfAllConfigurationsAndOfTheGroundLink) {
+  MissionSubsystem member;
+  member.subsystem.configurations.resize(2);
+  DeviceUse use;
+  use.endnode.transfer = Transfer::Udp;
+  use.endnode.address = "127.0.0.1:5000";
+  member.subsystem.configurations[0].devices = {use};
+  use.fall_backs = {use.endnode};
+  use.fall_backs[0].address = "127.0.0.1:5001";
+  member.subsystem.configurations[1].devices = {use};
+  std::vector<std::string> addresses;
+  for (const FlowAddress& flow : flows_of(member.subsystem)) addresses.push_back(flow.address);
+  EXPECT_EQ(addresses, (std::vector<std::string>{"127.0.0.1:5000", "127.0.0.1:5000", "127.0.0.1:5001"}));
+  Sandbox sandbox;
+  let_in_links(member, sandbox);
+  EXPECT_EQ(sandbox.sockets, SandboxSockets{});
+  member.carries_ground = true;
+  let_in_links(member, sandbox);
+  EXPECT_EQ(sandbox.sockets, (SandboxSockets{.datagrams = true, .streams = true}));
+}
+
 TEST(MissionSubsystemSockets, AreThoseOfTheGroundLinkAndOfLinksByUdp) {
   const auto reading = read_mission(data / "mission.xml", file_system());
   ASSERT_TRUE(reading.value);
   for (const MissionSubsystem& member : reading.value->subsystems) {
     EXPECT_EQ(member.carries_ground, member.subsystem.name == reading.value->ground.subsystem);
-    EXPECT_FALSE(member.links_by_udp) << member.subsystem.name;
+    EXPECT_EQ(std::ranges::count(member.link_methods, LinkMethod::Udp), 0) << member.subsystem.name;
   }
   const std::string both = R"(methods="udp shared_memory")";
   const auto robot = changed(R"(methods="shared_memory")", both, file_system()(data / "coronagraph.xml").value());
@@ -77,7 +109,8 @@ TEST(MissionSubsystemSockets, AreThoseOfTheGroundLinkAndOfLinksByUdp) {
   const auto udp = read_mission(data / "mission.xml", overlay({{"coronagraph.xml", robot}, {"flywheel.xml", wheel}}));
   ASSERT_TRUE(udp.value) << first_code(udp);
   for (const MissionSubsystem& member : udp.value->subsystems)
-    EXPECT_EQ(member.links_by_udp, member.subsystem.name == "FLYWHEEL" || member.subsystem.name == "CORONAGRAPH")
+    EXPECT_EQ(std::ranges::count(member.link_methods, LinkMethod::Udp) == 1,
+              member.subsystem.name == "FLYWHEEL" || member.subsystem.name == "CORONAGRAPH")
         << member.subsystem.name;
 }
 

@@ -3,12 +3,27 @@
 #include <fmt/core.h>
 
 #include <optional>
+#include <string>
 
 #include "hirosco/data_transfer/link/internet_address.hpp"
 #include "hirosco/descriptor/read/detail/mission_link_reader.hpp"
 
 /// How a mission wants a link to travel, and from where to where.
 namespace hirosco::descriptor::detail {
+namespace {
+
+/// As one would write them.
+[[nodiscard]] std::string methods_at_addresses() {
+  std::string words;
+  for (const LinkMechanism* mechanism : standard_link_mechanisms()) {
+    const std::string word = fmt::format("method=\"{}\"", to_text(mechanism->method()));
+    if (mechanism->ends_at() == LinkEndsAt::Addresses && words.find(word) == std::string::npos)
+      words += (words.empty() ? "" : " or ") + word;
+  }
+  return words;
+}
+
+}  // namespace
 
 void MissionLinkReader::read_way(Attributes& attributes, MissionLink& link) {
   if (const auto* method = attributes.optional("method")) {
@@ -36,9 +51,9 @@ void MissionLinkReader::read_way(Attributes& attributes, MissionLink& link) {
 std::optional<InternetAddress> MissionLinkReader::read_link_address(const xml::Attribute* at, const MissionLink& link,
                                                                     std::string& into) {
   if (at == nullptr) return std::nullopt;
-  if (link.method != LinkMethod::Udp) {
+  if (!link.method || ends_of(standard_link_mechanisms(), *link.method) != LinkEndsAt::Addresses) {
     problems_.add(*at, "E0343", fmt::format("'{}' of a link that may travel in memory", at->name),
-                  "add method=\"udp\", or leave the address out");
+                  fmt::format("add {}, or leave the address out", methods_at_addresses()));
     return std::nullopt;
   }
   const auto address = read_internet_address(at->value);

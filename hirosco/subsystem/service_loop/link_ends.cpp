@@ -62,7 +62,7 @@ Result<LinkRoute> LinkEnds::attach(const pus::st128::AttachRequest& request, con
   if (mechanism == nullptr) return fail(ErrorCode::NotPermitted, "no mechanism here carries such a link");
   if (mechanism->in_memory() && !memory) return fail(ErrorCode::Malformed, "no memory beside the attach request");
   auto link = std::make_unique<AttachedLink>();
-  if (agreement.method == LinkMethod::Udp) {
+  if (mechanism->ends_at() == LinkEndsAt::Addresses) {
     HIROSCO_TRY_LET(link->port, parts_.resources.ports().take());
   }
   link->id = request.link;

@@ -15,17 +15,13 @@ namespace hirosco::supervisor {
 /// What the system itself refuses beyond. Memory is not limited where a sanitizer needs more than there is.
 [[nodiscard]] ProcessLimits limits_of(const descriptor::Resources& resources) noexcept;
 
-/// Its program, descriptors, libraries, files of its settings and what those bring along to read, what its devices' transfers need to write, the
-/// sockets of those, of links by UDP and of the ground link, and nothing else: where the supervisor's side holds an endnode it lets nobody in
-/// (docs/adr/0150). In a flight of this instance, which is part of where frames in shared memory are. Opens no file.
+/// Its program, descriptors, libraries, files of its settings and what those bring along to read, what the rows of its devices' means of transfer
+/// (flow_access.hpp) and of its links ask for, the ground link's sockets, and nothing else: where the supervisor's side holds an endnode it lets
+/// nobody in (docs/adr/0150, 0175). In a flight of this instance, which is part of where named flows are. Opens no file.
 [[nodiscard]] Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program,
                                  const std::string& instance);
 
-/// The addresses of all its endnodes in shared memory, with those that it falls back to, in a flight of this instance.
-[[nodiscard]] std::vector<std::string> memory_addresses(const descriptor::MissionSubsystem& subsystem,
-                                                        const std::string& instance);
-
-/// The same sandbox, with the folders of its frames made, as what is not there is let in by no rule (docs/adr/0169). Where one cannot be
+/// The same sandbox, with the places of its flows made, as what is not there is let in by no rule (docs/adr/0169). Where one cannot be
 /// it is let in elsewhere only: it is told why when it opens that device.
 [[nodiscard]] Sandbox make_sandbox(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program,
                                    const std::string& instance);

@@ -5,18 +5,22 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sys/inotify.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "hirosco/data_transfer/device/device_memory_name.hpp"
+#include "hirosco/data_transfer/device/flow_means.hpp"
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/descriptor/read/brought_files.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
@@ -73,9 +77,8 @@ TEST(SubsystemSandbox, OpensTheFolderOfEachAddressOfItsOwnFlightAndNotTheOneThat
   uses[0].fall_backs = {endnode_at(Transfer::SharedMemory, "arm-b"), endnode_at(Transfer::Unix, "/run/arm/socket")};
   arm.subsystem.configurations.push_back(with_device(Transfer::SharedMemory, "hand").subsystem.configurations[0]);
   arm.subsystem.configurations.push_back(arm.subsystem.configurations[0]);
-  EXPECT_THAT(memory_addresses(arm, "twin"), ElementsAre("arm.twin", "arm-b.twin", "hand.twin"));
   EXPECT_THAT(sandbox_of(arm, "/bin/arm", "twin").writable,
-              ElementsAre("/dev/null", "/run/arm", "/dev/shm/hirosco/arm.twin", "/dev/shm/hirosco/arm-b.twin",
+              ElementsAre("/dev/null", "/dev/shm/hirosco/arm.twin", "/dev/shm/hirosco/arm-b.twin", "/run/arm",
                           "/dev/shm/hirosco/hand.twin"));
 }
 
@@ -107,7 +110,7 @@ TEST(SubsystemSandbox, LetsMakeTheSocketsOfItsDevicesLinksAndGroundLinkAndNoOthe
             (SandboxSockets{.datagrams = true, .ports = {5000}, .own_port = true}))
       << "finds out by a datagram from where it would speak";
   auto linked = with_device(Transfer::SharedMemory, "arm");
-  linked.links_by_udp = true;
+  linked.link_methods = {LinkMethod::SharedMemory, LinkMethod::Udp};
   EXPECT_EQ(sandbox_of(linked, "/bin/arm", {}).sockets, (SandboxSockets{.datagrams = true}));
   auto ground = descriptor::MissionSubsystem{};
   ground.subsystem.file = "/missions/link.xml";
@@ -199,6 +202,60 @@ TEST(SubsystemInItsSandbox, ReadsTheRobotsFileAndItsMeshAndNothingElseInTheFolde
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+/// Whether a subsystem in this sandbox hears what its device answers.
+bool is_answered(const Sandbox& sandbox, const FlowAddress& at, int most_tries) {
+  SystemFlowFactory flows{""};
+  const PreparedSandbox prepared{sandbox};
+  const auto device = flows.open(at, FlowSide::Device);
+  if (!device) ADD_FAILURE() << to_text(at.transfer) << ": " << device.error().text << " " << device.error().value;
+  if (!device) return false;
+  std::array<std::byte, 8> buffer{};
+  const auto has_come = [&](DataFlow& flow) {
+    static_cast<void>(flow.wait(std::chrono::milliseconds{1}));
+    const auto received = flow.receive(buffer);
+    return received && received->flow == Flow::New;
+  };
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (prepared.enter() != 0) ::_exit(99);
+    const auto own = flows.open(at, FlowSide::Subsystem);
+    if (!own) ::_exit(1);
+    for (int tries = 0; tries < most_tries; ++tries) {
+      static_cast<void>((*own)->send(std::array{std::byte{7}}));
+      if (has_come(**own)) ::_exit(0);
+    }
+    ::_exit(2);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, WNOHANG) == 0)
+    if (has_come(**device)) static_cast<void>((*device)->send(std::array{std::byte{8}}));
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// Of one process and computer, by the form of a means' addresses.
+std::string own_address(AddressForm form) {
+  if (form != AddressForm::HostPort) return "sandboxed-row." + std::to_string(::getpid());
+  const FileDescriptor socket{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t octets = sizeof address;
+  EXPECT_EQ(::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), octets), 0);
+  EXPECT_EQ(::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &octets), 0);
+  return "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+}
+
+/// Apart (CMakeLists.txt), as above: what the row of each means says is what the system wants of it, a new one's, too.
+TEST(SubsystemInItsSandbox, HearsItsDeviceByEachMeansOfTransferAsItsRowSaysAndByNoneWhereNothingIsSaid) {
+  for (const FlowMeans& means : standard_flow_means()) {
+    const FlowAddress at{means.transfer, own_address(means.form)};
+    const auto arm = with_device(means.transfer, at.address.c_str());
+    EXPECT_TRUE(is_answered(make_sandbox(arm, {}, {}), at, 5000)) << to_text(means.transfer);
+    EXPECT_FALSE(is_answered(make_sandbox({}, {}, {}), at, 100)) << to_text(means.transfer);
+    remove_place(at, {});
+  }
 }
 
 /// Apart (CMakeLists.txt), as above.

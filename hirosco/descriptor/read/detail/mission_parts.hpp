@@ -28,7 +28,7 @@ void read_simulated_devices(const std::vector<const xml::Element*>& elements, Mi
 /// What the live line of a terminal shows.
 void read_console(const xml::Element& element, MissionDraft& draft);
 
-/// Which sockets each subsystem needs beside those of its devices.
+/// How the links of each subsystem may travel, and who carries the ground link.
 void note_sockets(Mission& mission);
 /// Nobody's sandbox lets it in where the supervisor's side holds an endnode.
 void check_reach(MissionDraft& draft);
