@@ -115,6 +115,7 @@ EDITS = [
      "    FlowMeans{Transfer::Can, AddressForm::Name,\n              [](const FlowOpening& at) { return open_can_gateway_flow(at.address, at.side); },\n              can_gateway_access},\n    FlowMeans{Transfer::Udp,"),
 ]
 SOURCES = ["hirosco/data_transfer/device/linux_flow_means.cpp", "hirosco/data_transfer/device/can_gateway_flow.cpp"]
+FLOWN = ["tests/devices/means_flight.py", "can", "all message queues"]
 TRY = """\
 #include <mqueue.h>
 #include <sys/wait.h>

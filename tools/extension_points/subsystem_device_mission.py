@@ -13,3 +13,4 @@ MOST_FILES, MOST_EDITED = len(FILES), 0
 EDITS = []
 SOURCES = []
 TRY = None
+FLOWN = ["tests/author/author_test.py", "Built", "Flown"]

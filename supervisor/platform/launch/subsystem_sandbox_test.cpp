@@ -249,11 +249,13 @@ std::string own_address(AddressForm form) {
 
 /// Apart (CMakeLists.txt), as above: what the row of each means says is what the system wants of it, a new one's, too.
 TEST(SubsystemInItsSandbox, HearsItsDeviceByEachMeansOfTransferAsItsRowSaysAndByNoneWhereNothingIsSaid) {
+  descriptor::MissionSubsystem bare;
+  bare.subsystem.file = "/missions/bare.xml";
   for (const FlowMeans& means : standard_flow_means()) {
     const FlowAddress at{means.transfer, own_address(means.form)};
     const auto arm = with_device(means.transfer, at.address.c_str());
     EXPECT_TRUE(is_answered(make_sandbox(arm, {}, {}), at, 5000)) << to_text(means.transfer);
-    EXPECT_FALSE(is_answered(make_sandbox({}, {}, {}), at, 100)) << to_text(means.transfer);
+    EXPECT_FALSE(is_answered(make_sandbox(bare, {}, {}), at, 100)) << to_text(means.transfer);
     remove_place(at, {});
   }
 }
