@@ -178,7 +178,7 @@ Clearance::Nearest Clearance::nearest(const JointVector& position) noexcept {
   return found;
 }
 
-Clearance::Nearest Clearance::nearer(const JointVector& now, const JointVector& then) noexcept {
+Clearance::Nearest Clearance::nearer(const JointVector& now, const JointVector& then, double by_m) noexcept {
   place(then);
   bool any = false;
   for (LookedAt& pair : pairs_) {
@@ -191,9 +191,8 @@ Clearance::Nearest Clearance::nearer(const JointVector& now, const JointVector& 
   place(now);
   for (LookedAt& pair : pairs_) {
     if (pair.then_m >= pair.named.limit_m || pair.then_m >= found.distance_m) continue;
-    // As far as the search is exact: who does not move is no nearer.
-    constexpr double same_m = 3e-7;
-    if (apart_m(pair, pair.then_m + same_m) < pair.then_m + same_m) continue;
+    const double nearer_m = pair.then_m + std::min(by_m, pair.named.limit_m / 2);
+    if (apart_m(pair, nearer_m) < nearer_m) continue;
     found = {pair.then_m, pair.named.names.c_str()};
   }
   return found;

@@ -41,9 +41,11 @@ class Clearance {
   };
   /// Of those that are not built nearer than the limit. Time grows with the number of pairs.  Realtime: wait-free.
   [[nodiscard]] Nearest nearest(const JointVector& position) noexcept;
-  /// The nearest two at `then` among those that are nearer there than they may be, and nearer than at `now`: who is too near may go away, and keeps
-  /// nobody else from being seen. None: infinitely far.  Realtime: wait-free.
-  [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& then) noexcept;
+  /// As far as a search for a distance is exact: who does not move is no nearer.
+  static constexpr double same_m = 3e-7;
+  /// The nearest two at `then` among those that are nearer there than they may be, and by more than `by_m`, half of their own limit at most, nearer than at `now`: who
+  /// is too near may go away, and keeps nobody else from being seen. None: infinitely far.  Realtime: wait-free.
+  [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& then, double by_m = same_m) noexcept;
 
   /// Whether no two are nearer than they may be.  Realtime: wait-free.
   [[nodiscard]] bool keeps_limits(const JointVector& position) noexcept;

@@ -51,12 +51,20 @@ Outcome Obstacles::keep_out(const KeepOut& numbers) noexcept {
     volumes[i] = {{its[0], its[1], its[2]}, {its[3], its[4], its[5]}, its[6]};
   }
   clearance_->keep_out(volumes);
-  parameters_.keep_out.store(numbers);
+  parts_.kept_out.store(numbers);
   return ok();
 }
 
 void Obstacles::tell(const JointVector& position) noexcept {
-  parameters_.clearance_m.store(clearance_->nearest(position).distance_m);
+  parts_.clearance_m.store(clearance_->nearest(position).distance_m);
+}
+
+std::optional<Obstacles::Nearest> Obstacles::watch_way(const JointVector& now, const JointVector& way,
+                                                       double noise_m) noexcept {
+  if (clearance_->keeps_limits(now)) clear_at_ = now;
+  const Nearest ahead = clearance_->nearer(clear_at_, now + way, noise_m);
+  if (ahead.distance_m == HUGE_VAL) return std::nullopt;
+  return ahead;
 }
 
 std::optional<Obstacles::Nearest> Obstacles::watch(const Setpoints& setpoints) noexcept {

@@ -6,11 +6,12 @@
 #include <cstdint>
 #include <optional>
 
+#include "hirosco/parameter/parameter.hpp"
 #include "hirosco/subsystem/author/handler.hpp"
 #include "robotics/shapes/clearance.hpp"
 #include "robotics/urdf/named_robot.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
-#include "subsystems/robot_arm/parameters.hpp"
+#include "subsystems/robot_arm/robot_arm_data.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
 namespace hirosco::robot_arm {
@@ -20,14 +21,20 @@ namespace hirosco::robot_arm {
   return static_cast<std::int64_t>(std::clamp(1e3 * metres, -1e6, 1e6));
 }
 
-/// What links must not come near: each other, and volumes that are kept out of. It tells before they do; to brake is others' to do.
+/// What links of an arm, on whatever base, must not come near: each other, that base, and volumes that are kept out of. It tells before they do; to
+/// brake is others' to do.
 /// Realtime: wait-free, but read(). Thread: the cycle, and the service loop while there is none.
 class Obstacles {
  public:
   using Nearest = robotics::Clearance::Nearest;
 
-  /// CLEARANCE tells how near they are.
-  explicit Obstacles(Parameters& parameters) noexcept : parameters_{parameters} {}
+  /// Of the descriptor.
+  struct Parts {
+    Parameter<double>& limit_m;  ///< CLEARANCE_LIMIT
+    Parameter<double>& clearance_m;  ///< CLEARANCE tells how near they are
+    Parameter<KeepOut>& kept_out;  ///< KEPT_OUT
+  };
+  explicit Obstacles(const Parts& parts) noexcept : parts_{parts} {}
   /// The words of an error that it gave live as long as it does, where it is.
   Obstacles(const Obstacles&) = delete;
   Obstacles& operator=(const Obstacles&) = delete;
@@ -36,7 +43,7 @@ class Obstacles {
   /// error.  Realtime: allocates. Thread: the service loop.
   [[nodiscard]] Result<> read(const UrdfArm::Source& source, const robotics::Model& model);
   /// As it was written last.
-  void take_limit() noexcept { clearance_->set_limit(parameters_.clearance_limit_m.load()); }
+  void take_limit() noexcept { clearance_->set_limit(parts_.limit_m.load()); }
   /// These volumes from now on, in the base's axes.
   [[nodiscard]] Outcome keep_out(const KeepOut& numbers) noexcept;
 
@@ -46,14 +53,21 @@ class Obstacles {
   [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& goal) noexcept {
     return clearance_->nearer(now, goal);
   }
+  /// Each cycle of who goes that way and is measured with noise: who would be too near at its end, and by more than `noise_m` nearer than in the last place
+  /// where nobody was. What shakes about the limit comes no nearer by that, however often it begins.
+  [[nodiscard]] std::optional<Nearest> watch_way(const JointVector& now, const JointVector& way,
+                                                 double noise_m) noexcept;
+  /// Of watch_way(): it stands there, near or not, and may go away.
+  void stand_at(const JointVector& position) noexcept { clear_at_ = position; }
   /// Each cycle: who would meet, if it is not braked now. Who is too near already may go away.
   [[nodiscard]] std::optional<Nearest> watch(const Setpoints& setpoints) noexcept;
   /// Each cycle in which it gives way: who would meet soon. CLEARANCE tells of where it is.
   [[nodiscard]] std::optional<Nearest> watch_led(const Measured& measured) noexcept;
 
  private:
-  Parameters& parameters_;
+  Parts parts_;
   std::optional<robotics::Clearance> clearance_;
+  JointVector clear_at_;  ///< of watch_way()
   robotics::urdf::NotRead not_read_;  ///< of shapes, for whoever reads the refusal
 };
 

@@ -78,7 +78,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   robot_arm::Drives drives_{parameters_.current};
   robot_arm::LimitWatch limits_{{known_, drives_, parameters_}};
   robot_arm::OnBoardModel model_{{known_, drives_, parameters_}};
-  robot_arm::Obstacles obstacles_{parameters_};
+  robot_arm::Obstacles obstacles_{{parameters_.clearance_limit_m, parameters_.clearance_m, parameters_.keep_out}};
   robot_arm::Guidance guidance_{{known_, drives_, obstacles_, parameters_}};
   robot_arm::TorqueControl control_{{known_, drives_, model_, guidance_, parameters_}};
   robot_arm::Yielding yielding_{{known_, drives_, model_, obstacles_, guidance_, control_, parameters_}};

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <optional>
+#include <vector>
 
 #include "hirosco/descriptor/read/read.hpp"
 #include "missions/servicer/scenarios/servicer_craft.hpp"
@@ -91,22 +93,99 @@ TEST(Servicer, MovesItsToolAndLeavesItsBaseUnturned) {
   EXPECT_LT(craft.base_deg(), 0.01);
 }
 
-/// From where two such moves have led, the wrist 0.1 rad before its end: on the way of the third one it would be passed.
+/// In a plane, where no joint is left over: the shoulder 0.1 rad before its end, which the way of the tool would pass.
 TEST(Servicer, StopsItsToolBeforeAJointsEndAndIsLedBack) {
-  ServicerCraft craft{
-      {.mission = mission, .mode = "joints", .posture = "0.238,0.548,-0.470,-2.054,-0.039,2.800,0.022"}};
-  constexpr std::size_t wrist = 5;
+  ServicerCraft craft{{.mission = mission, .mode = "joints", .posture = "2.8,1.5708,1.5708,-1.2,0,1.2,0"}};
+  constexpr std::size_t shoulder = 0;
   double farthest = 0;
-  craft.each_cycle([&] { farthest = std::max(farthest, craft.robot().position(wrist)); });
-  const auto stopped = craft.craft().command("MCS", "MOVE_TOOL", {-0.35, 0.0, -0.35, 25.0}, 40s);
+  craft.each_cycle([&] { farthest = std::max(farthest, craft.robot().position(shoulder)); });
+  const auto stopped = craft.craft().command("MCS", "MOVE_TOOL", {0.0, -0.3, 0.0, 25.0}, 40s);
   EXPECT_TRUE(stopped.started);
   EXPECT_EQ(stopped.failure, pus::FailureCode{0x8002}) << "OUT_OF_RANGE";
   EXPECT_TRUE(craft.flight().story().has("RANGE_END_NEAR")) << craft.flight().story().text();
   EXPECT_LT(farthest, 2.9);
   EXPECT_EQ(craft.flight().inhibited("MCS"), 0u) << "it stands by its law";
-  EXPECT_TRUE(craft.craft().command("MCS", "MOVE_TOOL", {0.02, 0.0, 0.02, within_s}, 20s).completed)
+  EXPECT_TRUE(craft.craft().command("MCS", "MOVE_TOOL", {0.0, 0.02, 0.0, within_s}, 20s).completed)
       << craft.flight().story().text();
   craft.each_cycle([] {});
+}
+
+constexpr pus::FailureCode too_near{0x8009};
+
+TEST(Servicer, RefusesAGoalInWhichItsArmWouldBeInItsBase) {
+  ServicerCraft craft{{.mission = mission, .mode = "joints"}};
+  const auto refused = craft.craft().command("MCS", "MOVE_JOINT", {0.1, -1.0, 0.0, -2.0, 0.0, 0.0, 0.0, 60.0}, 2s);
+  EXPECT_FALSE(refused.started);
+  EXPECT_EQ(refused.failure, too_near);
+  craft.run(1);
+  EXPECT_LT(craft.fastest_joint_rad_s(), 1e-3);
+}
+
+/// Both ends of the path are clear, and the base is between them. The tool goes where the last tube would be folded onto the one before, 0.15 rad farther
+/// on; the limit of 20 mm is reached at 2.51. What was stopped is where it was told to be, touches nobody, and is led back.
+TEST(Servicer, StopsBeforeItsLinksMeetEachOtherOrTheBaseAndIsLedBack) {
+  const std::vector<Value> from{-1.57, -0.9, 0.0, -2.2, 0.0, 0.0, 0.0, 40.0};
+  std::vector<Value> to = from;
+  to[0] = 1.57;
+  struct Way {
+    const char* posture;
+    const char* function;
+    std::vector<Value> there, back;
+    const char* pair;
+    std::size_t joint;
+    double least, most;
+  };
+  const std::array ways{Way{"-1.57,-0.9,0,-2.2,0,0,0", "MOVE_JOINT", to, from, "base and link", 0, -0.95, -0.8},
+                        Way{"0.107,0.76,-0.327,-1.758,-0.059,2.35,-0.005",
+                            "MOVE_TOOL",
+                            {-0.35, 0.0, -0.35, 25.0},
+                            {0.02, 0.0, 0.02, within_s},
+                            "link5 and link7",
+                            5,
+                            2.47,
+                            2.52}};
+  for (const Way& way : ways) {
+    ServicerCraft craft{{.mission = mission, .mode = "joints", .posture = way.posture}};
+    int contacts = 0;
+    craft.each_cycle([&] { contacts = std::max(contacts, craft.robot().data().ncon); });
+    const auto stopped = craft.craft().command("MCS", way.function, way.there, 60s);
+    EXPECT_TRUE(stopped.started) << way.function;
+    EXPECT_EQ(stopped.failure, too_near) << craft.flight().story().text();
+    EXPECT_TRUE(craft.flight().story().has("TOO_NEAR")) << craft.flight().story().text();
+    EXPECT_TRUE(craft.flight().story().has(way.pair)) << craft.flight().story().text();
+    craft.run(1);
+    EXPECT_LT(craft.fastest_joint_rad_s(), 1e-3) << "it is told at once and rests half a second later";
+    EXPECT_GT(craft.robot().position(way.joint), way.least);
+    EXPECT_LT(craft.robot().position(way.joint), way.most);
+    EXPECT_EQ(contacts, 0);
+    EXPECT_EQ(craft.flight().inhibited("MCS"), 0u) << "it stands by its law";
+    EXPECT_TRUE(craft.craft().command("MCS", way.function, way.back, 60s).completed) << craft.flight().story().text();
+    craft.each_cycle([] {});
+  }
+}
+
+/// By the law that keeps the tool in inertial axes, with the noise of the star tracker: who is stopped before a volume comes no nearer however often it is
+/// to go there, and holds its tool there.
+TEST(Servicer, KeepsOutOfAVolumeWhileItTracks) {
+  ServicerCraft craft{{.mission = mission, .mode = "track"}};
+  const auto tool = craft.tool_m();
+  // Across the way of the tool; the base is where it was, so its axes are the inertial ones.
+  std::vector<Value> volumes(28, Value{0.0});
+  const std::array numbers{tool[0] + 0.2, tool[1] - 1, tool[2], tool[0] + 0.2, tool[1] + 1, tool[2], 0.02};
+  std::ranges::copy(numbers, volumes.begin());
+  ASSERT_TRUE(craft.craft().command("MCS", "KEEP_OUT", volumes, 2s).completed) << craft.flight().story().text();
+  std::optional<ServicerCraft::Place> first;
+  for (int attempt = 1; attempt <= 4; ++attempt) {
+    EXPECT_EQ(craft.craft().command("MCS", "MOVE_TOOL", {0.2, 0.0, 0.0, 20.0}, 40s).failure, too_near) << attempt;
+    craft.run(2);
+    if (!first) first = craft.tool_m();
+    EXPECT_LT(distance(craft.tool_m(), *first), 0.006) << attempt;
+  }
+  EXPECT_GT(distance(tool, *first), 0.02);
+  EXPECT_TRUE(craft.flight().story().has("and a volume to keep out of")) << craft.flight().story().text();
+  EXPECT_EQ(craft.flight().inhibited("MCS"), 0u) << "what shakes at the limit stands by its law";
+  EXPECT_TRUE(craft.craft().command("MCS", "MOVE_TOOL", {-away_m, 0.0, 0.0, within_s}, 20s).completed)
+      << craft.flight().story().text();
 }
 
 /// The design's own stretched pose: the smallest singular value is 0.014.

@@ -67,6 +67,10 @@ using Vector = FloatingBase::Vector;
   constexpr std::string_view with_range = "type=\"revolute\"";
   for (auto at = without_stops.find(with_range); at != std::string::npos; at = without_stops.find(with_range, at))
     without_stops.replace(at, with_range.size(), "type=\"continuous\"");
+  // And no shapes: its links go through each other and through the base.
+  constexpr std::string_view begins = "<collision>", ends = "</collision>";
+  for (auto at = without_stops.find(begins); at != std::string::npos; at = without_stops.find(begins, at))
+    without_stops.erase(at, without_stops.find(ends, at) + ends.size() - at);
   auto robot = MujocoRobot::make(without_stops);
   if (!robot) return robot;
   robot->set_gravity(0, 0, 0);

@@ -30,10 +30,12 @@ Result<Step> FloatingArm::software_init() {
   parameters_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
   use_device(UrdfArm::device, drives_.port(), {robotics::urdf::model_setting, robotics::urdf::tip_setting});
   require_link("POSE", craft_.pose_port());
-  for (EventPort* event : std::initializer_list<EventPort*>{&motion_done_, &conditioning_low_, &base_held_,
-                                                            &limit_exceeded_, &hard_exceeded_, &range_end_near_})
+  for (EventPort* event :
+       std::initializer_list<EventPort*>{&motion_done_, &conditioning_low_, &base_held_, &limit_exceeded_,
+                                         &hard_exceeded_, &range_end_near_, &too_near_})
     use_event(*event);
-  HIROSCO_TRY(known_.read(own_descriptor()));
+  HIROSCO_TRY_LET(const UrdfArm::Source source, known_.read(own_descriptor()));
+  HIROSCO_TRY(obstacles_.read(source, known_.model()));
   HIROSCO_TRY(known_.take_bounds());
   bind_functions();
   return done;
@@ -52,6 +54,7 @@ Result<> FloatingArm::configure(const descriptor::Configuration& configuration) 
   drives_.forget(static_cast<std::size_t>(known_.model().joint_count()));
   moving_ = braked_ = false;
   guidance_.begin(cycle_s);
+  static_cast<void>(obstacles_.keep_out(parameters_.keep_out.load()));
   return ok();
 }
 
@@ -82,7 +85,10 @@ Result<> FloatingArm::pre_operational(const Cycle& cycle) noexcept {
 /// The law runs on the present place: what would be put out is visible, nothing moves.
 Result<> FloatingArm::safe_operational(const Cycle& cycle) noexcept {
   measure(cycle);
-  if (cycle.first) end_motion(pus::FailureCode::Aborted);
+  if (cycle.first) {
+    end_motion(pus::FailureCode::Aborted);
+    obstacles_.take_limit();  // it may have been written since CONFIGURE
+  }
   guidance_.engage();
   control(false);
   watch();
@@ -130,6 +136,7 @@ void FloatingArm::control(bool moves) noexcept {
     rates.setZero();
     if (moves) stop_before(*end);
   }
+  watch_clearance(rates, moves);
   drives_.put_out(robot_arm::joints_of(
       robot_arm::joint_torque(craft_.model(), rates, drives_.measured().velocity, known_.bounds())));
   parameters_.desired_velocity.store(robot_arm::joints_of(rates));
@@ -178,6 +185,21 @@ void FloatingArm::stop_before(const robot_arm::EndAhead& end) noexcept {
   guidance_.stand();
 }
 
+/// A motion comes to rest before links meet, or one of them the base or what it is to keep out of. Who only holds its tool and would run there cannot go on.
+void FloatingArm::watch_clearance(const JointVector& rates, bool moves) noexcept {
+  const JointVector& here = drives_.measured().position;
+  obstacles_.tell(here);
+  if (!moves) return obstacles_.stand_at(here);
+  if (guidance_.stops()) return;
+  const auto ahead = guidance_.near_ahead(rates);
+  if (!ahead) return;
+  raise(too_near_, ahead->distance_m, PairNames{std::string_view{ahead->names}});
+  const bool held = guidance_.holds();
+  end_motion(Trouble::too_near, robot_arm::millimetres(ahead->distance_m), ahead->names);
+  if (held) braked_ = true;
+  else guidance_.stop(rates);
+}
+
 void FloatingArm::tell_ill_conditioned(double conditioning) noexcept {
   raise(conditioning_low_, conditioning);
   end_motion(Trouble::ill_conditioned, std::llround(1e3 * conditioning));
@@ -197,8 +219,8 @@ void FloatingArm::watch() noexcept {
 }
 
 template <FailureEnumeration Code>
-void FloatingArm::end_motion(Code why, std::int64_t number) noexcept {
-  if (motion_) abort(*motion_, why, "", number);
+void FloatingArm::end_motion(Code why, std::int64_t number, const char* text) noexcept {
+  if (motion_) abort(*motion_, why, text, number);
   motion_.reset();
   guidance_.end_motion();
 }
@@ -210,6 +232,16 @@ Outcome FloatingArm::may_move() const noexcept {
   if (!moving_) return refused(Trouble::actuators_inhibited);
   if (motion_ || !guidance_.holds()) return refused(pus::FailureCode::Busy);
   return running;
+}
+
+/// Whoever moves comes to rest first: to ask for no velocity at once would take more torque than limits leave.
+void FloatingArm::hold() noexcept {
+  if (guidance_.stops()) return;
+  const JointVector rates = guidance_.wanted_rates();
+  const bool held = guidance_.holds();
+  end_motion(pus::FailureCode::Aborted);
+  if (held) guidance_.stand();
+  else guidance_.stop(rates);
 }
 
 Outcome FloatingArm::started(const Outcome& outcome, const Call& call) noexcept {
@@ -229,10 +261,10 @@ void FloatingArm::bind_functions() {
   });
   on_function("HOLD", [this]() -> Outcome {
     if (!moving_) return refused(Trouble::actuators_inhibited);
-    end_motion(pus::FailureCode::Aborted);
-    guidance_.stand();
+    hold();
     return ok();
   });
+  on_function("KEEP_OUT", [this](const robot_arm::KeepOut& numbers) { return obstacles_.keep_out(numbers); });
   on_function("BRAKE", [this]() -> Outcome {
     end_motion(pus::FailureCode::Aborted);
     braked_ = true;

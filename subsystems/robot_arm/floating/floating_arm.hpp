@@ -12,6 +12,7 @@
 #include "subsystems/robot_arm/floating/floating_craft.hpp"
 #include "subsystems/robot_arm/floating/floating_guidance.hpp"
 #include "subsystems/robot_arm/floating/floating_parameters.hpp"
+#include "subsystems/robot_arm/obstacles.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
 namespace hirosco {
@@ -40,9 +41,11 @@ class FloatingArm final : public Subsystem {
   void watch() noexcept;
   [[nodiscard]] bool may_act() noexcept;
   void stop_before(const robot_arm::EndAhead& end) noexcept;
+  void watch_clearance(const robot_arm::JointVector& rates, bool moves) noexcept;
   void tell_ill_conditioned(double conditioning) noexcept;
   template <FailureEnumeration Code>
-  void end_motion(Code why, std::int64_t number = 0) noexcept;
+  void end_motion(Code why, std::int64_t number = 0, const char* text = "") noexcept;
+  void hold() noexcept;
   [[nodiscard]] Outcome may_move() const noexcept;
   [[nodiscard]] Outcome started(const Outcome& outcome, const Call& call) noexcept;
 
@@ -55,11 +58,15 @@ class FloatingArm final : public Subsystem {
   /// Joint from 1, where it is, the end of its range.
   Event<std::uint8_t, double, double> range_end_near_{"RANGE_END_NEAR"};
 
+  using PairNames = Text<64>;
+  Event<double, PairNames> too_near_{"TOO_NEAR"};  ///< m, and who
+
   // Each refers to some of those before it.
   robot_arm::UrdfArm known_;
   robot_arm::Drives drives_{parameters_.current};
   robot_arm::FloatingCraft craft_{{known_, drives_, parameters_}};
-  robot_arm::FloatingGuidance guidance_{{known_, drives_, craft_, parameters_}};
+  robot_arm::Obstacles obstacles_{{parameters_.clearance_limit_m, parameters_.clearance_m, parameters_.keep_out}};
+  robot_arm::FloatingGuidance guidance_{{known_, drives_, craft_, obstacles_, parameters_}};
   robot_arm::Watch watch_;
   std::optional<Call> motion_;
   bool moving_{false};  ///< what is put out reaches the joints

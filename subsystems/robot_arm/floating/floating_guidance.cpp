@@ -17,6 +17,9 @@ constexpr double settled_enough_s = 0.1, patience_s = 10;
 constexpr double joint_tolerance_rad = 1e-3;
 /// Of the filter before the tool's error, which single samples of a star tracker would hide.
 constexpr double error_filter_s = 0.5;
+/// What the noise of the base's pose may bring links nearer to each other than where they are too near: the tool shakes by up to 0.42 mm (SV3). Who holds it,
+/// where a motion was stopped for that, may come so much nearer once more before brakes hold him.
+constexpr double shakes_m = 0.002;
 
 }  // namespace
 
@@ -40,8 +43,11 @@ void FloatingGuidance::stand() noexcept {
   tool_goal_ = {parts_.craft.tool(), Vector3::Zero()};
 }
 
-void FloatingGuidance::end_motion() noexcept {
-  if (phase_ == Phase::ToolMoves || phase_ == Phase::JointsMove) phase_ = Phase::Holds;
+void FloatingGuidance::end_motion() noexcept { phase_ = Phase::Holds; }
+
+void FloatingGuidance::stop(const JointVector& rates) noexcept {
+  phase_ = Phase::Stops;
+  stop_.begin(rates);
 }
 
 // --- in each cycle -------------------------------------------------------------------------------------------------------
@@ -53,6 +59,12 @@ FloatingGuidance::News FloatingGuidance::advance() noexcept {
   error_m_ = mean_left_m_.norm();
   if (phase_ == Phase::Holds) {
     tool_goal_.velocity_m_s.setZero();
+    return News::None;
+  }
+  if (phase_ == Phase::Stops) {
+    stop_.go_on(cycle_s_);
+    stand();
+    if (stop_.over()) phase_ = Phase::Holds;
     return News::None;
   }
   moved_s_ += cycle_s_;
@@ -89,7 +101,9 @@ bool FloatingGuidance::keeps_tool() const noexcept {
 JointVector FloatingGuidance::wanted_rates() const noexcept {
   const FloatingCraft& craft = parts_.craft;
   JointVector rates;
-  if (keeps_tool()) {
+  if (phase_ == Phase::Stops) {
+    rates = stop_.rates();
+  } else if (keeps_tool()) {
     rates = tool_rates(craft.law(), craft.model(), parts_.known.bounds(), tool_goal_, craft.attitude(), base_kept_);
   } else {
     const Course at = phase_ == Phase::JointsMove ? course(moved_s_, duration_s_) : Course{};
@@ -101,8 +115,14 @@ JointVector FloatingGuidance::wanted_rates() const noexcept {
 }
 
 std::optional<EndAhead> FloatingGuidance::end_ahead(const JointVector& rates) const noexcept {
-  if (!keeps_tool()) return std::nullopt;
+  if (!keeps_tool() && phase_ != Phase::Stops) return std::nullopt;
   return robot_arm::end_ahead(parts_.drives.measured().position, rates, parts_.known.bounds());
+}
+
+std::optional<Obstacles::Nearest> FloatingGuidance::near_ahead(const JointVector& rates) noexcept {
+  const Measured& measured = parts_.drives.measured();
+  return parts_.obstacles.watch_way(measured.position, StopRamp::way(rates, measured.velocity, cycle_s_),
+                                    holds() ? 2 * shakes_m : shakes_m);
 }
 
 void FloatingGuidance::tell(bool braked) noexcept {
@@ -133,6 +153,8 @@ Outcome FloatingGuidance::move_joint(const FunctionValues& values) noexcept {
     if (!(fastest <= bounds[i].motion.velocity))
       return refused(FloatingTrouble::too_fast, "joint", static_cast<std::int64_t>(i + 1));
   }
+  if (const auto there = parts_.obstacles.nearer(measured, goal); there.distance_m != HUGE_VAL)
+    return refused(FloatingTrouble::too_near, there.names, millimetres(there.distance_m));
   start(Phase::JointsMove, duration_s);
   joints_from_ = measured;
   joints_goal_ = goal;

@@ -11,6 +11,8 @@
 #include "subsystems/robot_arm/floating/floating_craft.hpp"
 #include "subsystems/robot_arm/floating/floating_parameters.hpp"
 #include "subsystems/robot_arm/floating/range_ends.hpp"
+#include "subsystems/robot_arm/floating/stop_ramp.hpp"
+#include "subsystems/robot_arm/obstacles.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
 namespace hirosco::robot_arm {
@@ -24,9 +26,10 @@ class FloatingGuidance {
     const UrdfArm& known;
     const Drives& drives;
     const FloatingCraft& craft;
+    Obstacles& obstacles;  ///< no goal of joints is near them
     FloatingParameters& parameters;  ///< PROGRESS, PHASE and ERR tell how far it is
   };
-  enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked };
+  enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked, Stops };
   /// What a cycle has brought to the motion.
   enum class News : std::uint8_t {
     None,
@@ -44,6 +47,8 @@ class FloatingGuidance {
   void stand() noexcept;
   /// A motion goes on no further: it keeps to what it came to.
   void end_motion() noexcept;
+  /// From these velocities to rest, wherever it was to go; then it stands.
+  void stop(const JointVector& rates) noexcept;
 
   // --- functions: refused, or running; numbers in the order of the descriptor ---------------------------------------------
   [[nodiscard]] Outcome move_joint(const FunctionValues& values) noexcept;
@@ -56,9 +61,13 @@ class FloatingGuidance {
   /// Who of them goes to an end of its range too fast to stand before it. Of a law of the tool alone: both ends of a path of joints are in range, and
   /// so is what is between.
   [[nodiscard]] std::optional<EndAhead> end_ahead(const JointVector& rates) const noexcept;
+  /// Who would be too near somebody, or to a volume, if joints that go like that were stopped now.
+  [[nodiscard]] std::optional<Obstacles::Nearest> near_ahead(const JointVector& rates) noexcept;
   /// PHASE and ERR. `braked`: the brakes hold it.
   void tell(bool braked) noexcept;
   [[nodiscard]] bool holds() const noexcept { return phase_ == Phase::Holds; }
+  /// By stop(), not yet at rest.
+  [[nodiscard]] bool stops() const noexcept { return phase_ == Phase::Stops; }
 
  private:
   void start(Phase phase, double duration_s) noexcept;
@@ -70,6 +79,7 @@ class FloatingGuidance {
   Phase phase_{Phase::Holds};
   double moved_s_{0}, duration_s_{0}, settled_s_{0};
   JointVector joints_from_, joints_goal_;
+  StopRamp stop_;
   ToolGoal tool_goal_;
   Vector3 tool_from_{Vector3::Zero()}, tool_offset_{Vector3::Zero()};
   robotics::Matrix3 base_kept_{robotics::Matrix3::Identity()};

@@ -46,6 +46,9 @@ struct FloatingParameters {
     publish("LIMITS", limits);
     publish("TOOL_SPEED", tool_speed_m_s);
     publish("GOAL_TOLERANCE", goal_tolerance_m);
+    publish("CLEARANCE_LIMIT", clearance_limit_m);
+    publish("CLEARANCE", clearance_m);
+    publish("KEPT_OUT", keep_out);
     publish("DES_VELOCITY", desired_velocity);
     publish("ACTIVE", active);
   }
@@ -58,6 +61,8 @@ struct FloatingParameters {
   Parameter<Joints> desired_velocity;
   Parameter<LimitShares> limits;
   Parameter<double> tool_speed_m_s, goal_tolerance_m;
+  Parameter<double> clearance_limit_m, clearance_m;
+  Parameter<KeepOut> keep_out;
 };
 
 }  // namespace hirosco::robot_arm

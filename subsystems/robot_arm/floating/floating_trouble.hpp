@@ -16,6 +16,7 @@ enum class FloatingTrouble : std::uint16_t {
   actuators_inhibited = 0x8006,
   base_is_held = 0x8007,  ///< somebody's actuators act on the base
   ill_conditioned = 0x8008,  ///< it cannot move the tool and leave the base unturned; thousandths
+  too_near = 0x8009,  ///< to itself, to the base, or to a volume that it keeps out of; mm
 };
 
 }  // namespace hirosco::robot_arm

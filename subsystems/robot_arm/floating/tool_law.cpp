@@ -14,7 +14,6 @@ namespace {
 
 constexpr double error_per_s = 1;  ///< of the tool
 constexpr double attitude_per_s = 0.5;  ///< of the base
-constexpr double velocity_per_s = 40;  ///< of joints
 /// Damping of least squares: of a matrix without base rates, and with them, whose rows are small.
 constexpr double tool_damping = 1e-3, base_damping = 1e-4;
 
@@ -81,7 +80,7 @@ void slow_down(JointVector& rates, Bounds bounds) noexcept {
 
 JointVector joint_torque(const FloatingModel& model, const JointVector& wanted_rates, const JointVector& rates,
                          Bounds bounds) noexcept {
-  const JointVector off = velocity_per_s * (wanted_rates - rates);
+  const JointVector off = followed_per_s * (wanted_rates - rates);
   JointVector torque = JointVector::Zero(off.size());
   for (Eigen::Index i = 0; i < off.size(); ++i) {
     const double value = model.inertia().row(i).dot(off);

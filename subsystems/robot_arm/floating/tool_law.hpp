@@ -18,6 +18,9 @@ enum class ToolLaw : std::uint8_t {
 /// Below it AttitudeHold is refused: joints would have to run.
 inline constexpr double least_conditioning = 0.05;
 
+/// Joints follow the velocities that are asked of them with it, 1/s.
+inline constexpr double followed_per_s = 40;
+
 /// Where the tool is to be, and how fast, in inertial axes.
 struct ToolGoal {
   robotics::Pose pose;
