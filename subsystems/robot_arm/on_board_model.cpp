@@ -3,12 +3,6 @@
 #include "subsystems/robot_arm/on_board_model.hpp"
 
 namespace hirosco::robot_arm {
-namespace {
-
-/// Of the filter of what acts from outside.
-constexpr double observer_gain_per_s = 50;
-
-}  // namespace
 
 void OnBoardModel::begin(double cycle_s) {
   const robotics::Model& model = parts_.known.model();

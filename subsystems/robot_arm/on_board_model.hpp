@@ -16,6 +16,9 @@ namespace hirosco::robot_arm {
 /// Realtime: bounded, but begin(). Thread: the cycle, and the service loop while there is none.
 class OnBoardModel {
  public:
+  /// Of the filter of what acts from outside.
+  static constexpr double observer_gain_per_s = 50;
+
   struct Parts {
     const UrdfArm& known;
     const Drives& drives;

@@ -7,8 +7,6 @@
 namespace hirosco::robot_arm {
 namespace {
 
-/// At rest an error this small is left alone: a joint with dry friction would hunt for less.
-constexpr double left_alone = 1e-4;
 constexpr double at_rest = 1e-6;
 /// An error this large is a collision or a jump and not the model's: nothing is learnt from it.
 constexpr double not_learnt = 0.05;

@@ -8,6 +8,8 @@ namespace hirosco::robot_arm {
 
 /// Friction changes its sign over this speed, rad/s or m/s.
 inline constexpr double friction_knee = 0.02;
+/// rad or m: at rest an error this small is left alone, a joint with dry friction would hunt for less.
+inline constexpr double left_alone = 1e-4;
 
 /// What hangs on the tip besides what the URDF file has: a point with mass.
 struct Payload {

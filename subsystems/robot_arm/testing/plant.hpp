@@ -64,7 +64,7 @@ class Plant {
       robotics::Coordinates force = drive, acceleration;
       for (Eigen::Index i = 0; i < force.size(); ++i) {
         const auto& joint = model_.joints()[static_cast<std::size_t>(i)];
-        force[i] -= joint.damping * state_.qd[i] + friction_factor * joint.friction * std::tanh(state_.qd[i] / 1e-3);
+        force[i] -= joint.damping * state_.qd[i] + friction_factor * joint.friction * std::tanh(state_.qd[i] / knee);
       }
       measured_.torque = force;
       if (outside != nullptr) force += *outside;
@@ -85,6 +85,7 @@ class Plant {
 
   void set_gravity(const Vector3& gravity_m_s2) { dynamics_.set_gravity(gravity_m_s2); }
 
+  static constexpr double knee = 1e-3;  ///< rad/s or m/s, over which dry friction changes its sign
   double friction_factor{1};
   double step_s{50e-6};
   double rotor{0};  ///< of each joint
