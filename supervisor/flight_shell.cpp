@@ -24,6 +24,7 @@
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/last_words.hpp"
 #include "hirosco/utilities/os/line_writer.hpp"
+#include "hirosco/utilities/os/process_usage.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
 #include "hirosco/utilities/program_options.hpp"
@@ -262,6 +263,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
       {.clock = clock, .flows = flows, .first_epoch = *first_epoch, .notes = keeper.notes(mission), .on_finding = [&] {
          guard_found->notify();
        }}};
+  auto meter = ProcessMeter::own();
   Supervisor supervisor{
       {.mission = mission,
        .platform = {.clock = clock,
@@ -270,7 +272,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
                     .realtime = realtime,
                     .wakes = true,
                     .explain = {},
-                    .links = deployment.links},
+                    .links = deployment.links,
+                    .usage = [&meter] { return meter ? meter->look() : std::nullopt; }},
        .launcher = launcher,
        .guard = guard,
        .log = log,

@@ -58,7 +58,9 @@ std::vector<Parameter> framework_parameters() {
                  member("THREADS", 250, Uint32), member("THREADS_HIGH", 251, Uint32),
                  member("POOL_USED", 252, Uint32, "", most_pools), member("POOL_HIGH", 253, Uint32, "", most_pools),
                  member("POOL_REFUSED", 254, Uint32), member("PORTS", 250, Uint16), member("PORTS_HIGH", 251, Uint16),
-                 member("FILES", 252, Uint16), member("FILES_HIGH", 253, Uint16), member("HELD_REFUSED", 254, Uint16)}),
+                 member("FILES", 252, Uint16), member("FILES_HIGH", 253, Uint16), member("HELD_REFUSED", 254, Uint16),
+                 member("SHARED_MEMORY", 243, Uint64, "kB"), member("SHARED_MEMORY_HIGH", 244, Uint64, "kB"),
+                 member("PROCESSOR", 241, Uint16, "%"), member("PROCESSOR_HIGH", 242, Uint16, "%")}),
       structure(framework_parameter::heap_uses, 33,
                 {member("CYCLE", 255, Uint64), member("SERVICE", 254, Uint64), member("COUNTED", 255, Bool)}),
       structure(framework_parameter::descriptor, 36, {member("HASH", 255, Uint32), member("CHANGES", 240, Uint16)})};

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "hirosco/utilities/sanitizer.hpp"
+
 namespace hirosco {
 
 using descriptor::Resource;
@@ -33,11 +35,12 @@ ResourceMeter::ResourceMeter(const descriptor::Resources& declared)
   resource_ = PoolResource{pools_.get()};
 }
 
-void ResourceMeter::note(const ProcessUsage& usage) noexcept {
+void ResourceMeter::note(const ProcessUsage& usage, TimePoint now) noexcept {
   note(Resource::Memory, usage.memory_kb);
   note(Resource::SharedMemory, usage.shared_memory_kb);
   note(Resource::Threads, usage.threads);
   note(Resource::Descriptors, usage.descriptors);
+  if (const auto percent = processor_.look(usage.processor, now)) note(Resource::Processor, *percent);
 }
 
 void ResourceMeter::note_held() noexcept {
@@ -50,7 +53,7 @@ void ResourceMeter::note(Resource resource, std::uint32_t amount) noexcept {
   seen.now.store(amount, std::memory_order_relaxed);
   if (amount > seen.high.load(std::memory_order_relaxed)) seen.high.store(amount, std::memory_order_relaxed);
   const auto most = amount_of(declared_.most, resource);
-  if (!most || amount == 0) {
+  if (!most || amount == 0 || (built_with_sanitizer && resource == Resource::Memory)) {
     seen.above = false;
     return;
   }
@@ -93,6 +96,8 @@ ResourceStatistics ResourceMeter::statistics() const noexcept {
   all.files = small(files_.used());
   all.files_high = small(files_.high());
   all.held_refused = small(ports_.refused() + files_.refused());
+  all.shared_memory = {now(Resource::SharedMemory), high(Resource::SharedMemory)};
+  all.processor = {small(now(Resource::Processor)), small(high(Resource::Processor))};
   if (pools_ == nullptr) return all;
   for (std::size_t i = 0; i < pools_->size(); ++i) {
     const PoolUsage usage = pools_->usage(i);

@@ -13,6 +13,7 @@
 #include "hirosco/resource/pool_resource.hpp"
 #include "hirosco/resource/quota.hpp"
 #include "hirosco/utilities/os/process_usage.hpp"
+#include "hirosco/utilities/processor_share.hpp"
 #include "hirosco/utilities/time.hpp"
 
 namespace hirosco {
@@ -33,6 +34,14 @@ struct ResourceStatistics {
   std::uint16_t files{0};  ///< acquired by the author
   std::uint16_t files_high{0};
   std::uint16_t held_refused{0};  ///< requests for a port or file beyond what the descriptor permits
+  struct SharedMemory {
+    std::uint64_t kb{0};  ///< in RAM; 0 where nobody can tell, like the next three
+    std::uint64_t high_kb{0};  ///< most that was seen, ten times in a second
+  } shared_memory{};
+  struct Processor {
+    std::uint16_t percent{0};  ///< of one processor, over the second that has ended
+    std::uint16_t high_percent{0};
+  } processor{};
 };
 
 /// The resources of one subsystem: its pools, how much it has taken, and where that crosses the warning level of its descriptor.
@@ -60,8 +69,8 @@ class ResourceMeter {
     std::uint32_t limit{0};
     std::uint32_t times{0};
   };
-  /// What was seen of the process.  Thread: service loop.
-  void note(const ProcessUsage& usage) noexcept;
+  /// What was seen of the process. Processor time is judged by the second.  Thread: service loop.
+  void note(const ProcessUsage& usage, TimePoint now) noexcept;
   /// How many ports and files are held now.  Thread: service loop.
   void note_held() noexcept;
   /// Tells each crossing once.  Realtime: bounded. Thread: service loop.
@@ -82,6 +91,7 @@ class ResourceMeter {
 
   const descriptor::Resources& declared_;
   std::array<Seen, descriptor::counted_resources> seen_;
+  ProcessorShare processor_;
   std::array<std::atomic<std::uint32_t>, descriptor::most_pools> pool_crossings_{};  ///< by who allocates
   Quota ports_, files_;
   std::unique_ptr<BlockPools> pools_;

@@ -22,6 +22,7 @@ struct ResourceMeterTest : ::testing::Test {
     return made;
   }();
   ResourceMeter meter{declared};
+  TimePoint at{};
   std::vector<ResourceMeter::Crossing> told() {
     std::vector<ResourceMeter::Crossing> all;
     meter.tell_crossings([&](const auto& crossing) { all.push_back(crossing); });
@@ -30,29 +31,66 @@ struct ResourceMeterTest : ::testing::Test {
 };
 
 TEST_F(ResourceMeterTest, EachCrossingOfTheLevelIsToldOnce) {
-  meter.note({.threads = 5});
+  meter.note({.threads = 5}, at);
   EXPECT_TRUE(told().empty());
-  meter.note({.threads = 6});
-  meter.note({.threads = 7});
+  meter.note({.threads = 6}, at);
+  meter.note({.threads = 7}, at);
   auto all = told();
   ASSERT_EQ(all.size(), 1U);
   EXPECT_EQ(all[0].resource, Resource::Threads);
   EXPECT_EQ(all[0].used, 7U);
   EXPECT_EQ(all[0].limit, 8U);
   EXPECT_TRUE(told().empty());
-  meter.note({.threads = 5});
-  meter.note({.threads = 6});
+  meter.note({.threads = 5}, at);
+  meter.note({.threads = 6}, at);
   EXPECT_EQ(told().size(), 1U) << "it was below in between";
 }
 
 TEST_F(ResourceMeterTest, WhatIsNotLimitedIsCountedOnly) {
-  meter.note({.memory_kb = 1'000'000, .descriptors = 3});
-  meter.note({.memory_kb = 500, .descriptors = 7});
+  meter.note({.memory_kb = 1'000'000, .descriptors = 3}, at);
+  meter.note({.memory_kb = 500, .descriptors = 7}, at);
   EXPECT_TRUE(told().empty());
   const ResourceStatistics statistics = meter.statistics();
   EXPECT_EQ(statistics.memory_kb, 500U);
   EXPECT_EQ(statistics.memory_high_kb, 1'000'000U);
   EXPECT_EQ(statistics.descriptors_high, 7U);
+}
+
+TEST_F(ResourceMeterTest, SharedMemoryAndTheShareOfAProcessorAreCountedToo) {
+  meter.note({.shared_memory_kb = 900, .processor = 3s}, at);
+  meter.note({.shared_memory_kb = 500, .processor = 3600ms}, at += 1s);
+  meter.note({.shared_memory_kb = 500, .processor = 3700ms}, at += 1s);
+  const ResourceStatistics statistics = meter.statistics();
+  EXPECT_EQ(statistics.shared_memory.kb, 500U);
+  EXPECT_EQ(statistics.shared_memory.high_kb, 900U);
+  EXPECT_EQ(statistics.processor.percent, 10U);
+  EXPECT_EQ(statistics.processor.high_percent, 60U);
+  EXPECT_TRUE(told().empty()) << "neither is limited";
+}
+
+TEST(ProcessorOfASubsystem, IsWarnedOfOnceWhereASecondTakesThreeQuartersOfWhatItsDescriptorSays) {
+  descriptor::Resources declared;
+  declared.most[static_cast<std::size_t>(Resource::Processor)] = 80;
+  ResourceMeter meter{declared};
+  TimePoint at{};
+  Duration had{};
+  const auto second = [&](int percent) {
+    for (int tenth = 0; tenth < 10; ++tenth) meter.note({.processor = had += 1ms * percent}, at += 100ms);
+    int times = 0;
+    meter.tell_crossings([&](const ResourceMeter::Crossing& crossing) {
+      EXPECT_EQ(crossing.resource, Resource::Processor);
+      EXPECT_EQ(crossing.used, static_cast<std::uint32_t>(percent));
+      EXPECT_EQ(crossing.limit, 80U);
+      ++times;
+    });
+    return times;
+  };
+  meter.note({}, at);
+  EXPECT_EQ(second(59), 0);
+  EXPECT_EQ(second(60), 1);
+  EXPECT_EQ(second(75), 0) << "it is above, and was told";
+  EXPECT_EQ(second(20), 0);
+  EXPECT_EQ(second(61), 1);
 }
 
 TEST_F(ResourceMeterTest, APoolIsNamedByItsBlocksAndKeepsItsHighestUse) {

@@ -151,7 +151,7 @@ void GenericSubsystem::look_at_resources(TimePoint now) {
   if (now < look_at_resources_at_) return;
   look_at_resources_at_ = now + ResourceMeter::look_every;
   if (platform_.usage)
-    if (const auto usage = platform_.usage()) resources_.note(*usage);
+    if (const auto usage = platform_.usage()) resources_.note(*usage, now);
   resources_.note_held();
   resources_.tell_crossings([this](const ResourceMeter::Crossing& found) {
     const std::array<double, 5> arguments{static_cast<double>(found.resource), static_cast<double>(found.block_octets),

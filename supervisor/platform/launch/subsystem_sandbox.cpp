@@ -11,6 +11,7 @@
 #include "hirosco/descriptor/model/member_reach.hpp"
 #include "hirosco/descriptor/model/setting_files.hpp"
 #include "hirosco/utilities/os/installation.hpp"
+#include "hirosco/utilities/sanitizer.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -59,11 +60,9 @@ void add_file(const std::filesystem::path& file, Sandbox& sandbox) {
 ProcessLimits limits_of(const descriptor::Resources& resources) noexcept {
   using descriptor::Resource;
   ProcessLimits limits;
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   constexpr std::uint64_t octets_per_kb = 1024;
-  if (const auto memory_kb = amount_of(resources.most, Resource::Memory))
+  if (const auto memory_kb = amount_of(resources.most, Resource::Memory); memory_kb && !built_with_sanitizer)
     limits.memory_octets = *memory_kb * octets_per_kb;
-#endif
   if (const auto descriptors = amount_of(resources.most, Resource::Descriptors)) limits.descriptors = *descriptors;
   return limits;
 }

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "hirosco/utilities/sanitizer.hpp"
+
 namespace hirosco::supervisor {
 
 using descriptor::Resource;
@@ -53,8 +55,7 @@ void ResourceHandling::watch(TimePoint) {
   const auto usage = craft_.launcher.usage(member.process());
   if (!usage) return;
   Seen& seen = seen_[member.apid()];
-  if (std::exchange(seen.process, member.process()) != member.process())
-    seen = {.process = member.process(), .processor = usage->processor, .at = craft_.now};
+  if (std::exchange(seen.process, member.process()) != member.process()) seen = {.process = member.process()};
   if (seen.ended) return;
   if (const auto excess = excess_of(member, seen, *usage)) {
     seen.ended = true;
@@ -68,24 +69,16 @@ std::optional<ResourceHandling::Excess> ResourceHandling::excess_of(const Member
   const std::pair<Resource, std::uint32_t> taken[]{{Resource::Memory, usage.memory_kb},
                                                    {Resource::SharedMemory, usage.shared_memory_kb},
                                                    {Resource::Threads, usage.threads}};
-  for (const auto& [resource, used] : taken)
+  for (const auto& [resource, used] : taken) {
+    if (built_with_sanitizer && resource == Resource::Memory) continue;
     if (const auto limit = amount_of(most, resource); limit && used > *limit) return Excess{resource, used, *limit};
+  }
   const auto limit = amount_of(most, Resource::Processor);
-  const auto percent = limit ? processor_percent(seen, usage) : std::nullopt;
-  if (!percent) return std::nullopt;
+  const auto percent = seen.processor.look(usage.processor, craft_.now);
+  if (!limit || !percent) return std::nullopt;
   seen.too_much = *percent > *limit ? seen.too_much + 1 : 0;
   if (seen.too_much < windows_too_much) return std::nullopt;
   return Excess{Resource::Processor, *percent, *limit};
-}
-
-/// Of the window that has just ended; empty while none has.
-std::optional<std::uint32_t> ResourceHandling::processor_percent(Seen& seen, const ProcessUsage& usage) const {
-  const Duration passed = craft_.now - seen.at;
-  if (passed < processor_window) return std::nullopt;
-  const Duration had = usage.processor - std::exchange(seen.processor, usage.processor);
-  seen.at = craft_.now;
-  constexpr int whole = 100;
-  return static_cast<std::uint32_t>(std::max<std::int64_t>(had * whole / passed, 0));
 }
 
 void ResourceHandling::end(const Member& member, const Excess& excess) {

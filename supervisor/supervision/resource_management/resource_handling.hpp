@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "hirosco/utilities/processor_share.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/resource_management/book.hpp"
@@ -20,8 +21,7 @@ namespace hirosco::supervisor {
 /// says (paper 4.3 resource management; docs/adr/0080). Thread: the supervisor's.
 class ResourceHandling final : public Watch {
  public:
-  /// Processor time is judged over so long, and has to be too much so often in a row: one busy second is no runaway.
-  static constexpr Duration processor_window = std::chrono::seconds{1};
+  /// Processor time has to be too much in so many windows in a row (ProcessorShare): one busy second is no runaway.
   static constexpr int windows_too_much = 3;
 
   ResourceHandling(Craft& craft, OwnSubsystem& own);
@@ -39,8 +39,7 @@ class ResourceHandling final : public Watch {
  private:
   struct Seen {
     std::uint32_t process{0};
-    Duration processor{};
-    TimePoint at{};
+    ProcessorShare processor{};
     int too_much{0};
     bool ended{false};  ///< told: it is on its way out
   };
@@ -50,7 +49,6 @@ class ResourceHandling final : public Watch {
     std::uint32_t limit{0};
   };
   [[nodiscard]] std::optional<Excess> excess_of(const Member& member, Seen& seen, const ProcessUsage& usage);
-  [[nodiscard]] std::optional<std::uint32_t> processor_percent(Seen& seen, const ProcessUsage& usage) const;
   void end(const Member& member, const Excess& excess);
 
   Craft& craft_;

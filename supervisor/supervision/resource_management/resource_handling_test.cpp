@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 
+#include "hirosco/utilities/sanitizer.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
 namespace hirosco::supervisor {
@@ -80,6 +81,13 @@ TEST_F(ResourceHandlingTest, WhoTakesMoreThanItSaysIsFencedEndedAndNamedOnce) {
   EXPECT_THAT(killed, ::testing::ElementsAre(played[arm].process));
   EXPECT_TRUE(guard.fenced(arm));
   EXPECT_TRUE(was_told("ARM has taken 5 of threads, its descriptor says 4 at most: it is ended"));
+}
+
+TEST_F(ResourceHandlingTest, MemoryBeyondWhatItSaysEndsItUnlessASanitizerTakesIt) {
+  start_all(Operational);
+  use_of(arm) = {.memory_kb = 30'001, .threads = 4};
+  look();
+  EXPECT_EQ(killed.empty(), built_with_sanitizer);
 }
 
 TEST_F(ResourceHandlingTest, ProcessorTimeIsARunawaysWhenItIsTooMuchForThreeSeconds) {
