@@ -8,6 +8,7 @@ taken its priority or its life it does what it likes: that time is told apart. P
 import array
 import contextlib
 import pathlib
+import re
 import signal
 import sys
 import time
@@ -107,8 +108,24 @@ class HostileMember(unittest.TestCase):
         flight.measure(f"{name}: beside it      {text(beside)}; p99.9 {ratio:.2f} times (expected: at most {MOST})")
         return ratio
 
+    @contextlib.contextmanager
+    def flown_with(self, resources):
+        """The mission with these <Resources> of the hostile one in place of its own."""
+        shipped = "../../subsystems/manipulator/manipulator.xml"
+        with flight.MissionCopy({shipped: "manipulator.xml"}, MISSION) as mission:
+            text, replaced = re.subn(r"<Resources [^>]*/>", resources, (MISSION.parent / shipped).read_text())
+            self.assertEqual(replaced, 1)
+            mission.with_name("manipulator.xml").write_text(text)
+            with flight.Flight(mission) as craft:
+                yield craft
+
+    def test_who_takes_more_than_its_descriptor_says_is_ended_and_named(self):
+        with self.flown_with('<Resources threads="2"/>') as craft:     # its own is the third
+            craft.wait_told("MANIPULATOR has taken 3 of threads, its descriptor says 2 at most: it is ended", 20.0)
+
     def test_the_others_are_woken_as_before(self):
-        with flight.Flight(MISSION) as craft:
+        # Without its limits, by which it would be gone before it has harmed anybody.
+        with self.flown_with("") as craft:
             craft.wait_told("commissioned: mode operation", 20.0)
             wakes = Wakes(craft.pid_of(VICTIM))
             ratios = []
