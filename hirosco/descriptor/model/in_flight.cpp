@@ -350,7 +350,8 @@ class Comparison {
           [&](const Configuration& a, const Configuration& b) { configuration(fresh, a, b); });
     unless(flown.hang.realtime == hang.realtime && flown.hang.reduced == hang.reduced, {}, "when it counts as hanging",
            guard_why);
-    unless(flown.resources.most == resources.most && flown.resources.warning_percent == resources.warning_percent &&
+    unless(flown.resources.most == resources.most && flown.resources.waiting == resources.waiting &&
+               flown.resources.warning_percent == resources.warning_percent &&
                std::ranges::equal(flown.resources.pools, resources.pools,
                                   [](const Pool& a, const Pool& b) {
                                     return a.block_octets == b.block_octets && a.blocks == b.blocks;

@@ -123,6 +123,7 @@ TEST(InFlight, WhatMemoryThreadsLinksAndGuardWereMadeByIsRefusedByName) {
            {R"(<ParamRef name="TITLE" id="1" type="TEXT" octets="8" init="old"/>)", "", "parameter TITLE is gone"},
            {">right<", ">other<", "enumeration SIDES: its values and their names"},
            {R"(memory_kB="100000")", R"(memory_kB="90000")", "its resources"},
+           {R"(memory_kB="100000")", R"(memory_kB="100000" waiting_events="500")", "its resources"},
            {R"(name="BUMP" id="7" severity="low")", R"(name="BUMP" id="7" severity="high")",
             "event BUMP: what follows it"},
            {R"(name="BUMP" id="7")", R"(name="BUMP" id="8")", "event BUMP: its id"},

@@ -22,8 +22,12 @@ enum class Resource : std::uint8_t {
   Pool = 5,  ///< blocks of one size; its own, so nobody else keeps books of it
   Ports = 6,  ///< of UDP and TCP
   Files = 7,  ///< open ones
+  // Messages that wait for the supervisor; its own, as Pool is.
+  WaitingAnswers = 8,
+  WaitingEvents = 9,
+  WaitingHousekeeping = 10,
 };
-inline constexpr std::size_t counted_resources = 8;  ///< Pool among them, of which there is no amount
+inline constexpr std::size_t counted_resources = 11;  ///< those among them of which there is no amount
 
 /// By Resource; empty = not declared, so not limited.
 using Amounts = std::array<std::optional<std::uint32_t>, counted_resources>;
@@ -41,6 +45,23 @@ struct Pool {
   std::uint32_t blocks{};
 };
 
+/// How many messages may wait for a supervisor that does not take them: answers, events and housekeeping apart, so that none is crowded
+/// out by another kind.
+using Waiting = std::array<std::uint32_t, 3>;
+inline constexpr std::uint32_t default_waiting = 1024;
+/// Of each kind: most are short, a few as long as a packet may be.
+[[nodiscard]] constexpr std::array<Pool, 3> waiting_pools(std::uint32_t most) noexcept {
+  constexpr std::uint32_t short_octets = 112, middle_octets = 512, longest_octets = 16 + 4096;
+  constexpr std::uint32_t short_to_middle = 4, short_to_longest = 21;
+  return {{{short_octets, most}, {middle_octets, most / short_to_middle}, {longest_octets, most / short_to_longest}}};
+}
+[[nodiscard]] constexpr std::uint64_t octets_of(const Waiting& waiting) noexcept {
+  std::uint64_t octets = 0;
+  for (const std::uint32_t most : waiting)
+    for (const Pool& pool : waiting_pools(most)) octets += std::uint64_t{pool.block_octets} * pool.blocks;
+  return octets;
+}
+
 inline constexpr std::size_t most_pools = 8;
 inline constexpr std::uint32_t default_warning_percent = 75;
 
@@ -48,6 +69,7 @@ inline constexpr std::uint32_t default_warning_percent = 75;
 struct Resources {
   Amounts most{};
   std::vector<Pool> pools;  ///< by ascending block size
+  Waiting waiting{default_waiting, default_waiting, default_waiting};
   std::uint32_t warning_percent{default_warning_percent};  ///< of a limit or pool: where its use becomes an event
 };
 
@@ -64,6 +86,9 @@ struct EnumTexts<descriptor::Resource> {
                                                                   {Processor, "processor"},
                                                                   {Pool, "pool"},
                                                                   {Ports, "ports"},
-                                                                  {Files, "files"}});
+                                                                  {Files, "files"},
+                                                                  {WaitingAnswers, "answers that wait"},
+                                                                  {WaitingEvents, "events that wait"},
+                                                                  {WaitingHousekeeping, "housekeeping that waits"}});
 };
 }  // namespace hirosco

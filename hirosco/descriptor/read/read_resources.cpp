@@ -17,6 +17,8 @@ constexpr std::int64_t largest_block = std::int64_t{1} << 24, most_blocks = std:
 constexpr std::uint64_t most_pool_octets = std::uint64_t{1} << 31;
 /// What a process has open before its author opens anything: standard streams, channel, pages, its waits, links and devices.
 constexpr std::int64_t least_descriptors = 24;
+/// Messages of one kind: enough for the answers to a few telecommands, and few enough to fit into the memory of a process.
+constexpr std::int64_t least_waiting = 128, most_waiting = 65'536;
 /// What the framework itself starts: service loop and cycle.
 constexpr std::int64_t least_threads = 2;
 
@@ -59,6 +61,10 @@ void read_resources(const xml::Element& element, Resources& resources, Problems&
   Attributes attributes{element, problems};
   resources.most = read_amounts(attributes);
   resources.warning_percent = attributes.integer_or<std::uint32_t>("warning_percent", 1, 100, default_warning_percent);
+  const auto waiting = [&](const char* name) {
+    return attributes.integer_or<std::uint32_t>(name, least_waiting, most_waiting, default_waiting);
+  };
+  resources.waiting = {waiting("waiting_answers"), waiting("waiting_events"), waiting("waiting_housekeeping")};
   each_child(element, problems,
              {{"Pool", [&](const auto& pool) { read_pool(pool, resources.pools, problems); }, most_pools}});
   std::ranges::sort(resources.pools, {}, &Pool::block_octets);
@@ -67,8 +73,12 @@ void read_resources(const xml::Element& element, Resources& resources, Problems&
   const auto memory_kb = amount_of(resources.most, Resource::Memory);
   const std::uint64_t limit = memory_kb ? std::uint64_t{*memory_kb} * 1024 : most_pool_octets;
   if (octets > limit)
-    problems.add(element, "E0240", fmt::format("the pools take {} octets together", octets),
-                 fmt::format("at most {}{}", limit, memory_kb ? ", the memory that it says" : ""));
+    return problems.add(element, "E0240", fmt::format("the pools take {} octets together", octets),
+                        fmt::format("at most {}{}", limit, memory_kb ? ", the memory that it says" : ""));
+  if (const std::uint64_t all = octets + octets_of(resources.waiting); memory_kb && all > limit)
+    problems.add(element, "E0359",
+                 fmt::format("the pools and what may wait for the supervisor take {} octets together", all),
+                 fmt::format("at most {}, the memory that it says: fewer waiting messages, or more memory_kB", limit));
 }
 
 void read_resources(const xml::Element& element, Mission& mission, Problems& problems) {

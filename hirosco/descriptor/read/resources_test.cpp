@@ -11,7 +11,7 @@ using namespace testing;
 
 TEST(Resources, AreWhatTheDescriptorSaysAndWhatItLeavesOutIsNotLimited) {
   const auto said = read_text(R"(<Subsystem name="ARM" id="10">
-    <Resources memory_kB="65536" shared_memory_kB="2048" threads="4" descriptors="64" processor_percent="150" warning_percent="60">
+    <Resources memory_kB="65536" shared_memory_kB="2048" threads="4" descriptors="64" processor_percent="150" warning_percent="60" waiting_events="128">
       <Pool block="1000" count="8"/><Pool block="64" count="512"/>
     </Resources></Subsystem>)")
                         .value.value()
@@ -30,6 +30,8 @@ TEST(Resources, AreWhatTheDescriptorSaysAndWhatItLeavesOutIsNotLimited) {
   for (const auto& amount : none.most) EXPECT_FALSE(amount);
   EXPECT_TRUE(none.pools.empty());
   EXPECT_EQ(none.warning_percent, 75U);
+  EXPECT_EQ(said.waiting, (Waiting{1024, 128, 1024}));
+  EXPECT_EQ(none.waiting, (Waiting{1024, 1024, 1024}));
 }
 
 std::string before_power(const std::string& resources) { return changed("<Power", resources + "\n  <Power"); }

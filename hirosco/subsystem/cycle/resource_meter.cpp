@@ -48,12 +48,23 @@ void ResourceMeter::note_held() noexcept {
   note(Resource::Files, files_.used());
 }
 
+void ResourceMeter::note_waiting(const descriptor::Waiting& most) noexcept {
+  for (std::size_t i = 0; i < most.size(); ++i)
+    note(static_cast<Resource>(static_cast<std::size_t>(Resource::WaitingAnswers) + i), most[i]);
+}
+
+std::optional<std::uint32_t> ResourceMeter::limit_of(Resource resource) const noexcept {
+  if (built_with_sanitizer && resource == Resource::Memory) return std::nullopt;
+  if (resource < Resource::WaitingAnswers) return amount_of(declared_.most, resource);
+  return declared_.waiting[static_cast<std::size_t>(resource) - static_cast<std::size_t>(Resource::WaitingAnswers)];
+}
+
 void ResourceMeter::note(Resource resource, std::uint32_t amount) noexcept {
   Seen& seen = seen_[static_cast<std::size_t>(resource)];
   seen.now.store(amount, std::memory_order_relaxed);
   if (amount > seen.high.load(std::memory_order_relaxed)) seen.high.store(amount, std::memory_order_relaxed);
-  const auto most = amount_of(declared_.most, resource);
-  if (!most || amount == 0 || (built_with_sanitizer && resource == Resource::Memory)) {
+  const auto most = limit_of(resource);
+  if (!most || amount == 0) {
     seen.above = false;
     return;
   }
@@ -68,7 +79,7 @@ void ResourceMeter::tell_crossings(const std::function<void(const Crossing&)>& t
     if (const auto times = std::exchange(seen_[i].crossings, 0); times != 0)
       tell({.resource = static_cast<Resource>(i),
             .used = seen_[i].now.load(std::memory_order_relaxed),
-            .limit = declared_.most[i].value_or(0),
+            .limit = limit_of(static_cast<Resource>(i)).value_or(0),
             .times = times});
   for (std::size_t i = 0; pools_ != nullptr && i < pools_->size(); ++i) {
     const auto times = pool_crossings_[i].exchange(0, std::memory_order_relaxed);
@@ -96,8 +107,13 @@ ResourceStatistics ResourceMeter::statistics() const noexcept {
   all.files = small(files_.used());
   all.files_high = small(files_.high());
   all.held_refused = small(ports_.refused() + files_.refused());
-  all.shared_memory = {now(Resource::SharedMemory), high(Resource::SharedMemory)};
-  all.processor = {small(now(Resource::Processor)), small(high(Resource::Processor))};
+  all.process = {now(Resource::SharedMemory), high(Resource::SharedMemory), small(now(Resource::Processor)),
+                 small(high(Resource::Processor))};
+  for (std::size_t i = 0; i < all.waiting.now.size(); ++i) {
+    const auto resource = static_cast<Resource>(static_cast<std::size_t>(Resource::WaitingAnswers) + i);
+    all.waiting.now[i] = small(now(resource));
+    all.waiting.high[i] = small(high(resource));
+  }
   if (pools_ == nullptr) return all;
   for (std::size_t i = 0; i < pools_->size(); ++i) {
     const PoolUsage usage = pools_->usage(i);

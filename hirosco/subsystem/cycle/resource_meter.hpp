@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "hirosco/descriptor/model/subsystem.hpp"
@@ -34,14 +35,18 @@ struct ResourceStatistics {
   std::uint16_t files{0};  ///< acquired by the author
   std::uint16_t files_high{0};
   std::uint16_t held_refused{0};  ///< requests for a port or file beyond what the descriptor permits
-  struct SharedMemory {
-    std::uint64_t kb{0};  ///< in RAM; 0 where nobody can tell, like the next three
-    std::uint64_t high_kb{0};  ///< most that was seen, ten times in a second
-  } shared_memory{};
-  struct Processor {
-    std::uint16_t percent{0};  ///< of one processor, over the second that has ended
-    std::uint16_t high_percent{0};
-  } processor{};
+  /// A structure has 16 members at most: these are four more of this one.
+  struct Process {
+    std::uint64_t shared_memory_kb{0};  ///< in RAM; 0 where nobody can tell, like the next three
+    std::uint64_t shared_memory_high_kb{0};  ///< most that was seen, ten times in a second
+    std::uint16_t processor_percent{0};  ///< of one processor, over the second that has ended
+    std::uint16_t processor_high_percent{0};
+  } process{};
+  /// Messages for the supervisor: answers, events, housekeeping; the most at once in the last tenth of a second, and ever.
+  struct Waiting {
+    std::array<std::uint16_t, 3> now{};
+    std::array<std::uint16_t, 3> high{};
+  } waiting{};
 };
 
 /// The resources of one subsystem: its pools, how much it has taken, and where that crosses the warning level of its descriptor.
@@ -73,6 +78,8 @@ class ResourceMeter {
   void note(const ProcessUsage& usage, TimePoint now) noexcept;
   /// How many ports and files are held now.  Thread: service loop.
   void note_held() noexcept;
+  /// How many messages have waited at once since this was said last.  Thread: service loop.
+  void note_waiting(const descriptor::Waiting& most) noexcept;
   /// Tells each crossing once.  Realtime: bounded. Thread: service loop.
   void tell_crossings(const std::function<void(const Crossing&)>& tell);
 
@@ -88,6 +95,7 @@ class ResourceMeter {
     std::uint32_t crossings{0};
   };
   void note(descriptor::Resource resource, std::uint32_t amount) noexcept;
+  [[nodiscard]] std::optional<std::uint32_t> limit_of(descriptor::Resource resource) const noexcept;
 
   const descriptor::Resources& declared_;
   std::array<Seen, descriptor::counted_resources> seen_;

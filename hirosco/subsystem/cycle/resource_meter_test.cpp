@@ -61,10 +61,10 @@ TEST_F(ResourceMeterTest, SharedMemoryAndTheShareOfAProcessorAreCountedToo) {
   meter.note({.shared_memory_kb = 500, .processor = 3600ms}, at += 1s);
   meter.note({.shared_memory_kb = 500, .processor = 3700ms}, at += 1s);
   const ResourceStatistics statistics = meter.statistics();
-  EXPECT_EQ(statistics.shared_memory.kb, 500U);
-  EXPECT_EQ(statistics.shared_memory.high_kb, 900U);
-  EXPECT_EQ(statistics.processor.percent, 10U);
-  EXPECT_EQ(statistics.processor.high_percent, 60U);
+  EXPECT_EQ(statistics.process.shared_memory_kb, 500U);
+  EXPECT_EQ(statistics.process.shared_memory_high_kb, 900U);
+  EXPECT_EQ(statistics.process.processor_percent, 10U);
+  EXPECT_EQ(statistics.process.processor_high_percent, 60U);
   EXPECT_TRUE(told().empty()) << "neither is limited";
 }
 
@@ -91,6 +91,22 @@ TEST(ProcessorOfASubsystem, IsWarnedOfOnceWhereASecondTakesThreeQuartersOfWhatIt
   EXPECT_EQ(second(75), 0) << "it is above, and was told";
   EXPECT_EQ(second(20), 0);
   EXPECT_EQ(second(61), 1);
+}
+
+TEST_F(ResourceMeterTest, WhatWaitsForTheSupervisorIsWarnedOfByItsKindAndToldAsAllElseIs) {
+  declared.waiting = {1024, 128, 1024};
+  meter.note_waiting({700, 95, 1});
+  EXPECT_TRUE(told().empty());
+  meter.note_waiting({700, 96, 1});
+  const auto all = told();
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].resource, Resource::WaitingEvents);
+  EXPECT_EQ(all[0].used, 96U);
+  EXPECT_EQ(all[0].limit, 128U);
+  meter.note_waiting({3, 0, 0});
+  const ResourceStatistics statistics = meter.statistics();
+  EXPECT_EQ(statistics.waiting.now, (std::array<std::uint16_t, 3>{3, 0, 0}));
+  EXPECT_EQ(statistics.waiting.high, (std::array<std::uint16_t, 3>{700, 96, 1}));
 }
 
 TEST_F(ResourceMeterTest, APoolIsNamedByItsBlocksAndKeepsItsHighestUse) {
@@ -169,6 +185,30 @@ TEST_F(ResourcesOfASubsystem, ThreeQuartersOfAPoolAreAnEventOncePerCrossingAndIt
   EXPECT_EQ(told.pool_used[0], 10U);
   EXPECT_EQ(told.pool_high[0], 10U);
   EXPECT_GT(told.pool_refused, 0U);
+}
+
+TEST(WaitingForTheSupervisor, IsHeldToWhatTheDescriptorSaysWarnedOfAndHousekeeping) {
+  Greedy greedy;
+  testing::Rig rig{greedy, R"(<Subsystem name="GREEDY" id="21">
+    <Resources waiting_housekeeping="128"/>
+    <Configuration name="C" id="1" sampling_us="1000">
+      <HKService id="1" interval="1"><SampledOnce><ParamRef name="CYCLE_STATS"/></SampledOnce></HKService>
+    </Configuration></Subsystem>)"};
+  rig.bring_to(State::PreOperational);
+  // It is there and does not read: its channel fills first.
+  constexpr int more_than_the_channel_holds = 4096 + 200;
+  for (int i = 0; i < more_than_the_channel_holds; ++i) {
+    rig.permit.heartbeat.fetch_add(1);
+    rig.cycle();
+    rig.advance(1ms);
+    static_cast<void>(rig.subsystem.service_step(rig.clock.now()));
+  }
+  for (int i = 0; i < 20; ++i) {
+    rig.service();
+    rig.cycle();
+  }
+  EXPECT_EQ(rig.heard(descriptor::framework_event::resource_warning), 1);
+  EXPECT_EQ(rig.subsystem.cycle().resource_statistics().load().waiting.high[2], 128U);
 }
 
 /// Speaks to two sensors by UDP and opens what else it likes.

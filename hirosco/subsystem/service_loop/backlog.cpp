@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <new>
+#include <utility>
 
 namespace hirosco {
 namespace {
@@ -14,14 +15,16 @@ namespace {
   return error.code == ErrorCode::ResourceExhausted || error.code == ErrorCode::Unavailable;
 }
 
-constexpr std::size_t short_octets = 112, middle_octets = 512, middle_blocks = 256;
-
 }  // namespace
 
-Backlog::Backlog() {
-  const std::array pools{PoolSpec{short_octets, most_waiting}, PoolSpec{middle_octets, middle_blocks},
-                         PoolSpec{sizeof(Unsent) + max_packet_octets, most_long_waiting}};
-  for (Queue& queue : queues_) {
+Backlog::Backlog(const descriptor::Waiting& most) {
+  static_assert(descriptor::waiting_pools(1)[2].block_octets == sizeof(Unsent) + max_packet_octets);
+  for (std::size_t i = 0; i < queues_.size(); ++i) {
+    Queue& queue = queues_[i];
+    queue.most = most[i];
+    std::array<PoolSpec, 3> pools;
+    std::ranges::transform(descriptor::waiting_pools(most[i]), pools.begin(),
+                           [](const descriptor::Pool& pool) { return PoolSpec{pool.block_octets, pool.blocks}; });
     auto made = LocalBlockPools::create(pools, {.warning_percent = 0, .on_warning = {}, .on_refusal = {}});
     if (!made) throw std::bad_alloc{};
     queue.pools = std::move(*made);
@@ -46,7 +49,7 @@ void Backlog::send(Channel& channel, const Message& message, Worth worth) {
 
 void Backlog::keep(Queue& queue, const Message& message) {
   const std::size_t octets = sizeof(Unsent) + message.packet.size();
-  while (queue.waiting >= most_waiting) {
+  while (queue.waiting >= queue.most) {
     drop_oldest(queue);
     ++queue.lost;
   }
@@ -66,6 +69,7 @@ void Backlog::keep(Queue& queue, const Message& message) {
   (queue.newest != nullptr ? queue.newest->next : queue.oldest) = unsent;
   queue.newest = unsent;
   ++queue.waiting;
+  queue.most_since = std::max(queue.most_since, queue.waiting);
 }
 
 void Backlog::drop_oldest(Queue& queue) noexcept {
@@ -96,6 +100,14 @@ Result<> Backlog::try_send(Channel& channel, const Message& message) {
   return sent;
 }
 
+descriptor::Waiting Backlog::take_most_waiting() noexcept {
+  descriptor::Waiting most{};
+  std::ranges::transform(queues_, most.begin(), [](Queue& queue) {
+    return static_cast<std::uint32_t>(std::exchange(queue.most_since, queue.waiting));
+  });
+  return most;
+}
+
 bool Backlog::empty() const noexcept {
   return std::ranges::all_of(queues_, [](const Queue& queue) { return queue.waiting == 0; });
 }
@@ -103,7 +115,7 @@ bool Backlog::empty() const noexcept {
 bool Backlog::answers_have_room() const noexcept {
   const Queue& answers = queue(Worth::Answer);
   const PoolUsage longest = answers.pools->usage(answers.pools->size() - 1);
-  return peer_gone_ || (answers.waiting < most_waiting / 2 && longest.used < longest.count / 2);
+  return peer_gone_ || (answers.waiting < answers.most / 2 && longest.used < longest.count / 2);
 }
 
 }  // namespace hirosco

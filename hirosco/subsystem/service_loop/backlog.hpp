@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "hirosco/data_transfer/channel/channel.hpp"
+#include "hirosco/descriptor/model/resources.hpp"
 #include "hirosco/resource/block_pools.hpp"
 
 namespace hirosco {
@@ -24,8 +25,8 @@ class Backlog {
     Housekeeping,
   };
 
-  /// Throws std::bad_alloc when there is no memory for the pools, some 1 MB.
-  Backlog();
+  /// As its descriptor says. Throws std::bad_alloc when there is no memory for the pools.
+  explicit Backlog(const descriptor::Waiting& most = descriptor::Resources{}.waiting);
   /// Sends at once when nothing of the same or more worth waits, else keeps a copy. Memory handles are not kept.
   void send(Channel& channel, const Message& message, Worth worth);
   void flush(Channel& channel);
@@ -36,9 +37,8 @@ class Backlog {
   /// Messages of this worth that were never sent.
   [[nodiscard]] std::uint64_t lost(Worth worth) const noexcept { return queue(worth).lost; }
 
-  static constexpr std::size_t most_waiting = 1024;
-  /// Of the longest messages, when no others wait.
-  static constexpr std::size_t most_long_waiting = 48;
+  /// How many of each kind have waited at once since this was asked last.
+  [[nodiscard]] descriptor::Waiting take_most_waiting() noexcept;
 
  private:
   /// At the begin of its block; the message's octets stand behind it.
@@ -51,7 +51,9 @@ class Backlog {
     std::unique_ptr<LocalBlockPools> pools;
     Unsent* oldest{nullptr};
     Unsent* newest{nullptr};
+    std::size_t most{0};
     std::size_t waiting{0};
+    std::size_t most_since{0};  ///< take_most_waiting()
     std::uint64_t lost{0};
   };
   [[nodiscard]] static Message message_of(const Unsent& unsent) noexcept;

@@ -10,6 +10,8 @@ namespace hirosco {
 namespace {
 
 using Worth = Backlog::Worth;
+constexpr std::size_t most_waiting = descriptor::default_waiting;
+constexpr std::size_t most_long_waiting = descriptor::waiting_pools(descriptor::default_waiting)[2].blocks;
 
 struct BacklogTest : ::testing::Test {
   ChannelPair channels{4};
@@ -61,18 +63,18 @@ TEST_F(BacklogTest, AnAnswerDoesNotQueueBehindHousekeeping) {
 TEST_F(BacklogTest, AFloodOfOneKindCostsNothingOfAnother) {
   for (int i = 1; i <= 4; ++i) send(i, Worth::Answer);
   send(99, Worth::Answer);
-  for (std::size_t i = 0; i < 3 * Backlog::most_waiting; ++i) send(7, Worth::Housekeeping);
-  for (std::size_t i = 0; i < 2 * Backlog::most_waiting; ++i) send(8, Worth::Event);
+  for (std::size_t i = 0; i < 3 * most_waiting; ++i) send(7, Worth::Housekeeping);
+  for (std::size_t i = 0; i < 2 * most_waiting; ++i) send(8, Worth::Event);
   EXPECT_EQ(backlog.lost(Worth::Answer), 0u);
-  EXPECT_EQ(backlog.lost(Worth::Event), Backlog::most_waiting);
-  EXPECT_EQ(backlog.lost(Worth::Housekeeping), 2 * Backlog::most_waiting);
+  EXPECT_EQ(backlog.lost(Worth::Event), most_waiting);
+  EXPECT_EQ(backlog.lost(Worth::Housekeeping), 2 * most_waiting);
   EXPECT_TRUE(received().starts_with("1 2 3 4 99 8 "));
 }
 
 TEST_F(BacklogTest, LongMessagesHaveBlocksOfTheirOwnAndLoseTheirOldestBeyond) {
   for (int i = 1; i <= 4; ++i) send(i, Worth::Answer);
   std::vector<std::byte> longest(max_packet_octets);
-  for (std::size_t i = 0; i < Backlog::most_long_waiting + 2; ++i) {
+  for (std::size_t i = 0; i < most_long_waiting + 2; ++i) {
     longest[0] = static_cast<std::byte>(100 + i);
     backlog.send(channels.subsystem_end(), {.packet = longest}, Worth::Housekeeping);
   }
@@ -81,14 +83,14 @@ TEST_F(BacklogTest, LongMessagesHaveBlocksOfTheirOwnAndLoseTheirOldestBeyond) {
   const std::string all = received();
   EXPECT_TRUE(all.starts_with("1 2 3 4 102 103 ")) << all;
   for (int i = 1; i <= 4; ++i) send(i, Worth::Answer);
-  for (std::size_t i = 0; i < Backlog::most_long_waiting / 2; ++i)
+  for (std::size_t i = 0; i < most_long_waiting / 2; ++i)
     backlog.send(channels.subsystem_end(), {.packet = longest}, Worth::Answer);
   EXPECT_FALSE(backlog.answers_have_room()) << "those to one more telecommand could be as long";
 }
 
 TEST_F(BacklogTest, AFullQueueLosesItsOldest) {
   for (int i = 1; i <= 4; ++i) send(i, Worth::Answer);
-  for (std::size_t i = 0; i < Backlog::most_waiting; ++i) send(i == 0 ? 50 : 60, Worth::Answer);
+  for (std::size_t i = 0; i < most_waiting; ++i) send(i == 0 ? 50 : 60, Worth::Answer);
   send(70, Worth::Answer);
   EXPECT_EQ(backlog.lost(Worth::Answer), 1u);
   const std::string all = received();
@@ -96,10 +98,31 @@ TEST_F(BacklogTest, AFullQueueLosesItsOldest) {
   EXPECT_TRUE(all.ends_with("60 70"));
 }
 
+TEST_F(BacklogTest, HoldsAsManyOfEachKindAsTheDescriptorSaysAndTellsHowManyHaveWaited) {
+  Backlog small{{128, 200, 1024}};
+  const std::byte octet{1};
+  const auto flood = [&](Worth worth) {
+    for (int i = 0; i < 300; ++i)
+      small.send(channels.subsystem_end(), {.kind = MessageKind::Packet, .packet = {&octet, 1}}, worth);
+  };
+  for (const Worth worth : {Worth::Answer, Worth::Event, Worth::Housekeeping}) flood(worth);
+  EXPECT_EQ(small.lost(Worth::Answer), 300U - 4 - 128) << "four went through the channel";
+  EXPECT_EQ(small.lost(Worth::Event), 100U);
+  EXPECT_EQ(small.lost(Worth::Housekeeping), 0U);
+  EXPECT_EQ(small.take_most_waiting(), (descriptor::Waiting{128, 200, 300}));
+  MessageBuffer buffer;
+  while (!small.empty()) {
+    ASSERT_TRUE(channels.supervisor_end().receive(buffer));
+    small.flush(channels.subsystem_end());
+  }
+  EXPECT_EQ(small.take_most_waiting(), (descriptor::Waiting{128, 200, 300})) << "of the time in between";
+  EXPECT_EQ(small.take_most_waiting(), descriptor::Waiting{});
+}
+
 TEST_F(BacklogTest, HasRoomForMoreAnswersUntilHalfOfItIsFullOfThemAndNeverWaitsForSomebodyWhoIsGone) {
-  for (std::size_t i = 0; i < 4 + 3 * Backlog::most_waiting; ++i) send(7, Worth::Housekeeping);
+  for (std::size_t i = 0; i < 4 + 3 * most_waiting; ++i) send(7, Worth::Housekeeping);
   EXPECT_TRUE(backlog.answers_have_room()) << "housekeeping takes none of it";
-  for (std::size_t i = 0; i < Backlog::most_waiting / 2; ++i) {
+  for (std::size_t i = 0; i < most_waiting / 2; ++i) {
     EXPECT_TRUE(backlog.answers_have_room()) << i;
     send(1, Worth::Answer);
   }

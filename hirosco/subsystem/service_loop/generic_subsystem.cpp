@@ -153,6 +153,7 @@ void GenericSubsystem::look_at_resources(TimePoint now) {
   if (platform_.usage)
     if (const auto usage = platform_.usage()) resources_.note(*usage, now);
   resources_.note_held();
+  resources_.note_waiting(reports_.take_most_waiting());
   resources_.tell_crossings([this](const ResourceMeter::Crossing& found) {
     const std::array<double, 5> arguments{static_cast<double>(found.resource), static_cast<double>(found.block_octets),
                                           static_cast<double>(found.used), static_cast<double>(found.limit),

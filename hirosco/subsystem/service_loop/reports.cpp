@@ -22,7 +22,8 @@ Reports::Reports(const descriptor::SubsystemDescriptor& descriptor, const Clock&
       channel_{channel},
       counters_{vital.counters},
       verification_{*this},
-      event_service_{descriptor_.events, verification_, *this} {}
+      event_service_{descriptor_.events, verification_, *this},
+      backlog_{descriptor_.resources.waiting} {}
 
 void Reports::report(std::uint8_t service, std::uint8_t subtype, std::uint16_t destination, Octets source_data) {
   std::array<std::byte, max_packet_octets> buffer;

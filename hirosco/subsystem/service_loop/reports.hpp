@@ -49,6 +49,8 @@ class Reports final : public pus::TelemetrySink {
   /// REPORTS_LOST, where more were lost since it was raised last.
   void tell_losses(TimePoint now, const LoopRings& of_cycle, std::uint64_t of_own_loops);
   void flush() { backlog_.flush(channel_); }
+  /// Backlog::take_most_waiting().
+  [[nodiscard]] descriptor::Waiting take_most_waiting() noexcept { return backlog_.take_most_waiting(); }
   /// Nothing waits for the supervisor.
   [[nodiscard]] bool empty() const noexcept { return backlog_.empty(); }
   /// Backlog::answers_have_room().
