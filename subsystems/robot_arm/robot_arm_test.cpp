@@ -384,6 +384,24 @@ TEST_F(RobotArmTest, PassesItsSelfTest) {
   EXPECT_THAT(flown.rig.outcome(request), HasSubstr("7")) << ::testing::PrintToString(flown.rig.explanations);
 }
 
+TEST(ShippedRobotArm, ActsOnlyOnceItsSelfTestHasPassed) {
+  const std::string file = std::string{folder} + "robot_arm.urdf";
+  std::string text = robot_arm::testing::descriptor_text();
+  replace_all(text, "value=\"robot_arm.urdf\"", "value=\"" + file + "\"");
+  Flown arm{robot_arm::testing::model_of(file, 1), text};
+  arm.rig.bring_to(State::PreOperational, 1);
+  arm.cycle(5);
+  arm.command(State::SafeOperational);
+  const auto early = arm.rig.set_state(State::Operational);
+  arm.cycle(5);
+  EXPECT_THAT(arm.rig.outcome(early), StartsWith("1 4:010a"));
+  const auto test = arm.rig.send(17, 128, {});
+  arm.cycle(40);
+  EXPECT_THAT(arm.rig.outcome(test), HasSubstr("7")) << ::testing::PrintToString(arm.rig.explanations);
+  arm.command(State::Operational);
+  EXPECT_EQ(arm.rig.state(), State::Operational);
+}
+
 /// A descriptor or a file that is wrong, and what it is refused with.
 struct Wrong {
   const char* from;
