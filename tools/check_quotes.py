@@ -4,7 +4,8 @@
 """A code block that follows `<!-- quote: PATH -->` in a Markdown file must be PATH or a contiguous part of it; and what
 the documents name in backquotes as a file or folder of the project must exist; in a README also what it names by a part of its
 path. Where a link of a document leads, there must be a file or folder. Everywhere in the repository each decision, page of docs/adr and hazard that is cited must exist. Each page of docs/adr has
-a status; one that says "Changes NNNN" is named there by "changed by" of that page, and the other way round."""
+a status; one that says "Changes NNNN" is named there by "changed by" of that page, and the other way round. In the guides that build something
+from files to copy (WHOLE) each block with a language is such a quote: what a reader copies is what tests build and simulate."""
 import pathlib
 import posixpath
 import re
@@ -17,6 +18,8 @@ part = re.compile(r"`((?![A-Z]+_)[\w./-]*\w\.(?:hpp|cpp|py|m?js|xml|csv))`")
 cited = re.compile(r"\b(adr[ /]|decisions? |SF|findings? |LW(?=\d))(\d+)", re.I)
 mark = re.compile(r"^<!-- quote:", re.M)
 code = re.compile(r"^(```+)[^\n]*\n.*?^\1|`[^`\n]*`", re.M | re.S)
+WHOLE = ("docs/guide/your_mission.md", "docs/guide/your_project.md")
+fenced = re.compile(r"(?m)^(<!-- .* -->\n+)?```(\w*)\n(?:.*\n)*?```$")
 link = re.compile(r"\]\(<?([^)\s>]+)|^\[[^\]]+\]: +(\S+)", re.M)
 
 
@@ -34,6 +37,13 @@ def wrong(text, read, exists):
     for path in named.findall(text):
         if "..." not in path and not re.search("/[A-Z]+(/|$)", path) and not exists(path):
             yield f"names {path}, which does not exist"
+
+
+def unquoted(text):
+    """Yields blocks with a language that are no quotes."""
+    for before, language in fenced.findall(text):
+        if language and not before.startswith("<!-- quote: "):
+            yield f"has a block of {language} that is no quote of a file"
 
 
 def dead(folder, text, exists):
@@ -88,6 +98,9 @@ def self_test():
     assert all(list(wrong(fence.format(*case), read, exists)) for case in bad)
     assert list(wrong("<!-- quote: a.cpp -->\nno block\n", read, exists))
     assert list(wrong("see `tools/b.cpp`", read, exists)) and not list(wrong("`tools/a.cpp` `tools/`", read, exists))
+    assert not list(unquoted(fence.format("a.cpp", "one\n") + "\n<!-- typed -->\n```\nls\n```\n\n```\nls\n```\n"))
+    for fault in ("```xml\n<A/>\n```\n", "<!-- typed -->\n```bash\nls\n```\n", "```\nls\n```\n```xml\n<A/>\n```\n"):
+        assert list(unquoted(fault)), fault
     there = {"docs/a.md", "tools", "a.md"}.__contains__
     assert not list(dead("docs", "[a](a.md) [a](a.md#of-it) [b](#b) [t](../tools/) ![a](<../a.md>) [w](https://b.md)\n[r]: a.md\n", there))
     assert not list(dead("docs", "`[a](b.md)`\n```\nf[0](b)\n```\n", there)) and not list(dead(".", "[a](a.md 'A')", there))
@@ -136,6 +149,7 @@ found += [f"docs/adr: {what}" for what in statuses(
     {pathlib.Path(name).name[:4]: read(name) for name in files if re.match(r"docs/adr/\d{4}-", name) and exists(name)})]
 found += [f"{file.relative_to(root)}: {what}" for file in documents if file.is_file()
           for what in wrong(file.read_text(), read, exists)]
+found += [f"{name}: {what}" for name in WHOLE for what in unquoted(read(name) or "```lost\n```")]
 # Of the packages the pages of docs/ stand in one folder with docs/installed/README.md.
 found += [f"{file.relative_to(root)}: {what}" for file in documents if file.is_file()
           for what in dead(str(file.relative_to(root).parent).replace("docs/installed", "docs"), file.read_text(), lambda path: (root / path).exists())]

@@ -19,7 +19,8 @@ import urllib.request
 
 import flight
 import outside
-from new_kinds import New, NewFlown  # run by their names, with the same installed tree
+from guide_pages import Guide  # run by their names, with the same installed tree
+from new_kinds import New, NewFlown
 from outside import BUILD
 
 HERE = pathlib.Path(__file__).resolve().parent

@@ -101,7 +101,7 @@ class New(outside.Installed, unittest.TestCase):
 
     def test_examples_are_whole(self):
         examples = self.prefix / "share/doc/hirosco/examples"
-        self.assertEqual(sorted(one.name for one in examples.iterdir()), ["device", "hello", "lamp", "python"])
+        self.assertEqual(sorted(one.name for one in examples.iterdir()), ["device", "hello", "lamp", "pair", "python"])
         # Built in a copy by tools/packages/installed_and_gone; what they include and name is looked for here.
         for file in (*examples.rglob("*.[ch]pp"), *examples.rglob("CMakeLists.txt")):
             text = file.read_text()

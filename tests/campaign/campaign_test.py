@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """A slice of the campaign has no violation, the same seed gives the same octets, a failing plan shrinks to what it needs,
-and each planted defect is found. campaign_test.py [flights|typed|defects|tools] [DEFECT...]"""
+and each planted defect is found. campaign_test.py [flights|typed|authors|defects|tools] [DEFECT...]"""
 import collections, contextlib, os, pathlib, subprocess, sys, tempfile
 from concurrent.futures import ThreadPoolExecutor
 
@@ -98,6 +98,12 @@ def typed():
     check(called >= CALLS, "they reached a subsystem that is Operational")
 
 
+def authors():
+    """The mission of the guide (docs/guide/your_mission.md): a slice of it holds, too."""
+    campaign = Campaign(parse([str(HERE.parent / "author" / "pair"), "--flights", "4", "--shrink", "0"]))
+    check(campaign.run() == 0, "4 flights of a mission that was written by the guide hold every invariant")
+
+
 def find(defect):
     """How many flights it took, 0 when it was not found."""
     campaign = Campaign(parse([MISSION, "--defect", defect]))
@@ -147,6 +153,8 @@ if __name__ == "__main__":
         flights()
     if what in ("typed", "all"):
         typed()
+    if what in ("authors", "all"):
+        authors()
     if what in ("defects", "all"):
         defects(sys.argv[2:] or DEFECTS)
     if what in ("tools", "all"):

@@ -246,12 +246,18 @@ def read_subsystem(path, instance=None):
     return Subsystem(said["name"], apid, functions, parameters, events, configurations, actuators)
 
 
+def file_of(mission, named):
+    """Where a descriptor is: beside the mission, or what comes with HIROSCO, which lies here as it is installed."""
+    shipped = "@hirosco/"
+    return pathlib.Path(__file__).resolve().parents[3] / named.removeprefix(shipped) if named.startswith(shipped) else mission.parent / named
+
+
 def read_mission(path):
     path = pathlib.Path(path)
     path = path / "mission.xml" if path.is_dir() else path
     root = xml.parse(path).getroot()
-    supervisor = read_subsystem(path.parent / root.find("Supervisor").get("descriptor"))
-    members = [read_subsystem(path.parent / s.get("descriptor"), s) for s in root.findall("Subsystem")]
+    supervisor = read_subsystem(file_of(path, root.find("Supervisor").get("descriptor")))
+    members = [read_subsystem(file_of(path, s.get("descriptor")), s) for s in root.findall("Subsystem")]
     modes, mode_ids = {}, {}
     for place, mode in enumerate(root.find("Modes"), 1):
         permits = [(p.get("subsystem"), set((p.get("functions") or "").split()), set((p.get("services") or "").split()),
