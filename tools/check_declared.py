@@ -158,10 +158,10 @@ def main():
     def changed(place, **values):
         return [dict(row, **(values if row["declared"] == place else {})) for row in rows]
 
-    attribute = '<xs:attribute name="id" type="EventId"/>'
+    attribute = '<xs:attribute name="id" type="EventId">'
     planted = [
         ("Event@colour has no row", dict(schemas=dict(schemas, subsystem=schemas["subsystem"].replace(
-            attribute, attribute + '<xs:attribute name="colour" type="xs:string"/>'))), rows),
+            attribute, '<xs:attribute name="colour" type="xs:string"/>' + attribute))), rows),
         ("Transfer=can has no row", dict(schemas=dict(schemas, subsystem=schemas["subsystem"].replace(
             '<xs:enumeration value="udp"/>', '<xs:enumeration value="udp"/><xs:enumeration value="can"/>'))), rows),
         ("colour is in no schema", {}, [*rows, dict(rows[0], declared="Event@colour")]),
