@@ -58,6 +58,22 @@ class Doctor(unittest.TestCase):
         self.assertIn(f"{len(os.sched_getaffinity(0))}" if len(os.sched_getaffinity(0)) > 1 else "one", told["processors"]["found"])
         self.assertIn("200 sleeps", told["wake-up"]["found"])
 
+    def test_what_it_is_made_of_is_told_and_a_module_that_is_none_is_seen(self):
+        told = self.looked("rokviss")
+        self.assertIn("interface", told["versions"]["found"])
+        self.assertRegex(told["libraries"]["found"], r"libc\.so")
+        self.assertRegex(told["python"]["found"], r"^python3")
+        source = pathlib.Path(__file__).resolve().parents[2] / "missions/hello/mission.xml"
+        mission = self.folder / "mission.xml"
+        mission.write_text(source.read_text().replace('descriptor="../../', 'descriptor="@hirosco/').replace('"hirosco-hello"', '"old-hello"'))
+        for name in ("old-hello", "old-hello.so"):
+            (self.folder / name).write_text("#!/bin/sh\n")
+            (self.folder / name).chmod(0o755)
+        told = self.looked(str(mission), PATH=f"{self.folder}:{os.environ['PATH']}")["versions"]
+        self.assertEqual(told["verdict"], "missing")
+        self.assertIn("old-hello.so: it is no shared object", told["found"])
+        self.assertIn("cmake --build", told["mends"])
+
     def test_a_sandbox_that_is_off_is_seen(self):
         self.assertIn("HIROSCO_SANDBOX is off", self.looked("rokviss", HIROSCO_SANDBOX="off")["isolation"]["found"])
 

@@ -196,6 +196,44 @@ Finding build_tools(const System& system) {
   return ok(fmt::format("compiler, cmake, {}, gtest", to_be_named ? "ninja (cmake -G Ninja)" : system.builder));
 }
 
+/// A program without its module flies; one with an old module is told before somebody simulates or flies what he did not build.
+Finding versions(const System& system) {
+  if (system.other_versions.empty())
+    return ok(fmt::format("hirosco {}, and all that {} loads", system.version, system.mission));
+  return missing(
+      system.other_versions.front() +
+          (system.other_versions.size() > 1 ? fmt::format(" and {} more", system.other_versions.size() - 1) : ""),
+      "rm -r build && cmake -B build && cmake --build build  # in its folder");
+}
+
+Finding libraries(const System& system) {
+  if (system.no_libraries.empty()) return ok(fmt::format("{}", fmt::join(system.libraries, ", ")));
+  return missing(fmt::format("{}", fmt::join(system.no_libraries, "; ")), "sudo apt install --fix-broken");
+}
+
+Finding python(const System& system) {
+  if (!system.python.empty()) return ok(system.python + ": no package besides its own library is wanted");
+  return worth_knowing("no program python3", "sudo apt install python3");
+}
+
+Finding world(const System& system) {
+  const World& world = system.world;
+  const auto lacks = [&](std::string found, const char* package) {
+    return world.wanted ? missing(std::move(found), package != nullptr ? package : world.fetcher)
+                        : ok(std::move(found) + "; the mission has nobody in it");
+  };
+  if (!world.program)
+    return lacks("no program of it",
+                 "sudo apt install hirosco-world-mujoco  # in sources: tools/fetch_mujoco, and build again");
+  if (world.library.empty()) return lacks("no MuJoCo: it is fetched, not packaged", nullptr);
+  const std::string file = world.library.filename().string();
+  if (world.fetched.empty()) return worth_knowing(file + ": nobody has written down its hash", world.fetcher);
+  if (world.digest != world.fetched)
+    return missing(file + " is not what was fetched: its SHA-256 is another one",
+                   fmt::format("sudo rm {}; {}", world.library.string(), world.fetcher));
+  return ok(file + ", as it was fetched");
+}
+
 constexpr std::array table{
     Row{"real-time rights", "cycles come before everything else", priority},
     Row{"locked memory", "no cycle waits for a page", locked_memory},
@@ -213,6 +251,10 @@ constexpr std::array table{
     Row{"page", "the ground station in a browser", page},
     Row{"folders", "locks and sockets, devices, log", places},
     Row{"programs", "subsystems, devices and modules of the mission", programs},
+    Row{"versions", "what is loaded and what loads it are of one build", versions},
+    Row{"libraries", "what others have written and all of it runs with", libraries},
+    Row{"world", "robots that have a URDF file", world},
+    Row{"python", "exported clients, campaigns and devices in Python", python},
     Row{"build tools", "subsystems and devices of your own", build_tools},
 };
 

@@ -38,6 +38,15 @@ System good() {
   system.mission = "lamp/mission.xml";
   system.station = system.page_built = true;
   system.builder = "make";
+  system.version = "0.1.0 interface 12";
+  system.libraries = {"libsqlite3.so.0.8.6"};
+  system.python = "python3.11";
+  system.world = {.wanted = true,
+                  .program = true,
+                  .library = "/w/libphysics.so.4",
+                  .digest = "ab",
+                  .fetched = "ab",
+                  .fetcher = "fetch it"};
   return system;
 }
 
@@ -125,6 +134,22 @@ const std::vector<Case>& cases() {
        "/run/user/7: 1 MiB free, 64 wanted", "du -xh"},
       {"programs", [](System& system) { system.not_ready = {"E0401 no program lamp", "E0401 no program switch"}; },
        Verdict::Missing, "E0401 no program lamp and 1 more", "hirosco check --fly lamp/mission.xml"},
+      {"versions",
+       [](System& system) {
+         system.other_versions = {"lamp.so: it was built against hirosco 0.0.9 interface 11", "switch.so: likewise"};
+       },
+       Verdict::Missing, "lamp.so: it was built against hirosco 0.0.9 interface 11 and 1 more", "cmake --build build"},
+      {"libraries", [](System& system) { system.no_libraries = {"lamp.so: libz.so.1: cannot open"}; }, Verdict::Missing,
+       "lamp.so: libz.so.1: cannot open", "sudo apt install --fix-broken"},
+      {"world", [](System& system) { system.world.program = false; }, Verdict::Missing, "no program",
+       "sudo apt install hirosco-world-mujoco"},
+      {"world", [](System& system) { system.world.library.clear(); }, Verdict::Missing, "fetched, not packaged",
+       "fetch it"},
+      {"world", [](System& system) { system.world.digest = "cd"; }, Verdict::Missing, "is not what was fetched",
+       "sudo rm /w/libphysics.so.4; fetch it"},
+      {"world", [](System& system) { system.world.fetched.clear(); }, Verdict::WorthKnowing, "its hash", "fetch it"},
+      {"python", [](System& system) { system.python.clear(); }, Verdict::WorthKnowing, "no program python3",
+       "sudo apt install python3"},
       {"build tools", [](System& system) { system.no_tools = {"c++", "make", "gtest"}; }, Verdict::WorthKnowing,
        "no c++, no make, no gtest", "sudo apt install g++ cmake make libgtest-dev"},
   };
@@ -158,6 +183,14 @@ TEST(Doctor, TakesNinjaForMakeAndSaysHowItIsNamed) {
   system.builder = "ninja";
   EXPECT_EQ(found("build tools", system).verdict, Verdict::Ok);
   EXPECT_NE(found("build tools", system).found.find("cmake -G Ninja"), std::string::npos);
+}
+
+TEST(Doctor, MissesNoWorldInWhichNobodyIs) {
+  System system = good();
+  system.world = {};
+  EXPECT_EQ(found("world", system).verdict, Verdict::Ok);
+  system.world.program = true;
+  EXPECT_EQ(found("world", system).verdict, Verdict::Ok);
 }
 
 TEST(Doctor, TakesAPageElsewhereForNoFault) {

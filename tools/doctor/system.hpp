@@ -30,6 +30,16 @@ struct Port {
   std::string flight;                  ///< of the registry, that listens there; empty: none
 };
 
+/// The world of robots that have a URDF file.
+struct World {
+  bool wanted{false};             ///< the mission has somebody in it
+  bool program{false};            ///< it is here
+  std::filesystem::path library;  ///< its physics, which is fetched and not packaged; empty: not here
+  std::string digest;             ///< SHA-256 of that
+  std::string fetched;            ///< SHA-256 that it had when it was fetched and judged; empty: nobody knows
+  std::string fetcher;            ///< the line that fetches it
+};
+
 /// What `hirosco doctor` judges: of this computer by look_at() of the command, of any other by a test.
 struct System {
   std::string user;
@@ -65,6 +75,14 @@ struct System {
   bool station{false}, page_built{false};
   std::vector<std::string> no_tools;  ///< of those that build a subsystem and its test
   std::string builder;  ///< what cmake builds with: make, or ninja where there is no make
+  // What it is made of.
+  std::string version;                      ///< of this command, with its interface
+  std::vector<std::string>
+      other_versions;  ///< modules of the mission that this one does not take, in words: mostly of another
+  std::vector<std::string> libraries;  ///< others' that this command runs with, by the names of their files
+  std::vector<std::string> no_libraries;  ///< what modules of the mission want of others and have not, in words
+  std::string python;                     ///< what python3 is called in full: "python3.11"; empty: there is none
+  World world;
 };
 
 }  // namespace hirosco::tools::doctor

@@ -21,6 +21,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <span>
 #include <sstream>
 
 #include "hirosco/descriptor/model/subsystem.hpp"
@@ -29,7 +30,9 @@
 #include "hirosco/utilities/os/installation.hpp"
 #include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/os/thread.hpp"
+#include "hirosco/utilities/version.hpp"
 #include "supervisor/keeper/keeper.hpp"
+#include "supervisor/platform/launch/sha256.hpp"
 #include "tools/hirosco/instance.hpp"
 
 namespace hirosco::tools::doctor {
@@ -41,6 +44,8 @@ namespace fs = std::filesystem;
 constexpr std::size_t locked_octets = 32U * 1024 * 1024;
 constexpr int sleeps = 200;
 constexpr Duration cycle = 500us;
+/// Whose physics is fetched (docs/adr/0129).
+constexpr const char* world_program = "hirosco-sim-mujoco";
 constexpr const char* page_address = "127.0.0.1:8080";
 
 /// The first line; empty where there is none.
@@ -182,6 +187,71 @@ void look_at_clocks(System& system) {
   return port;
 }
 
+/// Files of others that this process has mapped, each once.
+[[nodiscard]] std::vector<std::string> libraries_in_use() {
+  std::vector<std::string> found;
+  std::ifstream maps{"/proc/self/maps"};
+  for (std::string line; std::getline(maps, line);) {
+    const auto slash = line.rfind('/');
+    if (slash == std::string::npos || line.find(".so") == std::string::npos) continue;
+    std::string name = line.substr(slash + 1);
+    if (name.starts_with("lib") && std::ranges::find(found, name) == found.end()) found.push_back(std::move(name));
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+/// What has no module flies as a program all the same; whether that is here is said elsewhere.
+void look_at_module(System& system, const std::string& program, ModuleKind kind) {
+  if (find_module(program).empty()) return;
+  const auto loaded = load_module_of(program, kind);
+  if (loaded) return;
+  const bool lacks_another = loaded.error().find("cannot open shared object") != std::string::npos;
+  auto& where = lacks_another ? system.no_libraries : system.other_versions;
+  if (std::ranges::find(where, loaded.error()) == where.end()) where.push_back(loaded.error());
+}
+
+void look_at_parts(System& system, const descriptor::Mission& mission) {
+  system.version = interface_version;
+  system.libraries = libraries_in_use();  // before anything of the mission is loaded
+  for (const auto& member : mission.subsystems) look_at_module(system, member.executable, ModuleKind::Subsystem);
+  for (const auto& device : mission.devices)
+    if (device.executable != world_program) look_at_module(system, device.executable, ModuleKind::SimulatedDevice);
+  std::error_code failed;
+  if (const fs::path python = find_program("python3"); !python.empty())
+    system.python = fs::canonical(python, failed).filename().string();
+}
+
+/// Beside the module, where a package has it fetched to, or where a build has it from.
+[[nodiscard]] fs::path world_library(const fs::path& module) {
+  const fs::path folder = module.parent_path();
+  std::error_code failed;
+  for (const fs::path& place : {folder, folder / "mujoco/lib", folder.parent_path().parent_path() / "mujoco/lib"})
+    for (const auto& file : fs::directory_iterator{place, failed})
+      if (file.path().filename().string().starts_with("libmujoco.so.")) return file.path();
+  return {};
+}
+
+void look_at_world(World& world, const descriptor::Mission& mission) {
+  world.wanted =
+      std::ranges::any_of(mission.devices, [](const auto& each) { return each.executable == world_program; });
+  world.program = !find_program(world_program).empty();
+  const fs::path module = find_module(world_program);
+  const fs::path fetcher = module.parent_path() / "fetch_mujoco";
+  std::error_code failed;
+  world.fetcher = fs::exists(fetcher, failed)
+                      ? fmt::format("sudo {} {}", fetcher.string(), (module.parent_path() / "mujoco").string())
+                      : "tools/fetch_mujoco  # and build again";
+  if (module.empty()) return;
+  world.library = world_library(module);
+  if (world.library.empty()) return;
+  std::ostringstream octets;
+  octets << std::ifstream{world.library, std::ios::binary}.rdbuf();
+  const std::string text = std::move(octets).str();
+  world.digest = supervisor::sha256(std::as_bytes(std::span{text}));
+  std::istringstream{line_of(world.library.parent_path().parent_path() / "SHA256")} >> world.fetched;
+}
+
 }  // namespace
 
 System look_at(const descriptor::Mission& mission) {
@@ -192,6 +262,8 @@ System look_at(const descriptor::Mission& mission) {
   const FlightEntry flight = plan_flight(mission, mission.name);
   const auto flights = FlightRegistry{}.flights();
   system.mission = mission.file.string();
+  look_at_parts(system, mission);
+  look_at_world(system.world, mission);
   for (const std::string& address : {flight.telemetry, flight.telecommand})
     if (!address.empty()) system.ground_link.push_back(look_at_port(address, flights));
   system.page = look_at_port(page_address, flights);
