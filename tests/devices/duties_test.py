@@ -325,6 +325,14 @@ class Kept(WithFolder):
             self.assertEqual(self.tried_own("udp", frames, takes=17, gives=89, enable=second, just_begun=True), [])
             arm.kill()
 
+    def test_an_arm_in_python_with_a_second_inhibit(self):
+        frames, enable = (f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}" for _ in range(2))
+        with subprocess.Popen([reference.PYTHON, "-B", FOLDER / "arm.py", frames, enable]) as arm:
+            self.addCleanup(arm.kill)
+            second = own_device.Enable("udp", enable)
+            self.assertEqual(self.tried_own("udp", frames, takes=48, gives=144, enable=second, just_begun=True), [])
+            arm.kill()
+
     def test_they_are_as_small_as_they_are_said_to_be(self):
         self.assertLessEqual(len((FOLDER / "device.c").read_text().splitlines()), 200)
         self.assertLessEqual(len((FOLDER / "device.py").read_text().splitlines()), 80)
