@@ -8,7 +8,8 @@ Names are those of the folders in missions/, subsystems/ and simulation/devices/
 identifier, a text or a comment, however written: for a folder `lamp` these are lamp, LAMP_LOST, LampData and hirosco-lamp.
 A name that docs/glossary.md has under "Names that are words, too" may be said in prose and be part of an identifier. It is found
 where only the name can be meant: in capitals, as a program (hirosco-NAME, hirosco-sim-NAME), as a path (subsystems/NAME).
-The code of a subsystem or a simulated device names no mission, and no other of them either (its tests and descriptors may: who is flown with whom is theirs). What the
+The code of a subsystem or a simulated device names no mission, and no other of them either (its tests and descriptors may: who is flown with whom is theirs). Its descriptors,
+models and scripts, and what files of its folder are called, name no mission: who flies it says where its devices are. What the
 descriptors of its folder call its own devices, links and parameters are words of its own, whoever else is called so.
 Documentation (.md) may show the demonstrator, and so may what stands in tests/, bench/ or a folder of its own; tests beside the
 framework's code use names of nobody (ARM, LAMP, PROBE)."""
@@ -88,6 +89,26 @@ def homes(root=ROOT):
                     yield path.relative_to(root).as_posix(), names_here.sub("", hidden.sub("", path.read_text()))
 
 
+MISSIONLESS = (".xml", ".urdf", ".script")
+
+
+def missions(root=ROOT):
+    """Of folders of missions that are nothing else besides."""
+    others = {path.name for home in HOMES[1:] for path in (root / home).iterdir()}
+    return sorted(path.name for path in (root / HOMES[0]).iterdir() if (path / "mission.xml").exists() and path.name not in others)
+
+
+def naming_missions(root=ROOT):
+    """What a folder of its own says of a mission, in what is no code, and in the names of all its files."""
+    every = missions(root)
+    for home in HOMES[1:]:
+        for path in sorted((root / home).rglob("*")):
+            if not path.is_file() or OUTSIDE & set(path.parts) or "_test." in path.name or "testdata" in path.parts:
+                continue
+            text = path.read_text() if path.suffix in MISSIONLESS else ""
+            yield from found({path.relative_to(root).as_posix(): text}, every, set())
+
+
 # `lamp` is a name, `beam` a word, too. The first must be found in each of these, the second in none.
 CAUGHT = ["the lamp", "LAMP_LOST", "class LampData", '"LAMP.LEVEL"', "hirosco-lamp", "lamp_test", 'name="Lamp"', "hirosco-beam", "hirosco-sim-beam",
           "subsystems/beam/beam.hpp", '"BEAM"', "BEAM_LOST", "<Mission name='BEAM'>"]
@@ -105,7 +126,14 @@ if __name__ == "__main__":
             (pathlib.Path(made) / path).parent.mkdir(parents=True, exist_ok=True)
             (pathlib.Path(made) / path).write_text(text)
         caught = {line.partition(":")[0] for line in in_homes(dict(homes(pathlib.Path(made))), ["lamp", "beam", "shed"], set())}
+        for path, text in {"missions/shed/mission.xml": "<Mission/>", "subsystems/beam/shed.urdf": "", "subsystems/beam/more.xml": '<Endnode address="shed-beam"/>',
+                           "subsystems/beam/testdata/some.xml": "<!-- of the shed -->", "simulation/devices/lamp/lamp.xml": "<!-- nobody's -->"}.items():
+            (pathlib.Path(made) / path).parent.mkdir(parents=True, exist_ok=True)
+            (pathlib.Path(made) / path).write_text(text)
+        said = {line.partition(":")[0] for line in naming_missions(pathlib.Path(made))}
+        if said != {"subsystems/beam/shed.urdf", "subsystems/beam/more.xml"}:
+            wrong.append(f"missions planted in folders of their own, and seen in {sorted(said)}")
         if caught != {"subsystems/beam/lit.cpp", "simulation/devices/lamp/lamp.cpp"}:
             wrong.append(f"planted in folders of their own, and seen in {sorted(caught)}")
     wrong += [f"the glossary has a word that is no name: {word}" for word in words - set(every) - {"word", "---"}]
-    sys.exit("\n".join([*found(ours, every, words), *in_homes(theirs, every, words), *wrong]) or ("no files" if not ours or not every else None))
+    sys.exit("\n".join([*found(ours, every, words), *in_homes(theirs, every, words), *naming_missions(), *wrong]) or ("no files" if not ours or not every else None))

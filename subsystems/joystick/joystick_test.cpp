@@ -21,7 +21,7 @@ struct JoystickTest : ::testing::Test {
   std::unique_ptr<Subsystem> joystick = make_joystick();
   testing::Rig rig{*joystick, descriptor::file_system()(file).value()};
   std::unique_ptr<DataFlow> handle =
-      std::move(rig.flows.open({Transfer::SharedMemory, "rokviss-joystick"}, FlowSide::Device)).value();
+      std::move(rig.flows.open({Transfer::SharedMemory, "joystick-handle"}, FlowSide::Device)).value();
   testing::Rig::Partner robot;
   std::array<double, 2> robot_torque_n_m{};
   bool robot_active{true};

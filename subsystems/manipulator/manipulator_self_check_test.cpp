@@ -33,7 +33,7 @@ struct Tested {
   std::unique_ptr<Subsystem> manipulator;
   testing::Rig rig{*manipulator, wary()};
   std::unique_ptr<DataFlow> robot =
-      std::move(rig.flows.open({Transfer::SharedMemory, "rokviss-robot"}, FlowSide::Device)).value();
+      std::move(rig.flows.open({Transfer::SharedMemory, "manipulator-robot"}, FlowSide::Device)).value();
   std::array<double, 2> motor_rad{-0.8, 1.6}, joint_rad{-0.8, 1.6}, motor_rad_s{}, joint_rad_s{}, load_n_m{};
   float temperature_deg_c{20.0F};
   std::vector<DeviceMode> modes;

@@ -22,7 +22,7 @@ struct ManipulatorTest : ::testing::Test {
   std::unique_ptr<Subsystem> manipulator = make_manipulator();
   testing::Rig rig{*manipulator, descriptor::file_system()(file).value()};
   std::unique_ptr<DataFlow> robot =
-      std::move(rig.flows.open({Transfer::SharedMemory, "rokviss-robot"}, FlowSide::Device)).value();
+      std::move(rig.flows.open({Transfer::SharedMemory, "manipulator-robot"}, FlowSide::Device)).value();
   testing::Rig::Partner joystick;
   std::array<double, 2> position_rad{-0.8, 1.6};
   std::array<double, 2> torque_n_m{};

@@ -83,8 +83,8 @@ class Check(unittest.TestCase):
 
     def test_a_setting_that_no_code_reads_is_told_with_its_place_before_and_in_a_flight(self):
         hand = "subsystems/joystick/joystick.xml"
-        mission = self.mission("rokviss", hand, old='<Endnode transfer="shared_memory" address="rokviss-joystick"',
-                               new='<Setting name="GRIP" value="3"/>\n<Endnode transfer="shared_memory" address="rokviss-joystick"')
+        mission = self.mission("rokviss", hand, old='<Endnode transfer="shared_memory" address="joystick-handle"',
+                               new='<Setting name="GRIP" value="3"/>\n<Endnode transfer="shared_memory" address="joystick-handle"')
         line = next(n for n, text in enumerate((self.folder / hand).read_text().splitlines(), 1) if "GRIP" in text)
         self.expect(mission, 0)
         for words in (("check", "--fly", mission), ("simulate", mission, "--for", "2s")):
@@ -111,7 +111,7 @@ class Check(unittest.TestCase):
                 (hand, 'methods="shared_memory"', 'methods="tcp"', "'tcp' is not built in"),
                 (hand, 'kind="latest"', 'kind="queued"', "no common kind"),
                 (hand, 'watchdog_ms="10"', 'watchdog_ms="0.4"', "trips between cycles"),
-                (hand, '"rokviss-joystick"', '"rokviss-robot"', "'rokviss-robot' is a device's of 'MANIPULATOR'"),
+                (hand, '"joystick-handle"', '"manipulator-robot"', "'manipulator-robot' is a device's of 'MANIPULATOR'"),
                 ("mission.xml", '<Establish link="2"/>', "", "brings up no link into 'MANIPULATOR.JOYSTICK_STATE'")):
             with self.subTest(new=new):
                 path = (self.folder / "missions/rokviss/mission.xml") if file == "mission.xml" else self.folder / file

@@ -181,7 +181,7 @@ std::string suffix_of_flight() {
 }
 
 /// Where it may make files.
-std::string own_folder() { return "/dev/shm/hirosco/rokviss-robot" + suffix_of_flight(); }
+std::string own_folder() { return "/dev/shm/hirosco/manipulator-robot" + suffix_of_flight(); }
 
 void attack_segment(const Report& report, const std::string& what, const std::string& segment) {
   const std::string here = own_folder() + "/mine";
@@ -198,7 +198,7 @@ void attack_segment(const Report& report, const std::string& what, const std::st
 
 /// The frames of another's device: who cuts them short ends everybody who maps them, that member and its device (docs/adr/0169).
 void attack_frames(const Report& report) {
-  attack_segment(report, "frames", "/dev/shm/hirosco/rokviss-joystick" + suffix_of_flight() + "/frames");
+  attack_segment(report, "frames", "/dev/shm/hirosco/joystick-handle" + suffix_of_flight() + "/frames");
   report.tried("frames: a folder beside its own", ::mkdir("/dev/shm/hirosco/mine", 0700) == 0);
   // What is its own it reaches.
   const int own = ::open((own_folder() + "/frames").c_str(), O_RDWR | O_CLOEXEC);
@@ -208,7 +208,7 @@ void attack_frames(const Report& report) {
 
 /// The second inhibits, which would let its robot go on, and the ground's port, by which it would let itself go (docs/adr/0150).
 void attack_inhibits(const Report& report) {
-  for (const char* const device : {"rokviss-robot", "rokviss-joystick"})
+  for (const char* const device : {"manipulator-robot", "joystick-handle"})
     attack_segment(report, "inhibits", std::string{"/dev/shm/hirosco."} + device + "-enable" + suffix_of_flight());
   constexpr std::uint16_t telecommands = 10025;
   const sockaddr_in there = in_this_computer(telecommands);

@@ -115,7 +115,7 @@ TEST(Commissioning, StopsWithALineWhenAConfigurationFails) {
   Plan plan;
   plan.edit = [](descriptor::Mission& mission) {
     for (auto& member : mission.subsystems)
-      if (member.subsystem.name == "JOYSTICK") coupled(member).devices.front().endnode.address = "rokviss-robot";
+      if (member.subsystem.name == "JOYSTICK") coupled(member).devices.front().endnode.address = "manipulator-robot";
   };
   Flight flight{plan};
   EXPECT_FALSE(flight.commission());

@@ -89,7 +89,7 @@ struct Reread : ::testing::Test {
     EXPECT_EQ(told.column, wanted.at.column);
   }
   static constexpr int joystick = 11;
-  static constexpr auto endnode = R"(transfer="shared_memory" address="rokviss-joystick")";
+  static constexpr auto endnode = R"(transfer="shared_memory" address="joystick-handle")";
 };
 
 /// The mission lets devices be in one network besides this computer (docs/adr/0112).
@@ -149,7 +149,7 @@ TEST_F(Reread, WhoNeedsWhatIsGoneIsNamedByItsFile) {
 TEST_F(Reread, ADeviceBeyondThisComputerIsRefusedAsAtTheStart) {
   ASSERT_TRUE(comes_to_rest()) << flight.story().text();
   is_refused_as_at_the_start(with_device_at("192.0.2.7:5001"), "192.0.2.7:5001");
-  EXPECT_EQ(address_in_the_member(), "rokviss-joystick");
+  EXPECT_EQ(address_in_the_member(), "joystick-handle");
   // What was in force is, for who is started anew as well.
   EXPECT_TRUE(flight.set_mode("standalone").completed) << flight.story().text();
   EXPECT_EQ(flight.state("JOYSTICK"), State::Operational);
@@ -172,7 +172,7 @@ TEST_F(RereadInANetwork, WhatItPermitsIsWhatTheMissionSaidWhenItWasJudged) {
   flight.write("mission.xml", changed(text_of("missions/rokviss/mission.xml"), "<Supervisor ",
                                       "<DeviceNetwork address=\"192.0.3.0/24\"/>\n  <Supervisor "));
   is_refused_as_at_the_start(with_device_at("192.0.3.7:5001"), "192.0.3.7:5001");
-  EXPECT_EQ(address_in_the_member(), "rokviss-joystick");
+  EXPECT_EQ(address_in_the_member(), "joystick-handle");
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ TEST(ServicerPage, ShowsTheRobotThatFlies) {
   const auto text = [](const char* file) {
     return descriptor::file_system()(std::filesystem::path{HIROSCO_SOURCE_DIR} / file).value();
   };
-  EXPECT_EQ(text("missions/servicer/page/servicer.urdf"), text("subsystems/robot_arm/floating/servicer.urdf"));
+  EXPECT_EQ(text("missions/servicer/page/servicer.urdf"), text("subsystems/robot_arm/floating/floating_arm.urdf"));
 }
 
 /// Wheels and joints are never commanded together, whatever the ground asks for.

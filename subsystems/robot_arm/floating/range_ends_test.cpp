@@ -23,7 +23,7 @@ constexpr double sides[] = {1, -1};
 
 const robotics::Model& floating_servicer() {
   static const robotics::Model model =
-      testing::model_of(HIROSCO_SOURCE_DIR "/subsystems/robot_arm/floating/servicer.urdf");
+      testing::model_of(HIROSCO_SOURCE_DIR "/subsystems/robot_arm/floating/floating_arm.urdf");
   return model;
 }
 [[nodiscard]] Bounds ranges() {

@@ -23,7 +23,7 @@ namespace {
 
 const robotics::Model& servicer() {
   static const robotics::Model model =
-      testing::model_of(HIROSCO_SOURCE_DIR "/subsystems/robot_arm/floating/servicer.urdf");
+      testing::model_of(HIROSCO_SOURCE_DIR "/subsystems/robot_arm/floating/floating_arm.urdf");
   return model;
 }
 [[nodiscard]] JointVector joints(std::initializer_list<double> numbers) {
