@@ -15,11 +15,12 @@ constexpr double friction_rigid = 0.9999;
 
 }  // namespace
 
-JointDrives::JointDrives(std::span<const DrivenJoint> joints) {
-  for (const DrivenJoint& joint : joints) joints_.push_back({.name = joint.name, .effort = joint.effort});
+void JointDrives::add(std::span<const DrivenJoint> joints) {
+  for (const DrivenJoint& joint : joints)
+    joints_.push_back({.name = joint.name, .effort = joint.effort, .of_scene = joint.of_scene});
 }
 
-std::expected<void, std::string> JointDrives::find(mjModel& model, const MujocoSpec& spec) {
+std::expected<void, std::string> JointDrives::find(mjModel& model) {
   for (Joint& joint : joints_) {
     const int id = mj_name2id(&model, mjOBJ_JOINT, joint.name.c_str());
     if (id < 0) return std::unexpected{"MuJoCo has no joint '" + joint.name + "'"};
@@ -30,7 +31,7 @@ std::expected<void, std::string> JointDrives::find(mjModel& model, const MujocoS
     if (joint.rotor) model.dof_armature[joint.dof] = *joint.rotor;
     model.dof_solref[mjNREF * joint.dof] = MujocoSpec::friction_s;
     model.dof_solimp[mjNIMP * joint.dof] = model.dof_solimp[mjNIMP * joint.dof + 1] = friction_rigid;
-    if (!spec.is_scene()) model.jnt_solref[mjNREF * id] = MujocoSpec::end_s;
+    if (!joint.of_scene) model.jnt_solref[mjNREF * id] = MujocoSpec::end_s;
   }
   return {};
 }
@@ -42,8 +43,9 @@ std::optional<std::size_t> JointDrives::named(std::string_view name) const noexc
   return static_cast<std::size_t>(found - joints_.begin());
 }
 
-bool JointDrives::move(int body, const mjModel& model) const noexcept {
-  return std::ranges::any_of(joints_, [&](const Joint& joint) { return model.dof_bodyid[joint.dof] == body; });
+bool JointDrives::move(int body, const mjModel& model, const MujocoSpec::Robot& robot) const noexcept {
+  const std::span its{joints_.data() + robot.first_joint, robot.joints};
+  return std::ranges::any_of(its, [&](const Joint& joint) { return model.dof_bodyid[joint.dof] == body; });
 }
 
 double JointDrives::position(std::size_t joint, const MujocoWorld& world) const noexcept {
@@ -54,9 +56,9 @@ double JointDrives::velocity(std::size_t joint, const MujocoWorld& world) const 
   return world.data().qvel[joints_[joint].dof];
 }
 
-void JointDrives::place(std::span<const double> positions, MujocoWorld& world) const noexcept {
-  for (std::size_t i = 0; i < std::min(positions.size(), joints_.size()); ++i)
-    world.data().qpos[joints_[i].position] = positions[i];
+void JointDrives::place(std::span<const double> positions, std::size_t first, MujocoWorld& world) const noexcept {
+  for (std::size_t i = 0; i < positions.size() && first + i < joints_.size(); ++i)
+    world.data().qpos[joints_[first + i].position] = positions[i];
 }
 
 void JointDrives::set_in_motion(std::span<const double> velocities, MujocoWorld& world) const noexcept {
@@ -81,8 +83,8 @@ void JointDrives::brake(MujocoWorld& world) const noexcept {
                         : joint.brakes == Brakes::Slowing
                             ? std::abs(world.data().qfrc_bias[joint.dof]) + slowing_share * joint.effort
                             : brake_share * joint.effort;
-    world.model().dof_frictionloss[joint.dof] = joint.friction * friction_factor_ + more_friction_ + held;
-    world.model().dof_damping[joint.dof] = joint.damping * friction_factor_;
+    world.model().dof_frictionloss[joint.dof] = joint.friction * joint.friction_factor + joint.more_friction + held;
+    world.model().dof_damping[joint.dof] = joint.damping * joint.friction_factor;
   }
 }
 
@@ -99,14 +101,18 @@ void JointDrives::feel(const MujocoWorld& world) noexcept {
   }
 }
 
-void JointDrives::set_friction(double factor, double more) noexcept {
-  friction_factor_ = factor;
-  more_friction_ = more;
+void JointDrives::set_friction(double factor, double more, const MujocoSpec::Robot& robot) noexcept {
+  for (Joint& joint : std::span{joints_.data() + robot.first_joint, robot.joints}) {
+    joint.friction_factor = factor;
+    joint.more_friction = more;
+  }
 }
 
-void JointDrives::set_rotors(std::span<const double> inertias, MujocoWorld& world) noexcept {
-  for (std::size_t i = 0; i < std::min(inertias.size(), joints_.size()); ++i)
-    world.model().dof_armature[joints_[i].dof] = *(joints_[i].rotor = inertias[i]);
+void JointDrives::set_rotors(std::span<const double> inertias, std::size_t first, MujocoWorld& world) noexcept {
+  for (std::size_t i = 0; i < inertias.size() && first + i < joints_.size(); ++i) {
+    Joint& joint = joints_[first + i];
+    world.model().dof_armature[joint.dof] = *(joint.rotor = inertias[i]);
+  }
 }
 
 }  // namespace hirosco::simulation

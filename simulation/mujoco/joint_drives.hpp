@@ -18,7 +18,7 @@
 
 namespace hirosco::simulation {
 
-/// The joints of a robot that move by themselves, numbered as in its file, and what is at each: drive, gear with dry friction, a brake that slips, and a
+/// The joints of a world's robots that move by themselves, robot by robot as in their files, and what is at each: drive, gear with dry friction, a brake that slips, and a
 /// torque sensor behind both.
 /// Realtime: does not allocate once it is made. Thread: one.
 class JointDrives {
@@ -29,23 +29,26 @@ class JointDrives {
     Closed,  ///< twice as strong
   };
 
-  explicit JointDrives(std::span<const DrivenJoint> joints);
-  /// Looks for them in a model of what is told by `spec`, and gives it what they are like. In words why not.  Realtime: allocates.
-  [[nodiscard]] std::expected<void, std::string> find(mjModel& model, const MujocoSpec& spec);
+  explicit JointDrives(std::span<const DrivenJoint> joints) { add(joints); }
+  /// Behind those that are there.  Realtime: allocates.
+  void add(std::span<const DrivenJoint> joints);
+  /// Looks for them in a model, and gives it what they are like. In words why not.  Realtime: allocates.
+  [[nodiscard]] std::expected<void, std::string> find(mjModel& model);
 
   [[nodiscard]] std::size_t count() const noexcept { return joints_.size(); }
   /// The joint of this name.
   [[nodiscard]] std::optional<std::size_t> named(std::string_view name) const noexcept;
-  /// Whether this body is what one of them moves.
-  [[nodiscard]] bool move(int body, const mjModel& model) const noexcept;
+  /// Whether this body is what one of this robot's moves.
+  [[nodiscard]] bool move(int body, const mjModel& model, const MujocoSpec::Robot& robot) const noexcept;
 
   [[nodiscard]] double position(std::size_t joint, const MujocoWorld& world) const noexcept;
   [[nodiscard]] double velocity(std::size_t joint, const MujocoWorld& world) const noexcept;
   /// What the drive and the brake give to the link: behind friction and rotor, which are theirs.
   [[nodiscard]] double torque(std::size_t joint) const noexcept { return joints_[joint].torque; }
   [[nodiscard]] double effort(std::size_t joint) const noexcept { return joints_[joint].effort; }
-  /// The first of them, as many as there are numbers, stand there; or go on as fast as that.
-  void place(std::span<const double> positions, MujocoWorld& world) const noexcept;
+  /// From the `first` on, as many as there are numbers, stand there.
+  void place(std::span<const double> positions, std::size_t first, MujocoWorld& world) const noexcept;
+  /// The first of them, as many as there are numbers, go on as fast as that.
   void set_in_motion(std::span<const double> velocities, MujocoWorld& world) const noexcept;
 
   /// What a joint's drive does from the next step on, held to its effort.
@@ -57,27 +60,28 @@ class JointDrives {
   /// After it: what the torque sensors have.
   void feel(const MujocoWorld& world) noexcept;
 
-  /// Of the file's friction and damping, and more dry friction of every joint, N m or N.
-  void set_friction(double factor, double more) noexcept;
-  /// What the drive of each joint moves besides links, behind its gear, kg m2 or kg; the file does not have it.
-  void set_rotors(std::span<const double> inertias, MujocoWorld& world) noexcept;
+  /// Of the file's friction and damping, and more dry friction of every joint of this robot, N m or N.
+  void set_friction(double factor, double more, const MujocoSpec::Robot& robot) noexcept;
+  /// What the drive of each joint moves besides links, behind its gear, kg m2 or kg, from the `first` on; the file does not have it.
+  void set_rotors(std::span<const double> inertias, std::size_t first, MujocoWorld& world) noexcept;
 
  private:
   struct Joint {
     std::string name;
     double effort{0};
+    bool of_scene{false};
     int position{0};  ///< index in MuJoCo
     int dof{0};
     double friction{0};  ///< of the file
     double damping{0};
+    double friction_factor{1};
+    double more_friction{0};
     std::optional<double> rotor{};  ///< empty: as the file says, which is 0 in a URDF file
     double torque{0};
     Brakes brakes{Brakes::Closed};
   };
 
   std::vector<Joint> joints_;
-  double friction_factor_{1};
-  double more_friction_{0};
 };
 
 }  // namespace hirosco::simulation

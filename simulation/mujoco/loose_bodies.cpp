@@ -57,7 +57,7 @@ void LooseBodies::apply(MujocoWorld& world) const noexcept {
 }
 
 LooseBodies::Truth LooseBodies::truth(std::size_t index, const MujocoWorld& world,
-                                      const RobotLinks& links) const noexcept {
+                                      std::span<const RobotLinks> robots) const noexcept {
   const mjModel& model = world.model();
   const mjData& data = world.data();
   const int id = first(model) + static_cast<int>(index);
@@ -70,7 +70,8 @@ LooseBodies::Truth LooseBodies::truth(std::size_t index, const MujocoWorld& worl
     if (contact.efc_address < 0) continue;
     const int one = model.geom_bodyid[contact.geom[0]], other = model.geom_bodyid[contact.geom[1]];
     const int by = one == id ? other : other == id ? one : -1;
-    if (by < 0 || !links.have_moved(by, model)) continue;
+    const auto have_moved = [&](const RobotLinks& links) { return links.have_moved(by, model); };
+    if (by < 0 || std::ranges::none_of(robots, have_moved)) continue;
     std::array<mjtNum, 6> wrench{};
     mj_contactForce(&model, &data, i, wrench.data());
     truth.pressed_n += wrench[0];

@@ -47,9 +47,10 @@ class LooseBodies {
     std::array<double, 3> place_m{};  ///< of its centre
     std::array<double, 4> turned_wxyz{};
     std::array<double, 3> velocity_m_s{};
-    double pressed_n{0};  ///< by links of the robot, in all across the surfaces
+    double pressed_n{0};  ///< by links of robots, in all across the surfaces
   };
-  [[nodiscard]] Truth truth(std::size_t index, const MujocoWorld& world, const RobotLinks& links) const noexcept;
+  [[nodiscard]] Truth truth(std::size_t index, const MujocoWorld& world,
+                            std::span<const RobotLinks> robots) const noexcept;
 
  private:
   [[nodiscard]] std::optional<std::size_t> named(std::string_view name) const noexcept;

@@ -10,6 +10,7 @@
 #include "simulation/devices/simulated_device.hpp"
 #include "simulation/mujoco/joint_bus.hpp"
 #include "simulation/mujoco/mujoco_robot.hpp"
+#include "simulation/mujoco/robot_lines.hpp"
 
 namespace hirosco::simulation {
 
@@ -23,11 +24,10 @@ namespace hirosco::simulation {
 /// Shapes of the file that touch nothing are told at its start (remarks()).
 /// Faults besides the common ones, each also a <Setting> of its mission:
 ///   base free   (before all that says where it is; floating_base.hpp)
-///   tip LINK
 ///   obstacle_NAME SHAPE [SIZES] X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | obstacle_NAME none   (shapes.hpp; 16 at most)
 ///   body_NAME SHAPE SIZES MASS X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | body_NAME none | pull_NAME X Y Z   (8 at most)
 ///   softness SECONDS
-///   posture Q1,Q2,... | rotors J1,J2,... | mass FACTOR | inertia FACTOR | friction FACTOR [MORE] | payload KG | gravity X Y Z | push X Y Z | noise N_M
+///   gravity X Y Z | noise N_M, and those of its robot (robot_lines.hpp)
 class MujocoDevice final : public SimulatedDevice {
  public:
   static constexpr std::array fault_lines{
@@ -53,7 +53,11 @@ class MujocoDevice final : public SimulatedDevice {
   [[nodiscard]] bool has_world() const noexcept { return robot_.has_value(); }
   /// From now on these joints (NAME,NAME,...) are another device's, in the order of the file. NotPermitted: it runs already. NotFound,
   /// InvalidArgument: one does not move by itself or is not its own, or none would be left.
+  /// Of a robot that is mounted in its world: NAME/JOINT,..., all of them of one robot.
   [[nodiscard]] Result<std::vector<std::size_t>> hand_over(std::string_view names);
+  /// Another robot stands in its world from now on, whose joints this bus has, as long as it is stepped; its number there. NotPermitted: it runs
+  /// already. InvalidArgument: MuJoCo does not take it.
+  [[nodiscard]] Result<std::size_t> mount(MujocoSpec robot, const Mount& at, JointBus& bus);
   [[nodiscard]] bool drives() const noexcept override { return driven_; }
   [[nodiscard]] std::vector<std::string> remarks() const override;
 
@@ -68,13 +72,14 @@ class MujocoDevice final : public SimulatedDevice {
   [[nodiscard]] bool can(Stop) const noexcept override { return true; }
   /// `why` stays until it refuses again.
   [[nodiscard]] std::unexpected<Error> refuse(ErrorCode code, std::string why);
-  [[nodiscard]] Result<std::vector<double>> each_joint(std::string_view text);
   [[nodiscard]] Result<> stand_around(const Words& words);
   [[nodiscard]] Result<> lie_around(const Words& words);
   [[nodiscard]] Result<> differ(const Words& words);
 
   std::optional<MujocoRobot> robot_;
   JointBus bus_;
+  std::vector<JointBus*> whole_robots_{&bus_};  ///< by the robots in its world
+  RobotLines lines_;
   std::string problem_;  ///< why there is no world, or what it was asked for is not done
   bool driven_{false};
 };

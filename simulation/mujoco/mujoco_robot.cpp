@@ -15,7 +15,7 @@ MujocoRobot::MujocoRobot(MujocoSpec spec)
 std::expected<MujocoRobot, std::string> MujocoRobot::make(std::string_view urdf, const MeshSource& meshes) {
   auto spec = MujocoSpec::make(urdf, meshes);
   if (!spec) return std::unexpected{std::move(spec.error())};
-  return made_of(std::move(*spec));
+  return make(std::move(*spec));
 }
 
 std::expected<MujocoRobot, std::string> MujocoRobot::make_in_scene(std::string_view mjcf, std::string_view urdf,
@@ -24,10 +24,10 @@ std::expected<MujocoRobot, std::string> MujocoRobot::make_in_scene(std::string_v
   if (!joints) return std::unexpected{std::move(joints.error())};
   auto spec = MujocoSpec::make_scene(mjcf, std::move(*joints), files);
   if (!spec) return std::unexpected{std::move(spec.error())};
-  return made_of(std::move(*spec));
+  return make(std::move(*spec));
 }
 
-std::expected<MujocoRobot, std::string> MujocoRobot::made_of(MujocoSpec spec) {
+std::expected<MujocoRobot, std::string> MujocoRobot::make(MujocoSpec spec) {
   MujocoRobot robot{std::move(spec)};
   if (auto built = robot.build({}, {}); !built) return std::unexpected{std::move(built.error())};
   return robot;
@@ -36,13 +36,15 @@ std::expected<MujocoRobot, std::string> MujocoRobot::made_of(MujocoSpec spec) {
 std::expected<void, std::string> MujocoRobot::build(std::span<const Obstacle> obstacles, LooseBodies bodies) {
   auto next = world_.compile(obstacles, bodies.all());
   if (!next) return std::unexpected{std::move(next.error())};
-  if (auto found = drives_.find(*next->model, world_.spec()); !found) return found;
-  contacts_.soften(*next->model);
+  if (auto found = drives_.find(*next->model); !found) return found;
+  contacts_.soften(*next->model, world_.spec());
   world_.become(std::move(*next));
   bodies_ = std::move(bodies);
-  links_.find(world_, drives_, bodies_.first(world_.model()));
+  for (std::size_t robot = 0; robot < links_.size(); ++robot)
+    links_[robot].find(world_, drives_, robot, bodies_.first(world_.model()));
+  contacts_.count_robots(links_.size());
   drives_.close_brakes(world_);
-  links_.weigh(world_);
+  RobotLinks::weigh(world_, links_);
   return {};
 }
 
@@ -109,8 +111,29 @@ std::expected<void, std::string> MujocoRobot::let_float() {
   return build(obstacles_, bodies_);
 }
 
-std::expected<void, std::string> MujocoRobot::set_tip(const std::string& link) {
-  if (!world_.spec().hang_payload_on(link)) return std::unexpected{fmt::format("there is no link '{}'", link)};
+std::expected<std::size_t, std::string> MujocoRobot::mount(MujocoSpec robot, const Mount& at) {
+  auto with = world_.spec().with(std::move(robot), at);
+  if (!with) return std::unexpected{std::move(with.error())};
+  const Standing before{world_, bodies_};
+  const JointDrives drives_before = drives_;
+  MujocoSpec spec_before = std::exchange(world_.spec(), std::move(*with));
+  drives_.add(std::span{world_.spec().joints()}.subspan(drives_.count()));
+  links_.emplace_back();
+  if (auto built = build(obstacles_, bodies_); !built) {
+    world_.spec() = std::move(spec_before);
+    drives_ = drives_before;
+    links_.pop_back();
+    // What was there before could be made.
+    static_cast<void>(build(obstacles_, bodies_));
+    stand(before);
+    return std::unexpected{std::move(built.error())};
+  }
+  stand(before);
+  return links_.size() - 1;
+}
+
+std::expected<void, std::string> MujocoRobot::set_tip(const std::string& link, std::size_t robot) {
+  if (!world_.spec().hang_payload_on(link, robot)) return std::unexpected{fmt::format("there is no link '{}'", link)};
   const Standing before{world_, bodies_};
   if (auto built = build(obstacles_, bodies_); !built) return built;
   stand(before);
@@ -124,15 +147,17 @@ void MujocoRobot::set_in_motion(const std::array<double, 6>& base_twist, std::sp
   world_.forward();
 }
 
-std::expected<void, std::string> MujocoRobot::place(std::span<const double> positions) {
+std::expected<void, std::string> MujocoRobot::place(std::span<const double> positions, std::size_t robot) {
   const Standing before{world_, bodies_};
   world_.reset();
-  if (bodies_.count() > 0) {
+  if (bodies_.count() > 0 || robots() > 1) {
     Standing kept{world_, bodies_};
     kept.take_bodies_of(before);
+    const mjModel& model = world_.model();
+    kept.take_joints_of(before, model, [&](int body) { return world_.spec().robot_of(model, body) != robot; });
     stand(kept);
   }
-  drives_.place(positions, world_);
+  drives_.place(positions.first(std::min(positions.size(), joints(robot))), of(robot).first_joint, world_);
   world_.follow();
   world_.forward();
   auto within = Contacts::overlap(world_);
@@ -153,21 +178,21 @@ void MujocoRobot::step(Duration span) noexcept {
   feel();
 }
 
-void MujocoRobot::set_mass_factor(double factor) noexcept {
-  links_.set_mass_factor(factor);
-  links_.weigh(world_);
+void MujocoRobot::set_mass_factor(double factor, std::size_t robot) noexcept {
+  links_[robot].set_mass_factor(factor);
+  RobotLinks::weigh(world_, links_);
 }
-void MujocoRobot::set_inertia_factor(double factor) noexcept {
-  links_.set_inertia_factor(factor);
-  links_.weigh(world_);
+void MujocoRobot::set_inertia_factor(double factor, std::size_t robot) noexcept {
+  links_[robot].set_inertia_factor(factor);
+  RobotLinks::weigh(world_, links_);
 }
-void MujocoRobot::set_payload(double mass_kg) noexcept {
-  links_.set_payload(mass_kg);
-  links_.weigh(world_);
+void MujocoRobot::set_payload(double mass_kg, std::size_t robot) noexcept {
+  links_[robot].set_payload(mass_kg);
+  RobotLinks::weigh(world_, links_);
 }
-void MujocoRobot::set_rotors(std::span<const double> inertias) noexcept {
-  drives_.set_rotors(inertias, world_);
-  links_.weigh(world_);
+void MujocoRobot::set_rotors(std::span<const double> inertias, std::size_t robot) noexcept {
+  drives_.set_rotors(inertias.first(std::min(inertias.size(), joints(robot))), of(robot).first_joint, world_);
+  RobotLinks::weigh(world_, links_);
 }
 
 }  // namespace hirosco::simulation

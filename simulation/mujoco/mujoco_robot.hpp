@@ -24,7 +24,8 @@
 namespace hirosco::simulation {
 
 /// A robot of a URDF file as MuJoCo moves it: rigid links on a base that stands or floats, joints with dry friction and brakes that slip. Its
-/// collision shapes touch each other (mujoco_spec.hpp), obstacles that stand around it and bodies that move by themselves. Joints are numbered as in the file, fixed
+/// collision shapes touch each other (mujoco_spec.hpp), obstacles that stand around it and bodies that move by themselves. Other robots of other files are mounted in its
+/// world (mount()): they are number 1 and further, it is 0. Joints are numbered robot by robot as in their files, fixed
 /// ones left out. Whenever something comes to its world or goes, this is what moves it into another model.
 /// Runge-Kutta of 4th order with sub-steps of at most 0.5 ms: the same bits twice from one version of MuJoCo on one architecture.
 /// Realtime: step() and push() do not allocate, what changes the world does. Thread: one.
@@ -41,24 +42,37 @@ class MujocoRobot {
   [[nodiscard]] static std::expected<MujocoRobot, std::string> make_in_scene(std::string_view mjcf,
                                                                              std::string_view urdf,
                                                                              const MeshSource& files = {});
+  /// Of what a file or two say already.
+  [[nodiscard]] static std::expected<MujocoRobot, std::string> make(MujocoSpec spec);
   /// What of the file's shapes does not touch, each in words.
-  [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return world_.spec().left_out(); }
+  [[nodiscard]] const std::vector<std::string>& left_out(std::size_t robot = 0) const noexcept {
+    return world_.spec().left_out(robot);
+  }
 
-  [[nodiscard]] std::size_t joints() const noexcept { return drives_.count(); }
+  /// Another robot stands there from now on, at rest where its file has it at zero; all else goes on. Its number; in words why not, and nothing is changed.
+  [[nodiscard]] std::expected<std::size_t, std::string> mount(MujocoSpec robot, const Mount& at);
+  [[nodiscard]] std::size_t robots() const noexcept { return links_.size(); }
+  /// What is in each other now, in words: where robots were mounted, or put, into something.
+  [[nodiscard]] std::optional<std::string> overlap() const { return Contacts::overlap(world_); }
+
+  [[nodiscard]] std::size_t joints(std::size_t robot = 0) const noexcept { return of(robot).joints; }
+  [[nodiscard]] std::size_t first_joint(std::size_t robot) const noexcept { return of(robot).first_joint; }
   [[nodiscard]] double position(std::size_t joint) const noexcept { return drives_.position(joint, world_); }
   [[nodiscard]] double velocity(std::size_t joint) const noexcept { return drives_.velocity(joint, world_); }
   /// What the drive and the brake give to the link: behind friction and rotor, which are theirs.
   [[nodiscard]] double torque(std::size_t joint) const noexcept { return drives_.torque(joint); }
   [[nodiscard]] double effort(std::size_t joint) const noexcept { return drives_.effort(joint); }
   /// From now on this link is its tip, which pushes and payloads act at; at first it is the first one that carries nothing. In words why not.
-  [[nodiscard]] std::expected<void, std::string> set_tip(const std::string& link);
-  /// Of the tip's origin, in the axes of the base, of one that floats in inertial ones, m.
-  [[nodiscard]] std::span<const double, 3> tip_m() const noexcept { return world_.tip_m(); }
+  [[nodiscard]] std::expected<void, std::string> set_tip(const std::string& link, std::size_t robot = 0);
+  /// Of the tip's origin, in the axes of the base, of one that floats in inertial ones, m; also that of a robot that is mounted.
+  [[nodiscard]] std::span<const double, 3> tip_m(std::size_t robot = 0) const noexcept { return world_.tip_m(robot); }
   /// w x y z.
-  [[nodiscard]] std::span<const double, 4> tip_orientation() const noexcept { return world_.tip_orientation(); }
+  [[nodiscard]] std::span<const double, 4> tip_orientation(std::size_t robot = 0) const noexcept {
+    return world_.tip_orientation(robot);
+  }
 
   /// At the end of the last step.
-  [[nodiscard]] const Touched& touched() const noexcept { return contacts_.touched(); }
+  [[nodiscard]] const Touched& touched(std::size_t robot = 0) const noexcept { return contacts_.touched(robot); }
 
   /// Nothing holds its root link any more: it is at rest at the inertial origin, with all joints at 0. In words why not.
   [[nodiscard]] std::expected<void, std::string> let_float();
@@ -71,14 +85,14 @@ class MujocoRobot {
   void set_in_motion(const std::array<double, 6>& base_twist, std::span<const double> velocities) noexcept;
   [[nodiscard]] double kinetic_energy_j() const { return world_.kinetic_energy_j(); }
 
-  /// Puts it there, at rest; in words why not: it would stand in an obstacle.
-  [[nodiscard]] std::expected<void, std::string> place(std::span<const double> positions);
+  /// Puts it there, at rest; in words why not: it would stand in an obstacle, a body or another robot.
+  [[nodiscard]] std::expected<void, std::string> place(std::span<const double> positions, std::size_t robot = 0);
   /// What a joint's drive does from the next step on, held to its effort.
   void drive(std::size_t joint, double torque, Brakes brakes) noexcept { drives_.drive(joint, torque, brakes, world_); }
   void step(Duration span) noexcept;
-  /// All joints alike.
+  /// All joints of the first robot alike.
   void step(std::span<const double> torques, Brakes brakes, Duration span) noexcept;
-  /// The joint of this name, where it moves by itself.
+  /// The joint of this name, where it moves by itself; NAME/JOINT of a robot that is mounted.
   [[nodiscard]] std::optional<std::size_t> joint(std::string_view name) const noexcept { return drives_.named(name); }
 
   // --- what stands around it -----------------------------------------------------------------------------------------
@@ -101,21 +115,23 @@ class MujocoRobot {
   [[nodiscard]] BodyTruth body(std::size_t index) const noexcept { return bodies_.truth(index, world_, links_); }
 
   // --- how it differs from its file ----------------------------------------------------------------------------------
-  void set_mass_factor(double factor) noexcept;
-  void set_inertia_factor(double factor) noexcept;
+  void set_mass_factor(double factor, std::size_t robot = 0) noexcept;
+  void set_inertia_factor(double factor, std::size_t robot = 0) noexcept;
   /// Of the file's friction and damping, and more dry friction of every joint, N m or N.
-  void set_friction(double factor, double more) noexcept { drives_.set_friction(factor, more); }
+  void set_friction(double factor, double more, std::size_t robot = 0) noexcept {
+    drives_.set_friction(factor, more, of(robot));
+  }
   /// What the drive of each joint moves besides links, behind its gear, kg m2 or kg; the file does not have it.
-  void set_rotors(std::span<const double> inertias) noexcept;
+  void set_rotors(std::span<const double> inertias, std::size_t robot = 0) noexcept;
   /// A point with this mass at the tip's origin.
-  void set_payload(double mass_kg) noexcept;
+  void set_payload(double mass_kg, std::size_t robot = 0) noexcept;
   void set_gravity(double x, double y, double z) noexcept { world_.set_gravity(x, y, z); }
   /// A force at the tip's origin, N, in the axes of the base, until it is another.
-  void push(double x, double y, double z) noexcept { world_.push(x, y, z); }
+  void push(double x, double y, double z, std::size_t robot = 0) noexcept { world_.push({x, y, z}, robot); }
 
  private:
   explicit MujocoRobot(MujocoSpec spec);
-  [[nodiscard]] static std::expected<MujocoRobot, std::string> made_of(MujocoSpec spec);
+  [[nodiscard]] const MujocoSpec::Robot& of(std::size_t robot) const noexcept { return world_.spec().robots()[robot]; }
   /// The robot is at rest where its file has it at zero.
   [[nodiscard]] std::expected<void, std::string> build(std::span<const Obstacle> obstacles, LooseBodies bodies);
   /// What moves goes on where it is, as fast as it is. `moved`: name of the body that is put somewhere, where there is one.
@@ -126,7 +142,7 @@ class MujocoRobot {
 
   MujocoWorld world_;
   JointDrives drives_;
-  RobotLinks links_;
+  std::vector<RobotLinks> links_{1};  ///< robot by robot
   Contacts contacts_;
   std::vector<Obstacle> obstacles_;
   LooseBodies bodies_;

@@ -34,7 +34,7 @@ constexpr std::array file_assets{FileAsset{"mesh", "meshdir"}, FileAsset{"hfield
 /// Rewrites a scene so that it reads nothing but what it is handed.
 class Rewriting {
  public:
-  explicit Rewriting(const MeshSource& files) : files_{files} {}
+  Rewriting(const MeshSource& files, std::string_view mark) : files_{files}, mark_{mark} {}
 
   [[nodiscard]] std::expected<void, std::string> write(const Element& element, bool actuators) {
     text_.clear();
@@ -95,7 +95,7 @@ class Rewriting {
     if (!files_) return std::unexpected{file.string() + ": nobody reads files here"};
     auto octets = files_(file.string());
     if (!octets) return std::unexpected{file.string() + ": " + octets.error()};
-    const std::string handed = fmt::format("asset_{}{}", octets_.size(), file.extension().string());
+    const std::string handed = fmt::format("{}asset_{}{}", mark_, octets_.size(), file.extension().string());
     octets_.insert_or_assign(handed, std::move(*octets));
     const auto* name = element.find("name");
     say("name", name == nullptr ? named.stem().string() : name->value);
@@ -104,6 +104,7 @@ class Rewriting {
   }
 
   const MeshSource& files_;
+  std::string_view mark_;
   std::map<std::string, std::string, std::less<>> folders_;
   bool strips_{false};
   std::string text_;
@@ -158,12 +159,12 @@ struct Parsed {
 }  // namespace
 
 std::expected<MujocoSpec, std::string> MujocoSpec::make_scene(std::string_view mjcf, std::vector<DrivenJoint> joints,
-                                                              const MeshSource& files) {
+                                                              const MeshSource& files, std::string_view mark) {
   const auto tree = xml::read_tree(mjcf);
   if (!tree) return std::unexpected{fmt::format("line {}: {}", tree.error().at.line, tree.error().reason)};
   if (tree->name != "mujoco")
     return std::unexpected{fmt::format("<{}> is no MJCF file: its root is <mujoco>", tree->name)};
-  Rewriting rewriting{files};
+  Rewriting rewriting{files, mark};
   rewriting.look_for_folders(*tree);
   if (auto written = rewriting.write(*tree, true); !written) return std::unexpected{std::move(written.error())};
   const auto with_drives = parse(rewriting.text(), rewriting.octets());
@@ -177,15 +178,17 @@ std::expected<MujocoSpec, std::string> MujocoSpec::make_scene(std::string_view m
     if (driven.jnt_type[id] != mjJNT_HINGE && driven.jnt_type[id] != mjJNT_SLIDE)
       return std::unexpected{fmt::format("its joint '{}' neither turns about nor slides along one axis", joint.name)};
     joint.effort = effort_in(driven, id).value_or(joint.effort);
+    joint.of_scene = true;
   }
-  MujocoSpec made;
+  MujocoSpec made{mark};
   if (auto written = rewriting.write(*tree, false); !written) return std::unexpected{std::move(written.error())};
   made.octets_ = rewriting.octets();
   auto parsed = parse(rewriting.text(), made.octets_);
   if (!parsed) return std::unexpected{std::move(parsed.error())};
   const mjModel& model = *parsed->model;
   made.spec_ = std::move(parsed->spec);
-  made.is_scene_ = true;
+  made.robots_.front().joints = joints.size();
+  made.robots_.front().of_scene = true;
   made.further_dofs_ = static_cast<std::size_t>(model.nv) - joints.size();
   made.equalities_ = static_cast<std::size_t>(model.neq);
   made.pairs_left_out_ = static_cast<std::size_t>(model.nexclude);

@@ -169,11 +169,13 @@ void add_mesh(const std::string& name, const std::array<double, 3>& scale, mjSpe
 
 }  // namespace
 
-std::expected<MujocoSpec, std::string> MujocoSpec::make(std::string_view urdf, const MeshSource& meshes) {
+std::expected<MujocoSpec, std::string> MujocoSpec::make(std::string_view urdf, const MeshSource& meshes,
+                                                        std::string_view mark) {
   const auto tree = xml::read_tree(urdf);
   if (!tree) return std::unexpected{"the URDF file: " + tree.error().reason};
-  MujocoSpec made;
+  MujocoSpec made{mark};
   made.joints_ = driven_joints_of(*tree);
+  made.robots_.front().joints = made.joints_.size();
   std::vector<std::string> carried, carrying;
   std::vector<Mimic> mimics;
   for (const Element& element : tree->children) {
@@ -218,20 +220,25 @@ std::expected<std::vector<DrivenJoint>, std::string> MujocoSpec::driven_joints(s
   return driven_joints_of(*tree);
 }
 
-bool MujocoSpec::hang_payload_on(const std::string& link) {
-  mjsBody* carrier = mjs_findBody(spec_.get(), body_name(link).c_str());
-  if (carrier == nullptr || link == payload_body) return false;
-  if (mjsBody* before = mjs_findBody(spec_.get(), payload_body)) mjs_delete(spec_.get(), before->element);
+bool MujocoSpec::hang_payload_on(const std::string& link, std::size_t robot) {
+  const auto of_another = [&](const Robot& each) { return !each.prefix.empty() && link.starts_with(each.prefix); };
+  if (link == payload_body || std::ranges::any_of(robots_, of_another)) return false;
+  const std::string& prefix = robots_[robot].prefix;
+  const std::string name = prefix + payload_body;
+  mjsBody* carrier = mjs_findBody(spec_.get(), (prefix + body_name(link)).c_str());
+  if (carrier == nullptr) return false;
+  if (mjsBody* before = mjs_findBody(spec_.get(), name.c_str())) mjs_delete(spec_.get(), before->element);
   mjsBody* payload = mjs_addBody(carrier, nullptr);
   if (payload == nullptr) return false;
-  mjs_setName(payload->element, payload_body);
+  mjs_setName(payload->element, name.c_str());
   payload->explicitinertial = 1;
   return true;
 }
 
 std::expected<void, std::string> MujocoSpec::let_float() {
   if (floats_) return {};
-  if (is_scene_) return std::unexpected{"what floats in a scene its file says"};
+  if (is_scene()) return std::unexpected{"what floats in a scene its file says"};
+  if (robots_.size() > 1) return std::unexpected{"it is to float before other robots are mounted in its world"};
   if (auto done = FloatingBase::add_to(*spec_, root_); !done) return done;
   floats_ = true;
   return {};
@@ -239,10 +246,10 @@ std::expected<void, std::string> MujocoSpec::let_float() {
 
 void MujocoSpec::add_shapes(const Element& robot, const MeshSource& meshes) {
   LinkShapes shapes = link_shapes(robot);
-  left_out_ = std::move(shapes.left_out);
+  robots_.front().left_out = std::move(shapes.left_out);
   for (auto& [link, shape] : shapes.taken) {
     const auto leave_out = [&](const std::string& why) {
-      left_out_.push_back(fmt::format("a shape of link '{}': {}", link, why));
+      robots_.front().left_out.push_back(fmt::format("a shape of link '{}': {}", link, why));
     };
     mjsBody* body = mjs_findBody(spec_.get(), body_name(link).c_str());
     if (body == nullptr) {
@@ -271,7 +278,7 @@ std::expected<std::string, std::string> MujocoSpec::take_mesh(const Shape& shape
   if (!meshes) return std::unexpected{shape.mesh + ": nobody reads files here"};
   auto octets = meshes(*file);
   if (!octets) return std::unexpected{shape.mesh + " " + octets.error()};
-  const std::string name = fmt::format("mesh_{}{}", octets_.size(), file->substr(file->size() - 4));
+  const std::string name = fmt::format("{}mesh_{}{}", mark_, octets_.size(), file->substr(file->size() - 4));
   const std::map<std::string, std::string> alone{{name, *octets}};
   const std::unique_ptr<mjSpec, MujocoFree> trial{mj_makeSpec()};
   add_mesh(name, shape.sizes, *trial);
@@ -323,12 +330,13 @@ std::expected<void, std::string> MujocoSpec::leave_out_pairs() {
       }
       if (pairs.contains(pair) || mj_geomDistance(&model, data.get(), i, j, 2 * near_m, nullptr) > near_m) continue;
       pairs.insert(pair);
-      left_out_.push_back(
+      robots_.front().left_out.push_back(
           fmt::format("contact of links '{}' and '{}', which are at each other where all joints are at 0",
                       name_of(model, pair.first), name_of(model, pair.second)));
     }
   if (hulls)
-    left_out_.emplace_back("contact of links with each other where one is a mesh: hulls are larger than links");
+    robots_.front().left_out.emplace_back(
+        "contact of links with each other where one is a mesh: hulls are larger than links");
   for (const auto& [one, other] : pairs) {
     if (model.body_geomnum[one] == 0 || model.body_geomnum[other] == 0) continue;
     mjsExclude& exclude = *mjs_addExclude(spec_.get());

@@ -13,6 +13,7 @@
 #include <mujoco/mujoco.h>
 
 #include "simulation/mujoco/floating_base.hpp"
+#include "simulation/mujoco/mount.hpp"
 #include "simulation/mujoco/shapes.hpp"
 
 namespace hirosco::simulation {
@@ -29,10 +30,11 @@ using MujocoData = std::unique_ptr<mjData, MujocoFree>;
 struct DrivenJoint {
   std::string name;
   double effort{0};
+  bool of_scene{false};  ///< how the ends of its range give way its file says
 };
 
 /// What MuJoCo is told of a URDF file: links, inertias, joints, what mimics them, and the shapes that touch. Compiled anew whenever
-/// an obstacle or a loose body comes to it or goes.
+/// an obstacle, a loose body or another robot comes to it or goes.
 /// Neighbours, which one joint holds together, and links that are at each other where all joints are at 0 (or as near as their ranges let
 /// them) pass through each other; the latter are told.  Realtime: allocates. Thread: one.
 class MujocoSpec {
@@ -43,31 +45,50 @@ class MujocoSpec {
       0.002;  ///< by which the ends of ranges do: MuJoCo's own lets light fingers millimetres beyond theirs
   static constexpr const char* payload_body = "hirosco_payload";
 
-  /// In words why there is none.
-  [[nodiscard]] static std::expected<MujocoSpec, std::string> make(std::string_view urdf, const MeshSource& meshes);
+  /// In words why there is none. `mark`: begin of the names by which MuJoCo is told of its files, another one for each robot of a world.
+  [[nodiscard]] static std::expected<MujocoSpec, std::string> make(std::string_view urdf, const MeshSource& meshes,
+                                                                   std::string_view mark = {});
 
   /// Of an MJCF file, which says what stands, lies and hangs in the world (mujoco_scene.cpp). The robot is its joints of these names, each with what its
   /// drive in the scene can do, or else with its `effort` here; tip is the body that the last of them moves. In words why there is none.
   [[nodiscard]] static std::expected<MujocoSpec, std::string> make_scene(std::string_view mjcf,
                                                                          std::vector<DrivenJoint> joints,
-                                                                         const MeshSource& files);
+                                                                         const MeshSource& files,
+                                                                         std::string_view mark = {});
   /// Those of a URDF file, in its order. In words why there are none.
   [[nodiscard]] static std::expected<std::vector<DrivenJoint>, std::string> driven_joints(std::string_view urdf);
 
-  /// In the order of the URDF file.
+  /// One of those that are in it: the first one is that whose world it is, the others are mounted there.
+  struct Robot {
+    std::string prefix;  ///< of its links and joints; the first one has none
+    std::size_t first_joint{0};
+    std::size_t joints{0};
+    bool of_scene{false};  ///< its contacts and the ends of its ranges are as its MJCF file says
+    std::vector<std::string> left_out;  ///< what of its file's shapes does not touch, each in words
+  };
+  /// The same with this robot in it (mujoco_mount.cpp): its names have the mount's before them, and what of it touches meets the others and
+  /// all that stands and lies there. In words why not.
+  [[nodiscard]] std::expected<MujocoSpec, std::string> with(MujocoSpec robot, const Mount& mount) const;
+  [[nodiscard]] const std::vector<Robot>& robots() const noexcept { return robots_; }
+  /// Whose this body of such a model is. What is nobody's else is the first one's.
+  [[nodiscard]] std::size_t robot_of(const mjModel& model, int body) const noexcept;
+
+  /// Robot by robot, each in the order of its URDF file.
   [[nodiscard]] const std::vector<DrivenJoint>& joints() const noexcept { return joints_; }
   /// Of what moves besides them: what mimics them, and whatever else a scene has.
   [[nodiscard]] std::size_t further_dofs() const noexcept { return further_dofs_; }
   /// Its contacts and drives are as its file says, and not all that moves is the robot.
-  [[nodiscard]] bool is_scene() const noexcept { return is_scene_; }
-  /// What pushes and hangs on it does so at the origin of this link; at first of the first one that carries nothing. False: there is no such link.
-  [[nodiscard]] bool hang_payload_on(const std::string& link);
+  [[nodiscard]] bool is_scene() const noexcept { return robots_.front().of_scene; }
+  /// What pushes and hangs on a robot does so at the origin of this link; at first of the first one that carries nothing. False: it has no such link.
+  [[nodiscard]] bool hang_payload_on(const std::string& link, std::size_t robot = 0);
   /// From now on nothing holds the root link (floating_base.hpp). In words why not.
   [[nodiscard]] std::expected<void, std::string> let_float();
   [[nodiscard]] bool floats() const noexcept { return floats_; }
   [[nodiscard]] const std::string& root() const noexcept { return root_; }  ///< as MuJoCo calls it
   /// What of the file's shapes does not touch, each in words.
-  [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return left_out_; }
+  [[nodiscard]] const std::vector<std::string>& left_out(std::size_t robot = 0) const noexcept {
+    return robots_[robot].left_out;
+  }
   /// Loose bodies are the last of the model's bodies and joints, in their order here.
   [[nodiscard]] std::expected<MujocoModel, std::string> compile(std::span<const Obstacle> obstacles,
                                                                 std::span<const LooseBody> bodies = {}) const;
@@ -77,7 +98,7 @@ class MujocoSpec {
   [[nodiscard]] static std::string_view loose_body_of(const mjModel& model, int geom) noexcept;
 
  private:
-  MujocoSpec() = default;
+  explicit MujocoSpec(std::string_view mark) : mark_{mark} {}
   void add_shapes(const xml::Element& robot, const MeshSource& meshes);
   [[nodiscard]] std::expected<std::string, std::string> take_mesh(const Shape& shape, const MeshSource& meshes);
   [[nodiscard]] std::expected<void, std::string> leave_out_pairs();
@@ -86,12 +107,12 @@ class MujocoSpec {
   std::vector<DrivenJoint> joints_;
   std::string root_;
   bool floats_{false};
-  bool is_scene_{false};
   std::size_t further_dofs_{0};
   std::size_t equalities_{0};
   std::size_t pairs_left_out_{0};
+  std::string mark_;
   std::map<std::string, std::string> octets_;  ///< of files, by the names that MuJoCo is told
-  std::vector<std::string> left_out_;
+  std::vector<Robot> robots_{1};
 };
 
 }  // namespace hirosco::simulation

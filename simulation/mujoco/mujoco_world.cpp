@@ -28,26 +28,26 @@ void MujocoWorld::become(Compiled next) noexcept {
   if (spec_.floats()) base_.find(*next.model, spec_.root());
   model_ = std::move(next.model);
   data_ = std::move(next.data);
-  tip_ = std::max(0, mj_name2id(model_.get(), mjOBJ_BODY, MujocoSpec::payload_body));
+  tips_.clear();
+  for (const MujocoSpec::Robot& robot : spec_.robots())
+    tips_.push_back(
+        std::max(0, mj_name2id(model_.get(), mjOBJ_BODY, (robot.prefix + MujocoSpec::payload_body).c_str())));
 }
 
-std::span<const double, 3> MujocoWorld::tip_m() const noexcept {
-  return std::span<const double, 3>{data_->xpos + 3 * tip_, 3};
+std::span<const double, 3> MujocoWorld::tip_m(std::size_t robot) const noexcept {
+  return std::span<const double, 3>{data_->xpos + 3 * tip(robot), 3};
 }
 
-std::span<const double, 4> MujocoWorld::tip_orientation() const noexcept {
-  return std::span<const double, 4>{data_->xquat + 4 * tip_, 4};
+std::span<const double, 4> MujocoWorld::tip_orientation(std::size_t robot) const noexcept {
+  return std::span<const double, 4>{data_->xquat + 4 * tip(robot), 4};
 }
 
-std::span<double, 6> MujocoWorld::pushed() const noexcept {
-  return std::span<double, 6>{data_->xfrc_applied + 6 * tip_, 6};
+std::span<double, 6> MujocoWorld::pushed(std::size_t robot) const noexcept {
+  return std::span<double, 6>{data_->xfrc_applied + 6 * tip(robot), 6};
 }
 
-void MujocoWorld::push(double x, double y, double z) noexcept {
-  const auto force = pushed();
-  force[0] = x;
-  force[1] = y;
-  force[2] = z;
+void MujocoWorld::push(std::array<double, 3> force_n, std::size_t robot) noexcept {
+  std::ranges::copy(force_n, pushed(robot).begin());
 }
 
 void MujocoWorld::set_gravity(double x, double y, double z) noexcept {

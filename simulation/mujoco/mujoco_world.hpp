@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <expected>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <mujoco/mujoco.h>
 
@@ -15,8 +18,8 @@
 
 namespace hirosco::simulation {
 
-/// The world of a robot as MuJoCo has it: what it was told, the model that was compiled of it, and how that stands. Its base, and its tip, which
-/// pushes and payloads act at. It becomes another one whenever something comes to it or goes; whoever keeps what is in a model looks there again.
+/// The world of robots as MuJoCo has it: what it was told, the model that was compiled of it, and how that stands. The first robot's base, and the tip of
+/// each, which pushes and payloads act at. It becomes another one whenever something comes to it or goes; whoever keeps what is in a model looks there again.
 /// Runge-Kutta of 4th order with sub-steps of at most 0.5 ms: the same bits twice from one version of MuJoCo on one architecture.
 /// Realtime: compile(), become() and kinetic_energy_j() use the heap, nothing else does. Thread: one.
 class MujocoWorld {
@@ -45,14 +48,14 @@ class MujocoWorld {
   [[nodiscard]] FloatingBase& base() noexcept { return base_; }
   [[nodiscard]] const FloatingBase& base() const noexcept { return base_; }
 
-  /// The body that is its tip; 0: it has none.
-  [[nodiscard]] int tip() const noexcept { return tip_; }
-  [[nodiscard]] std::span<const double, 3> tip_m() const noexcept;
+  /// The body that is a robot's tip; 0: it has none.
+  [[nodiscard]] int tip(std::size_t robot) const noexcept { return tips_[robot]; }
+  [[nodiscard]] std::span<const double, 3> tip_m(std::size_t robot) const noexcept;
   /// w x y z.
-  [[nodiscard]] std::span<const double, 4> tip_orientation() const noexcept;
+  [[nodiscard]] std::span<const double, 4> tip_orientation(std::size_t robot) const noexcept;
   /// What acts at it from outside until it is another: force in N, torque in N m, in the axes of the base.
-  [[nodiscard]] std::span<double, 6> pushed() const noexcept;
-  void push(double x, double y, double z) noexcept;
+  [[nodiscard]] std::span<double, 6> pushed(std::size_t robot) const noexcept;
+  void push(std::array<double, 3> force_n, std::size_t robot) noexcept;
   void set_gravity(double x, double y, double z) noexcept;
 
   void step(Duration span) noexcept;
@@ -69,7 +72,7 @@ class MujocoWorld {
   MujocoModel model_;
   MujocoData data_;
   FloatingBase base_;
-  int tip_{0};
+  std::vector<int> tips_;  ///< robot by robot
 };
 
 }  // namespace hirosco::simulation

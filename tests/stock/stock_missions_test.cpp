@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -99,6 +100,37 @@ TEST_F(StockMission, AScriptWhoseBoxIsTakenAwayEndsThereAndTheArmGoesNowhere) {
   EXPECT_FALSE(flown->craft().command("PLAYER", "PLAY", {std::string{"PICK_AND_PUT_BACK"}}, 60s).completed);
   EXPECT_TRUE(flown->story().has("PLAYER low SCRIPT_STOPPED")) << flown->story().text();
   EXPECT_TRUE(flown->run_until_state("ARM", State::SafeOperational, 1s)) << flown->story().text();
+}
+
+TEST_F(StockMission, TwoRobotsOfTwoFilesStandInOneWorldWhereEachMovesByItsOwnDeviceAndTheyMeet) {
+  fly("beside.xml");
+  ASSERT_NEAR(truth("gripper", "q1"), 0.02, 2e-3) << flown->story().text();
+  ASSERT_TRUE(flown->craft().command("GRIPPER", "MOVE_TO", {0.08, 0.1}, 10s).completed) << flown->story().text();
+  EXPECT_NEAR(truth("gripper", "q1"), 0.04, 1e-3) << "half of the width";
+  EXPECT_NEAR(truth("arm", "q1"), 0.2, 2e-3) << "which the arm did not notice";
+  EXPECT_EQ(truth("arm", "contacts") + truth("gripper", "contacts"), 0);
+  double met_n = 0;
+  flown->craft().on_cycle([&](std::string_view, TimePoint) { met_n = std::max(met_n, truth("arm", "contact_n")); });
+  // Nobody told the arm of what stands there, and its observer finds it out.
+  const auto met = flown->craft().command("ARM", "MOVE_J", {-0.8, -0.2, 0.6, 0.5, -0.5, 1.0, 0.2}, 70s);
+  EXPECT_EQ(static_cast<std::uint16_t>(met.failure.value()), 0x8004) << flown->story().text();
+  EXPECT_GT(met_n, 1);
+  EXPECT_TRUE(flown->craft().command("ARM", "MOVE_J", {0.2, 0.5, 1.2, -0.6, 0.7, 0.1, 0.2}, 70s).completed)
+      << "it may go away\n"
+      << flown->story().text();
+  EXPECT_EQ(truth("arm", "contacts"), 0);
+  EXPECT_TRUE(flown->craft().command("GRIPPER", "OPEN", {0.1}, 10s).completed) << flown->story().text();
+}
+
+TEST_F(StockMission, TwoRobotsInOneWorldGiveTheSameOctetsTwice) {
+  std::array<std::vector<supervisor::LogRecord>, 2> records;
+  for (auto& each : records) {
+    fly("beside.xml");
+    EXPECT_FALSE(flown->craft().command("ARM", "MOVE_J", {-0.8, -0.2, 0.6, 0.5, -0.5, 1.0, 0.2}, 70s).completed);
+    each = flown->records();
+  }
+  EXPECT_GT(records[0].size(), 50U);
+  EXPECT_TRUE(records[0] == records[1]);
 }
 
 }  // namespace

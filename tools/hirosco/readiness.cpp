@@ -69,14 +69,20 @@ class Lacking {
     };
     const auto world = simulation::whose_world(mission_, device);
     if (!world) return none(world.error());
-    const auto other = *world != nullptr ? made(**world, make, flows) : nullptr;
-    // What is wrong with the other one is told by itself.
-    if (*world != nullptr && !other) return;
-    if (other)
-      for (const auto& setting : (*world)->settings) (void)other->fault(setting.name + " " + setting.value);
+    // All that is in the world before it; what is wrong with these is told by themselves.
+    std::vector<std::unique_ptr<simulation::SimulatedDevice>> before;
+    for (const descriptor::SimulatedDevice& each : mission_.devices) {
+      if (*world == nullptr || &each == &device) break;
+      const auto its = simulation::whose_world(mission_, each);
+      if (&each != *world && (!its || *its != *world)) continue;
+      auto other = made(each, make, flows, before.empty() ? nullptr : before.front().get());
+      if (other) before.push_back(std::move(other));
+      else if (&each == *world) return;
+    }
+    simulation::SimulatedDevice* other = before.empty() ? nullptr : before.front().get();
     auto wanted = simulation::device_arguments(mission_, device);
     if (!wanted) return none(wanted.error());
-    wanted->settings.in_world_of = other.get();
+    wanted->settings.in_world_of = other;
     const auto played = make(flows, wanted->address(), wanted->settings);
     if (const auto plugged = played->plug(); !plugged) return none(plugged.error().text);
     for (const auto& [name, value, at] : device.settings) {
@@ -92,14 +98,19 @@ class Lacking {
   [[nodiscard]] std::vector<Diagnostic> take() { return std::move(found_); }
 
  private:
-  /// Null: it cannot be.
+  /// With its settings, as far as it takes them. Null: it cannot be.
   [[nodiscard]] std::unique_ptr<simulation::SimulatedDevice> made(const descriptor::SimulatedDevice& device,
                                                                   const simulation::MakeDevice& make,
-                                                                  FlowFactory& flows) const {
+                                                                  FlowFactory& flows,
+                                                                  simulation::SimulatedDevice* in_world_of) const {
     auto wanted = simulation::device_arguments(mission_, device);
     if (!wanted) return nullptr;
+    wanted->settings.in_world_of = in_world_of;
     auto device_made = make(flows, wanted->address(), wanted->settings);
-    return device_made->plug() ? std::move(device_made) : nullptr;
+    if (!device_made->plug()) return nullptr;
+    for (const auto& [name, value, at] : device.settings)
+      if (name != simulation::world_setting) (void)device_made->fault(name + " " + value);
+    return device_made;
   }
 
   void add(descriptor::Location at, const char* code, std::string message, std::string hint) {
