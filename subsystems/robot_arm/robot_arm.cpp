@@ -14,6 +14,7 @@ namespace hirosco {
 using robot_arm::Excess;
 using robot_arm::Guidance;
 using robot_arm::JointVector;
+using robot_arm::Lead;
 using robot_arm::millimetres;
 using robot_arm::Trouble;
 using robot_arm::UrdfArm;
@@ -35,6 +36,7 @@ Result<Step> RobotArm::software_init() {
   bind_motions();
   bind_settings();
   bind_laws();
+  bind_lead();
   return done;
 }
 
@@ -45,6 +47,7 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   model_.begin(cycle_s);
   control_.begin(cycle_s);
   guidance_.begin(cycle_s);
+  HIROSCO_TRY(lead_.begin(configuration, cycle_s));
   static_cast<void>(obstacles_.keep_out(parameters_.keep_out.load()));
   place_tool(parameters_.tool_place.load());
   limits_.arm();
@@ -103,11 +106,13 @@ void RobotArm::measure(const Cycle& cycle) noexcept {
   parameters_.active.store(0);
   moving_ = false;
   model_.update();
+  lead_.tell();
 }
 
 // --- what comes of it, told ----------------------------------------------------------------------------------------------
 
 void RobotArm::advance() noexcept {
+  if (const auto end = lead_.advance()) tell(*end);
   guidance_.advance(control_.floats());
   watch_clearance();
   if (const auto gone = guidance_.end_retract()) raise(retracted_, *gone);
@@ -129,6 +134,13 @@ void RobotArm::tell(const Guidance::News& news) noexcept {
     case Guidance::End::LineLost: lose_line(); return;
     case Guidance::End::NoWay: end_motion(news.why.trouble, news.why.text, news.why.number); return;
   }
+}
+
+/// From this cycle on it slows down, and stands: each end of following that whoever leads has brought about is told once.
+void RobotArm::tell(const Lead::End& end) noexcept {
+  if (end.why == Lead::Why::Lost) raise(lead_lost_, static_cast<std::uint32_t>(end.value));
+  else if (end.why == Lead::Why::LetGo) raise(lead_let_go_);
+  else raise(lead_unfit_, end.joint, end.value, end.limit, static_cast<std::uint8_t>(end.why));
 }
 
 /// What is in the way can be seen from here alone: where it would be, a line needs another posture.
@@ -301,6 +313,24 @@ void RobotArm::bind_laws() {
       yielding_.harden();
       return ok();
     });
+}
+
+/// An arm of whose configurations none has a set that leads follows nobody, and knows nothing of it.
+void RobotArm::bind_lead() {
+  const bool by_positions = Lead::declared(own_descriptor(), Lead::positions_set);
+  const bool by_speeds = Lead::declared(own_descriptor(), Lead::speeds_set);
+  if (!by_positions && !by_speeds) return;
+  if (by_positions) require_link(Lead::positions_set, lead_.positions());
+  if (by_speeds) require_link(Lead::speeds_set, lead_.speeds());
+  lead_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
+  for (EventPort* event : std::initializer_list<EventPort*>{&lead_lost_, &lead_let_go_, &lead_unfit_})
+    use_event(*event);
+  on_function("FOLLOW", [this]() -> Outcome {
+    if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
+    const Outcome begun = lead_.follow();
+    if (begun.kind != Outcome::Kind::Refused) yielding_.arm(Yielding::Before::Stands);
+    return begun;
+  });
 }
 
 }  // namespace hirosco

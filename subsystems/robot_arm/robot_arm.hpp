@@ -9,6 +9,7 @@
 #include "robotics/subsystem/moving_subsystem.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/guidance.hpp"
+#include "subsystems/robot_arm/lead.hpp"
 #include "subsystems/robot_arm/limit_watch.hpp"
 #include "subsystems/robot_arm/obstacles.hpp"
 #include "subsystems/robot_arm/on_board_model.hpp"
@@ -45,11 +46,13 @@ class RobotArm final : public robotics::MovingSubsystem {
   void bind_motions();
   void bind_settings();
   void bind_laws();
+  void bind_lead();
 
   void measure(const Cycle& cycle) noexcept;
   void advance() noexcept;
   void tell(const robot_arm::Guidance::News& news) noexcept;
   void lose_line() noexcept;
+  void tell(const robot_arm::Lead::End& end) noexcept;
   void watch(bool follows) noexcept;
   void watch_clearance() noexcept;
   void watch_contact() noexcept;
@@ -73,6 +76,11 @@ class RobotArm final : public robotics::MovingSubsystem {
   using PairNames = Text<64>;
   Event<double, PairNames> too_near_{"TOO_NEAR"};  ///< m, and who
 
+  Event<std::uint32_t> lead_lost_{"LEAD_LOST"};  ///< cycles
+  Event<> lead_let_go_{"LEAD_LET_GO"};
+  /// Joint from 1, what was asked, the limit, and which.
+  Event<std::uint8_t, double, double, std::uint8_t> lead_unfit_{"LEAD_UNFIT"};
+
   // Each refers to some of those before it.
   robot_arm::UrdfArm known_;
   robot_arm::Drives drives_{parameters_.current};
@@ -80,6 +88,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   robot_arm::OnBoardModel model_{{known_, drives_, parameters_}};
   robot_arm::Obstacles obstacles_{{parameters_.clearance_limit_m, parameters_.clearance_m, parameters_.keep_out}};
   robot_arm::Guidance guidance_{{known_, drives_, obstacles_, parameters_}};
+  robot_arm::Lead lead_{{known_, guidance_}};
   robot_arm::TorqueControl control_{{known_, drives_, model_, guidance_, parameters_}};
   robot_arm::Yielding yielding_{{known_, drives_, model_, obstacles_, guidance_, control_, parameters_}};
   robot_arm::SelfCheck self_check_{{known_, drives_, guidance_, control_, yielding_, parameters_}};

@@ -52,6 +52,27 @@ struct LawValues {
   double turning_n_m;
   double damping;
 };
+/// Of whoever leads over a real-time link (docs/adr/0179).
+struct LeadValues {
+  std::uint8_t leading;  ///< of LEADING
+  std::uint32_t age_cycles;  ///< of what came last
+  double distance;  ///< from the setpoint to where it is led, of the joint that is farthest; rad or m
+};
+struct LeadLimits {
+  double begin;  ///< rad or m
+  double distance;
+};
+/// JOINT_POSITIONS and JOINT_SPEEDS.
+struct LedToPositions {
+  Joints position;
+  Joints velocity;
+  std::uint8_t active;
+};
+struct LedWithSpeeds {
+  Joints velocity;
+  std::uint8_t active;
+};
+
 /// Of each volume that is kept out of: two points and a radius.
 inline constexpr std::size_t volume_numbers = 7;
 using KeepOut = std::array<double, robotics::Clearance::most_volumes * volume_numbers>;

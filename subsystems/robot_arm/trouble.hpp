@@ -23,6 +23,7 @@ enum class Trouble : std::uint16_t {
   soft = 0x800D,  ///< springs hold it, and would move: POSITION_CONTROL first
   out_of_reach = 0x800E,  ///< no posture has the tool there
   singular = 0x800F,  ///< a small way of the tool would be a long one of joints there
+  not_led = 0x8020,  ///< nobody leads, or not to where it may go
 };
 
 }  // namespace hirosco::robot_arm

@@ -4,6 +4,7 @@
 
 #include "hirosco/utilities/allocation_guard.hpp"
 #include "robotics/shapes/clearance.hpp"
+#include "subsystems/robot_arm/control/following.hpp"
 #include "subsystems/robot_arm/control/laws.hpp"
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
 #include "subsystems/robot_arm/control/pose_search.hpp"
@@ -32,13 +33,14 @@ TEST(Control, UsesNoHeapInACycle) {
       model, robotics::read_collision_shapes(testing::six_axes, text, descriptor::file_system()).value.value().hulls};
   clearance.set_limit(0.02);
   PoseSearch search{model, tip, bounds};
+  Following following{bounds, period_s};
   Watch watch;
   const JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
   const JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
   const JointVector zeros = JointVector::Zero(6);
   const Payload payload{2, {0.1, 0, 0}};
   using Kind = Setpoints::Kind;
-  for (const Kind kind : {Kind::JointPath, Kind::Line, Kind::JointJog, Kind::TipJog, Kind::Retract}) {
+  for (const Kind kind : {Kind::JointPath, Kind::Line, Kind::JointJog, Kind::TipJog, Kind::Retract, Kind::Follow}) {
     if (kind != Kind::Retract) setpoints.begin(start);
     const RealtimeScope scope;
     robotics::Pose pose = setpoints.tool();
@@ -53,8 +55,11 @@ TEST(Control, UsesNoHeapInACycle) {
       case Kind::JointJog: setpoints.jog(goal); break;
       case Kind::TipJog: setpoints.jog(Vector6{Vector6::Constant(0.05)}); break;
       case Kind::Retract: setpoints.retract(setpoints.now().position, zeros, 0.1); break;
+      case Kind::Follow: following.begin(setpoints.now().position); break;
     }
     for (int i = 0; i < 300; ++i) {
+      if (kind == Kind::Follow && i < 200)
+        setpoints.take(i < 100 ? following.go_to(goal, zeros) : following.go_with(goal));
       if (i == 200) setpoints.brake();
       const Setpoint& now = setpoints.advance();
       const Measured measured{now.position, now.velocity, zeros};

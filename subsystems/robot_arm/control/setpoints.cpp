@@ -144,8 +144,15 @@ void Setpoints::retract(const JointVector& position, const JointVector& velocity
   braking_ = false;
 }
 
+void Setpoints::take(const Setpoint& next) noexcept {
+  now_ = next;
+  kind_ = Kind::Follow;
+  braking_ = false;
+}
+
 void Setpoints::brake() noexcept {
   if (kind_ != Kind::Rest) braking_ = true;
+  if (kind_ == Kind::Follow) kind_ = Kind::JointJog;  // nobody is followed any more
 }
 
 double Setpoints::progress() const noexcept {
@@ -189,7 +196,8 @@ JointVector Setpoints::braked() const noexcept {
 
 const Setpoint& Setpoints::advance() noexcept {
   switch (kind_) {
-    case Kind::Rest: break;
+    case Kind::Rest:
+    case Kind::Follow: break;
     case Kind::JointPath: advance_path(); break;
     case Kind::Line: advance_line(); break;
     case Kind::JointJog: advance_jog(jog_); break;

@@ -17,7 +17,7 @@ namespace hirosco::robot_arm {
 /// rest by brake().
 class Setpoints {
  public:
-  enum class Kind : std::uint8_t { Rest, JointPath, Line, JointJog, TipJog, Retract };
+  enum class Kind : std::uint8_t { Rest, JointPath, Line, JointJog, TipJog, Retract, Follow };
 
   Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds bounds, double cycle_s);
 
@@ -41,6 +41,8 @@ class Setpoints {
   void retract(const JointVector& position, const JointVector& velocity, double distance) noexcept;
   /// Stands there from now on, as rest(), and came by no way.
   void begin(const JointVector& position) noexcept;
+  /// Somebody else finds each setpoint, within the same limits: this is the next cycle's (Following).
+  void take(const Setpoint& next) noexcept;
   /// Comes to rest: on its path, where there is one.
   void brake() noexcept;
 

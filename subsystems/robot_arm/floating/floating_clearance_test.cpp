@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 constexpr double limit_m = 0.02;
 
 struct ServicerClearance : ::testing::Test {
-  const std::string file = HIROSCO_SOURCE_DIR "/subsystems/robot_arm/floating/servicer.urdf";
+  const std::string file = HIROSCO_SOURCE_DIR "/subsystems/robot_arm/floating/floating_arm.urdf";
   const std::string text = descriptor::file_system()(file).value();
   robotics::Model model = testing::model_of(file);
   robotics::CollisionShapes shapes = robotics::read_collision_shapes(file, text, descriptor::file_system())
