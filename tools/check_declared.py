@@ -7,13 +7,15 @@ take nothing else. Prints what breaks that, and breaks it itself, to be caught.
 
 `declared`: PARENT/ELEMENT, with @ATTRIBUTE, with =WORD; the words of a named type as TYPE=WORD; a group is a parent, too.
 `honoured_by`: STRUCT::MEMBER or ENUMERATION::WORD of the model, and `in` the file outside hirosco/descriptor that reads it; an error
-that hirosco/descriptor makes of it, where a refusal is all that it is for; or a name of the code that does it in any case."""
+that hirosco/descriptor makes of it, where a refusal is all that it is for; or a name of the code that does it in any case. Of one that does it for
+several attributes each row says its own part: FUNCTION>NAME, what that function of hirosco/descriptor, which the file calls, has to do with; TABLE[PLACE] of a
+table that is read as a whole. Else the file names each of them: one that somebody stops reading is missed although the others are read."""
 import csv, pathlib, re, sys
 import xml.etree.ElementTree as xml
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "hirosco/descriptor"
-MODEL = [FOLDER / "model/subsystem.hpp", FOLDER / "model/parameters.hpp", FOLDER / "model/resources.hpp", FOLDER / "model/service_list.hpp", FOLDER / "model/mission.hpp", ROOT / "hirosco/parameter/type.hpp"]
+MODEL = [FOLDER / "model/subsystem.hpp", FOLDER / "model/parameters.hpp", FOLDER / "model/resources.hpp", FOLDER / "model/service_list.hpp", FOLDER / "model/mission.hpp", ROOT / "hirosco/parameter/type.hpp", ROOT / "hirosco/data_transfer/device/device_network.hpp"]
 COLUMNS = ["schema", "declared", "honoured_by", "in"]
 XS = "{http://www.w3.org/2001/XMLSchema}"
 PLAIN = {"YesNo"}  # its words are those of every language
@@ -93,7 +95,44 @@ def members(headers):
     return found
 
 
-def wrong(row, model, source, tests):
+def bodies(texts):
+    """What each function that begins a line says, by its name; several of one name together."""
+    found = {}
+    for text in texts:
+        for begin in re.finditer(r"^(?!using|namespace|struct|class|enum)[\w\[][^;{}()=#]*?(?:(\w+)::)?(\w+)\([^;{}]*\)[^;{}()]*\{", text, re.M):
+            depth, at = 1, begin.end()
+            while depth and at < len(text):
+                depth += {"{": 1, "}": -1}.get(text[at], 0)
+                at += 1
+            found[begin.group(2)] = found.get(begin.group(2), "") + text[begin.end():at]
+    return found
+
+
+def reached(function, functions, depth=3):
+    """What it says and those that it calls, as far as they are of hirosco/descriptor."""
+    names, newest = {function}, {function}
+    for _ in range(depth):
+        newest = {name for known in newest for name in re.findall(r"\b(\w+)\(", functions.get(known, "")) if name in functions} - names
+        names |= newest
+    return "".join(functions.get(name, "") for name in names)
+
+
+def shared(rows, source):
+    """Attributes that have a consumer in common, which does not name them: [(row, the others)]."""
+    groups = {}
+    for row in rows:
+        if "@" in row["declared"] and "=" not in row["declared"] and all((row.get(column) or "").strip() for column in COLUMNS):
+            groups.setdefault((row["schema"], row["honoured_by"], row["in"]), []).append(row)
+    for (_, _, file), group in groups.items():
+        names = {row["declared"].partition("@")[2] for row in group}
+        code = re.sub(r"//[^\n]*|/\*.*?\*/", " ", source(file) or "", flags=re.S)
+        for row in group if len(names) > 1 else []:
+            name = row["declared"].partition("@")[2]
+            if not re.search(rf"(?<![A-Za-z0-9]){name}(?![A-Za-z0-9])", code, re.I):
+                yield row, sorted(names - {name})
+
+
+def wrong(row, model, source, tests, functions):
     """What is not true of a row; `source` gives the text of a file, nothing when there is none."""
     if missing := [column for column in COLUMNS if not (row.get(column) or "").strip()]:
         return "says nothing in " + ", ".join(missing)
@@ -106,6 +145,18 @@ def wrong(row, model, source, tests):
             return f"{file} makes no {by}"
         return None if f'"{by}"' in tests else f"no test of hirosco/descriptor sees {by}"
     code = bare(text)
+    if part := re.fullmatch(r"(\w+)>([\w:]+)", by):
+        function, name = part.group(1), part.group(2).split("::")[-1]
+        if "::" in part.group(2) and part.group(2) not in model:
+            return f"the model has no {part.group(2)}"
+        if not re.search(rf"(?<!\w){function}\(", code):
+            return f"{file} does not call {function}"
+        before = r"(?:\.|->|::)" if "::" in part.group(2) else r"(?<!\w)"
+        return None if re.search(before + name + r"\b", reached(function, functions)) else f"{function} has nothing to do with {part.group(2)}"
+    if place := re.fullmatch(r"([\w:]+)\[([\w:]+)\]", by):
+        by = place.group(1)
+        if place.group(2) not in model:
+            return f"the model has no {place.group(2)}"
     last = by.split("::")[-1]
     kind = model.get("::".join(by.split("::")[-2:]))
     if "::" in by and kind is not None:
@@ -118,7 +169,7 @@ def wrong(row, model, source, tests):
     return None if re.search(r"(?<!\w)" + re.escape(by) + r"\b", code) else f"{file} has no {by}"
 
 
-def problems(schemas, rows, model, source, tests):
+def problems(schemas, rows, model, source, tests, functions):
     for name, schema in schemas.items():
         wanted = declared(schema)
         listed = [row["declared"] for row in rows if row["schema"] == name]
@@ -126,8 +177,10 @@ def problems(schemas, rows, model, source, tests):
         yield from (f"{name}: {place} is in no schema" for place in listed if place not in wanted)
         yield from (f"{name}: {place} has several rows" for place in set(listed) if listed.count(place) > 1)
     for row in rows:
-        if why := wrong(row, model, source, tests):
+        if why := wrong(row, model, source, tests, functions):
             yield f"{row['schema']}: {row['declared']}: {why}"
+    for row, others in shared(rows, source):
+        yield f"{row['schema']}: {row['declared']}: {row['in']} does not name it, and its consumer is that of {', '.join(others)}, too"
 
 
 def unknown(readers, schemas):
@@ -153,7 +206,8 @@ def main():
     tests = "".join(path.read_text() for path in sorted(FOLDER.rglob("*_test.cpp")))
     promises = (ROOT / "docs/paper_map.md").read_text()
     readers = "".join(path.read_text() for path in sorted(FOLDER.rglob("*.cpp")) if not path.name.endswith("_test.cpp"))
-    found = [*problems(schemas, rows, model, source, tests), *unknown(readers, schemas), *lost(promises)]
+    functions = bodies([bare(path.read_text()) for path in sorted(FOLDER.rglob("*.cpp")) if not path.name.endswith("_test.cpp")])
+    found = [*problems(schemas, rows, model, source, tests, functions), *unknown(readers, schemas), *lost(promises)]
 
     def changed(place, **values):
         return [dict(row, **(values if row["declared"] == place else {})) for row in rows]
@@ -172,10 +226,16 @@ def main():
         ("outside hirosco/descriptor", {}, changed("Subsystem/Hang", **{"in": "hirosco/descriptor/read/read_subsystem.cpp"})),
         ("does not read", {}, changed("Subsystem/Hang", **{"in": "hirosco/xml/reader.cpp"})),
         ("the model has no", {}, changed("Subsystem/Hang", honoured_by="SubsystemDescriptor::colour")),
+        ("does not name it", {}, changed("Plan/Do@within_s", honoured_by="PlanStep::values") + [
+            dict(rows[0], schema="mission", declared="Plan/Do@limit", honoured_by="PlanStep::values", **{"in": "supervisor/supervision/procedures/steps/link.hpp"}),
+            dict(rows[0], schema="mission", declared="Plan/Do@pause_ms", honoured_by="PlanStep::values", **{"in": "supervisor/supervision/procedures/steps/link.hpp"})]),
+        ("does not call", {}, changed("Subsystem/Set@value", honoured_by="nobody>begin_with")),
+        ("has nothing to do with", {}, changed("Subsystem/Set@value", honoured_by="apply_change>Device::stop")),
+        ("the model has no Resource::Colour", {}, changed("Mission/Resources@ports", honoured_by="Mission::budget[Resource::Colour]")),
         ("makes no E0999", {}, changed("Subsystem/Hang", honoured_by="E0999", **{"in": "hirosco/descriptor/read/read_modes.cpp"})),
     ]
     for wanted, other, table in planted:
-        seen = problems(**dict(dict(schemas=schemas, model=model, source=source, tests=tests), **other), rows=table)
+        seen = problems(**dict(dict(schemas=schemas, model=model, source=source, tests=tests, functions=functions), **other), rows=table)
         if not any(wanted in problem for problem in seen if problem not in found):
             found.append(f"planted and not seen: {wanted}")
     for asked in ('attributes.integer_or<int>("colour", 1, 2, 0)', '{"Colour", read}', 'read_states(attributes, "colour", {})'):

@@ -76,8 +76,20 @@ inline constexpr std::array power_to_spend{StepAttribute{.name = "budget_W", .le
 inline constexpr std::array plan_to_run{StepAttribute{.name = "plan", .kind = StepAttribute::Kind::Plan}};
 }  // namespace detail
 
-/// Of the values of `restart`: up to which state its subject comes back to what it was commanded to be; 0 = it stays Offline.
-inline constexpr std::size_t restart_to = 3;
+/// Where the values of a step with several are, each by the name of its attribute.
+[[nodiscard]] consteval std::size_t place_of(std::span<const StepAttribute> attributes, std::string_view name) {
+  return static_cast<std::size_t>(std::ranges::find(attributes, name, &StepAttribute::name) - attributes.begin());
+}
+inline constexpr std::size_t restart_limit = place_of(detail::restarts_with_limit, "limit");
+inline constexpr std::size_t restart_within_s = place_of(detail::restarts_with_limit, "within_s");
+inline constexpr std::size_t restart_pause_ms = place_of(detail::restarts_with_limit, "pause_ms");
+/// Up to which state its subject comes back to what it was commanded to be; 0 = it stays Offline.
+inline constexpr std::size_t restart_to = place_of(detail::restarts_with_limit, "to");
+inline constexpr std::size_t wait_for_state = place_of(detail::state_to_wait_for, "state");
+inline constexpr std::size_t wait_for_of = place_of(detail::state_to_wait_for, "of");
+inline constexpr std::size_t wait_for_within_ms = place_of(detail::state_to_wait_for, "within_ms");
+inline constexpr std::size_t hand_over_receiver = place_of(detail::task_to_hand_over, "receiver");
+inline constexpr std::size_t hand_over_configuration = place_of(detail::task_to_hand_over, "configuration");
 
 /// Other than the rest no step of a flight: the reader puts the other plan's steps into its place.
 inline constexpr std::string_view step_that_runs_a_plan = "run";

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "hirosco/descriptor/model/plan_steps.hpp"
 #include "supervisor/supervision/modes/mode_plan.hpp"
 #include "supervisor/supervision/procedures/procedure_runner.hpp"
 #include "supervisor/supervision/procedures/step_kinds.hpp"
@@ -13,7 +14,7 @@ namespace hirosco::supervisor::steps::task {
 namespace {
 
 [[nodiscard]] std::uint16_t receiver_of(const ProcedureStep& step) {
-  return static_cast<std::uint16_t>(step.values[0]);
+  return static_cast<std::uint16_t>(step.values[descriptor::hand_over_receiver]);
 }
 
 /// Each that the configuration needs, is not there, and that its producer has.
@@ -54,7 +55,8 @@ struct HandOver : std::enable_shared_from_this<HandOver> {
   void bring_up() {
     if (const std::string why = against(step, means); !why.empty()) return end(false, why);
     const Member& receiver = *means.craft.member(receiver_of(step));
-    const auto& configuration = *receiver.descriptor().find_configuration(static_cast<std::uint8_t>(step.values[1]));
+    const auto& configuration = *receiver.descriptor().find_configuration(
+        static_cast<std::uint8_t>(step.values[descriptor::hand_over_configuration]));
     if (receiver.state() == State::Operational && receiver.configuration() == configuration.id) return end(true, {});
     WayThere way;
     way.add(receiver.descriptor(), configuration, {receiver.state(), receiver.configuration()}, State::Operational);

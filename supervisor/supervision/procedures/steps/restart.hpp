@@ -18,9 +18,9 @@ inline constexpr StepKind restart{
     .run =
         [](const ProcedureStep& step, const Means& means, CommandDone done) {
           using enum Restarts::AtLimit;
-          const Restarts::Rule rule{.limit = static_cast<std::size_t>(step.values[0]),
-                                    .within = std::chrono::seconds{step.values[1]},
-                                    .pause = std::chrono::milliseconds{step.values[2]},
+          const Restarts::Rule rule{.limit = static_cast<std::size_t>(step.values[descriptor::restart_limit]),
+                                    .within = std::chrono::seconds{step.values[descriptor::restart_within_s]},
+                                    .pause = std::chrono::milliseconds{step.values[descriptor::restart_pause_ms]},
                                     .most = static_cast<State>(step.values[descriptor::restart_to])};
           const Member* subject = means.craft.member(step.subject);
           const bool spared = subject != nullptr && means.craft.is_ground_link(*subject);
