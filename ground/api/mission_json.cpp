@@ -170,7 +170,6 @@ json mission_json(const Catalogue& catalogue, std::span<const Transition> transi
     edges.push_back(
         {{"from", to_text(edge.from)}, {"to", to_text(edge.to)}, {"kind", edge.failure ? "failure" : "commanded"}});
   return {{"name", mission.name},
-          {"id", mission.id},
           {"simulated", !mission.devices.empty()},
           {"epoch_unix_s", -onboard_epoch_to_unix_s - tai_minus_utc_s},
           {"subsystems", std::move(subsystems)},

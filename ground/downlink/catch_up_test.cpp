@@ -30,7 +30,7 @@ class AStationThatMissedSomething : public ::testing::Test {
         return std::string{
             R"(<Subsystem name="LAMP" id="11"><Configuration name="ON" id="1" sampling_us="10000"/></Subsystem>)"};
       if (file == "mission.xml")
-        return std::string{R"(<Mission name="LIGHT" id="9"><Supervisor descriptor="supervisor.xml"/>
+        return std::string{R"(<Mission name="LIGHT"><Supervisor descriptor="supervisor.xml"/>
 <Subsystem executable="lamp" descriptor="lamp.xml"/><Modes initial="dark" start="dark"><Mode name="dark">
 <Permit subsystem="*" functions="SET_STATE CONFIGURE SET_MODE SHUTDOWN"/></Mode></Modes></Mission>)"};
       return descriptor::file_system()(std::filesystem::path{HIROSCO_SOURCE_DIR} / "supervisor" / file.filename());

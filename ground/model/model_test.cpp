@@ -29,8 +29,8 @@ descriptor::Mission mission_of_a_crowd() {
     links += "<Link id=\"" + number + R"(" from="CAMERA.LIGHT" to="LAMP_)" + number + R"(.LIGHT"/>)";
   }
   const std::map<std::string, std::string> files{
-      {"mission.xml", R"(<Mission name="CROWD" id="9"><Supervisor descriptor="supervisor.xml"/>)" + members +
-                          "<Links>" + links + R"(</Links><Modes initial="dark" start="dark"><Mode name="dark">
+      {"mission.xml", R"(<Mission name="CROWD"><Supervisor descriptor="supervisor.xml"/>)" + members + "<Links>" +
+                          links + R"(</Links><Modes initial="dark" start="dark"><Mode name="dark">
 <Permit subsystem="*" functions="SET_STATE CONFIGURE SET_MODE SHUTDOWN"/></Mode></Modes></Mission>)"},
       {"camera.xml",
        R"(<Subsystem name="CAMERA" id="10"><Parameters><ParamRef name="LEVEL" id="0" type="DOUBLE"/>

@@ -22,7 +22,7 @@ constexpr OnboardTime take_off{std::chrono::seconds{2'145'916'900}};
 [[nodiscard]] descriptor::Mission mission_of_a_lamp() {
   const descriptor::FileSource source = [](const std::filesystem::path& file) -> Result<std::string> {
     if (file.filename() == "mission.xml")
-      return R"(<Mission name="NIGHT" id="9"><Supervisor descriptor="supervisor.xml"/>
+      return R"(<Mission name="NIGHT"><Supervisor descriptor="supervisor.xml"/>
 <Subsystem executable="lamp" descriptor="lamp.xml"/><Modes initial="dark" start="dark"><Mode name="dark">
 <Permit subsystem="*" functions="SET_STATE CONFIGURE SET_MODE SHUTDOWN"/></Mode></Modes></Mission>)";
     if (file.filename() == "lamp.xml")

@@ -202,7 +202,6 @@ inline constexpr OnboardTime opening{std::chrono::seconds{2'145'916'900}};
 [[nodiscard]] inline descriptor::Mission workshop() {
   descriptor::Mission mission;
   mission.name = "WORKSHOP";
-  mission.id = 9;
   mission.supervisor = supervisor_of_workshop();
   for (const auto& member : {drill_of_workshop(), lamp_of_workshop()})
     mission.subsystems.emplace_back().subsystem = member;

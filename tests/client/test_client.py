@@ -28,7 +28,7 @@ import ground_client
 import hostile
 import pus_link
 
-MISSION = """<Mission name="R" id="1"><Supervisor descriptor="s.xml"/><Subsystem descriptor="m.xml"/>
+MISSION = """<Mission name="R"><Supervisor descriptor="s.xml"/><Subsystem descriptor="m.xml"/>
 <Links><Link id="1"/><Link id="2"/></Links>
 <Modes initial="commissioning" start="telepresence"><Mode name="commissioning"/><Mode name="standalone"/>
 <Mode name="telepresence" id="7"/></Modes></Mission>"""

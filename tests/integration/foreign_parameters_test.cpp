@@ -9,7 +9,7 @@ namespace hirosco::testing {
 namespace {
 
 constexpr auto heated_mission_text = R"(<?xml version="1.0" encoding="UTF-8"?>
-<Mission name="HEATED" id="9">
+<Mission name="HEATED">
   <Supervisor descriptor="../../supervisor/supervisor.xml">
     <Database strategy="sqlite" path="log/heated.db"/>
     <Ground subsystem="COMMUNICATION" telemetry="127.0.0.1:10015" telecommand="127.0.0.1:10025"/>

@@ -8,7 +8,7 @@ namespace hirosco::testing {
 namespace {
 
 constexpr auto mission_text = R"(<?xml version="1.0" encoding="UTF-8"?>
-<Mission name="GREEDY" id="9">
+<Mission name="GREEDY">
   <Supervisor descriptor="../../supervisor/supervisor.xml">
     <Database strategy="sqlite" path="log/greedy.db"/>
     <Ground subsystem="COMMUNICATION" telemetry="127.0.0.1:10015" telecommand="127.0.0.1:10025"/>

@@ -133,7 +133,7 @@ class Planted final : public Subsystem {
 };
 
 constexpr auto planted_mission_text = R"(<?xml version="1.0" encoding="UTF-8"?>
-<Mission name="PLANTED" id="9">
+<Mission name="PLANTED">
   <Supervisor descriptor="../../supervisor/supervisor.xml">
     <Database strategy="sqlite" path="log/planted.db"/>
     <Ground subsystem="COMMUNICATION" telemetry="127.0.0.1:10015" telecommand="127.0.0.1:10025"/>

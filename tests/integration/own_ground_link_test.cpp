@@ -12,7 +12,7 @@ namespace hirosco::testing {
 namespace {
 
 constexpr auto radio_mission_text = R"(<?xml version="1.0" encoding="UTF-8"?>
-<Mission name="RADIO_ONLY" id="9">
+<Mission name="RADIO_ONLY">
   <Supervisor descriptor="../../supervisor/supervisor.xml">
     <Database strategy="sqlite" path="log/radio.db"/>
     <Ground subsystem="RADIO" telemetry="127.0.0.1:10015" telecommand="127.0.0.1:10025"/>

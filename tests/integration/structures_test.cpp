@@ -13,7 +13,7 @@ namespace hirosco::testing {
 namespace {
 
 constexpr auto structured_mission_text = R"(<?xml version="1.0" encoding="UTF-8"?>
-<Mission name="STRUCTURED" id="9">
+<Mission name="STRUCTURED">
   <Supervisor descriptor="../../supervisor/supervisor.xml">
     <Database strategy="sqlite" path="log/structured.db"/>
     <Ground subsystem="COMMUNICATION" telemetry="127.0.0.1:10015" telecommand="127.0.0.1:10025"/>

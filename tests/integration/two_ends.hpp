@@ -40,7 +40,7 @@ inline Plan two_ends(const LinkedEnd& from, const LinkedEnd& to, const std::stri
     return "<Commission subsystem=\"" + end.name + "\" configuration=\"" + end.configuration +
            "\" state=\"Operational\"/>";
   };
-  std::string mission = R"(<Mission name="TWO_ENDS" id="79">
+  std::string mission = R"(<Mission name="TWO_ENDS">
   <Supervisor descriptor="../../supervisor/supervisor.xml">
     <Database strategy="sqlite" path="log/two_ends.db"/>
     <Ground subsystem="COMMUNICATION" telemetry="127.0.0.1:10015" telecommand="127.0.0.1:10025"/>

@@ -75,7 +75,7 @@ void show_program(const std::string& program, const descriptor::Manifest& manife
 }
 
 void show_mission(const descriptor::Mission& mission) {
-  fmt::print("mission {} ({})\n", mission.name, mission.id);
+  fmt::print("mission {}\n", mission.name);
   if (mission.manifest)
     fmt::print("manifest {}: {} executables\n", mission.manifest->file.string(), mission.manifest->listed.size());
   show_subsystem(mission.supervisor);

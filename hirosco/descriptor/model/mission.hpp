@@ -209,7 +209,6 @@ struct MeasuredPower {
 
 struct Mission {
   std::string name;
-  std::uint16_t id{};
   std::filesystem::path file;
   SubsystemDescriptor supervisor;
   DatabaseUse database;

@@ -34,7 +34,6 @@ TEST(MissionDescriptor, FillsTheWholeModel) {
   ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
   const Mission& mission = *reading.value;
   EXPECT_EQ(mission.name, "ORBITER");
-  EXPECT_EQ(mission.id, 1);
   EXPECT_EQ(mission.file, data / "mission.xml");
   EXPECT_EQ(mission.supervisor.name, "SUPERVISOR");
   EXPECT_EQ(mission.database.path, "log/orbiter.db");
@@ -127,7 +126,7 @@ constexpr Mistake mistakes[] = {
     {"E0110", R"(from="CORONAGRAPH.PLATE_STATE")", R"(from="@PLATE_STATE")"},
     {"E0111", R"(services="3 17 20")", R"(services="@3 ping")"},
     {"E0112", R"(services="3 17 20")", R"(services="@3 256")"},
-    {"E0112", R"(<Mission name="ORBITER" id="1">)", R"(<Mission name="ORBITER" id="@65536">)"},
+    {"E0103", R"(<Mission name="ORBITER">)", R"(<Mission name="ORBITER" @id="1">)", "leave it out"},
     {"E0113", R"(action="shut_down_network")", R"(action="@shut_down_net")"},
     {"E0113", R"(strategy="sqlite")", R"(strategy="@sqlit")", "'sqlite'"},
     {"E0113", R"(severity="low info")", R"(severity="@low inof")", "'info'"},

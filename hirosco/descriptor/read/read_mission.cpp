@@ -112,7 +112,10 @@ void MissionReader::read(const xml::Element& root) {
   {
     Attributes attributes{root, problems_};
     mission_.name = attributes.name();
-    mission_.id = attributes.required_integer<std::uint16_t>("id", 1, 65'535);
+    // It was demanded once, and nothing went by it.
+    if (const auto* id = attributes.optional("id"); id != nullptr)
+      problems_.add(place(id->at), "E0103", "a mission has no number, its name is what it is called by", "leave it out",
+                    id->name.size());
   }
   // What is referred to is read before what refers to it, whatever the order in the file.
   std::vector<const xml::Element*> grounds, powers, budgets, devices, links, modes, recoveries, consoles;
