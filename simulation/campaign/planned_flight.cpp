@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "simulation/spacecraft/flight_origin.hpp"
+
 namespace hirosco::campaign {
 
 void PlannedFlight::Observer::told(OnboardTime, std::string_view line) {
@@ -36,7 +38,8 @@ PlannedFlight::PlannedFlight(const descriptor::Mission& mission, simulation::Mod
       .wrap_channel = defect_->wrap_channel});
   defect_->craft = craft_.get();
   observer_.craft = craft_.get();
-  trace_ = std::make_unique<WorldTrace>(mission_, *craft_, defect_->clock_percent);
+  trace_ = std::make_unique<WorldTrace>(mission_, *craft_, defect_->clock_percent,
+                                        simulation::origin_of(mission_, *craft_, plan_.seed));
   traffic_.emplace(mission_, *craft_, *trace_);
   time_.emplace(PingedTime::Parts{
       .mission = mission_, .craft = *craft_, .defect = *defect_, .trace = *trace_, .traffic = *traffic_});

@@ -9,8 +9,10 @@ constexpr Duration count_every = 20ms;
 
 }  // namespace
 
-WorldTrace::WorldTrace(const descriptor::Mission& mission, simulation::Spacecraft& craft, std::uint32_t clock_percent)
+WorldTrace::WorldTrace(const descriptor::Mission& mission, simulation::Spacecraft& craft, std::uint32_t clock_percent,
+                       std::string_view origin)
     : craft_{craft} {
+  say("simulated {}", origin);
   for (const auto& described : mission.subsystems) members_.push_back({.name = described.subsystem.name});
   for (const auto& described : mission.devices) {
     const auto* device = craft.device(described.name);

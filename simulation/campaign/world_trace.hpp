@@ -18,7 +18,9 @@ namespace hirosco::campaign {
 
 class WorldTrace {
  public:
-  WorldTrace(const descriptor::Mission& mission, simulation::Spacecraft& craft, std::uint32_t clock_percent);
+  /// `origin`: what the flight's octets rest on, for its first line.
+  WorldTrace(const descriptor::Mission& mission, simulation::Spacecraft& craft, std::uint32_t clock_percent,
+             std::string_view origin);
 
   /// Looks around; call after each instant at which something happened.
   void look();

@@ -135,6 +135,8 @@ class SimulatedDevice {
   [[nodiscard]] virtual bool drives() const noexcept { return active(); }
   /// What whoever starts it is to be told of its world, once it is plugged in: what of its files has no effect there.
   [[nodiscard]] virtual std::vector<std::string> remarks() const { return {}; }
+  /// What reckons its world where that is no code of ours, with its version and without a space; empty: nothing does.
+  [[nodiscard]] virtual std::string engine() const { return {}; }
   /// World truth as one line of "name=value" words, for people and pages; "world_s" is the time that has passed there, from
   /// which a late host is left out.
   [[nodiscard]] std::string truth() const;

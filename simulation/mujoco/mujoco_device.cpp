@@ -90,6 +90,8 @@ std::vector<std::string> MujocoDevice::remarks() const {
   return robot_ ? RobotLines::remarks(*robot_, 0) : std::vector<std::string>{};
 }
 
+std::string MujocoDevice::engine() const { return fmt::format("MuJoCo-{}", mj_versionString()); }
+
 Result<> MujocoDevice::stand_around(const Words& words) {
   const std::string_view name = words[0].substr(obstacle_word.size());
   if (name.empty()) return fail(ErrorCode::InvalidArgument, "an obstacle has a name: obstacle_NAME");

@@ -60,6 +60,7 @@ class MujocoDevice final : public SimulatedDevice {
   [[nodiscard]] Result<std::size_t> mount(MujocoSpec robot, const Mount& at, JointBus& bus);
   [[nodiscard]] bool drives() const noexcept override { return driven_; }
   [[nodiscard]] std::vector<std::string> remarks() const override;
+  [[nodiscard]] std::string engine() const override;
 
  private:
   [[nodiscard]] Result<> make_world() override;

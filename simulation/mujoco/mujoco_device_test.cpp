@@ -149,5 +149,10 @@ TEST(MujocoDevice, WithoutAFileOrWithOneThatIsNoneIsNotPluggedIn) {
   }
 }
 
+TEST_F(MujocoDeviceTest, SaysWhichEngineReckonsItsWorld) {
+  EXPECT_EQ(device.engine(), std::string{"MuJoCo-"} + mj_versionString());
+  EXPECT_EQ(mj_version(), mjVERSION_HEADER) << "its library is that of its headers";
+}
+
 }  // namespace
 }  // namespace hirosco::simulation

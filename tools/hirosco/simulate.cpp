@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "hirosco/pus/words/describe.hpp"
+#include "simulation/spacecraft/flight_origin.hpp"
 #include "simulation/spacecraft/modules.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/readiness.hpp"
@@ -57,12 +58,13 @@ void print_record(const supervisor::LogRecord& record, const pus::PacketDescribe
   fmt::print("\n");
 }
 
-/// World truth of all devices as CSV: "DEVICE.NAME" a column, a line after each cycle of whose device is the first. While that
+/// World truth of all devices as CSV behind a line of where it comes from: "DEVICE.NAME" a column, a line after each cycle of whose device is the first. While that
 /// has none, Offline or dead, the world goes on all the same: a line each 10 ms.
 class Trace {
  public:
   static constexpr Duration without_cycles = std::chrono::milliseconds{10};
   explicit Trace(const descriptor::Mission& mission) : mission_{mission} {}
+  void head(const std::string& origin) { fmt::print(file_.get(), "{}{}\n", simulation::origin_mark, origin); }
   [[nodiscard]] bool open(const std::string& path) {
     file_.reset(std::fopen(path.c_str(), "w"));
     return file_ != nullptr;
@@ -155,6 +157,8 @@ int simulate(const SimulateOptions& options) {
                                 .observer = nobody,
                                 .seed = options.seed,
                                 .values = options.values.empty() ? nullptr : &values}};
+  const std::string origin = simulation::origin_of(*mission, craft, options.seed);
+  if (trace) trace->head(origin);
   if (trace)
     craft.on_cycle([&](std::string_view subsystem, TimePoint now) { trace->write_line(subsystem, now, craft); });
   const auto fly_until = [&](TimePoint until) {
@@ -177,6 +181,7 @@ int simulate(const SimulateOptions& options) {
   if (!page) return exit_internal;
   std::size_t packets = 0;
   const pus::PacketDescriber describer{*mission};
+  if (!options.summary) fmt::print("{}{}\n", simulation::origin_mark, origin);
   for (const auto& record : page->records) {
     if (!record.packet.empty()) ++packets;
     if (!options.summary) print_record(record, describer, options.octets);
