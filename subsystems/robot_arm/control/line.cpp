@@ -55,6 +55,7 @@ Result<> Line::plan(const robotics::Pose& from, const robotics::Pose& goal, cons
   reached_ = 0;
   tries_ = 0;
   two_back_ = one_back_ = next_ = posture;
+  postures_.fill(posture);
   return ok();
 }
 
@@ -101,7 +102,8 @@ void Line::take_step() noexcept {
   if (reached_ > 0) bound(reached_);
   two_back_ = one_back_;
   one_back_ = next_;
-  if (++reached_ == steps) {
+  postures_[++reached_] = next_;
+  if (reached_ == steps) {
     smooth();
     found_ = Found::Way;
     return;
@@ -155,6 +157,18 @@ double Line::change_per_s(double path_s) const noexcept {
   const double place = std::clamp(path_s / step_s(), 0.0, static_cast<double>(steps));
   const std::size_t step = std::min(static_cast<std::size_t>(place), steps - 1);
   return std::min(change_[step], change_[step + 1]);
+}
+
+JointVector Line::posture_at(double path_s) const noexcept {
+  const double place = std::clamp(path_s / step_s(), 0.0, static_cast<double>(steps));
+  const std::size_t step = std::min(static_cast<std::size_t>(place), steps - 1);
+  return postures_[step] + (place - static_cast<double>(step)) * (postures_[step + 1] - postures_[step]);
+}
+
+JointVector Line::onward(double path_s) const noexcept {
+  const double place = std::clamp(path_s / step_s(), 0.0, static_cast<double>(steps));
+  const std::size_t step = std::min(static_cast<std::size_t>(place), steps - 1);
+  return (postures_[step + 1] - postures_[step]) / step_s();
 }
 
 double Line::duration_s() const noexcept {

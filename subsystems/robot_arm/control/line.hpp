@@ -51,6 +51,9 @@ class Line {
   [[nodiscard]] double change_per_s(double path_s) const noexcept;
   /// With these paces.
   [[nodiscard]] double duration_s() const noexcept;
+  /// There, straight between two steps; and what the joints do there at full pace.
+  [[nodiscard]] JointVector posture_at(double path_s) const noexcept;
+  [[nodiscard]] JointVector onward(double path_s) const noexcept;
 
   // --- of a plan ----------------------------------------------------------------------------------------------------------
   /// From 0 to 1 in its own time.
@@ -85,6 +88,7 @@ class Line {
   std::size_t reached_{0};
   int tries_{0};
   JointVector two_back_, one_back_, next_;
+  std::array<JointVector, steps + 1> postures_{};
   std::array<double, steps + 1> square_{};  ///< of the pace, at each step
   std::array<double, steps + 1> change_{};
 };

@@ -3,6 +3,9 @@
 #include "subsystems/robot_arm/control/setpoints.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "subsystems/robot_arm/control/braking.hpp"
 
 namespace hirosco::robot_arm {
 namespace {
@@ -13,8 +16,6 @@ constexpr double back_to_line_per_s = 50;
 constexpr double longest_settling_s = 0.5;
 /// It goes no slower for what its survey has not seen.
 constexpr double slowest_pace = 0.01;
-/// Of the accelerations, while it brakes on its way: what is left of them is for what a cycle changes of that way.
-constexpr double braking_share = 0.95;
 constexpr double no_way = 1e-9;
 /// It goes back with this share of the velocities, until it is so near to its end, and no longer than so.
 constexpr double retract_share = 0.25;
@@ -34,7 +35,7 @@ Setpoints::Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds
       line_{model, tip, bounds} {
   JointVector zeros;
   zeros.setZero(model.joint_count());
-  jog_ = posture_ = along_ = met_ = end_ = zeros;
+  jog_ = posture_ = met_ = end_ = zeros;
   state_.qd = zeros;
   begin(zeros);
 }
@@ -86,7 +87,6 @@ Result<> Setpoints::go_straight(const robotics::Pose& goal, const Line::Speed& s
   pace_ = 1;
   path_.at(0, sample_);
   posture_ = now_.position;
-  along_.setZero();
   return ok();
 }
 
@@ -166,30 +166,25 @@ robotics::Pose Setpoints::tool() noexcept {
 }
 
 JointVector Setpoints::braked() const noexcept {
-  constexpr double farther = 1.5;
   if (kind_ == Kind::Rest) return now_.position;
-  double longest_s = kind_ == Kind::Line ? Line::ramp_s : 0;
-  for (std::size_t i = 0; i < bounds_.size(); ++i)
-    longest_s =
-        std::max(longest_s, std::abs(now_.velocity[static_cast<Eigen::Index>(i)]) / bounds_[i].motion.acceleration);
   robotics::PointToPoint::Sample sample;
   if (kind_ == Kind::Line) {
-    // Who is still getting faster on it comes farther than with what he has now, and brakes for longer.
-    path_.at(path_s_ + pace_ * longest_s / 2, sample);
-    for (std::size_t i = 0; i < bounds_.size(); ++i)
-      longest_s = std::max(longest_s, std::abs(along_[static_cast<Eigen::Index>(i)]) * pace_ * sample.velocity[0] /
-                                          bounds_[i].motion.acceleration);
-    path_.at(path_s_ + farther * pace_ * longest_s / 2, sample);
-    return now_.position + (sample.position[0] - sample_.position[0]) * along_;
+    if (line_.found() != Line::Found::Way) return now_.position;
+    const double pace = std::min(line_.pace(path_s_), pace_ + line_.change_per_s(path_s_) * cycle_s_);
+    const double rest_s = rest_on(line_, bounds_, {path_s_ + pace * cycle_s_, pace});
+    return now_.position + line_.posture_at(rest_s) - line_.posture_at(path_s_);
   }
   if (kind_ == Kind::JointPath) {
-    path_.at(path_s_ + farther * pace_ * longest_s / 2, sample);
+    path_.at(rest_on(path_, bounds_, {path_s_ + pace_ * cycle_s_, pace_}, cycle_s_), sample);
     return sample.position;
   }
   JointVector there = now_.position;
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
-    const double speed = now_.velocity[static_cast<Eigen::Index>(i)];
-    there[static_cast<Eigen::Index>(i)] += farther * speed * std::abs(speed) / (2 * bounds_[i].motion.acceleration);
+    const auto joint = static_cast<Eigen::Index>(i);
+    const double most = bounds_[i].motion.acceleration;
+    if (now_.velocity[joint] == 0) continue;
+    const double speed = std::abs(now_.velocity[joint]) + most * cycle_s_;
+    there[joint] += std::copysign(speed * cycle_s_ + speed * speed / (2 * most), now_.velocity[joint]);
   }
   return there;
 }
@@ -208,28 +203,11 @@ const Setpoint& Setpoints::advance() noexcept {
   return now_;
 }
 
-/// How fast the time of a path may go slower, 1/s: where the joints are braked on it already, by what is left of their accelerations.
-double Setpoints::slowing() const noexcept {
-  double slowing = pace_ / cycle_s_;
-  robotics::PointToPoint::Sample sample;
-  for (const double ahead_s : {0.0, pace_ * cycle_s_}) {
-    path_.at(path_s_ + ahead_s, sample);
-    for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
-      const auto i = static_cast<Eigen::Index>(joint);
-      const double speed = std::abs(sample.velocity[i]);
-      const double braked = sample.velocity[i] * sample.acceleration[i] < 0 ? std::abs(sample.acceleration[i]) : 0;
-      const double left = braking_share * bounds_[joint].motion.acceleration - pace_ * pace_ * braked;
-      if (speed > 0) slowing = std::min(slowing, std::max(0.0, left) / speed);
-    }
-  }
-  return slowing;
-}
-
 /// Braked, the arm stays on its path: its time goes slower, as fast as the joints' accelerations permit.
 void Setpoints::advance_path() noexcept {
   double slower = 0;
   if (braking_) {
-    slower = slowing();
+    slower = slowing(path_, bounds_, {path_s_, pace_}, cycle_s_);
     pace_ = std::max(0.0, pace_ - slower * cycle_s_);
   }
   path_s_ += pace_ * cycle_s_;
@@ -326,7 +304,6 @@ void Setpoints::advance_line() noexcept {
   // Joints that the tool leaves free are drawn while it goes, and stand when it does.
   const JointVector drawn = now_.position + rate / line_.rate() * (posture_ - now_.position);
   const JointVector onward = tip_rates(line_.kinematics(), rate * line_.twist(), drawn);
-  if (rate > 0) along_ = onward / rate;
   keep_pace(onward, back);
   JointVector rates = pace_ * onward + back;
   keep_limits(rates);

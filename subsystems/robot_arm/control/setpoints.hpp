@@ -52,7 +52,8 @@ class Setpoints {
   [[nodiscard]] Kind kind() const noexcept { return kind_; }
   [[nodiscard]] bool at_rest() const noexcept { return kind_ == Kind::Rest; }
   [[nodiscard]] bool braking() const noexcept { return braking_; }
-  /// About where it would come to rest if it braked now; rather farther than nearer.
+  /// Where it would come to rest if it went on for a cycle and braked then: who brakes as soon as that is too far rests where it was not. Never nearer, but for the
+  /// last digits of a line and what bends between two steps of its survey; on a path or a line a little farther (braking.hpp).
   [[nodiscard]] JointVector braked() const noexcept;
   /// Of a path: 0 to 1.
   [[nodiscard]] double progress() const noexcept;
@@ -86,7 +87,6 @@ class Setpoints {
   [[nodiscard]] JointVector tip_rates(const robotics::InverseKinematics& kinematics, const Vector6& twist,
                                       const JointVector& posture) noexcept;
   void follow(const JointVector& velocity) noexcept;
-  [[nodiscard]] double slowing() const noexcept;
   void keep_pace(const JointVector& onward, const JointVector& back) noexcept;
   void keep_limits(JointVector& rates) noexcept;
   void come_to_rest() noexcept;
@@ -111,7 +111,6 @@ class Setpoints {
   robotics::Pose tool_{};
   double off_line_m_{0};
   JointVector posture_;
-  JointVector along_;  ///< of a line: what the joints would do for the whole of it, by where it is
   JointVector jog_;
   Trail trail_;
   JointVector met_, end_;  ///< of a retreat: where it begins and ends
