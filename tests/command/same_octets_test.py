@@ -14,7 +14,7 @@ HIROSCO = pathlib.Path(os.environ.get("HIROSCO_BIN", REPOSITORY / "build/fly/bin
 sys.path.insert(0, str(REPOSITORY / "bench"))
 import same_octets  # noqa: E402  beside bench/compare, which uses it
 
-ORIGIN = {"hirosco": "0.1.0", "architecture": "x86_64", "c_library": "glibc-2.36", "engines": "MuJoCo-4.0.0", "mission": "M", "seed": "1"}
+ORIGIN = {"hirosco": "7.8.9", "architecture": "x86_64", "c_library": "glibc-2.36", "engines": "MuJoCo-4.0.0", "mission": "M", "seed": "1"}
 
 
 def flight(*lines, mark="# simulated: ", **differs):
