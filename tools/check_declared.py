@@ -15,7 +15,7 @@ import xml.etree.ElementTree as xml
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "hirosco/descriptor"
-MODEL = [FOLDER / "model/subsystem.hpp", FOLDER / "model/parameters.hpp", FOLDER / "model/resources.hpp", FOLDER / "model/service_list.hpp", FOLDER / "model/mission.hpp", ROOT / "hirosco/parameter/type.hpp", ROOT / "hirosco/data_transfer/device/device_network.hpp"]
+MODEL = [FOLDER / "model/subsystem.hpp", FOLDER / "model/parameters.hpp", FOLDER / "model/resources.hpp", FOLDER / "model/service_list.hpp", FOLDER / "model/bumpless.hpp", FOLDER / "model/mission.hpp", ROOT / "hirosco/parameter/type.hpp", ROOT / "hirosco/data_transfer/device/device_network.hpp"]
 COLUMNS = ["schema", "declared", "honoured_by", "in"]
 XS = "{http://www.w3.org/2001/XMLSchema}"
 PLAIN = {"YesNo"}  # its words are those of every language

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/descriptor/model/service_list.hpp"
+#include "hirosco/descriptor/model/location.hpp"
 #include "hirosco/parameter/exact_number.hpp"
 #include "hirosco/parameter/type.hpp"
 #include "hirosco/utilities/time.hpp"

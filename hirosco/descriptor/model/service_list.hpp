@@ -3,23 +3,16 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "hirosco/descriptor/model/location.hpp"
 #include "hirosco/utilities/time.hpp"
 
-/// Which services a subsystem offers, in which loops they run, and between which configurations it goes without a break
-/// (docs/adr/0096). Plain data, as the descriptor says it.
+/// Which services a subsystem offers, and in which loops they run (docs/adr/0096). Plain data, as the descriptor says it.
 namespace hirosco::descriptor {
-
-/// Where an element stands in its file; line and column count from 1.
-struct Location {
-  int line{0};
-  int column{0};
-  friend bool operator==(const Location&, const Location&) = default;
-};
 
 /// Most loops that a subsystem has besides its service loop and its cycle.
 inline constexpr std::size_t max_service_loops = 8;
@@ -56,18 +49,5 @@ inline constexpr std::array standard_services_by_name{
     StandardService{"ST08", 8, false, false},   StandardService{"ST17", 17, false, false},
     StandardService{"ST20", 20, true, false},   StandardService{"ST128", 128, false, false},
     StandardService{"ST130", 130, false, false}};
-
-/// Configurations between which CONFIGURE goes while the subsystem acts, both ways, each with each.
-struct Bumpless {
-  std::vector<std::uint8_t> configurations;  ///< ids
-  /// The largest difference of an actuator's output from one cycle to the next where the configuration changes.
-  struct Step {
-    std::uint16_t device{};  ///< index into SubsystemDescriptor::devices
-    std::uint16_t output{};  ///< index into Device::output; each element of an array
-    double most{0};  ///< in the unit of the output
-  };
-  std::vector<Step> steps;  ///< one for each output of each actuator that they use
-  Location at{};
-};
 
 }  // namespace hirosco::descriptor

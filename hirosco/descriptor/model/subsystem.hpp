@@ -15,6 +15,7 @@
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/link/link.hpp"
+#include "hirosco/descriptor/model/bumpless.hpp"
 #include "hirosco/descriptor/model/parameters.hpp"
 #include "hirosco/descriptor/model/resources.hpp"
 #include "hirosco/descriptor/model/service_list.hpp"
