@@ -154,7 +154,7 @@ struct Endnode {
   Location at;
 };
 
-/// What a device does by itself when its command is taken away: the inhibit falls, or its frames stay out.
+/// What a device does by itself when its command is taken away: the inhibit falls, or its frames stay out. Its own duty; on board nobody checks it.
 enum class StopKind : std::uint8_t {
   Drop,  ///< no force at once
   Controlled,  ///< comes to rest within `stop_within`, then no force or brake
