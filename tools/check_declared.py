@@ -28,6 +28,19 @@ def tag(node):
     return node.tag.removeprefix(XS) if isinstance(node.tag, str) else ""
 
 
+def whole(file, known):
+    """The text of a schema with the parts that it includes in place, each once; a part that is not there is found out by who reads it."""
+    text = file.read_text()
+
+    def part(include):
+        place = file.parent / include.group(1)
+        if place in known:
+            return ""
+        known.add(place)
+        return re.sub(r"^.*?<xs:schema[^>]*>|</xs:schema>\s*$", "", whole(place, known), flags=re.S)
+    return re.sub(r'<xs:include schemaLocation="([^"]+)"/>', part, text)
+
+
 def declared(schema):
     """What a schema lets somebody write, each once, in its order."""
     root = xml.fromstring(schema)
@@ -199,7 +212,7 @@ def main():
     def source(file):
         return (ROOT / file).read_text() if (ROOT / file).is_file() else None
 
-    schemas = {name: (FOLDER / f"{name}.xsd").read_text() for name in ("subsystem", "mission")}
+    schemas = {name: whole(FOLDER / f"{name}.xsd", set()) for name in ("subsystem", "mission")}
     with (FOLDER / "consumers.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     model = members([bare(path.read_text()) for path in MODEL])

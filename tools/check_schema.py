@@ -10,6 +10,8 @@ import re
 import sys
 import xml.etree.ElementTree as xml
 
+import check_declared
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/interfaces/schema.md"
 SCHEMAS = {"Mission": "hirosco/descriptor/mission.xsd", "Subsystem": "hirosco/descriptor/subsystem.xsd"}
@@ -173,7 +175,7 @@ def page(schemas):
 
 
 def read():
-    return [(ROOT / path).read_text() for path in SCHEMAS.values()]
+    return [check_declared.whole(ROOT / path, set()) for path in SCHEMAS.values()]
 
 
 def problems(texts, written):

@@ -9,7 +9,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PARTS = ("hirosco", "robotics", "supervisor", "subsystems", "simulation", "missions", "ground", "tools", "tests", "bench")
 LONGEST_FILE, LONGEST_CLASS, LONGEST_WHOLE = 500, 300, 440
 OTHERS = {"supervisor/supervisor.hpp": 90}
-CODE = (".cpp", ".hpp", ".py", ".js", ".mjs")
+CODE = (".cpp", ".hpp", ".py", ".js", ".mjs", ".xsd")
 CLASS = re.compile(r"^(?:template <.*> *)?(?:class|struct) (?:\[\[\w+\]\] )?(\w+)[^;(]*\{", re.M)
 MEMBER = re.compile(r"^(?:[A-Za-z_\[][^\n;#/]*?[ *&])?(?:\w+::)*?(\w+)::~?(?:operator)?\w+\(", re.M)
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"([^">]+)"', re.M)
@@ -126,7 +126,7 @@ def problems(texts):
     return list(too_long(texts)) + list(too_large(texts)) + circles(texts) + list(untested(texts))
 
 
-PLANTED = [({"hirosco/a.cpp": "\n" * 501}, "501 lines"), ({"supervisor/supervisor.hpp": "\n" * 91}, "91 lines"),
+PLANTED = [({"hirosco/a.cpp": "\n" * 501}, "501 lines"), ({"hirosco/a.xsd": "\n" * 501}, "a.xsd: 501 lines"), ({"supervisor/supervisor.hpp": "\n" * 91}, "91 lines"),
            ({"hirosco/a.hpp": "class Big final : Base {\n" + "  int a;\n" * 301 + "};\n"}, "Big has 30"),
            ({"hirosco/a.hpp": "class Spread {\n" + "  int a;\n" * 250 + "};\n",
              "hirosco/a.cpp": "int Spread::a() {\n" + "  b();\n" * 250 + "}\n",

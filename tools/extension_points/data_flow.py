@@ -7,7 +7,7 @@ BEFORE = "3 + 5"
 GOAL = "own files + 1 row (and its file in CMake)"
 MOST_FILES, MOST_EDITED = 2, 1
 ASKED = [
-    ("hirosco/descriptor/subsystem.xsd", "RefusesWhatTheReaderRefuses"),
+    ("hirosco/descriptor/types.xsd", "RefusesWhatTheReaderRefuses"),
     ("hirosco/descriptor/consumers.csv", "check_declared"),
 ]
 FILES = {"hirosco/data_transfer/device/can_gateway_flow.hpp": """\

@@ -8,7 +8,7 @@ BEFORE = "3 + 7 in 4 rooms"
 GOAL = "own files + 1 row (and its file in CMake)"
 MOST_FILES, MOST_EDITED = 2, 1
 ASKED = [
-    ("hirosco/descriptor/subsystem.xsd", "RefusesWhatTheReaderRefuses"),
+    ("hirosco/descriptor/types.xsd", "RefusesWhatTheReaderRefuses"),
     ("hirosco/descriptor/mission.xsd", "RefusesWhatTheReaderRefuses"),
     ("hirosco/descriptor/consumers.csv", "check_declared"),
 ]

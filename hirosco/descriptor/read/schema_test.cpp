@@ -62,10 +62,19 @@ TEST(Schema, RefusesWhatTheReaderRefuses) {
   std::filesystem::remove(file);
 }
 
+/// With the parts that it includes.
+std::string text_of(const std::string& schema) {
+  std::ifstream stream{folder / schema};
+  std::string text{std::istreambuf_iterator<char>{stream}, {}};
+  const std::regex part{"<xs:include schemaLocation=\"([^\"]+)\"/>"};
+  const std::string own = text;
+  for (std::sregex_iterator it{own.begin(), own.end(), part}, end; it != end; ++it) text += text_of((*it)[1]);
+  return text;
+}
+
 /// The words of each enumeration that a schema has.
 std::set<std::set<std::string>> enumerations_of(const char* schema) {
-  std::ifstream stream{folder / schema};
-  const std::string text{std::istreambuf_iterator<char>{stream}, {}};
+  const std::string text = text_of(schema);
   const std::regex word{"<xs:enumeration value=\"([^\"]+)\"/>"};
   std::set<std::set<std::string>> found;
   for (std::size_t at = text.find("<xs:restriction"); at != std::string::npos;
