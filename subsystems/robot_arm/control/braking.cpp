@@ -9,9 +9,9 @@ namespace hirosco::robot_arm {
 namespace {
 
 /// A step, of the time in which the joints would come to rest if each was braked by itself; it takes up to three times as long, where the way itself brakes or turns.
-constexpr double parts = 16;
-constexpr int most_parts = 64;
-constexpr double moves = 1e-9;
+constexpr double brake_parts = 16;
+constexpr int most_brake_parts = 64;
+constexpr double no_motion = 1e-9;
 
 /// rad/s or m/s of each joint, at full pace.
 [[nodiscard]] double longest_brake_s(const JointVector& velocity, double pace, Bounds bounds) noexcept {
@@ -25,7 +25,7 @@ constexpr double moves = 1e-9;
 }  // namespace
 
 double slowing(const robotics::PointToPoint& path, Bounds bounds, const OnWay& on, double span_s) noexcept {
-  double slowing = on.pace / span_s;
+  double most = on.pace / span_s;
   robotics::PointToPoint::Sample sample;
   for (const double ahead_s : {0.0, on.pace * span_s}) {
     path.at(on.at_s + ahead_s, sample);
@@ -34,18 +34,18 @@ double slowing(const robotics::PointToPoint& path, Bounds bounds, const OnWay& o
       const double speed = std::abs(sample.velocity[i]);
       const double braked = sample.velocity[i] * sample.acceleration[i] < 0 ? std::abs(sample.acceleration[i]) : 0;
       const double left = braking_share * bounds[joint].motion.acceleration - on.pace * on.pace * braked;
-      if (speed > 0) slowing = std::min(slowing, std::max(0.0, left) / speed);
+      if (speed > 0) most = std::min(most, std::max(0.0, left) / speed);
     }
   }
-  return slowing;
+  return most;
 }
 
 double rest_on(const robotics::PointToPoint& path, Bounds bounds, OnWay on, double cycle_s) noexcept {
   robotics::PointToPoint::Sample sample;
   path.at(on.at_s, sample);
   const double longest_s = longest_brake_s(sample.velocity, on.pace, bounds),
-               span_s = std::max(longest_s / parts, cycle_s);
-  for (int i = 0; i < most_parts && on.pace > 0 && on.at_s < path.duration_s(); ++i) {
+               span_s = std::max(longest_s / brake_parts, cycle_s);
+  for (int i = 0; i < most_brake_parts && on.pace > 0 && on.at_s < path.duration_s(); ++i) {
     const double slower = slowing(path, bounds, on, span_s);
     on.at_s += on.pace * span_s;
     on.pace = std::max(0.0, on.pace - std::min(slower, slowing(path, bounds, on, span_s)) * span_s);
@@ -58,14 +58,14 @@ double rest_on(const Line& line, Bounds bounds, OnWay on) noexcept {
   const double end_s = line.path().duration_s();
   JointVector before = line.onward(on.at_s);
   const double longest_s = std::max(on.pace * Line::ramp_s, longest_brake_s(before, on.pace, bounds));
-  const double span_s = longest_s / parts;
-  for (int i = 0; i < most_parts && on.pace > 0 && on.at_s < end_s; ++i) {
+  const double span_s = longest_s / brake_parts;
+  for (int i = 0; i < most_brake_parts && on.pace > 0 && on.at_s < end_s; ++i) {
     on.at_s += on.pace * span_s;
     const JointVector onward = line.onward(on.at_s);
     double slowed = std::max(0.0, on.pace - span_s / Line::ramp_s);
     for (std::size_t joint = 0; joint < bounds.size(); ++joint) {
       const auto k = static_cast<Eigen::Index>(joint);
-      if (std::abs(onward[k]) < moves) continue;
+      if (std::abs(onward[k]) < no_motion) continue;
       const double least = on.pace * std::abs(before[k]) - braking_share * bounds[joint].motion.acceleration * span_s;
       slowed = std::max(slowed, least / std::abs(onward[k]));
     }

@@ -75,7 +75,7 @@ class Floating {
   [[nodiscard]] double off_goal_m() const { return off_m_; }
 
  private:
-  static constexpr double cycle_s = 0.01, followed_per_s = 40;
+  static constexpr double cycle_s = 0.01;
 
   void update() { ASSERT_TRUE(model_.update(base_, q_)); }
   /// Joints follow velocities as the law of torques lets them.

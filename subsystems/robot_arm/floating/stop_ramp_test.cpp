@@ -10,18 +10,18 @@
 namespace hirosco::robot_arm {
 namespace {
 
-constexpr double cycle_s = 0.001, fastest_rad_s = 0.2;
+constexpr double ramp_cycle_s = 0.001, fastest_joint_rad_s = 0.2;
 
 /// Of one joint that follows with `followed_per_s`, from what it has to rest.
-double gone(double asked, double has) {
+[[nodiscard]] double gone_by_ramp(double asked, double has) {
   StopRamp ramp;
   JointVector rates = JointVector::Constant(1, asked);
   ramp.begin(rates);
   double way = 0;
   while (!ramp.over() || std::abs(has) > 1e-9) {
-    has += cycle_s * followed_per_s * (ramp.rates()[0] - has);
-    way += cycle_s * has;
-    ramp.go_on(cycle_s);
+    has += ramp_cycle_s * followed_per_s * (ramp.rates()[0] - has);
+    way += ramp_cycle_s * has;
+    ramp.go_on(ramp_cycle_s);
   }
   return way;
 }
@@ -29,17 +29,17 @@ double gone(double asked, double has) {
 /// Over all that a joint may have and be asked for, whichever way each.
 TEST(StopRamp, EndsWhereItWasToldWithinTheWayOfACycleAndNoFarther) {
   std::mt19937 random{1};
-  std::uniform_real_distribution<double> any{-fastest_rad_s, fastest_rad_s};
+  std::uniform_real_distribution<double> any{-fastest_joint_rad_s, fastest_joint_rad_s};
   for (int i = 0; i < 2000; ++i) {
     const double asked = any(random), has = any(random);
-    const double told = StopRamp::way(JointVector::Constant(1, asked), JointVector::Constant(1, has), cycle_s)[0];
+    const double told = StopRamp::way(JointVector::Constant(1, asked), JointVector::Constant(1, has), ramp_cycle_s)[0];
     // What was told is farther that way by at most a cycle; has's own share is exact but for the cycle in which it is measured.
-    const double off = told - gone(asked, has), most = cycle_s * (std::abs(asked) + std::abs(has));
+    const double off = told - gone_by_ramp(asked, has), most = ramp_cycle_s * (std::abs(asked) + std::abs(has));
     EXPECT_LE(std::abs(off), most) << asked << " asked, " << has << " had";
   }
-  for (double rate = 0.001; rate <= fastest_rad_s; rate += 0.001)
-    EXPECT_GE(StopRamp::way(JointVector::Constant(1, rate), JointVector::Constant(1, rate), cycle_s)[0] + 1e-9,
-              gone(rate, rate))
+  for (double rate = 0.001; rate <= fastest_joint_rad_s; rate += 0.001)
+    EXPECT_GE(StopRamp::way(JointVector::Constant(1, rate), JointVector::Constant(1, rate), ramp_cycle_s)[0] + 1e-9,
+              gone_by_ramp(rate, rate))
         << rate << ": never under";
 }
 
