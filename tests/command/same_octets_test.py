@@ -35,7 +35,7 @@ class SameOctets(unittest.TestCase):
         self.assertEqual(self.compared(flight("a", mark="0 simulated "), flight("a", mark="0 simulated "))[0], same_octets.SAME)
 
     def test_another_version_of_what_is_compared_is_no_reason_to_refuse(self):
-        self.assertEqual(self.compared(flight("a"), flight("a", hirosco="0.2.0"))[0], same_octets.SAME)
+        self.assertEqual(self.compared(flight("a"), flight("a", hirosco="7.9.0"))[0], same_octets.SAME)
 
     def test_whatever_else_they_rest_on_is_refused_by_its_name_when_it_differs(self):
         for key, other in (("engines", "MuJoCo-4.1.0"), ("architecture", "aarch64"), ("c_library", "glibc-2.41"), ("mission", "N"), ("seed", "2")):
