@@ -40,6 +40,16 @@ void MujocoDevice::advance(Duration cycle) noexcept {
   driven_ = output() == DeviceOutput::Active;
   bus_.drive(*robot_, output());
   robot_->step(cycle);
+  if (!has_force_sensor_) return;
+  force_age_ms_ = force_silent_ ? force_age_ms_ + 1e3 * seconds(cycle) : 0;
+  if (!force_silent_) force_ = robot_->tip_force();
+}
+
+void MujocoDevice::write_sensors(OctetWriter& payload) noexcept {
+  bus_.write_sensors(*robot_, payload);
+  if (!has_force_sensor_) return;
+  for (const double number : force_) payload.put(number);
+  payload.put(static_cast<std::uint32_t>(std::min(force_age_ms_, 1e9)));
 }
 
 Result<std::vector<std::size_t>> MujocoDevice::hand_over(std::string_view names) {
@@ -132,6 +142,16 @@ Result<> MujocoDevice::lie_around(const Words& words) {
   return done ? ok() : refuse(ErrorCode::InvalidArgument, std::move(done.error()));
 }
 
+/// Who reads the frames has to know of it, so that it is there from the beginning.
+Result<> MujocoDevice::feel(const Words& words) {
+  HIROSCO_TRY(words.expect(2));
+  if (words[1] == "on" && cycles() == 0) has_force_sensor_ = true;
+  else if (words[1] == "silent" && has_force_sensor_) force_silent_ = true;
+  else if (words[1] == "tells" && has_force_sensor_) force_silent_ = false;
+  else return fail(ErrorCode::NotPermitted, "force_sensor on is a <Setting> of its mission; with it silent or tells");
+  return ok();
+}
+
 Result<> MujocoDevice::differ(const Words& words) {
   const std::string_view what = words[0];
   if (what == "gravity") {
@@ -167,6 +187,7 @@ Result<> MujocoDevice::do_fault(const Words& words) {
   }
   if (words[0].starts_with(obstacle_word)) return stand_around(words);
   if (words[0].starts_with(body_word) || words[0].starts_with(pull_word)) return lie_around(words);
+  if (words[0] == "force_sensor") return feel(words);
   if (words[0] == "base") {
     if (words.count() != 2 || words[1] != "free")
       return fail(ErrorCode::InvalidArgument, "a base stands, or it is free: base free");
@@ -183,6 +204,7 @@ void MujocoDevice::do_heal() noexcept {
   robot_->push(0, 0, 0);
   robot_->let_go_of_bodies();
   bus_.set_noise(0);
+  force_silent_ = false;
 }
 
 std::string MujocoDevice::do_truth() const {

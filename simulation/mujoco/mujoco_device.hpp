@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +28,7 @@ namespace hirosco::simulation {
 ///   obstacle_NAME SHAPE [SIZES] X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | obstacle_NAME none   (shapes.hpp; 16 at most)
 ///   body_NAME SHAPE SIZES MASS X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | body_NAME none | pull_NAME X Y Z   (8 at most)
 ///   softness SECONDS
+///   force_sensor on   (as a <Setting> alone: behind TORQUE it tells FORCE and MOMENT DOUBLE[3] at the tip and FORCE_AGE UINT32) | force_sensor silent|tells
 ///   gravity X Y Z | noise N_M, and those of its robot (robot_lines.hpp)
 class MujocoDevice final : public SimulatedDevice {
  public:
@@ -66,7 +68,7 @@ class MujocoDevice final : public SimulatedDevice {
   [[nodiscard]] Result<> make_world() override;
   void advance(Duration cycle) noexcept override;
   [[nodiscard]] Result<> take(OctetReader payload) noexcept override { return bus_.take(payload); }
-  void write_sensors(OctetWriter& payload) noexcept override { bus_.write_sensors(*robot_, payload); }
+  void write_sensors(OctetWriter& payload) noexcept override;
   [[nodiscard]] Result<> do_fault(const Words& words) override;
   [[nodiscard]] std::string do_truth() const override;
   void do_heal() noexcept override;
@@ -76,6 +78,7 @@ class MujocoDevice final : public SimulatedDevice {
   [[nodiscard]] Result<> stand_around(const Words& words);
   [[nodiscard]] Result<> lie_around(const Words& words);
   [[nodiscard]] Result<> differ(const Words& words);
+  [[nodiscard]] Result<> feel(const Words& words);
 
   std::optional<MujocoRobot> robot_;
   JointBus bus_;
@@ -83,6 +86,10 @@ class MujocoDevice final : public SimulatedDevice {
   RobotLines lines_;
   std::string problem_;  ///< why there is no world, or what it was asked for is not done
   bool driven_{false};
+  bool has_force_sensor_{false};
+  bool force_silent_{false};
+  std::array<double, 6> force_{};  ///< that it told last
+  double force_age_ms_{0};
 };
 
 }  // namespace hirosco::simulation

@@ -69,6 +69,23 @@ TEST(MujocoRobot, HoldsWithClosedBrakesWhatItsDrivesCouldHoldTwice) {
   }
 }
 
+/// Of what hangs there and pushes, in the axes of the tip; brakes hold it.
+TEST(MujocoRobot, TellsTheForceAtItsTipAsASensorThereWould) {
+  auto robot = MujocoRobot::make(pendulum()).value();
+  ASSERT_TRUE(robot.set_tip("rod"));
+  ASSERT_TRUE(robot.place(std::array{0.3}));
+  robot.set_payload(2);
+  robot.push(5, 7, 0);
+  for (int i = 0; i < 100; ++i) robot.step(none, Brakes::Closed, 1ms);
+  const double turned = robot.position(0);
+  const std::array<double, 3> base{5, 7, -2 * 9.81};
+  const auto told = robot.tip_force();
+  EXPECT_NEAR(told[0], std::cos(turned) * base[0] - std::sin(turned) * base[2], 0.05);
+  EXPECT_NEAR(told[1], base[1], 0.05);
+  EXPECT_NEAR(told[2], std::sin(turned) * base[0] + std::cos(turned) * base[2], 0.05);
+  for (std::size_t i = 3; i < 6; ++i) EXPECT_NEAR(told[i], 0, 0.05) << i;
+}
+
 TEST(MujocoRobot, HasTheDryFrictionOfItsFileAndMoreWhereThatIsWanted) {
   auto robot = MujocoRobot::make(pendulum("<dynamics damping='0' friction='3'/>")).value();
   robot.set_gravity(0, 0, 0);

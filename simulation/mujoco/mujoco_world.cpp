@@ -46,6 +46,16 @@ std::span<double, 6> MujocoWorld::pushed(std::size_t robot) const noexcept {
   return std::span<double, 6>{data_->xfrc_applied + 6 * tip(robot), 6};
 }
 
+std::array<double, 6> MujocoWorld::tip_force(std::size_t robot) const noexcept {
+  mj_rnePostConstraint(model_.get(), data_.get());
+  const int body = tip(robot);
+  // What its carrier gives to it, about the centre of mass of all that moves: moment, force.
+  std::array<double, 6> given{};
+  mju_transformSpatial(given.data(), data_->cfrc_int + 6 * body, 1, data_->xpos + 3 * body,
+                       data_->subtree_com + 3 * model_->body_rootid[body], data_->xmat + 9 * body);
+  return {-given[3], -given[4], -given[5], -given[0], -given[1], -given[2]};
+}
+
 void MujocoWorld::push(std::array<double, 3> force_n, std::size_t robot) noexcept {
   std::ranges::copy(force_n, pushed(robot).begin());
 }

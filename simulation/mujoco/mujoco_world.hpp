@@ -55,6 +55,8 @@ class MujocoWorld {
   [[nodiscard]] std::span<const double, 4> tip_orientation(std::size_t robot) const noexcept;
   /// What acts at it from outside until it is another: force in N, torque in N m, in the axes of the base.
   [[nodiscard]] std::span<double, 6> pushed(std::size_t robot) const noexcept;
+  /// What hangs on it and pushes it gives to the link that carries it: force in N, moment in N m about its origin, in its own axes.
+  [[nodiscard]] std::array<double, 6> tip_force(std::size_t robot) const noexcept;
   void push(std::array<double, 3> force_n, std::size_t robot) noexcept;
   void set_gravity(double x, double y, double z) noexcept;
 

@@ -9,9 +9,20 @@ void Drives::forget(std::size_t joints) noexcept {
 }
 
 void Drives::measure(State state) noexcept {
-  const ArmInput& in = port_.input();
-  current_.store({static_cast<std::int32_t>(state), in.position, in.velocity, in.torque, port_.flags()});
+  const ArmInput in = says();
+  current_.store({static_cast<std::int32_t>(state), in.position, in.velocity, in.torque, port().flags()});
   measured_ = {vector_of(in.position), vector_of(in.velocity), vector_of(in.torque)};
+}
+
+ArmInput Drives::says() const noexcept {
+  if (!tells_force_) return port_.input();
+  const SensingArmInput& in = sensing_port_.input();
+  return {in.position, in.velocity, in.torque};
+}
+
+TipForce Drives::force() const noexcept {
+  const SensingArmInput& in = sensing_port_.input();
+  return {in.force_n, in.moment_n_m, in.age_ms};
 }
 
 }  // namespace hirosco::robot_arm

@@ -18,9 +18,15 @@ class Drives {
   /// `current` tells what is measured.
   explicit Drives(Parameter<CurrentValues>& current) noexcept : current_{current} {}
 
+  /// Before port(): the device tells force and moment at the tip, too.
+  void take_force() noexcept { tells_force_ = true; }
+  [[nodiscard]] bool tells_force() const noexcept { return tells_force_; }
   /// For use_device().
-  [[nodiscard]] DevicePortBase& port() noexcept { return port_; }
-  [[nodiscard]] bool alive() const noexcept { return port_.alive(); }
+  [[nodiscard]] DevicePortBase& port() noexcept {
+    if (tells_force_) return sensing_port_;
+    return port_;
+  }
+  [[nodiscard]] bool alive() const noexcept { return tells_force_ ? sensing_port_.alive() : port_.alive(); }
 
   /// As if so many joints stood at 0.
   void forget(std::size_t joints) noexcept;
@@ -29,15 +35,21 @@ class Drives {
   /// Of no length before there is any.
   [[nodiscard]] const Measured& measured() const noexcept { return measured_; }
   /// What the device last said, of the lengths that its descriptor has.
-  [[nodiscard]] const ArmInput& says() const noexcept { return port_.input(); }
+  [[nodiscard]] ArmInput says() const noexcept;
+  /// Of a device that tells it.
+  [[nodiscard]] TipForce force() const noexcept;
 
   /// N m or N, from this cycle on.
-  void put_out(const Joints& torque) noexcept { port_.output().torque = torque; }
-  [[nodiscard]] const Joints& puts_out() noexcept { return port_.output().torque; }
+  void put_out(const Joints& torque) noexcept { output().torque = torque; }
+  [[nodiscard]] const Joints& puts_out() noexcept { return output().torque; }
 
  private:
+  [[nodiscard]] ArmOutput& output() noexcept { return tells_force_ ? sensing_port_.output() : port_.output(); }
+
   Parameter<CurrentValues>& current_;
   DevicePort<ArmInput, ArmOutput> port_;
+  DevicePort<SensingArmInput, ArmOutput> sensing_port_;  ///< in its place, where the device tells a force
+  bool tells_force_{false};
   Measured measured_;
 };
 

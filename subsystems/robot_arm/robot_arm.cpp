@@ -12,6 +12,7 @@
 namespace hirosco {
 
 using robot_arm::Excess;
+using robot_arm::ForceSensor;
 using robot_arm::Guidance;
 using robot_arm::JointVector;
 using robot_arm::Lead;
@@ -25,6 +26,7 @@ std::unique_ptr<Subsystem> make_robot_arm() { return std::make_unique<RobotArm>(
 Result<Step> RobotArm::software_init() {
   parameters_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
   using namespace robotics::urdf;
+  bind_force_sensor();
   use_device(UrdfArm::device, drives_.port(), {model_setting, tip_setting, fixed_setting});
   for (EventPort* event : std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_,
                                                             &torque_exceeded_, &torque_hard_exceeded_,
@@ -77,6 +79,7 @@ Result<> RobotArm::operational(const Cycle& cycle) noexcept {
   measure(cycle);
   if (cycle.first) {
     limits_.arm();
+    force_sensor_.arm(false);
     stopped_ = false;
   }
   if (cycle.first || !cycle.active) {
@@ -106,6 +109,7 @@ void RobotArm::measure(const Cycle& cycle) noexcept {
   parameters_.active.store(0);
   moving_ = false;
   model_.update();
+  if (const auto age_ms = force_sensor_.update()) raise(force_sensor_lost_, *age_ms);
   lead_.tell();
 }
 
@@ -184,11 +188,18 @@ void RobotArm::watch_clearance() noexcept {
 /// Whoever asked for a motion is told that it ended.
 void RobotArm::watch_contact() noexcept {
   const auto met = yielding_.meet();
-  if (!met) return;
-  raise(contact_, static_cast<std::uint8_t>(met->joint + 1), met->torque, met->limit, met->reaction);
+  if (met) raise(contact_, static_cast<std::uint8_t>(met->joint + 1), met->torque, met->limit, met->reaction);
+  const auto felt = force_sensor_.meet(control_.floats());
+  if (felt) raise(wrist_contact_, felt->force_n, felt->moment_n_m, static_cast<std::uint8_t>(yielding_.reaction()));
+  if (!met && !felt) return;
   const bool stood = guidance_.at_rest() && !motion_;
   end_motion(Trouble::contact);
   yielding_.react({.stood = stood, .stopping = stop_.has_value()});
+}
+
+void RobotArm::count_contacts(Yielding::Before load) noexcept {
+  yielding_.arm(load);
+  force_sensor_.arm(load == Yielding::Before::Stands);
 }
 
 // --- functions -----------------------------------------------------------------------------------------------------------
@@ -210,7 +221,7 @@ Outcome RobotArm::move(Begin begin, const FunctionValues& values, const Call& ca
   if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
   const Outcome begun = (guidance_.*begin)(values);
   if (begun.kind == Outcome::Kind::Refused) return begun;
-  yielding_.arm(Yielding::Before::Stands);
+  count_contacts(Yielding::Before::Stands);
   motion_ = call;
   return begun;
 }
@@ -281,7 +292,7 @@ void RobotArm::bind_settings() {
   on_function("KEEP_OUT", [this](const robot_arm::KeepOut& numbers) { return obstacles_.keep_out(numbers); });
   on_function("SET_CONTACT", [this](std::uint8_t reaction, double limit) -> Outcome {
     parameters_.contact.store({reaction, limit});
-    yielding_.arm(Yielding::Before::Counts);
+    count_contacts(Yielding::Before::Counts);
     return ok();
   });
   on_function("SET_PAYLOAD", [this](double mass_kg, std::array<double, 3> place_m) -> Outcome {
@@ -315,6 +326,14 @@ void RobotArm::bind_laws() {
     });
 }
 
+/// An arm whose device tells no force at its tip has what its joints feel, and nothing besides.
+void RobotArm::bind_force_sensor() {
+  if (!ForceSensor::declared(own_descriptor())) return;
+  drives_.take_force();
+  force_sensor_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
+  for (EventPort* event : std::initializer_list<EventPort*>{&wrist_contact_, &force_sensor_lost_}) use_event(*event);
+}
+
 /// An arm of whose configurations none has a set that leads follows nobody, and knows nothing of it.
 void RobotArm::bind_lead() {
   const bool by_positions = Lead::declared(own_descriptor(), Lead::positions_set);
@@ -328,7 +347,7 @@ void RobotArm::bind_lead() {
   on_function("FOLLOW", [this]() -> Outcome {
     if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
     const Outcome begun = lead_.follow();
-    if (begun.kind != Outcome::Kind::Refused) yielding_.arm(Yielding::Before::Stands);
+    if (begun.kind != Outcome::Kind::Refused) count_contacts(Yielding::Before::Stands);
     return begun;
   });
 }

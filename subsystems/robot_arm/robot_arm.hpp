@@ -8,6 +8,7 @@
 
 #include "robotics/subsystem/moving_subsystem.hpp"
 #include "subsystems/robot_arm/drives.hpp"
+#include "subsystems/robot_arm/force_sensor.hpp"
 #include "subsystems/robot_arm/guidance.hpp"
 #include "subsystems/robot_arm/lead.hpp"
 #include "subsystems/robot_arm/limit_watch.hpp"
@@ -47,6 +48,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   void bind_settings();
   void bind_laws();
   void bind_lead();
+  void bind_force_sensor();
 
   void measure(const Cycle& cycle) noexcept;
   void advance() noexcept;
@@ -56,6 +58,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   void watch(bool follows) noexcept;
   void watch_clearance() noexcept;
   void watch_contact() noexcept;
+  void count_contacts(robot_arm::Yielding::Before load) noexcept;
   [[nodiscard]] Outcome may_move() const noexcept;
   [[nodiscard]] Outcome may_change_law() const noexcept;
   Outcome move(Begin begin, const FunctionValues& values, const Call& call) noexcept;
@@ -72,6 +75,8 @@ class RobotArm final : public robotics::MovingSubsystem {
       torque_hard_exceeded_{"TORQUE_HARD_EXCEEDED"}, following_exceeded_{"FOLLOWING_LIMIT_EXCEEDED"};
   /// Besides, how it reacts.
   Event<std::uint8_t, double, double, std::uint8_t> contact_{"CONTACT"};
+  Event<double, double, std::uint8_t> wrist_contact_{"WRIST_CONTACT"};  ///< N, N m, how it reacts
+  Event<std::uint32_t> force_sensor_lost_{"FORCE_SENSOR_LOST"};  ///< ms
   Event<double> retracted_{"RETRACTED"};  ///< how far, rad or m
   using PairNames = Text<64>;
   Event<double, PairNames> too_near_{"TOO_NEAR"};  ///< m, and who
@@ -86,6 +91,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   robot_arm::Drives drives_{parameters_.current};
   robot_arm::LimitWatch limits_{{known_, drives_, parameters_}};
   robot_arm::OnBoardModel model_{{known_, drives_, parameters_}};
+  robot_arm::ForceSensor force_sensor_{{known_, drives_, model_, parameters_}};
   robot_arm::Obstacles obstacles_{{parameters_.clearance_limit_m, parameters_.clearance_m, parameters_.keep_out}};
   robot_arm::Guidance guidance_{{known_, drives_, obstacles_, parameters_}};
   robot_arm::Lead lead_{{known_, guidance_}};

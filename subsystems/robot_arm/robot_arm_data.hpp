@@ -82,6 +82,31 @@ struct ArmInput {
   Joints velocity;
   Joints torque;
 };
+/// Of an arm whose device tells force and moment at its tip, too: FORCE, MOMENT in the tip's axes, and for how long they have been these, ms.
+struct TipForce {
+  std::array<double, 3> force_n;
+  std::array<double, 3> moment_n_m;
+  std::uint32_t age_ms;
+};
+struct SensingArmInput {
+  Joints position;
+  Joints velocity;
+  Joints torque;
+  std::array<double, 3> force_n;
+  std::array<double, 3> moment_n_m;
+  std::uint32_t age_ms;
+};
+/// What the sensor at the tip feels from outside, in the axes of the base.
+struct WristValues {
+  std::array<double, 3> force_n;
+  std::array<double, 3> moment_n_m;
+  std::uint32_t age_ms;
+  std::uint8_t valid;
+};
+struct WristRange {
+  double force_n;
+  double moment_n_m;
+};
 struct ArmOutput {
   Joints torque;
 };

@@ -67,6 +67,8 @@ class Yielding {
 
   /// Each cycle: what it met, once for each time; nothing mostly.
   [[nodiscard]] std::optional<Contact> meet() noexcept;
+  /// To whatever is met now.
+  [[nodiscard]] Reaction reaction() const noexcept;
   /// Who backs off and meets somebody else stands; so does who is stopped, and who stood: it is not he who went there.
   void react(const Doing& doing) noexcept;
 
@@ -79,7 +81,6 @@ class Yielding {
 
  private:
   [[nodiscard]] Outcome soften(LawKind kind, const Impedance& impedance) noexcept;
-  [[nodiscard]] Reaction reaction() const noexcept;
   [[nodiscard]] double counts_from(Eigen::Index joint, double share, double limit) noexcept;
 
   Parts parts_;

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <numeric>
 
@@ -18,6 +19,7 @@
 #include "simulation/devices/module.hpp"
 #include "simulation/mujoco/mujoco_device.hpp"
 #include "simulation/spacecraft/observed_flight.hpp"
+#include "subsystems/robot_arm/testing/sensing.hpp"
 
 /// The mission six_joints on virtual time, judged by what its world tells, which shares nothing with the arm but a file.
 namespace hirosco {
@@ -33,6 +35,7 @@ struct SixJoints : ::testing::Test {
   std::optional<simulation::Flight> flown;
   std::function<void(descriptor::Mission&)> edit;  ///< of the mission, before it flies
   simulation::DeviceCatalogue devices;  ///< in place of modules
+  std::map<std::string, std::string> files;  ///< in place of files
 
   /// `differs`: how the world differs from the mission's own.
   void fly(const std::vector<std::string>& differs = {}, std::uint64_t seed = 1) {
@@ -41,6 +44,7 @@ struct SixJoints : ::testing::Test {
                          .edit = edit,
                          .subsystems = {},
                          .devices = devices,
+                         .files = files,
                          .seed = seed});
     for (const std::string& line : differs) {
       const auto taken = arm().fault(line);
@@ -116,6 +120,26 @@ TEST_F(SixJoints, ReachesItsGoalsWithinAMilliradianHoweverTheWorldDiffersFromThe
     EXPECT_LE(most, 1e-3) << each.name;
     EXPECT_EQ(flown->inhibited("ARM"), 0u);
   }
+}
+
+/// World and arm agree on what a sensor at the tip tells of a load, however the tip is turned.
+TEST_F(SixJoints, FeelsAtItsTipWhatPushesItAndStandsForItWithoutWhatItCarries) {
+  const auto descriptor = std::filesystem::path{HIROSCO_SOURCE_DIR} / "subsystems/robot_arm/robot_arm.xml";
+  files["robot_arm.xml"] = robot_arm::testing::with_force_sensor(descriptor::file_system()(descriptor).value());
+  edit = [](descriptor::Mission& mission) { mission.devices.front().settings.push_back({"force_sensor", "on", {}}); };
+  ASSERT_NO_FATAL_FAILURE(fly({"payload 2"}));
+  ASSERT_TRUE(flown->craft().command("ARM", "SET_PAYLOAD", {2.0, 0.0, 0.0, 0.0}).completed) << flown->story().text();
+  EXPECT_TRUE(move_j(goal, 0.3).completed) << "what it carries is no contact\n" << flown->story().text();
+  EXPECT_FALSE(flown->story().has("WRIST_CONTACT"));
+  ASSERT_TRUE(arm().fault("push 0 40 0"));
+  flown->craft().run(200ms);
+  EXPECT_TRUE(flown->story().has("ARM low WRIST_CONTACT")) << flown->story().text();
+  ASSERT_TRUE(arm().fault("push 0 0 0"));
+  ASSERT_TRUE(arm().fault("force_sensor silent"));
+  flown->craft().run(200ms);
+  EXPECT_TRUE(flown->story().has("ARM low FORCE_SENSOR_LOST")) << flown->story().text();
+  EXPECT_EQ(flown->state("ARM"), State::Operational);
+  EXPECT_TRUE(move_j(start, 0.3).completed) << "and goes on by what its joints feel\n" << flown->story().text();
 }
 
 /// The same arm as MuJoCo's own reader has it, among other things: a floor, and a crate that falls onto it. Its links touch
