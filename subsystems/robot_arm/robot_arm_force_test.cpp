@@ -20,7 +20,7 @@ using robot_arm::testing::folder;
 using robot_arm::testing::model_of;
 using robot_arm::testing::replace_all;
 
-constexpr std::uint16_t joints_met = 1025, wrist_met = 1045, sensor_lost = 1046;
+constexpr std::uint16_t joints_met = 1025, wrist_met = 1065, sensor_lost = 1066;
 
 [[nodiscard]] std::string sensing() {
   std::string text = robot_arm::testing::with_force_sensor(robot_arm::testing::descriptor_text());

@@ -20,7 +20,7 @@ using robot_arm::testing::model_of;
 using robot_arm::testing::replace_all;
 using ::testing::StartsWith;
 
-constexpr std::uint16_t lost = 1040, let_go = 1041, unfit = 1042;
+constexpr std::uint16_t lost = 1060, let_go = 1061, unfit = 1062;
 const std::vector<pus::st128::OfferedField> places{
     {"POSITION", Type::Double, 6}, {"VELOCITY", Type::Double, 6}, {"ACTIVE", Type::Uint8, 1}};
 const std::vector<pus::st128::OfferedField> speeds{{"VELOCITY", Type::Double, 6}, {"ACTIVE", Type::Uint8, 1}};

@@ -28,10 +28,10 @@ namespace hirosco::robot_arm::testing {
       <ParamRef name="MOMENT" id="206" type="DOUBLE" unit="N m" init="10" minimum="10" maximum="10"/>
     </StructRef>
 )");
-  before("  </EventService>\n", R"(    <Event name="WRIST_CONTACT" id="1045" severity="low">
+  before("  </EventService>\n", R"(    <Event name="WRIST_CONTACT" id="1065" severity="low">
       <Argument name="FORCE" type="DOUBLE" unit="N"/><Argument name="MOMENT" type="DOUBLE" unit="N m"/><Argument name="REACTION" type="UINT8" enumeration="REACTIONS"/>
     </Event>
-    <Event name="FORCE_SENSOR_LOST" id="1046" severity="low"><Argument name="AGE" type="UINT32" unit="ms"/></Event>
+    <Event name="FORCE_SENSOR_LOST" id="1066" severity="low"><Argument name="AGE" type="UINT32" unit="ms"/></Event>
 )");
   return text;
 }
