@@ -42,7 +42,7 @@ class Contacts {
   [[nodiscard]] static std::optional<std::string> overlap(const MujocoWorld& world);
 
  private:
-  /// Joints of this world do not give way: what gears and skins do stands in here. MuJoCo's own; none: each shape's, as its scene says.
+  /// Joints give way where `springs` says so, and else not at all: what skins do, and gears then, stands in here. MuJoCo's own; none: each shape's, as its scene says.
   std::optional<double> softness_s_{0.02};
   std::vector<Touched> touched_{1};
 };

@@ -28,6 +28,9 @@ std::expected<void, std::string> JointDrives::find(mjModel& model) {
     joint.dof = model.jnt_dofadr[id];
     joint.friction = model.dof_frictionloss[joint.dof];
     joint.damping = model.dof_damping[joint.dof];
+    joint.spring.reset();
+    if (const int spring = mj_name2id(&model, mjOBJ_JOINT, (joint.name + MujocoSpec::spring_mark).c_str()); spring >= 0)
+      joint.spring = Spring{model.jnt_qposadr[spring], model.jnt_dofadr[spring], model.jnt_stiffness[spring]};
     if (joint.rotor) model.dof_armature[joint.dof] = *joint.rotor;
     model.dof_solref[mjNREF * joint.dof] = MujocoSpec::friction_s;
     model.dof_solimp[mjNIMP * joint.dof] = model.dof_solimp[mjNIMP * joint.dof + 1] = friction_rigid;
@@ -54,6 +57,37 @@ double JointDrives::position(std::size_t joint, const MujocoWorld& world) const 
 
 double JointDrives::velocity(std::size_t joint, const MujocoWorld& world) const noexcept {
   return world.data().qvel[joints_[joint].dof];
+}
+
+double JointDrives::given_way(std::size_t joint, const MujocoWorld& world) const noexcept {
+  const auto& spring = joints_[joint].spring;
+  return spring ? world.data().qpos[spring->position] : 0;
+}
+
+std::optional<JointDrives::Swing> JointDrives::fastest_spring(const MujocoSpec::Robot& robot,
+                                                              const MujocoWorld& world) const noexcept {
+  std::optional<Swing> fastest;
+  for (const Joint& joint : std::span{joints_.data() + robot.first_joint, robot.joints}) {
+    if (!joint.spring) continue;
+    // What resists it on both sides.
+    const double rad_s = std::sqrt(joint.spring->stiffness * world.model().dof_invweight0[joint.spring->dof]);
+    if (!fastest || rad_s > fastest->rad_s) fastest = Swing{joint.name, rad_s};
+  }
+  return fastest;
+}
+
+void JointDrives::settle(const MujocoSpec::Robot& robot, MujocoWorld& world) const noexcept {
+  const std::span its{joints_.data() + robot.first_joint, robot.joints};
+  if (std::ranges::none_of(its, [](const Joint& joint) { return joint.spring.has_value(); })) return;
+  // Each gives way a little to what the others leave it.
+  constexpr int rounds = 5;
+  for (int i = 0; i < rounds; ++i) {
+    world.forward();
+    for (const Joint& joint : its)
+      if (joint.spring)
+        world.data().qpos[joint.spring->position] =
+            -world.data().qfrc_bias[joint.spring->dof] / joint.spring->stiffness;
+  }
 }
 
 void JointDrives::place(std::span<const double> positions, std::size_t first, MujocoWorld& world) const noexcept {

@@ -43,11 +43,27 @@ class JointDrives {
 
   [[nodiscard]] double position(std::size_t joint, const MujocoWorld& world) const noexcept;
   [[nodiscard]] double velocity(std::size_t joint, const MujocoWorld& world) const noexcept;
-  /// What the drive and the brake give to the link: behind friction and rotor, which are theirs.
+  /// By how much its link is ahead of its drive: nothing gives way where it has no spring.
+  [[nodiscard]] double given_way(std::size_t joint, const MujocoWorld& world) const noexcept;
+  [[nodiscard]] bool gives_way(std::size_t joint) const noexcept { return joints_[joint].spring.has_value(); }
+  /// What the drive and the brake give to the link, or to the spring before it: behind friction and rotor, which are theirs.
   [[nodiscard]] double torque(std::size_t joint) const noexcept { return joints_[joint].torque; }
   [[nodiscard]] double effort(std::size_t joint) const noexcept { return joints_[joint].effort; }
   /// From the `first` on, as many as there are numbers, stand there.
   void place(std::span<const double> positions, std::size_t first, MujocoWorld& world) const noexcept;
+  /// What its drive moves besides links, behind its gear.
+  [[nodiscard]] double rotor(std::size_t joint, const MujocoWorld& world) const noexcept {
+    return world.model().dof_armature[joints_[joint].dof];
+  }
+  struct Swing {
+    std::string_view joint;
+    double rad_s{0};
+  };
+  /// The spring of this robot that swings fastest between its drive and its link, where all joints are at 0; empty: it has none.
+  [[nodiscard]] std::optional<Swing> fastest_spring(const MujocoSpec::Robot& robot,
+                                                    const MujocoWorld& world) const noexcept;
+  /// Where this robot rests, its springs give way to what weighs on them.
+  void settle(const MujocoSpec::Robot& robot, MujocoWorld& world) const noexcept;
   /// The first of them, as many as there are numbers, go on as fast as that.
   void set_in_motion(std::span<const double> velocities, MujocoWorld& world) const noexcept;
 
@@ -66,6 +82,11 @@ class JointDrives {
   void set_rotors(std::span<const double> inertias, std::size_t first, MujocoWorld& world) noexcept;
 
  private:
+  struct Spring {
+    int position{0};  ///< index in MuJoCo
+    int dof{0};
+    double stiffness{0};
+  };
   struct Joint {
     std::string name;
     double effort{0};
@@ -76,6 +97,7 @@ class JointDrives {
     double damping{0};
     double friction_factor{1};
     double more_friction{0};
+    std::optional<Spring> spring{};
     std::optional<double> rotor{};  ///< empty: as the file says, which is 0 in a URDF file
     double torque{0};
     Brakes brakes{Brakes::Closed};

@@ -50,15 +50,30 @@ void let_meet(mjSpec& spec, std::size_t robot) {
 
 }  // namespace
 
+std::expected<MujocoSpec, std::string> MujocoSpec::copied() const {
+  MujocoSpec copy{mark_};
+  copy.spec_.reset(mj_copySpec(spec_.get()));
+  if (copy.spec_ == nullptr) return std::unexpected{"MuJoCo does not copy its world"};
+  copy.joints_ = joints_;
+  copy.root_ = root_;
+  copy.floats_ = floats_;
+  copy.further_dofs_ = further_dofs_;
+  copy.equalities_ = equalities_;
+  copy.pairs_left_out_ = pairs_left_out_;
+  copy.octets_ = octets_;
+  copy.robots_ = robots_;
+  return copy;
+}
+
 std::expected<MujocoSpec, std::string> MujocoSpec::with(MujocoSpec robot, const Mount& mount) const {
   if (robots_.size() == most_robots)
     return std::unexpected{fmt::format("there are {} robots in its world", most_robots)};
   const std::string prefix = mount.prefix();
   if (has_names(*spec_, prefix))
     return std::unexpected{fmt::format("something in its world has names with '{}' already", prefix)};
-  MujocoSpec whole{mark_};
-  whole.spec_.reset(mj_copySpec(spec_.get()));
-  if (whole.spec_ == nullptr) return std::unexpected{"MuJoCo does not copy its world"};
+  auto copy = copied();
+  if (!copy) return copy;
+  MujocoSpec& whole = *copy;
   mjSpec& spec = *whole.spec_;
   if (robots_.size() == 1) let_meet(spec, 0);
   let_meet(*robot.spec_, robots_.size());
@@ -74,27 +89,22 @@ std::expected<MujocoSpec, std::string> MujocoSpec::with(MujocoSpec robot, const 
     return std::unexpected{"MuJoCo: " + text};
   };
   if (mjs_attach(frame->element, taken_of(*robot.spec_), prefix.c_str(), "") == nullptr) return told();
-  whole.joints_ = joints_;
   for (const DrivenJoint& joint : robot.joints_) {
     whole.joints_.push_back(joint);
     whole.joints_.back().name = prefix + joint.name;
   }
-  whole.root_ = root_;
-  whole.floats_ = floats_;
-  whole.further_dofs_ = further_dofs_ + robot.further_dofs_;
-  whole.equalities_ = equalities_ + robot.equalities_;
-  whole.pairs_left_out_ = pairs_left_out_ + robot.pairs_left_out_;
-  whole.octets_ = octets_;
+  whole.further_dofs_ += robot.further_dofs_;
+  whole.equalities_ += robot.equalities_;
+  whole.pairs_left_out_ += robot.pairs_left_out_;
   whole.octets_.merge(robot.octets_);
   if (!robot.octets_.empty()) return std::unexpected{"files of two robots have the same name in their world"};
-  whole.robots_ = robots_;
   whole.robots_.push_back(std::move(robot.robots_.front()));
   Robot& added = whole.robots_.back();
   added.prefix = prefix;
   added.first_joint = joints_.size();
   // Itself, no copy: a copy drops without a word what leads nowhere.
   if (!MujocoModel{mj_compile(&spec, MujocoFiles{whole.octets_}.get())}) return told();
-  return whole;
+  return copy;
 }
 
 std::size_t MujocoSpec::robot_of(const mjModel& model, int body) const noexcept {

@@ -8,6 +8,12 @@
 #include <fmt/format.h>
 
 namespace hirosco::simulation {
+namespace {
+
+/// Of a radian of its phase, how far a spring may swing in a sub-step: above it the integrator takes more than some ten-thousandths of it each time.
+constexpr double most_of_a_swing = 0.5;
+
+}  // namespace
 
 MujocoRobot::MujocoRobot(MujocoSpec spec)
     : world_{std::move(spec)}, drives_{world_.spec().joints()}, contacts_{world_.spec()} {}
@@ -114,22 +120,53 @@ std::expected<void, std::string> MujocoRobot::let_float() {
 std::expected<std::size_t, std::string> MujocoRobot::mount(MujocoSpec robot, const Mount& at) {
   auto with = world_.spec().with(std::move(robot), at);
   if (!with) return std::unexpected{std::move(with.error())};
+  if (auto done = become(std::move(*with)); !done) return std::unexpected{std::move(done.error())};
+  return links_.size() - 1;
+}
+
+std::expected<void, std::string> MujocoRobot::become(MujocoSpec spec,
+                                                     const std::function<std::optional<std::string>()>& judge) {
   const Standing before{world_, bodies_};
   const JointDrives drives_before = drives_;
-  MujocoSpec spec_before = std::exchange(world_.spec(), std::move(*with));
+  const std::vector<RobotLinks> links_before = links_;
+  MujocoSpec spec_before = std::exchange(world_.spec(), std::move(spec));
   drives_.add(std::span{world_.spec().joints()}.subspan(drives_.count()));
-  links_.emplace_back();
-  if (auto built = build(obstacles_, bodies_); !built) {
+  links_.resize(world_.spec().robots().size());
+  const auto built = build(obstacles_, bodies_);
+  const std::optional<std::string> against = !built ? std::optional{built.error()} : judge ? judge() : std::nullopt;
+  if (against) {
     world_.spec() = std::move(spec_before);
     drives_ = drives_before;
-    links_.pop_back();
+    links_ = links_before;
     // What was there before could be made.
     static_cast<void>(build(obstacles_, bodies_));
-    stand(before);
-    return std::unexpected{std::move(built.error())};
   }
   stand(before);
-  return links_.size() - 1;
+  if (against) return std::unexpected{*against};
+  return {};
+}
+
+std::expected<void, std::string> MujocoRobot::give_way(std::span<const double> stiffness,
+                                                       std::span<const double> damping, std::size_t robot) {
+  // Its springs come between what is numbered already.
+  if (robot + 1 != robots()) return std::unexpected{"its joints are to give way before another robot is mounted"};
+  const std::size_t first = first_joint(robot);
+  std::vector<MujocoSpec::Spring> springs;
+  for (std::size_t i = 0; i < std::min(stiffness.size(), joints(robot)); ++i) {
+    if (position(first + i) != 0) return std::unexpected{"its joints are to give way before it is put into a posture"};
+    springs.push_back({.stiffness = stiffness[i],
+                       .damping = i < damping.size() ? damping[i] : 0,
+                       .rotor = drives_.rotor(first + i, world_)});
+  }
+  auto with = world_.spec().giving_way(springs, robot);
+  if (!with) return std::unexpected{std::move(with.error())};
+  return become(std::move(*with), [&]() -> std::optional<std::string> {
+    const auto fastest = drives_.fastest_spring(of(robot), world_);
+    if (!fastest || fastest->rad_s * MujocoSpec::longest_sub_step_s <= most_of_a_swing) return std::nullopt;
+    return fmt::format("the spring at joint '{}' would swing with {:.0f} rad/s, and steps of {:g} ms tell apart {:.0f}",
+                       fastest->joint, fastest->rad_s, 1e3 * MujocoSpec::longest_sub_step_s,
+                       most_of_a_swing / MujocoSpec::longest_sub_step_s);
+  });
 }
 
 std::expected<void, std::string> MujocoRobot::set_tip(const std::string& link, std::size_t robot) {
@@ -159,6 +196,7 @@ std::expected<void, std::string> MujocoRobot::place(std::span<const double> posi
   }
   drives_.place(positions.first(std::min(positions.size(), joints(robot))), of(robot).first_joint, world_);
   world_.follow();
+  drives_.settle(of(robot), world_);
   world_.forward();
   auto within = Contacts::overlap(world_);
   if (within) stand(before);

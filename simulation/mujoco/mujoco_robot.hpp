@@ -4,6 +4,7 @@
 
 #include <array>
 #include <expected>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -62,6 +63,9 @@ class MujocoRobot {
   /// What the drive and the brake give to the link: behind friction and rotor, which are theirs.
   [[nodiscard]] double torque(std::size_t joint) const noexcept { return drives_.torque(joint); }
   [[nodiscard]] double effort(std::size_t joint) const noexcept { return drives_.effort(joint); }
+  /// By how much a joint's link is ahead of its drive, whose place position() is.
+  [[nodiscard]] double given_way(std::size_t joint) const noexcept { return drives_.given_way(joint, world_); }
+  [[nodiscard]] bool gives_way(std::size_t joint) const noexcept { return drives_.gives_way(joint); }
   /// From now on this link is its tip, which pushes and payloads act at; at first it is the first one that carries nothing. In words why not.
   [[nodiscard]] std::expected<void, std::string> set_tip(const std::string& link, std::size_t robot = 0);
   /// Of the tip's origin, in the axes of the base, of one that floats in inertial ones, m; also that of a robot that is mounted.
@@ -123,6 +127,10 @@ class MujocoRobot {
   }
   /// What the drive of each joint moves besides links, behind its gear, kg m2 or kg; the file does not have it.
   void set_rotors(std::span<const double> inertias, std::size_t robot = 0) noexcept;
+  /// From now on what is between drives and links gives way: a spring and a damper for each of its joints, N m/rad and N m s/rad, or N/m and N s/m; 0: it does
+  /// not. Once, with rotors, where all its joints are at 0, and before another robot is mounted. In words why not, and nothing is changed.
+  [[nodiscard]] std::expected<void, std::string> give_way(std::span<const double> stiffness,
+                                                          std::span<const double> damping, std::size_t robot = 0);
   /// A point with this mass at the tip's origin.
   void set_payload(double mass_kg, std::size_t robot = 0) noexcept;
   void set_gravity(double x, double y, double z) noexcept { world_.set_gravity(x, y, z); }
@@ -140,6 +148,9 @@ class MujocoRobot {
   /// What moves goes on where it is, as fast as it is. `moved`: name of the body that is put somewhere, where there is one.
   [[nodiscard]] std::expected<void, std::string> surround(std::vector<Obstacle> obstacles, LooseBodies bodies,
                                                           std::string_view moved = {});
+  /// The world is told this instead, with as many drives and robots as it has; all goes on. In words why not: then it goes on as before.
+  [[nodiscard]] std::expected<void, std::string> become(MujocoSpec spec,
+                                                        const std::function<std::optional<std::string>()>& judge = {});
   void stand(const Standing& standing) noexcept;
   void feel() noexcept;
 

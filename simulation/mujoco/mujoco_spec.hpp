@@ -70,6 +70,16 @@ class MujocoSpec {
   /// all that stands and lies there. In words why not.
   [[nodiscard]] std::expected<MujocoSpec, std::string> with(MujocoSpec robot, const Mount& mount) const;
   [[nodiscard]] const std::vector<Robot>& robots() const noexcept { return robots_; }
+  /// What is between a joint's drive and its link (mujoco_springs.cpp).
+  struct Spring {
+    double stiffness{0};  ///< N m/rad or N/m; 0: nothing gives way
+    double damping{0};
+    double rotor{0};  ///< what its drive moves on the other side, kg m2 or kg: more than 0 where it gives way
+  };
+  /// The same with joints of one of its robots that give way: its first ones, as many as there are springs. In words why not.
+  [[nodiscard]] std::expected<MujocoSpec, std::string> giving_way(std::span<const Spring> springs,
+                                                                  std::size_t robot) const;
+  static constexpr const char* spring_mark = " spring";  ///< behind a joint's name, of what of it is the spring's
   /// Whose this body of such a model is. What is nobody's else is the first one's.
   [[nodiscard]] std::size_t robot_of(const mjModel& model, int body) const noexcept;
 
@@ -99,6 +109,7 @@ class MujocoSpec {
 
  private:
   explicit MujocoSpec(std::string_view mark) : mark_{mark} {}
+  [[nodiscard]] std::expected<MujocoSpec, std::string> copied() const;
   void add_shapes(const xml::Element& robot, const MeshSource& meshes);
   [[nodiscard]] std::expected<std::string, std::string> take_mesh(const Shape& shape, const MeshSource& meshes);
   [[nodiscard]] std::expected<void, std::string> leave_out_pairs();

@@ -25,25 +25,49 @@ Result<> RobotLines::take(const Words& words, MujocoRobot& robot, std::size_t nu
     return set ? ok() : refuse(ErrorCode::NotFound, std::move(set.error()));
   }
   if (words[0] == "posture" || words[0] == "rotors") return place(words, robot, number);
+  if (words[0] == "springs") return give_way(words, robot, number);
   return differ(words, robot, number);
 }
 
-/// A,B,...: as many as it has joints.
-Result<> RobotLines::place(const Words& words, MujocoRobot& robot, std::size_t number) {
-  HIROSCO_TRY(words.expect(2));
-  auto numbers = listed_numbers(words[1]);
+Result<std::vector<double>> RobotLines::each_joint(std::string_view text, const MujocoRobot& robot,
+                                                   std::size_t number) {
+  auto numbers = listed_numbers(text);
   if (!numbers) return refuse(ErrorCode::InvalidArgument, std::move(numbers.error()));
   const std::size_t joints = robot.joints(number);
   if (numbers->size() != joints)
     return fail(ErrorCode::InvalidArgument, "another number of joints", static_cast<std::int64_t>(joints));
+  return std::move(*numbers);
+}
+
+Result<> RobotLines::place(const Words& words, MujocoRobot& robot, std::size_t number) {
+  HIROSCO_TRY(words.expect(2));
+  HIROSCO_TRY_LET(const std::vector<double> numbers, each_joint(words[1], robot, number));
   if (words[0] == "posture") {
-    auto placed = robot.place(*numbers, number);
+    auto placed = robot.place(numbers, number);
     return placed ? ok() : refuse(ErrorCode::InvalidArgument, std::move(placed.error()));
   }
-  if (!std::ranges::all_of(*numbers, [](double inertia) { return inertia >= 0 && inertia < 1e3; }))
-    return fail(ErrorCode::OutOfRange, "an inertia is from 0 to 1000");
-  robot.set_rotors(*numbers, number);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (!(numbers[i] >= 0 && numbers[i] < 1e3)) return fail(ErrorCode::OutOfRange, "an inertia is from 0 to 1000");
+    if (numbers[i] == 0 && robot.gives_way(robot.first_joint(number) + i))
+      return fail(ErrorCode::OutOfRange, "a joint that gives way has a rotor above 0", static_cast<std::int64_t>(i));
+  }
+  robot.set_rotors(numbers, number);
   return ok();
+}
+
+Result<> RobotLines::give_way(const Words& words, MujocoRobot& robot, std::size_t number) {
+  constexpr double stiffest = 1e7, most_damping = 1e5;
+  HIROSCO_TRY(words.expect(words.count() > 2 ? 3 : 2));
+  HIROSCO_TRY_LET(const std::vector<double> stiffness, each_joint(words[1], robot, number));
+  std::vector<double> damping(stiffness.size());
+  if (words.count() > 2) {
+    HIROSCO_TRY_LET(damping, each_joint(words[2], robot, number));
+  }
+  if (!std::ranges::all_of(stiffness, [](double each) { return each >= 0 && each <= stiffest; }) ||
+      !std::ranges::all_of(damping, [](double each) { return each >= 0 && each <= most_damping; }))
+    return fail(ErrorCode::OutOfRange, "a stiffness is from 0 to 1e7, a damping from 0 to 1e5");
+  auto done = robot.give_way(stiffness, damping, number);
+  return done ? ok() : refuse(ErrorCode::InvalidArgument, std::move(done.error()));
 }
 
 Result<> RobotLines::differ(const Words& words, MujocoRobot& robot, std::size_t number) {
@@ -92,8 +116,10 @@ std::vector<std::string> RobotLines::remarks(const MujocoRobot& robot, std::size
 }
 
 std::string RobotLines::truth_of_joint(const MujocoRobot& robot, std::size_t joint, std::size_t index) {
-  return fmt::format("q{0}={1:.6f} qd{0}={2:.6f} torque_{0}={3:.4f} ", index + 1, robot.position(joint),
-                     robot.velocity(joint), robot.torque(joint));
+  std::string text = fmt::format("q{0}={1:.6f} qd{0}={2:.6f} torque_{0}={3:.4f} ", index + 1, robot.position(joint),
+                                 robot.velocity(joint), robot.torque(joint));
+  if (robot.gives_way(joint)) text += fmt::format("spring_{}={:.7f} ", index + 1, robot.given_way(joint));
+  return text;
 }
 
 std::string RobotLines::truth(const MujocoRobot& robot, std::size_t number) {

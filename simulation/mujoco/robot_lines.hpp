@@ -14,10 +14,11 @@
 namespace hirosco::simulation {
 
 /// Lines of a device that change its robot in a world, whosever world it is:
-///   tip LINK | posture Q1,Q2,... | rotors J1,J2,... | mass FACTOR | inertia FACTOR | friction FACTOR [MORE] | payload KG | push X Y Z
+///   tip LINK | posture Q1,Q2,... | rotors J1,J2,... | springs K1,K2,... [D1,D2,...] | mass FACTOR | inertia FACTOR | friction FACTOR [MORE] | payload KG | push X Y Z
 class RobotLines {
  public:
-  static constexpr std::array known{"tip", "posture", "rotors", "mass", "inertia", "friction", "payload", "push"};
+  static constexpr std::array known{"tip",     "posture",  "rotors",  "springs", "mass",
+                                    "inertia", "friction", "payload", "push"};
   [[nodiscard]] static bool knows(std::string_view word) noexcept;
 
   /// One of these lines. Why it is not done stays until the next one.
@@ -31,6 +32,10 @@ class RobotLines {
 
  private:
   [[nodiscard]] std::unexpected<Error> refuse(ErrorCode code, std::string why);
+  [[nodiscard]] Result<> give_way(const Words& words, MujocoRobot& robot, std::size_t number);
+  /// A,B,...: as many as it has joints.
+  [[nodiscard]] Result<std::vector<double>> each_joint(std::string_view text, const MujocoRobot& robot,
+                                                       std::size_t number);
   [[nodiscard]] Result<> place(const Words& words, MujocoRobot& robot, std::size_t number);
   [[nodiscard]] Result<> differ(const Words& words, MujocoRobot& robot, std::size_t number);
 
