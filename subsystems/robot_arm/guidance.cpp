@@ -116,6 +116,14 @@ Outcome Guidance::start(const Result<>& planned) noexcept {
   return running;
 }
 
+void Guidance::lead() noexcept {
+  end_motion();
+  tool_to_.reset();
+  retreats_ = false;
+  arrives_ = false;
+  settled_s_ = waited_s_ = 0;
+}
+
 Outcome Guidance::start_jog(Setpoints::Kind kind, double seconds) noexcept {
   tool_to_.reset();
   retreats_ = false;

@@ -65,6 +65,12 @@ class Guidance {
   [[nodiscard]] Outcome retreat(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome jog_j(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome jog_l(const FunctionValues& values) noexcept;
+  /// Torques lead it from now on: it is wherever they have it.
+  void lead() noexcept;
+  /// No faster than POWER_LIMIT permits while joints hold so much.
+  void keep_power(const JointVector& held) noexcept {
+    setpoints_->keep_power(held, parts_.parameters.power_limit_w.load());
+  }
   /// The motion that was begun last is a jog of this kind: another one may take its place, from the velocities that it has.
   [[nodiscard]] bool jogs(Setpoints::Kind kind) const noexcept { return jog_ == kind; }
   /// Whatever its time was, and whatever was looked for: nobody waits for it any more.

@@ -22,6 +22,7 @@ Result<> check_lengths(std::size_t joints, const descriptor::SubsystemDescriptor
     std::size_t wanted;
     const char* text;
   };
+  const bool by_torque = subsystem.find_function("TORQUE_J") != nullptr;
   const bool by_joint = subsystem.find_function("IMPEDANCE_J") != nullptr;
   const std::array lengths{
       Length{current.position.size(), joints, "CUR_VALUES.POSITION has another length than the robot has joints"},
@@ -45,6 +46,10 @@ Result<> check_lengths(std::size_t joints, const descriptor::SubsystemDescriptor
       Length{arguments_of("JOG_J"), joints + 1, "JOG_J takes a number for each joint, and SECONDS"},
       Length{by_joint ? arguments_of("IMPEDANCE_J") : joints + 1, joints + 1,
              "IMPEDANCE_J takes a number for each joint, and DAMPING"},
+      Length{by_torque ? arguments_of("TORQUE_J") : joints + 1, joints + 1,
+             "TORQUE_J takes a number for each joint, and SECONDS"},
+      Length{parameters.desired_torque.load().size(), joints,
+             "DES_TORQUE has another length than the robot has joints"},
       Length{arguments_of("MOVE_P"), 8, "MOVE_P takes POSITION[3], ORIENTATION[4], SPEED"},
       Length{arguments_of("MOVE_L"), 9, "MOVE_L takes POSITION[3], ORIENTATION[4], SPEED, TURNING"},
       Length{arguments_of("JOG_L"), 7, "JOG_L takes LINEAR[3], ANGULAR[3], SECONDS"},

@@ -7,6 +7,12 @@
 #include "subsystems/robot_arm/trouble.hpp"
 
 namespace hirosco::robot_arm {
+namespace {
+
+/// What brakes held is taken for something from outside until then: five times the filter's time of what acts from outside.
+constexpr double felt_after_s = 0.1;
+
+}  // namespace
 
 std::optional<Finding> LimitWatch::update(const JointVector* setpoint) noexcept {
   const Parameters& values = parts_.parameters;
@@ -15,6 +21,41 @@ std::optional<Finding> LimitWatch::update(const JointVector* setpoint) noexcept 
                              .torque_hard_share = values.torque_hard.load(),
                              .following = values.following_limit.load()};
   return watch_.update(parts_.drives.measured(), setpoint, parts_.known.bounds(), limits);
+}
+
+WorkLimits LimitWatch::work_limits() const noexcept {
+  const Parameters& values = parts_.parameters;
+  return {values.tool_force_limit_n.load(), values.power_limit_w.load(), values.tool_power_limit_w.load()};
+}
+
+WorkWatch::Is LimitWatch::work() const noexcept {
+  const Parameters& values = parts_.parameters;
+  const auto force = values.tool_force_n.load();
+  return {Vector3{force[0], force[1], force[2]}.norm(), values.joint_power_w.load(), values.tool_power_w.load()};
+}
+
+bool LimitWatch::feels() const noexcept { return free_s_ > felt_after_s; }
+
+std::optional<WorkFinding> LimitWatch::update_work(bool free) noexcept {
+  free_s_ = free ? free_s_ + cycle_s_ : 0;
+  return work_.update(work(), work_limits(), feels());
+}
+
+Outcome LimitWatch::set_force_limit(double force_n) noexcept {
+  const double is_n = feels() ? work().force_n : 0;
+  if (!(is_n < force_n)) return refused(Trouble::load_above_limit, "N at the tool", std::llround(is_n));
+  parts_.parameters.tool_force_limit_n.store(force_n);
+  return ok();
+}
+
+Outcome LimitWatch::set_power_limits(double power_w, double tool_power_w) noexcept {
+  const WorkWatch::Is is = work();
+  if (!(is.power_w < power_w)) return refused(Trouble::load_above_limit, "W of all joints", std::llround(is.power_w));
+  if (feels() && !(is.tool_power_w < tool_power_w))
+    return refused(Trouble::load_above_limit, "W of the tool", std::llround(is.tool_power_w));
+  parts_.parameters.power_limit_w.store(power_w);
+  parts_.parameters.tool_power_limit_w.store(tool_power_w);
+  return ok();
 }
 
 Outcome LimitWatch::set_torque_limit(double share) noexcept {

@@ -6,6 +6,7 @@
 
 #include "hirosco/subsystem/author/handler.hpp"
 #include "subsystems/robot_arm/control/watch.hpp"
+#include "subsystems/robot_arm/control/work_watch.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/parameters.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
@@ -23,22 +24,37 @@ class LimitWatch {
   };
   explicit LimitWatch(const Parts& parts) noexcept : parts_{parts} {}
 
-  void arm() noexcept { watch_.arm(); }
+  /// In configure().
+  void begin(double cycle_s) noexcept { cycle_s_ = cycle_s; }
+  void arm() noexcept { watch_.arm(), work_.arm(), free_s_ = 0; }
   /// Something was told since it was armed.
-  [[nodiscard]] bool tripped() const noexcept { return watch_.tripped().has_value(); }
+  [[nodiscard]] bool tripped() const noexcept { return watch_.tripped().has_value() || work_.tripped(); }
   /// Each cycle: what is to be told now; nothing mostly. `setpoint` null: nobody is to follow it.
   [[nodiscard]] std::optional<Finding> update(const JointVector* setpoint) noexcept;
+
+  /// Besides, each cycle: force at the tool, and work. `free`: no brakes hold it.
+  [[nodiscard]] std::optional<WorkFinding> update_work(bool free) noexcept;
+  /// Of force and work, as they are set.
+  [[nodiscard]] WorkLimits work_limits() const noexcept;
 
   /// Running where each joint may hold so much; refused with the first that may not.
   [[nodiscard]] Outcome may_hold(const JointVector& torque) const noexcept;
   /// A limit that the arm's present load exceeds already would only stop it.
   [[nodiscard]] Outcome set_torque_limit(double share) noexcept;
+  /// The same of what acts on the tool, N, and of power, W.
+  [[nodiscard]] Outcome set_force_limit(double force_n) noexcept;
+  [[nodiscard]] Outcome set_power_limits(double power_w, double tool_power_w) noexcept;
 
  private:
+  [[nodiscard]] WorkWatch::Is work() const noexcept;
+  [[nodiscard]] bool feels() const noexcept;
   [[nodiscard]] Outcome below(double share, const JointVector& torque) const noexcept;
 
   Parts parts_;
   Watch watch_;
+  WorkWatch work_;
+  double cycle_s_{0.001};
+  double free_s_{0};  ///< since brakes have let it go
 };
 
 }  // namespace hirosco::robot_arm

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/on_board_model.hpp"
 
+#include <cmath>
+
 namespace hirosco::robot_arm {
 
 void OnBoardModel::begin(double cycle_s) {
@@ -26,7 +28,18 @@ void OnBoardModel::update() noexcept {
                    JointVector::Zero(known.model().joint_count()), of_payload);
   observer_->update(measured, *dynamics_, of_payload);
   parts_.parameters.external_torque.store(joints_of(observer_->external()));
+  tell_work();
   updated_ = true;
+}
+
+/// With which force something acts on the tool, and how much work joints do, and the tool against it.
+void OnBoardModel::tell_work() noexcept {
+  const Measured& measured = parts_.drives.measured();
+  lever_.update(*dynamics_, parts_.known.tip(), pose_of(parts_.parameters.tool_place.load()).position);
+  const Vector3 force = lever_.force(observer_->external());
+  parts_.parameters.tool_force_n.store({force.x(), force.y(), force.z()});
+  parts_.parameters.tool_power_w.store(std::abs(force.dot(lever_.velocity(measured.velocity))));
+  parts_.parameters.joint_power_w.store(measured.torque.cwiseProduct(measured.velocity).cwiseAbs().sum());
 }
 
 void OnBoardModel::forget_external() noexcept {

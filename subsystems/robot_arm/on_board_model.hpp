@@ -6,6 +6,7 @@
 
 #include "subsystems/robot_arm/control/law.hpp"
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
+#include "subsystems/robot_arm/control/tool_lever.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/parameters.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
@@ -22,7 +23,7 @@ class OnBoardModel {
   struct Parts {
     const UrdfArm& known;
     const Drives& drives;
-    Parameters& parameters;  ///< TOOL and EXTERNAL_TORQUE tell what it finds
+    Parameters& parameters;  ///< TOOL, EXTERNAL_TORQUE, TOOL_FORCE, JOINT_POWER and TOOL_POWER tell what it finds
   };
   explicit OnBoardModel(const Parts& parts) noexcept : parts_{parts} {}
 
@@ -39,14 +40,18 @@ class OnBoardModel {
   [[nodiscard]] robotics::Dynamics& dynamics() noexcept { return *dynamics_; }
   /// N m or N of each joint, in the direction in which it would accelerate it.
   [[nodiscard]] const JointVector& external() const noexcept { return observer_->external(); }
+  [[nodiscard]] const ToolLever& lever() const noexcept { return lever_; }
   [[nodiscard]] Payload payload() const noexcept;
   /// What each joint would hold in the posture of update() if this hung at the tool.
   [[nodiscard]] JointVector held(const Payload& payload) noexcept;
 
  private:
+  void tell_work() noexcept;
+
   Parts parts_;
   std::optional<robotics::Dynamics> dynamics_;
   std::optional<MomentumObserver> observer_;
+  ToolLever lever_;
   robotics::State state_;
   bool updated_{false};
 };

@@ -42,6 +42,13 @@ struct Parameters {
     publish("FLOAT_DAMPING", float_damping);
     publish("RETRACT_DISTANCE", retract_distance);
     publish("ACTIVE", active);
+    publish("TOOL_FORCE", tool_force_n);
+    publish("JOINT_POWER", joint_power_w);
+    publish("TOOL_POWER", tool_power_w);
+    publish("TOOL_FORCE_LIMIT", tool_force_limit_n);
+    publish("POWER_LIMIT", power_limit_w);
+    publish("TOOL_POWER_LIMIT", tool_power_limit_w);
+    publish("DES_TORQUE", desired_torque);
   }
 
   Parameter<CurrentValues> current;
@@ -58,6 +65,9 @@ struct Parameters {
   Parameter<double> float_damping, retract_distance;
   Parameter<KeepOut> keep_out;
   Parameter<std::uint8_t> active;
+  Parameter<std::array<double, 3>> tool_force_n;
+  Parameter<double> joint_power_w, tool_power_w, tool_force_limit_n, power_limit_w, tool_power_limit_w;
+  Parameter<Joints> desired_torque;
 };
 
 }  // namespace hirosco::robot_arm

@@ -19,6 +19,7 @@ using robot_arm::Lead;
 using robot_arm::millimetres;
 using robot_arm::Trouble;
 using robot_arm::UrdfArm;
+using robot_arm::Work;
 using robot_arm::Yielding;
 
 std::unique_ptr<Subsystem> make_robot_arm() { return std::make_unique<RobotArm>(); }
@@ -28,9 +29,10 @@ Result<Step> RobotArm::software_init() {
   using namespace robotics::urdf;
   bind_force_sensor();
   use_device(UrdfArm::device, drives_.port(), {model_setting, tip_setting, fixed_setting});
-  for (EventPort* event : std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_,
-                                                            &torque_exceeded_, &torque_hard_exceeded_,
-                                                            &following_exceeded_, &contact_, &retracted_, &too_near_})
+  for (EventPort* event :
+       std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_, &torque_exceeded_,
+                                         &torque_hard_exceeded_, &following_exceeded_, &contact_, &retracted_,
+                                         &too_near_, &force_exceeded_, &power_exceeded_, &tool_power_exceeded_})
     use_event(*event);
   HIROSCO_TRY_LET(const UrdfArm::Source source, known_.read(own_descriptor()));
   HIROSCO_TRY(obstacles_.read(source, known_.model()));
@@ -52,6 +54,8 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   HIROSCO_TRY(lead_.begin(configuration, cycle_s));
   static_cast<void>(obstacles_.keep_out(parameters_.keep_out.load()));
   place_tool(parameters_.tool_place.load());
+  torque_mode_.begin(cycle_s);
+  limits_.begin(cycle_s);
   limits_.arm();
   forget_motion();
   return ok();
@@ -117,12 +121,14 @@ void RobotArm::measure(const Cycle& cycle) noexcept {
 
 void RobotArm::advance() noexcept {
   if (const auto end = lead_.advance()) tell(*end);
-  guidance_.advance(control_.floats());
+  guidance_.keep_power(model_.held(model_.payload()));
+  torque_mode_.advance();
+  guidance_.advance(control_.led());
   watch_clearance();
   if (const auto gone = guidance_.end_retract()) raise(retracted_, *gone);
   guidance_.tell();
   if (guidance_.at_rest()) at_rest_for_stop();
-  if (motion_) tell(guidance_.look(control_.gives_way()));
+  if (motion_ && !torque_mode_.drives()) tell(guidance_.look(control_.gives_way()));
 }
 
 void RobotArm::tell(const Guidance::News& news) noexcept {
@@ -158,6 +164,7 @@ void RobotArm::lose_line() noexcept {
 
 /// Each limit is told once until the next entry into Operational; it stays in force when the actuators are inhibited.
 void RobotArm::watch(bool follows) noexcept {
+  watch_work(follows);
   const auto* setpoint = follows && !control_.gives_way() ? &guidance_.setpoints().now().position : nullptr;
   const auto found = limits_.update(setpoint);
   if (limits_.tripped()) inhibit_actuators();
@@ -168,6 +175,15 @@ void RobotArm::watch(bool follows) noexcept {
                       : found->what == Excess::TorqueHard ? torque_hard_exceeded_
                                                           : following_exceeded_;
   raise(event, static_cast<std::uint8_t>(found->joint + 1), found->value, found->limit);
+}
+
+void RobotArm::watch_work(bool free) noexcept {
+  const auto found = limits_.update_work(free);
+  if (!found) return;
+  raise(found->what == Work::ToolForce ? force_exceeded_
+        : found->what == Work::Power   ? power_exceeded_
+                                       : tool_power_exceeded_,
+        found->value, found->limit);
 }
 
 /// Comes to rest before links meet, or one of them what it is to keep out of; who is led stands there.
@@ -235,6 +251,17 @@ Outcome RobotArm::jog(Begin begin, robot_arm::Setpoints::Kind kind, const Functi
   return (guidance_.*begin)(values);
 }
 
+/// Who drives it on says so before the time of what he said last is over, as who jogs.
+Outcome RobotArm::drive(const FunctionValues& values, const Call& call) noexcept {
+  const bool goes_on = motion_ && !stop_ && torque_mode_.drives();
+  if (const Outcome may = goes_on ? running : may_move(); may.kind == Outcome::Kind::Refused) return may;
+  const Outcome driven = torque_mode_.drive(values);
+  if (driven.kind == Outcome::Kind::Refused) return driven;
+  if (goes_on) finish(*motion_);
+  motion_ = call;
+  return driven;
+}
+
 /// A load that is not there would lift who is led or soft; the law of positions keeps its place whatever is declared.
 Outcome RobotArm::take_payload(double mass_kg, const std::array<double, 3>& place_m) noexcept {
   if (!model_.updated()) return refused(pus::FailureCode::NotPermittedNow);
@@ -289,6 +316,9 @@ void RobotArm::bind_motions() {
 
 void RobotArm::bind_settings() {
   on_function("SET_TORQUE_LIMIT", [this](double share) { return limits_.set_torque_limit(share); });
+  on_function("SET_FORCE_LIMIT", [this](double force_n) { return limits_.set_force_limit(force_n); });
+  on_function("SET_POWER_LIMIT",
+              [this](double power_w, double tool_w) { return limits_.set_power_limits(power_w, tool_w); });
   on_function("KEEP_OUT", [this](const robot_arm::KeepOut& numbers) { return obstacles_.keep_out(numbers); });
   on_function("SET_CONTACT", [this](std::uint8_t reaction, double limit) -> Outcome {
     parameters_.contact.store({reaction, limit});
@@ -318,6 +348,8 @@ void RobotArm::bind_laws() {
       if (const Outcome may = may_change_law(); may.kind == Outcome::Kind::Refused) return may;
       return yielding_.soften_tool(stiffness_n_m, turning_n_m, damping);
     });
+  if (offered("TORQUE_J"))
+    on_function("TORQUE_J", [this](const FunctionValues& values, Call call) { return drive(values, call); });
   if (offered("POSITION_CONTROL"))
     on_function("POSITION_CONTROL", [this]() -> Outcome {
       if (const Outcome may = may_change_law(); may.kind == Outcome::Kind::Refused) return may;

@@ -17,6 +17,7 @@
 #include "subsystems/robot_arm/parameters.hpp"
 #include "subsystems/robot_arm/self_check.hpp"
 #include "subsystems/robot_arm/torque_control.hpp"
+#include "subsystems/robot_arm/torque_mode.hpp"
 #include "subsystems/robot_arm/trouble.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 #include "subsystems/robot_arm/yielding.hpp"
@@ -41,8 +42,8 @@ class RobotArm final : public robotics::MovingSubsystem {
   Result<> operational(const Cycle& cycle) noexcept override;
   Result<> error_operational(const Cycle& cycle) noexcept override;
   Result<Step> self_test(const Cycle& cycle) noexcept override { return self_check_.step(cycle); }
-  void stand() noexcept override { yielding_.stand(); }
-  void motion_ended() noexcept override { guidance_.end_motion(); }
+  void stand() noexcept override { torque_mode_.stand(), yielding_.stand(); }
+  void motion_ended() noexcept override { torque_mode_.end(), guidance_.end_motion(); }
 
   void bind_motions();
   void bind_settings();
@@ -56,12 +57,14 @@ class RobotArm final : public robotics::MovingSubsystem {
   void lose_line() noexcept;
   void tell(const robot_arm::Lead::End& end) noexcept;
   void watch(bool follows) noexcept;
+  void watch_work(bool free) noexcept;
   void watch_clearance() noexcept;
   void watch_contact() noexcept;
   void count_contacts(robot_arm::Yielding::Before load) noexcept;
   [[nodiscard]] Outcome may_move() const noexcept;
   [[nodiscard]] Outcome may_change_law() const noexcept;
   Outcome move(Begin begin, const FunctionValues& values, const Call& call) noexcept;
+  Outcome drive(const FunctionValues& values, const Call& call) noexcept;
   Outcome jog(Begin begin, robot_arm::Setpoints::Kind kind, const FunctionValues& values, const Call& call) noexcept;
   [[nodiscard]] Outcome take_payload(double mass_kg, const std::array<double, 3>& place_m) noexcept;
   [[nodiscard]] Outcome take_tool(const robot_arm::ToolValues& in_tip) noexcept;
@@ -75,6 +78,9 @@ class RobotArm final : public robotics::MovingSubsystem {
       torque_hard_exceeded_{"TORQUE_HARD_EXCEEDED"}, following_exceeded_{"FOLLOWING_LIMIT_EXCEEDED"};
   /// Besides, how it reacts.
   Event<std::uint8_t, double, double, std::uint8_t> contact_{"CONTACT"};
+  /// What was measured, the limit, N or W.
+  Event<double, double> force_exceeded_{"TOOL_FORCE_EXCEEDED"}, power_exceeded_{"POWER_LIMIT_EXCEEDED"},
+      tool_power_exceeded_{"TOOL_POWER_EXCEEDED"};
   Event<double, double, std::uint8_t> wrist_contact_{"WRIST_CONTACT"};  ///< N, N m, how it reacts
   Event<std::uint32_t> force_sensor_lost_{"FORCE_SENSOR_LOST"};  ///< ms
   Event<double> retracted_{"RETRACTED"};  ///< how far, rad or m
@@ -95,8 +101,10 @@ class RobotArm final : public robotics::MovingSubsystem {
   robot_arm::Obstacles obstacles_{{parameters_.clearance_limit_m, parameters_.clearance_m, parameters_.keep_out}};
   robot_arm::Guidance guidance_{{known_, drives_, obstacles_, parameters_}};
   robot_arm::Lead lead_{{known_, guidance_}};
-  robot_arm::TorqueControl control_{{known_, drives_, model_, guidance_, parameters_}};
+  robot_arm::TorqueControl control_{{known_, drives_, limits_, model_, guidance_, parameters_}};
   robot_arm::Yielding yielding_{{known_, drives_, model_, obstacles_, guidance_, control_, parameters_}};
+  robot_arm::TorqueMode torque_mode_{
+      {known_, drives_, limits_, model_, obstacles_, guidance_, control_, yielding_, parameters_}};
   robot_arm::SelfCheck self_check_{{known_, drives_, guidance_, control_, yielding_, parameters_}};
 };
 

@@ -13,7 +13,9 @@ Laws::Settings TorqueControl::settings() noexcept {
   return {.position = {.bandwidth_rad_s = values.bandwidth_rad_s.load(),
                        .rotor = rotor_,
                        .gravity_m_s2 = {gravity[0], gravity[1], gravity[2]}},
-          .float_damping_per_s = values.float_damping.load()};
+          .float_damping_per_s = values.float_damping.load(),
+          .lever = &parts_.model.lever(),
+          .work = parts_.limits.work_limits()};
 }
 
 void TorqueControl::control() noexcept {

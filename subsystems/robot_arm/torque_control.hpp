@@ -7,6 +7,7 @@
 #include "subsystems/robot_arm/control/laws.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/guidance.hpp"
+#include "subsystems/robot_arm/limit_watch.hpp"
 #include "subsystems/robot_arm/on_board_model.hpp"
 #include "subsystems/robot_arm/parameters.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
@@ -20,6 +21,7 @@ class TorqueControl {
   struct Parts {
     const UrdfArm& known;
     Drives& drives;
+    const LimitWatch& limits;
     OnBoardModel& model;
     const Guidance& guidance;
     Parameters& parameters;  ///< DES_POSITION, DES_VELOCITY, LAW and JOINT_STIFFNESS tell what it does
@@ -36,8 +38,11 @@ class TorqueControl {
   void control() noexcept;
 
   [[nodiscard]] Laws& laws() noexcept { return *laws_; }
+  [[nodiscard]] LawKind kind() const noexcept { return laws_->kind(); }
   /// It goes wherever it is led.
-  [[nodiscard]] bool floats() const noexcept { return laws_->kind() == LawKind::Float; }
+  [[nodiscard]] bool floats() const noexcept { return kind() == LawKind::Float; }
+  /// It is to be wherever it is.
+  [[nodiscard]] bool led() const noexcept { return floats() || kind() == LawKind::Torque; }
   /// Where it is may be far from its setpoint, and that is meant.
   [[nodiscard]] bool gives_way() const noexcept { return laws_->gives_way(); }
 

@@ -30,7 +30,7 @@ void Yielding::engage() noexcept {
 /// The setpoint of whoever gave way is elsewhere than the arm: a hard law begins where the arm is, and so does any after it was led.
 void Yielding::take_law(LawKind kind) noexcept {
   const Measured& measured = parts_.drives.measured();
-  if (parts_.control.floats() || (kind == LawKind::Position && parts_.control.gives_way()))
+  if (parts_.control.led() || (kind == LawKind::Position && parts_.control.gives_way()))
     parts_.guidance.setpoints().settle(measured.position, measured.velocity);
   if (kind == LawKind::Float) parts_.guidance.engage();
   parts_.control.laws().set(kind, kind == LawKind::Float ? let_go_s : Laws::smooth_s);

@@ -144,7 +144,8 @@ TEST(ShippedMissions, WhatFunctionsOfArmsSetIsLostInACrashAndSaid) {
           said[function.name + " " + member.subsystem.parameters[parameter].field.name] = file.string();
   for (const char* wanted :
        {"SET_TEMP_LIMITS TEMP_LIMITS", "SET_GAINS KP", "SET_GAINS KD", "SET_TORQUE_LIMIT TORQUE_LIMIT",
-        "KEEP_OUT KEPT_OUT", "SET_CONTACT CONTACT_WATCH", "SET_PAYLOAD PAYLOAD", "SET_TOOL TOOL_PLACE",
+        "KEEP_OUT KEPT_OUT", "SET_CONTACT CONTACT_WATCH", "SET_FORCE_LIMIT TOOL_FORCE_LIMIT",
+        "SET_POWER_LIMIT POWER_LIMIT", "SET_POWER_LIMIT TOOL_POWER_LIMIT", "SET_PAYLOAD PAYLOAD", "SET_TOOL TOOL_PLACE",
         "SET_FORCE_SCALE FORCE_SCALE", "PASSIVITY PASSIVITY", "POINT_TO REFERENCE", "POINT_HERE REFERENCE"})
     EXPECT_TRUE(said.contains(wanted)) << wanted;
 }

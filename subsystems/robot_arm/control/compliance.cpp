@@ -52,7 +52,8 @@ constexpr double heaviest = 1e3;
 Compliance::Compliance(const robotics::Model& model, robotics::FrameId tip)
     : model_{&model}, tip_{tip}, still_{model, robotics::Base::Fixed}, goal_{model, robotics::Base::Fixed} {
   impedance_.joint_n_m_rad.setZero(model.joint_count());
-  state_.q = state_.qd = impedance_.joint_n_m_rad;
+  state_.q = state_.qd = carrying_ = impedance_.joint_n_m_rad;
+  driven_ = {carrying_, carrying_};
 }
 
 void Compliance::weigh(robotics::Dynamics& dynamics, std::span<const double> rotor) noexcept {
@@ -132,6 +133,7 @@ JointVector Compliance::torque(const Setpoint& wanted, const Measured& measured,
         static_cast<std::size_t>(i) < settings.rotor.size() ? settings.rotor[static_cast<std::size_t>(i)] : 0;
     torque[i] += rotor * wanted.acceleration[i] + joint.damping * wanted.velocity[i] +
                  joint.friction * std::tanh(wanted.velocity[i] / friction_knee);
+    carrying_[i] = torque[i];
     switch (settings.kind) {
       case LawKind::Position: break;
       case LawKind::JointImpedance: {
@@ -144,8 +146,14 @@ JointVector Compliance::torque(const Setpoint& wanted, const Measured& measured,
         if (torque.size() > directions) torque[i] += posture_share_per_rad * its.effort * behind;
         break;
       case LawKind::Float: torque[i] += settings.float_damping_per_s * moved * slower; break;
+      case LawKind::Torque:
+        torque[i] += driven_.torque[i] + driven_.brake[i];
+        carrying_[i] += driven_.brake[i];
+        break;
     }
-    torque[i] += walls(wanted, measured, i, moved, its);
+    const double kept_by_walls = walls(wanted, measured, i, moved, its);
+    torque[i] += kept_by_walls;
+    carrying_[i] += kept_by_walls;
   }
   if (settings.kind == LawKind::ToolImpedance) add_tool(wanted, measured, dynamics, torque);
   return torque;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "subsystems/robot_arm/control/law.hpp"
+#include "subsystems/robot_arm/control/torque_drive.hpp"
 
 namespace hirosco::robot_arm {
 
@@ -14,6 +15,7 @@ enum class LawKind : std::uint8_t {
   JointImpedance,  ///< springs and dampers at the joints
   ToolImpedance,  ///< springs and dampers between the tool and where it is to be
   Float,  ///< goes wherever it is led, against dampers alone
+  Torque,  ///< goes where the torques of drive() lead it
 };
 
 /// How softly an arm is held. Each damper is so large as its spring and what it moves make it with this ratio; 1: critical.
@@ -42,10 +44,15 @@ class Compliance {
   void set_tool(const Vector3& place_m) noexcept { tool_m_ = place_m; }
   void set(const Impedance& impedance) noexcept { impedance_ = impedance; }
   [[nodiscard]] const Impedance& impedance() const noexcept { return impedance_; }
+  /// From now on, while the law is Torque.
+  void drive(const Driven& driven) noexcept { driven_ = driven; }
 
   /// Not yet within the joints' efforts. `dynamics` was updated with what is measured.
   [[nodiscard]] JointVector torque(const Setpoint& wanted, const Measured& measured, robotics::Dynamics& dynamics,
                                    const Payload& payload, Bounds bounds, const Settings& settings) noexcept;
+
+  /// What of the last torque() carries the arm and keeps it within ranges and velocities; the rest presses.
+  [[nodiscard]] const JointVector& carrying() const noexcept { return carrying_; }
 
   /// The first spring, from 0, with which what it moves in the posture of `dynamics` would swing faster than `rad_s`: a joint's, or a
   /// direction of the tool's, x y z about and x y z along. Nothing: all are softer.
@@ -64,6 +71,8 @@ class Compliance {
   robotics::FrameId tip_;
   Vector3 tool_m_{Vector3::Zero()};
   Impedance impedance_;
+  Driven driven_;
+  JointVector carrying_;
   robotics::Dynamics still_;  ///< as measured, at rest: gravity alone
   robotics::Dynamics goal_;  ///< as wanted
   robotics::State state_;

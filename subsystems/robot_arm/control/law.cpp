@@ -95,6 +95,7 @@ JointVector Law::torque(const Setpoint& wanted, const Measured& measured, roboti
   const auto joints = model_->joints();
   JointVector torque;
   torque.resize(error.size());
+  unbounded_.resize(error.size());
   saturated_ = false;
   for (Eigen::Index i = 0; i < error.size(); ++i) {
     const auto& joint = joints[static_cast<std::size_t>(i)];
@@ -103,6 +104,7 @@ JointVector Law::torque(const Setpoint& wanted, const Measured& measured, roboti
                    joint.friction * std::tanh(speed / friction_knee);
     if (!std::isfinite(value)) value = 0;
     const double effort = bounds[static_cast<std::size_t>(i)].effort;
+    unbounded_[i] = value;
     torque[i] = std::clamp(value, -effort, effort);
     saturated_ = saturated_ || torque[i] != value;
   }

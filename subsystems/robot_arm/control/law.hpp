@@ -44,9 +44,13 @@ class Law {
                                    const Payload& payload, Bounds bounds, const Settings& settings) noexcept;
   /// Of the last torque(): some joint had no more to give.
   [[nodiscard]] bool saturated() const noexcept { return saturated_; }
+  /// Somebody has taken back some of the last torque(): nothing is learnt from what comes of it.
+  void hold_back() noexcept { saturated_ = true; }
 
   /// What of the last torque() was not the model's, but an answer to errors.
   [[nodiscard]] JointVector answer(const Settings& settings) const noexcept;
+  /// Of the last torque(), before efforts bounded it.
+  [[nodiscard]] const JointVector& unbounded() const noexcept { return unbounded_; }
 
   /// What a payload takes when the joints accelerate so.
   static void add_payload(const Payload& payload, robotics::FrameId tip, const Vector3& gravity_m_s2,
@@ -62,6 +66,7 @@ class Law {
   double cycle_s_;
   JointVector integral_;  ///< rad s
   JointVector answer_;  ///< rad/s2
+  JointVector unbounded_;
   robotics::MassMatrix mass_;
   bool saturated_{false};
 };

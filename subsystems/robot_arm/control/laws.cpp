@@ -64,10 +64,12 @@ void Laws::carry(const JointVector& answer, Bounds bounds) noexcept {
 
 JointVector Laws::torque(const Setpoint& wanted, const Measured& measured, robotics::Dynamics& dynamics,
                          const Payload& payload, Bounds bounds, const Settings& settings) noexcept {
-  JointVector torque;
+  JointVector torque, carrying;
   if (kind_ == LawKind::Position) {
     torque = law_.torque(wanted, measured, dynamics, payload, bounds, settings.position);
-    carry(law_.answer(settings.position), bounds);
+    const JointVector answer = law_.answer(settings.position);
+    carry(answer, bounds);
+    carrying = law_.unbounded() - answer;
   } else {
     torque = compliance_.torque(wanted, measured, dynamics, payload, bounds,
                                 {.kind = kind_,
@@ -75,6 +77,7 @@ JointVector Laws::torque(const Setpoint& wanted, const Measured& measured, robot
                                  .rotor = settings.position.rotor,
                                  .gravity_m_s2 = settings.position.gravity_m_s2}) +
              carried_;
+    carrying = compliance_.carrying() + carried_;
   }
   if (changed_) {
     changed_ = false;
@@ -84,9 +87,15 @@ JointVector Laws::torque(const Setpoint& wanted, const Measured& measured, robot
   } else {
     fading_s_ = std::max(0.0, fading_s_ - cycle_s_);
   }
+  if (fading_s_ > 0)
+    for (Eigen::Index i = 0; i < torque.size(); ++i) torque[i] += fading_s_ / fade_s_ * kept_[i];
+  if (settings.lever != nullptr) {
+    const JointVector within = within_work(torque, carrying, measured.velocity, *settings.lever, settings.work);
+    if (within != torque) law_.hold_back();
+    torque = within;
+  }
   for (Eigen::Index i = 0; i < torque.size(); ++i) {
     double value = torque[i];
-    if (fading_s_ > 0) value += fading_s_ / fade_s_ * kept_[i];
     if (!std::isfinite(value)) value = 0;
     const double effort = bounds[static_cast<std::size_t>(i)].effort;
     last_[i] = std::clamp(value, -effort, effort);

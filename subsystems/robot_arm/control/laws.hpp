@@ -3,6 +3,7 @@
 #pragma once
 
 #include "subsystems/robot_arm/control/compliance.hpp"
+#include "subsystems/robot_arm/control/work_bounds.hpp"
 
 namespace hirosco::robot_arm {
 
@@ -14,6 +15,9 @@ class Laws {
   struct Settings {
     Law::Settings position;
     double float_damping_per_s{5};
+    /// Of the posture that is measured; none: nothing bounds with which force it presses, and how much work it does.
+    const ToolLever* lever{nullptr};
+    WorkLimits work{};
   };
   Laws(const robotics::Model& model, robotics::FrameId tip, double cycle_s);
 
@@ -25,6 +29,7 @@ class Laws {
   void set(LawKind kind, double over_s = smooth_s) noexcept;
   void set(LawKind kind, const Impedance& impedance) noexcept;
   void set_tool(const Vector3& place_m) noexcept;
+  void drive(const Driven& driven) noexcept { compliance_.drive(driven); }
   [[nodiscard]] LawKind kind() const noexcept { return kind_; }
   /// Where it is may be far from its setpoint, and that is meant.
   [[nodiscard]] bool gives_way() const noexcept { return kind_ != LawKind::Position; }

@@ -10,6 +10,7 @@
 #include "subsystems/robot_arm/control/pose_search.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
 #include "subsystems/robot_arm/control/watch.hpp"
+#include "subsystems/robot_arm/control/work_watch.hpp"
 #include "subsystems/robot_arm/testing/plant.hpp"
 
 namespace hirosco::robot_arm {
@@ -35,6 +36,10 @@ TEST(Control, UsesNoHeapInACycle) {
   PoseSearch search{model, tip, bounds};
   Following following{bounds, period_s};
   Watch watch;
+  WorkWatch work_watch;
+  ToolLever lever;
+  TorqueDrive drive;
+  drive.begin(6);
   const JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
   const JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
   const JointVector zeros = JointVector::Zero(6);
@@ -71,11 +76,18 @@ TEST(Control, UsesNoHeapInACycle) {
       Law::add_payload(payload, tip, {0, 0, -9.81}, dynamics, zeros, of_payload);
       observer.update(measured, dynamics, of_payload);
       if (i % 50 == 0) {
-        laws.set(static_cast<LawKind>(i / 50 % 4), impedance);
+        laws.set(static_cast<LawKind>(i / 50 % 5), impedance);
         EXPECT_FALSE(laws.compliance().too_stiff(laws.kind(), impedance, dynamics, {}, 1e3));
       }
       if (i % 70 == 0) laws.take_load(of_payload, {});
-      EXPECT_TRUE(laws.torque(now, measured, dynamics, payload, bounds, {}).allFinite());
+      lever.update(dynamics, tip, {0.1, 0, 0});
+      drive.want(of_payload);
+      laws.drive(drive.step(measured, {.held = of_payload, .moved = zeros}, bounds, 0.8, period_s));
+      setpoints.keep_power(of_payload, 100);
+      const Laws::Settings settings{
+          .position = {}, .lever = &lever, .work = {.force_n = 20, .power_w = 50, .tool_power_w = 10}};
+      EXPECT_TRUE(laws.torque(now, measured, dynamics, payload, bounds, settings).allFinite());
+      static_cast<void>(work_watch.update({lever.force(zeros).norm(), 0, 0}, settings.work, true));
       EXPECT_GT(clearance.nearest(now.position).distance_m, 0);
       EXPECT_GT(clearance.nearer(now.position, setpoints.braked()).distance_m, 0);
       static_cast<void>(watch.update(measured, &now.position, bounds, {}));

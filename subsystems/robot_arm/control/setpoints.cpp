@@ -69,7 +69,9 @@ Result<> Setpoints::go(const JointVector& goal, double speed_share) noexcept {
   }
   HIROSCO_TRY_LET(path_,
                   robotics::PointToPoint::plan_straight(now_.position, goal, std::span{limits}.first(bounds_.size())));
-  duration_s_ = path_.duration_s();
+  path_.at(path_.duration_s() / 2, sample_);
+  duration_s_ = path_.duration_s() / power_.share(sample_.velocity);
+  path_.at(0, sample_);
   kind_ = Kind::JointPath;
   braking_ = false;
   path_s_ = 0;
@@ -203,13 +205,31 @@ const Setpoint& Setpoints::advance() noexcept {
   return now_;
 }
 
-/// Braked, the arm stays on its path: its time goes slower, as fast as the joints' accelerations permit.
-void Setpoints::advance_path() noexcept {
-  double slower = 0;
-  if (braking_) {
-    slower = slowing(path_, bounds_, {path_s_, pace_}, cycle_s_);
-    pace_ = std::max(0.0, pace_ - slower * cycle_s_);
+/// How much faster the time of a path may go, 1/s: by what is left of the accelerations of joints that are accelerated on it already.
+double Setpoints::quickening() const noexcept {
+  double most = 1 / cycle_s_;
+  robotics::PointToPoint::Sample sample;
+  for (const double ahead_s : {0.0, pace_ * cycle_s_}) {
+    path_.at(path_s_ + ahead_s, sample);
+    for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+      const auto i = static_cast<Eigen::Index>(joint);
+      const double speed = std::abs(sample.velocity[i]);
+      const double taken = sample.velocity[i] * sample.acceleration[i] > 0 ? std::abs(sample.acceleration[i]) : 0;
+      const double left = braking_share * bounds_[joint].motion.acceleration - pace_ * pace_ * taken;
+      if (speed > 0) most = std::min(most, std::max(0.0, left) / speed);
+    }
   }
+  return most;
+}
+
+/// Braked, or for its power, the arm stays on its path: its time goes slower, as fast as the joints' accelerations permit.
+void Setpoints::advance_path() noexcept {
+  const double most = braking_ ? 0.0 : power_.share(sample_.velocity);
+  double slower = 0;
+  if (pace_ > most)
+    slower = std::min(slowing(path_, bounds_, {path_s_, pace_}, cycle_s_), (pace_ - most) / cycle_s_);
+  if (pace_ < most) slower = -std::min(quickening(), (most - pace_) / cycle_s_);
+  pace_ = std::max(0.0, pace_ - slower * cycle_s_);
   path_s_ += pace_ * cycle_s_;
   path_.at(path_s_, sample_);
   now_.position = sample_.position;
@@ -246,7 +266,7 @@ std::optional<std::size_t> Setpoints::joint_in_the_way() const noexcept {
 
 /// `onward`: what the joints do at full pace, besides what brings them back to the line. Braked, the pace is the least that their accelerations permit.
 void Setpoints::keep_pace(const JointVector& onward, const JointVector& back) noexcept {
-  const double most = line_.pace(path_s_);
+  const double most = std::min(line_.pace(path_s_), power_.share(onward));
   if (!braking_) {
     pace_ = std::min(most, pace_ + line_.change_per_s(path_s_) * cycle_s_);
     return;
@@ -317,6 +337,7 @@ void Setpoints::advance_line() noexcept {
 void Setpoints::advance_jog(const JointVector& wanted) noexcept {
   JointVector velocity = now_.velocity;
   bool moves = false;
+  const double share = power_.share(wanted);
   for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
     const auto i = static_cast<Eigen::Index>(joint);
     const JointBounds& its = bounds_[joint];
@@ -325,7 +346,7 @@ void Setpoints::advance_jog(const JointVector& wanted) noexcept {
                  right = std::max(0.0, now_.position[i] - its.lowest);
     const double up = std::min(most, std::sqrt(2 * 0.8 * its.motion.acceleration * left));
     const double down = std::min(most, std::sqrt(2 * 0.8 * its.motion.acceleration * right));
-    const double goal = braking_ ? 0.0 : std::clamp(wanted[i], -down, up);
+    const double goal = braking_ ? 0.0 : std::clamp(share * wanted[i], -down, up);
     velocity[i] += std::clamp(goal - velocity[i], -step, step);
     moves = moves || velocity[i] != 0;
   }

@@ -9,6 +9,7 @@
 #include "robotics/motion/inverse_kinematics.hpp"
 #include "subsystems/robot_arm/control/joints.hpp"
 #include "subsystems/robot_arm/control/line.hpp"
+#include "subsystems/robot_arm/control/power_pace.hpp"
 #include "subsystems/robot_arm/control/trail.hpp"
 
 namespace hirosco::robot_arm {
@@ -45,6 +46,9 @@ class Setpoints {
   void take(const Setpoint& next) noexcept;
   /// Comes to rest: on its path, where there is one.
   void brake() noexcept;
+
+  /// From now on it goes no faster than this power permits while joints hold so much; on its path, where there is one.
+  void keep_power(const JointVector& held, double limit_w) noexcept { power_.set(held, bounds_, limit_w); }
 
   /// Moves on by one cycle.
   const Setpoint& advance() noexcept;
@@ -87,6 +91,7 @@ class Setpoints {
   [[nodiscard]] JointVector tip_rates(const robotics::InverseKinematics& kinematics, const Vector6& twist,
                                       const JointVector& posture) noexcept;
   void follow(const JointVector& velocity) noexcept;
+  [[nodiscard]] double quickening() const noexcept;
   void keep_pace(const JointVector& onward, const JointVector& back) noexcept;
   void keep_limits(JointVector& rates) noexcept;
   void come_to_rest() noexcept;
@@ -112,6 +117,7 @@ class Setpoints {
   double off_line_m_{0};
   JointVector posture_;
   JointVector jog_;
+  PowerPace power_;
   Trail trail_;
   JointVector met_, end_;  ///< of a retreat: where it begins and ends
   std::size_t places_back_{0};  ///< of the trail, before its end

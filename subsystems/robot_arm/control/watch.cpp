@@ -5,15 +5,11 @@
 #include <bit>
 
 namespace hirosco::robot_arm {
-namespace {
 
-/// Shifts a sample into the last three and tells whether two of them are set.
-[[nodiscard]] bool two_of_three(std::uint8_t& history, bool sample) noexcept {
+bool two_of_three(std::uint8_t& history, bool sample) noexcept {
   history = static_cast<std::uint8_t>((history << 1 | (sample ? 1 : 0)) & 0b111);
   return std::popcount(history) >= 2;
 }
-
-}  // namespace
 
 std::optional<Finding> Watch::update(const Measured& measured, const JointVector* setpoint, Bounds bounds,
                                      const Limits& limits) noexcept {

@@ -22,6 +22,9 @@ struct Finding {
   double limit{0};
 };
 
+/// Shifts a sample into the last three and tells whether two of them are set.
+[[nodiscard]] bool two_of_three(std::uint8_t& history, bool sample) noexcept;
+
 /// Trips when two of the last three samples of a joint are beyond a limit: one disturbed sample does not stop a mission. What is no
 /// number is beyond every limit. Each kind is told once, until it is armed anew.
 class Watch {

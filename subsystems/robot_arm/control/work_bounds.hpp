@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "subsystems/robot_arm/control/tool_lever.hpp"
+
+/// With which force the tool presses, and how much work joints and tool do: bounded where torques are made, watched where they are measured.
+namespace hirosco::robot_arm {
+
+struct WorkLimits {
+  double force_n{HUGE_VAL};  ///< at the tool
+  double power_w{HUGE_VAL};  ///< of all joints, what they give and what they take alike
+  double tool_power_w{HUGE_VAL};  ///< of the tool's force along its way
+};
+
+/// No more than this share of a limit is commanded: what is measured is never quite what was meant, and is stopped beyond the whole.
+inline constexpr double commanded_share = 0.9;
+
+/// Of `torque` what keeps within the commanded share of the limits. `carried`: what of it holds the arm up, moves it as the model says
+/// and keeps it within its ranges. That is never taken back; what presses besides is, as a whole for force and power of the tool, and for the
+/// power of joints of those that it drives: one that is braked gives nothing.
+[[nodiscard]] JointVector within_work(const JointVector& torque, const JointVector& carried, const JointVector& speed,
+                                      const ToolLever& lever, const WorkLimits& limits) noexcept;
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "subsystems/robot_arm/testing/flown.hpp"
+
+/// Limits of the force at the tool, and of power, whatever moves the arm.
+namespace hirosco {
+namespace {
+
+using robot_arm::JointVector;
+using robot_arm::vector_of;
+using robot_arm::testing::Flown;
+using robot_arm::testing::folder;
+using ::testing::Each;
+using ::testing::StartsWith;
+
+constexpr double no_limit = 10'000;
+
+struct RobotArmWork : ::testing::Test {
+  Flown flown{6, std::string{folder} + "robot_arm.urdf"};
+  JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
+  JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
+
+  void SetUp() override {
+    flown.plant.place(start);
+    flown.operate();
+  }
+  std::string asked(const char* function, const std::vector<double>& numbers) {
+    const auto request = flown.ask(function, numbers);
+    flown.cycle(3);
+    return flown.rig.outcome(request);
+  }
+  /// What such a force takes at the joints, where the arm is.
+  JointVector at_tool(const robotics::Vector3& force_n) const {
+    robotics::Dynamics dynamics{flown.model, robotics::Base::Fixed};
+    dynamics.update({.q = flown.plant.measured().position, .qd = JointVector::Zero(6)});
+    robotics::Jacobian jacobian;
+    dynamics.jacobian(flown.model.find_frame("tool").value(), jacobian);
+    return jacobian.bottomRows<3>().transpose() * force_n;
+  }
+  void expect_stopped(std::uint16_t event) {
+    EXPECT_EQ(flown.rig.events(event), 1);
+    EXPECT_EQ(flown.rig.inhibited(), inhibited_by_author);
+    flown.cycle(2);
+    EXPECT_EQ(flown.mode, DeviceMode::Off);
+    EXPECT_THAT(flown.commanded, Each(0.0));
+  }
+  /// The most that all joints gave and took on the way to the goal, and how many cycles that took.
+  std::pair<double, int> fly_to(const JointVector& where) {
+    const auto request = flown.move_j(where);
+    double most_w = 0;
+    int cycles = 0;
+    while (flown.rig.outcome(request).find_first_of("78") == std::string::npos && cycles < 30'000) {
+      flown.cycle();
+      ++cycles;
+      const auto& measured = flown.plant.measured();
+      most_w = std::max(most_w, measured.torque.cwiseProduct(measured.velocity).cwiseAbs().sum());
+    }
+    EXPECT_EQ(flown.rig.outcome(request), "1 3 5:0001 7");
+    return {most_w, cycles};
+  }
+};
+
+TEST_F(RobotArmWork, AMotionGoesSlowerForItsPowerAndIsNotStopped) {
+  const auto [free_w, free_cycles] = fly_to(goal);
+  static_cast<void>(fly_to(start));
+  const double limit_w = 0.7 * free_w;
+  ASSERT_GT(limit_w, 15);
+  ASSERT_EQ(asked("SET_POWER_LIMIT", {limit_w, no_limit}), "1 3 7");
+  const auto [kept_w, kept_cycles] = fly_to(goal);
+  EXPECT_LT(kept_w, limit_w);
+  EXPECT_GT(kept_cycles, free_cycles);
+  EXPECT_LE(flown.off(goal), 1e-3);
+  EXPECT_EQ(flown.rig.events(1041), 0);
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+}
+
+TEST_F(RobotArmWork, MorePowerThanItsLimitIsStoppedByNameThoughNoTorqueAndNoSpeedIsTooMuch) {
+  ASSERT_EQ(asked("SET_POWER_LIMIT", {100, no_limit}), "1 3 7");
+  const auto motion = flown.move_j(goal, 0.2);
+  flown.cycle(20);
+  flown.told = flown.plant.measured();
+  flown.told->torque[0] = 100;
+  flown.told->velocity[0] = 1.5;
+  flown.cycle(4);
+  expect_stopped(1041);
+  EXPECT_EQ(flown.rig.outcome(motion), "1 3 8:8003");
+  EXPECT_EQ(flown.rig.events(1020), 0);
+  EXPECT_EQ(flown.rig.events(1023), 0);
+}
+
+TEST_F(RobotArmWork, WhoPushesTheToolHarderThanItsLimitHasTheArmStopped) {
+  ASSERT_EQ(asked("SET_CONTACT", {0, 0.3}), "1 3 7");
+  ASSERT_EQ(asked("SET_FORCE_LIMIT", {60}), "1 3 7");
+  flown.outside = at_tool({0, 40, 0});
+  flown.cycle(500);
+  EXPECT_EQ(flown.rig.events(1040), 0);
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+  EXPECT_THAT(asked("SET_FORCE_LIMIT", {30}), StartsWith("1 4:8005")) << "more acts on it already";
+  flown.outside = at_tool({0, 90, 0});
+  for (int i = 0; i < 100 && flown.rig.events(1040) == 0; ++i) flown.cycle();
+  expect_stopped(1040);
+}
+
+/// Held by springs, and somebody moves it quickly.
+TEST_F(RobotArmWork, MoreWorkOfTheToolThanItsLimitIsStopped) {
+  ASSERT_EQ(asked("SET_CONTACT", {0, 0.3}), "1 3 7");
+  ASSERT_EQ(asked("IMPEDANCE_J", {200, 200, 100, 20, 20, 20, 0.7}), "1 3 7");
+  ASSERT_EQ(asked("SET_POWER_LIMIT", {no_limit, 5}), "1 3 7");
+  flown.cycle(200);
+  flown.outside[0] = 40;
+  for (int i = 0; i < 500 && flown.rig.events(1042) == 0; ++i) flown.cycle();
+  expect_stopped(1042);
+}
+
+/// Brakes hold it, and what they hold is not taken for something that pushes.
+TEST_F(RobotArmWork, BroughtUpAnewUnderALowLimitItIsNotStoppedForItsOwnWeight) {
+  ASSERT_EQ(asked("SET_FORCE_LIMIT", {20}), "1 3 7");
+  flown.command(State::SafeOperational);
+  flown.cycle(500);
+  flown.command(State::Operational);
+  flown.cycle(500);
+  EXPECT_EQ(flown.rig.events(1040), 0);
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+}
+
+}  // namespace
+}  // namespace hirosco
