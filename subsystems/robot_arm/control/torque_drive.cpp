@@ -9,8 +9,8 @@
 namespace hirosco::robot_arm {
 namespace {
 
-/// So steeply a torque is taken back before a speed, of what the joint moves: half of what two cycles of delay leave to a damper.
-constexpr double taken_back_per_s = 50;
+/// So steeply a torque is taken back before a speed, of what the joint moves: as a damper, with two cycles of delay at 1 kHz, may be at most.
+constexpr double taken_back_per_s = 100;
 constexpr double fast_share = 0.9, braking_acceleration_share = 0.8;
 /// Before the end of a range, rad or m: nobody is driven into it.
 constexpr double end_strip = 0.01;
