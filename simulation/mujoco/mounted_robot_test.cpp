@@ -25,7 +25,7 @@ constexpr const char* cube_shape = R"(<box size="0.2 0.2 0.2"/>)";
 constexpr const char* cube_mesh = R"(<mesh filename="cube.obj"/>)";
 
 /// A cube of 0.2 m that slides along x. Whatever its file is, its link and joint have the same names.
-std::string slider(double mass_kg, const std::string& shape = cube_shape) {
+std::string cube_slider(double mass_kg, const std::string& shape = cube_shape) {
   return R"(<robot name="slider"><link name="base"/><link name="cube"><inertial><mass value=")" +
          std::to_string(mass_kg) +
          R"("/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
@@ -34,7 +34,7 @@ std::string slider(double mass_kg, const std::string& shape = cube_shape) {
     <child link="cube"/><axis xyz="1 0 0"/><limit lower="-5" upper="5" velocity="9" effort="200"/></joint></robot>)";
 }
 /// A rod that swings about y.
-constexpr const char* pendulum_file = R"(<robot name="pendulum"><link name="base"/>
+constexpr const char* mounted_pendulum = R"(<robot name="pendulum"><link name="base"/>
   <link name="cube"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0"
   izz="0.1"/></inertial></link><joint name="slide" type="revolute"><parent link="base"/><child link="cube"/>
   <axis xyz="0 1 0"/><limit lower="-3" upper="3" velocity="9" effort="50"/></joint></robot>)";
@@ -57,7 +57,7 @@ MujocoRobot world_of_two(const std::string& first, const std::string& second, co
   EXPECT_EQ(robot.mount(spec_of(second, "left_"), at), 1u);
   return robot;
 }
-void run(MujocoRobot& robot, double first, double second, int milliseconds) {
+void run_both(MujocoRobot& robot, double first, double second, int milliseconds) {
   for (int i = 0; i < milliseconds; ++i) {
     robot.drive(0, first, Brakes::Open);
     robot.drive(1, second, Brakes::Open);
@@ -66,20 +66,20 @@ void run(MujocoRobot& robot, double first, double second, int milliseconds) {
 }
 
 TEST(MountedRobot, MovesByItsOwnDriveAsItDoesAloneAndItsNamesAreKeptApart) {
-  auto both = MujocoRobot::make(spec_of(slider(1))).value();
-  ASSERT_EQ(both.mount(spec_of(pendulum_file, "left_"), {.name = "left", .place_m = {0, 3, 0}}), 1u);
+  auto both = MujocoRobot::make(spec_of(cube_slider(1))).value();
+  ASSERT_EQ(both.mount(spec_of(mounted_pendulum, "left_"), {.name = "left", .place_m = {0, 3, 0}}), 1u);
   ASSERT_EQ(both.robots(), 2u);
   EXPECT_EQ(both.joints(0), 1u);
   EXPECT_EQ(both.joints(1), 1u);
   EXPECT_EQ(both.joint("slide"), 0u);
   EXPECT_EQ(both.joint("left/slide"), 1u);
   EXPECT_EQ(both.effort(1), 50);
-  auto slides = MujocoRobot::make(slider(1)).value();
-  auto swings = MujocoRobot::make(pendulum_file).value();
+  auto slides = MujocoRobot::make(cube_slider(1)).value();
+  auto swings = MujocoRobot::make(mounted_pendulum).value();
   ASSERT_TRUE(swings.place(std::array{1.0}));
   ASSERT_TRUE(both.place(std::array{1.0}, 1));
   for (int i = 0; i < 1000; ++i) {
-    run(both, 0.5, 2, 1);
+    run_both(both, 0.5, 2, 1);
     slides.step(std::array{0.5}, Brakes::Open, 1ms);
     swings.step(std::array{2.0}, Brakes::Open, 1ms);
     ASSERT_NEAR(both.position(0), slides.position(0), 1e-9) << i;
@@ -89,7 +89,7 @@ TEST(MountedRobot, MovesByItsOwnDriveAsItDoesAloneAndItsNamesAreKeptApart) {
 }
 
 TEST(MountedRobot, IsTouchedByTheFirstOneAndBothFeelIt) {
-  auto robot = world_of_two(slider(1), slider(2));
+  auto robot = world_of_two(cube_slider(1), cube_slider(2));
   for (int i = 0; i < 2000; ++i) {
     robot.drive(0, 10, Brakes::Open);
     robot.drive(1, 0, Brakes::Closed);
@@ -105,11 +105,11 @@ TEST(MountedRobot, IsTouchedByTheFirstOneAndBothFeelIt) {
 }
 
 TEST(MountedRobot, IsPushedAwayWithWhatTheFirstOneLoses) {
-  auto robot = world_of_two(slider(1), slider(2));
-  run(robot, 10, 0, 100);
+  auto robot = world_of_two(cube_slider(1), cube_slider(2));
+  run_both(robot, 10, 0, 100);
   const double before_n_s = robot.velocity(0);
   EXPECT_NEAR(before_n_s, 1, 0.01);
-  run(robot, 0, 0, 600);
+  run_both(robot, 0, 0, 600);
   EXPECT_LT(robot.velocity(1), -0.1) << "along its own axis, which points at the other one";
   EXPECT_NEAR(robot.velocity(0) - 2 * robot.velocity(1), before_n_s, 1e-3) << "momentum is conserved";
 }
@@ -117,15 +117,15 @@ TEST(MountedRobot, IsPushedAwayWithWhatTheFirstOneLoses) {
 TEST(MountedRobot, MeetsTheOthersByHullsThatItsOwnLinksPassThrough) {
   for (const char* first : {cube_shape, cube_mesh})
     for (const char* second : {cube_shape, cube_mesh}) {
-      auto robot = world_of_two(slider(1, first), slider(2, second));
-      run(robot, 5, 5, 500);
+      auto robot = world_of_two(cube_slider(1, first), cube_slider(2, second));
+      run_both(robot, 5, 5, 500);
       EXPECT_GT(robot.touched(0).contacts, 0) << first << second;
     }
 }
 
 TEST(MountedRobot, IsPlacedWeighedAndPushedByItselfWhileTheOthersGoOn) {
-  auto robot = world_of_two(slider(1), slider(2), {.name = "left", .place_m = {0, 2, 0}});
-  run(robot, 1, 0, 100);
+  auto robot = world_of_two(cube_slider(1), cube_slider(2), {.name = "left", .place_m = {0, 2, 0}});
+  run_both(robot, 1, 0, 100);
   const double where_m = robot.position(0), fast_m_s = robot.velocity(0);
   ASSERT_TRUE(robot.place(std::array{0.7}, 1));
   EXPECT_EQ(robot.position(0), where_m);
@@ -136,7 +136,7 @@ TEST(MountedRobot, IsPlacedWeighedAndPushedByItselfWhileTheOthersGoOn) {
   EXPECT_EQ(robot.position(1), 0.7);
   robot.set_mass_factor(2, 1);
   robot.push(8, 0, 0, 1);
-  run(robot, 0, 0, 100);
+  run_both(robot, 0, 0, 100);
   EXPECT_NEAR(robot.velocity(0), fast_m_s, 1e-9);
   EXPECT_NEAR(robot.velocity(1), 8.0 / 4 * 0.1, 1e-6);
   EXPECT_NEAR(robot.tip_m(1)[0], robot.position(1), 1e-9);
@@ -144,26 +144,26 @@ TEST(MountedRobot, IsPlacedWeighedAndPushedByItselfWhileTheOthersGoOn) {
 }
 
 TEST(MountedRobot, IsNotPutIntoAnotherOneNorUnderANameThatIsTaken) {
-  auto robot = world_of_two(slider(1), slider(2));
+  auto robot = world_of_two(cube_slider(1), cube_slider(2));
   const auto placed = robot.place(std::array{0.4}, 1);
   ASSERT_FALSE(placed);
   EXPECT_THAT(placed.error(), HasSubstr("left/cube"));
   EXPECT_EQ(robot.position(1), 0) << "it stands where it stood";
-  const auto again = robot.mount(spec_of(slider(3), "more_"), opposite);
+  const auto again = robot.mount(spec_of(cube_slider(3), "more_"), opposite);
   ASSERT_FALSE(again);
   EXPECT_THAT(again.error(), HasSubstr("'left/'"));
   for (std::size_t more = 2; more < most_robots; ++more) {
     const Mount at{.name = "r" + std::to_string(more), .place_m = {0, 5.0 * static_cast<double>(more), 0}};
-    ASSERT_EQ(robot.mount(spec_of(slider(1), at.name + "_"), at), more);
+    ASSERT_EQ(robot.mount(spec_of(cube_slider(1), at.name + "_"), at), more);
   }
-  EXPECT_THAT(robot.mount(spec_of(slider(1), "last_"), {.name = "last", .place_m = {9, 9, 9}}).error(),
+  EXPECT_THAT(robot.mount(spec_of(cube_slider(1), "last_"), {.name = "last", .place_m = {9, 9, 9}}).error(),
               HasSubstr("8 robots"));
-  run(robot, 1, 0, 10);
+  run_both(robot, 1, 0, 10);
   EXPECT_GT(robot.velocity(0), 0) << "the world is as it was";
 }
 
 TEST(MountedRobot, OfAnMjcfFileMayFloatAndKeepsItsContacts) {
-  auto robot = MujocoRobot::make(spec_of(slider(1))).value();
+  auto robot = MujocoRobot::make(spec_of(cube_slider(1))).value();
   robot.set_gravity(0, 0, 0);
   auto client = MujocoSpec::make_scene(R"(<mujoco><option gravity="0 0 -3"/><worldbody><body name="client"><freejoint/>
     <geom type="sphere" size="0.1" mass="3" solref="0.01 1"/></body></worldbody></mujoco>)",
@@ -201,14 +201,15 @@ struct MountedDevice : ::testing::Test {
     return path;
   }
   LocalFlows flows;
-  MujocoDevice first{
-      flows, {Transfer::SharedMemory, "one"}, {.cycle = 1ms, .files = {{"MODEL_FILE", file("one.urdf", slider(1))}}}};
+  MujocoDevice first{flows,
+                     {Transfer::SharedMemory, "one"},
+                     {.cycle = 1ms, .files = {{"MODEL_FILE", file("one.urdf", cube_slider(1))}}}};
   PartDevice second{flows,
                     {Transfer::SharedMemory, "two"},
                     {.cycle = 1ms,
                      .stop = SimulatedDevice::Stop::Controlled,
                      .stop_within = 20ms,
-                     .files = {{"MODEL_FILE", file("two.urdf", slider(2))}},
+                     .files = {{"MODEL_FILE", file("two.urdf", cube_slider(2))}},
                      .in_world_of = &first}};
   std::unique_ptr<DataFlow> to_first, to_second;
   TimePoint now{1s};
@@ -325,6 +326,39 @@ TEST_F(MountedDevice, TakesTheLinesOfItsRobotOnceItIsThereAndIsMountedOnceBefore
                    {.cycle = 1ms, .files = second.settings().files, .in_world_of = &first}};
   ASSERT_TRUE(later.plug());
   EXPECT_EQ(later.fault("mount third 5,0,0").error().code, ErrorCode::NotPermitted);
+}
+
+TEST_F(MountedDevice, IsAsItsMjcfFileSaysWhereItsMissionNamesOne) {
+  const std::string scene =
+      file("two.xml", R"(<mujoco><worldbody><geom name="bench" type="box" size="0.1 0.1 0.1" pos="0 1 0"/>
+    <body name="cube"><joint name="slide" type="slide" axis="1 0 0" actuatorfrcrange="-3 3"/>
+    <geom type="box" size="0.1 0.1 0.1" mass="4"/></body></worldbody></mujoco>)");
+  ASSERT_TRUE(first.plug());
+  ASSERT_TRUE(first.fault("gravity 0 0 0"));
+  PartDevice other{flows,
+                   {Transfer::SharedMemory, "other"},
+                   {.cycle = 1ms,
+                    .files = {{"MODEL_FILE", file("two.urdf", cube_slider(2))}, {"WORLD_FILE", scene}},
+                    .in_world_of = &first}};
+  ASSERT_TRUE(other.plug());
+  EXPECT_TRUE(other.fault("WORLD_FILE two.xml")) << "as the setting of the mission that it is";
+  const auto mounted = other.fault("mount left 0.5,0,0 0,0,3.14159265");
+  ASSERT_TRUE(mounted) << mounted.error().text;
+  EXPECT_EQ(world().effort(1), 3) << "what its drive can do there";
+  EXPECT_GE(mj_name2id(&world().model(), mjOBJ_GEOM, "left/bench"), 0) << "with all that stands there";
+  EXPECT_EQ(world().model().body_mass[mj_name2id(&world().model(), mjOBJ_BODY, "left/cube")], 4);
+  for (int i = 0; i < 100; ++i) {
+    first.robot().drive(1, 9, Brakes::Open);
+    first.robot().step(1ms);
+  }
+  EXPECT_NEAR(world().velocity(1), 3.0 / 4 * 0.1, 1e-6) << "9 N are held to them";
+  PartDevice wrong{flows,
+                   {Transfer::SharedMemory, "wrong"},
+                   {.cycle = 1ms,
+                    .files = {{"MODEL_FILE", file("two.urdf", cube_slider(2))}, {"WORLD_FILE", "nowhere.xml"}},
+                    .in_world_of = &first}};
+  ASSERT_TRUE(wrong.plug());
+  EXPECT_EQ(wrong.fault("mount third 5,0,0").error().code, ErrorCode::NotFound);
 }
 
 TEST_F(MountedDevice, MayHandJointsOverToAThirdOne) {

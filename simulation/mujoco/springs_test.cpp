@@ -21,16 +21,17 @@ using Brakes = MujocoRobot::Brakes;
 using ::testing::HasSubstr;
 
 /// A point of 2 kg on a rod of 0.5 m, which swings about y.
-constexpr const char* pendulum_file = R"(<robot name="pendulum"><link name="base"/><joint name="swing" type="revolute">
+constexpr const char* sprung_pendulum =
+    R"(<robot name="pendulum"><link name="base"/><joint name="swing" type="revolute">
   <parent link="base"/><child link="rod"/><axis xyz="0 1 0"/><limit lower="-3" upper="3" velocity="9" effort="20"/></joint>
   <link name="rod"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/><inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0"
   izz="1e-6"/></inertial></link></robot>)";
-constexpr double link_kg_m2 = 2 * 0.5 * 0.5 + 1e-6, rotor_kg_m2 = 0.3, weight_n_m = 2 * 9.81 * 0.5;
-constexpr std::array rotor{rotor_kg_m2};
+constexpr double sprung_link_kg_m2 = 2 * 0.5 * 0.5 + 1e-6, sprung_rotor_kg_m2 = 0.3, hung_n_m = 2 * 9.81 * 0.5;
+constexpr std::array sprung_rotor{sprung_rotor_kg_m2};
 
 MujocoRobot with_spring(double stiffness, double damping = 0) {
-  auto robot = MujocoRobot::make(pendulum_file).value();
-  robot.set_rotors(rotor);
+  auto robot = MujocoRobot::make(sprung_pendulum).value();
+  robot.set_rotors(sprung_rotor);
   const auto done = robot.give_way(std::array{stiffness}, std::array{damping});
   EXPECT_TRUE(done) << done.error();
   return robot;
@@ -43,10 +44,10 @@ TEST(Springs, GiveWayToWhatHangsOnThemWhileTheDriveIsHeld) {
   ASSERT_TRUE(robot.place(std::array{std::numbers::pi / 2}));
   EXPECT_EQ(robot.position(0), std::numbers::pi / 2) << "its sensor is at its drive";
   const double sagged = robot.given_way(0);
-  EXPECT_NEAR(std::abs(sagged), weight_n_m * std::sin(std::numbers::pi / 2 + sagged) / stiffness, 1e-6);
+  EXPECT_NEAR(std::abs(sagged), hung_n_m * std::sin(std::numbers::pi / 2 + sagged) / stiffness, 1e-6);
   for (int i = 0; i < 1000; ++i) robot.step(std::array{0.0}, Brakes::Closed, 1ms);
   EXPECT_NEAR(robot.given_way(0), sagged, 1e-4) << "it was put where it rests";
-  EXPECT_NEAR(std::abs(robot.torque(0)), weight_n_m, 0.02) << "the torque sensor has what the spring has";
+  EXPECT_NEAR(std::abs(robot.torque(0)), hung_n_m, 0.02) << "the torque sensor has what the spring has";
   EXPECT_LT(std::abs(robot.data().qvel[1]), 1e-2);
 }
 
@@ -54,10 +55,11 @@ TEST(Springs, SwingBetweenDriveAndLinkAsTheirInertiasSay) {
   constexpr double stiffness = 200, driven_n_m = 4;
   auto robot = with_spring(stiffness);
   robot.set_gravity(0, 0, 0);
-  const double rate = std::sqrt(stiffness * (1 / rotor_kg_m2 + 1 / link_kg_m2));
+  const double rate = std::sqrt(stiffness * (1 / sprung_rotor_kg_m2 + 1 / sprung_link_kg_m2));
   for (int i = 1; i <= 300; ++i) {
     robot.step(std::array{driven_n_m}, Brakes::Open, 1ms);
-    const double in_spring = driven_n_m * link_kg_m2 / (link_kg_m2 + rotor_kg_m2) * (1 - std::cos(rate * 1e-3 * i));
+    const double in_spring =
+        driven_n_m * sprung_link_kg_m2 / (sprung_link_kg_m2 + sprung_rotor_kg_m2) * (1 - std::cos(rate * 1e-3 * i));
     ASSERT_NEAR(robot.torque(0), in_spring, 1e-3) << i << " ms";
     ASSERT_NEAR(robot.given_way(0), -in_spring / stiffness, 1e-5) << i << " ms";
   }
@@ -68,7 +70,7 @@ TEST(Springs, ComeToRestByTheirDamping) {
   auto robot = with_spring(200, 4);
   robot.set_gravity(0, 0, 0);
   for (int i = 0; i < 800; ++i) robot.step(std::array{driven_n_m}, Brakes::Open, 1ms);
-  EXPECT_NEAR(robot.torque(0), driven_n_m * link_kg_m2 / (link_kg_m2 + rotor_kg_m2), 0.01);
+  EXPECT_NEAR(robot.torque(0), driven_n_m * sprung_link_kg_m2 / (sprung_link_kg_m2 + sprung_rotor_kg_m2), 0.01);
 }
 
 TEST(Springs, StayWhereAnObstacleComesAndKeepTheirSwing) {
@@ -93,10 +95,10 @@ TEST(Springs, AreRefusedWhereTheWorldCannotReckonWithThem) {
     EXPECT_NE(robot.position(0), position) << "it goes on as it was";
     return done ? "it is taken" : done.error();
   };
-  EXPECT_THAT(refused(MujocoRobot::make(pendulum_file).value(), 200), HasSubstr("rotors before springs"));
+  EXPECT_THAT(refused(MujocoRobot::make(sprung_pendulum).value(), 200), HasSubstr("rotors before springs"));
   const auto with_rotor = [] {
-    auto robot = MujocoRobot::make(pendulum_file).value();
-    robot.set_rotors(rotor);
+    auto robot = MujocoRobot::make(sprung_pendulum).value();
+    robot.set_rotors(sprung_rotor);
     return robot;
   };
   auto stiff = with_rotor();
@@ -112,7 +114,7 @@ TEST(Springs, AreRefusedWhereTheWorldCannotReckonWithThem) {
 
 TEST(Springs, AreASettingOfTheDevice) {
   const std::string file = ::testing::TempDir() + "springs.urdf";
-  std::ofstream{file} << pendulum_file;
+  std::ofstream{file} << sprung_pendulum;
   LocalFlows flows;
   MujocoDevice device{flows, {Transfer::SharedMemory, "springs"}, {.cycle = 1ms, .files = {{"MODEL_FILE", file}}}};
   ASSERT_TRUE(device.plug());
