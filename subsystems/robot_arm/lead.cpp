@@ -9,7 +9,7 @@ namespace hirosco::robot_arm {
 namespace {
 
 /// Beyond the end of a range somebody who stands there may be measured, rad or m; the setpoint goes to the end.
-constexpr double past_end = 0.01;
+constexpr double past_range = 0.01;
 /// Likewise of a velocity, as a share of it.
 constexpr double past_velocity = 1.1;
 
@@ -127,8 +127,8 @@ std::optional<Lead::End> Lead::unfit_joint(std::size_t joint, double most_apart)
     const double place = positions_.value().position[joint];
     const double here = parts_.guidance.setpoints().now().position[static_cast<Eigen::Index>(joint)];
     if (!std::isfinite(place)) return End{.why = Why::NoNumber, .joint = number};
-    if (place < its.lowest - past_end) return End{Why::OutOfRange, number, place, its.lowest};
-    if (place > its.highest + past_end) return End{Why::OutOfRange, number, place, its.highest};
+    if (place < its.lowest - past_range) return End{Why::OutOfRange, number, place, its.lowest};
+    if (place > its.highest + past_range) return End{Why::OutOfRange, number, place, its.highest};
     if (std::abs(place - here) > most_apart) return End{Why::TooFar, number, std::abs(place - here), most_apart};
   }
   const double most = past_velocity * its.motion.velocity;

@@ -218,9 +218,9 @@ Finding python(const System& system) {
 
 Finding world(const System& system) {
   const World& world = system.world;
-  const auto lacks = [&](std::string found, const char* package) {
-    return world.wanted ? missing(std::move(found), package != nullptr ? package : world.fetcher)
-                        : ok(std::move(found) + "; the mission has nobody in it");
+  const auto lacks = [&](std::string_view found, const char* package) {
+    return world.wanted ? missing(std::string{found}, package != nullptr ? package : world.fetcher)
+                        : ok(fmt::format("{}; the mission has nobody in it", found));
   };
   if (!world.program)
     return lacks("no program of it",
