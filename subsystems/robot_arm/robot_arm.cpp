@@ -122,7 +122,9 @@ void RobotArm::measure(const Cycle& cycle) noexcept {
 void RobotArm::advance() noexcept {
   if (const auto end = lead_.advance()) tell(*end);
   guidance_.keep_power(model_.held(model_.payload()));
+  const bool drove = torque_mode_.drives();
   torque_mode_.advance();
+  if (drove && !torque_mode_.drives()) force_sensor_.arm(true);
   guidance_.advance(control_.led());
   watch_clearance();
   if (const auto gone = guidance_.end_retract()) raise(retracted_, *gone);
@@ -258,6 +260,7 @@ Outcome RobotArm::drive(const FunctionValues& values, const Call& call) noexcept
   const Outcome driven = torque_mode_.drive(values);
   if (driven.kind == Outcome::Kind::Refused) return driven;
   if (goes_on) finish(*motion_);
+  else force_sensor_.arm(true);
   motion_ = call;
   return driven;
 }
