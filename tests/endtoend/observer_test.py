@@ -202,6 +202,28 @@ class Observer(unittest.TestCase):
         truth = craft.truth("robot")
         self.assertEqual((truth["motor_1"], truth["motor_2"]), (0.0, 0.0))
 
+    def test_error_operational_keeps_what_it_has_and_moves_nothing_and_is_left_downwards(self):
+        """Where a plan leaves it there: the demonstrator's own goes on to Offline at once."""
+        with flight.MissionCopy({'set_state" state="SafeOperational': 'set_state" state="ErrorOperational'}) as mission, flight.Flight(mission) as craft:
+            craft.wait_commissioned()
+            with Operator() as telemetry:
+                before = self.looks(craft)
+                self.do(craft, "manipulator", "SET_TORQUE_LIMIT", 3)
+                begin = craft.count()
+                craft.fault("joystick", "hand", "cartesian", 0.0226, 0, 0.5)
+                told = craft.wait_told("MANIPULATOR info STATE_CHANGED STATE=ErrorOperational", 5.0, begin)
+                craft.wait_at_rest("robot", told.received)
+                holding = self.looks(craft)["manipulator"]
+                self.assertEqual((holding.devices(), holding.links()), (before["manipulator"].devices(), 2), "device and links are kept")
+                self.assertTrue(self.housekeeping_of(telemetry, flight.MANIPULATOR, 1.5), "its cycle samples")
+                truth = craft.truth("robot")
+                self.assertEqual((truth["motor_1"], truth["motor_2"]), (0.0, 0.0))
+                self.do(craft, "supervisor", "SET_MODE", 1)
+                self.do(craft, "manipulator", "SET_STATE", POST_OPERATIONAL)
+                self.assert_rests({"manipulator": self.looks(craft)["manipulator"]}, "Post-Operational")
+                self.do(craft, "manipulator", "SET_STATE", OFFLINE)
+                self.assert_rests({"manipulator": self.looks(craft)["manipulator"]}, "Offline")
+
     def test_a_device_has_power_only_between_hardware_init_and_hardware_deinit(self):
         with flight.Flight(IMAGER) as craft:
             craft.wait_told("commissioned: mode operation", 20.0)
