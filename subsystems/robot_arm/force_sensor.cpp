@@ -19,6 +19,12 @@ constexpr std::uint32_t met_after_cycles = 3;
   return norm > most ? Vector3{most / norm * standing} : Vector3{Vector3::Zero()};
 }
 
+/// A load that stood is gone when so much of the limit is left of it, as the joints count one.
+constexpr double wrist_gone_share = 0.5;
+void let_go_of(Vector3& borne, const Vector3& felt, double limit) noexcept {
+  if (felt.dot(borne) < wrist_gone_share * limit * borne.norm()) borne.setZero();
+}
+
 }  // namespace
 
 bool ForceSensor::declared(const descriptor::SubsystemDescriptor& subsystem) {
@@ -68,6 +74,8 @@ std::optional<ForceSensor::Contact> ForceSensor::meet(bool floats) noexcept {
   const ContactValues watch = parts_.parameters.contact.load();
   if (!valid_ || watch.reaction == 0) return std::nullopt;
   const WristRange range = range_.load();
+  let_go_of(borne_force_, force_, watch.limit * range.force_n);
+  let_go_of(borne_moment_, moment_, watch.limit * range.moment_n_m);
   const Contact felt{(force_ - borne_force_).norm(), (moment_ - borne_moment_).norm()};
   if (felt.force_n <= watch.limit * range.force_n && felt.moment_n_m <= watch.limit * range.moment_n_m) {
     contact_cycles_ = 0;

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/robot_arm.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <initializer_list>
 #include <numeric>
 #include <string_view>
@@ -10,6 +12,12 @@
 #include "subsystems/robot_arm/lengths.hpp"
 
 namespace hirosco {
+namespace {
+
+/// Joints and wrist feel one contact at different times: cycles in which it is the same one, five times those of the observer at 1 kHz.
+constexpr std::uint32_t one_contact = 100;
+
+}  // namespace
 
 using robot_arm::Excess;
 using robot_arm::ForceSensor;
@@ -209,7 +217,14 @@ void RobotArm::watch_contact() noexcept {
   if (met) raise(contact_, static_cast<std::uint8_t>(met->joint + 1), met->torque, met->limit, met->reaction);
   const auto felt = force_sensor_.meet(control_.floats());
   if (felt) raise(wrist_contact_, felt->force_n, felt->moment_n_m, static_cast<std::uint8_t>(yielding_.reaction()));
-  if (!met && !felt) return;
+  if (!met && !felt) {
+    since_contact_ = std::min(since_contact_ + 1, one_contact);
+    return;
+  }
+  const bool told = guidance_.retracting() && since_contact_ < one_contact && felt.has_value() != felt_at_wrist_;
+  felt_at_wrist_ = felt.has_value();
+  if (told) return;
+  since_contact_ = 0;
   const bool stood = guidance_.at_rest() && !motion_;
   end_motion(Trouble::contact);
   yielding_.react({.stood = stood, .stopping = stop_.has_value()});
@@ -218,6 +233,7 @@ void RobotArm::watch_contact() noexcept {
 void RobotArm::count_contacts(Yielding::Before load) noexcept {
   yielding_.arm(load);
   force_sensor_.arm(load == Yielding::Before::Stands);
+  since_contact_ = one_contact;
 }
 
 // --- functions -----------------------------------------------------------------------------------------------------------

@@ -97,6 +97,8 @@ class RobotArm final : public robotics::MovingSubsystem {
   robot_arm::Drives drives_{parameters_.current};
   robot_arm::LimitWatch limits_{{known_, drives_, parameters_}};
   robot_arm::OnBoardModel model_{{known_, drives_, parameters_}};
+  std::uint32_t since_contact_{0};  ///< cycles, of the last one that was answered
+  bool felt_at_wrist_{false};  ///< that one, first
   robot_arm::ForceSensor force_sensor_{{known_, drives_, model_, parameters_}};
   robot_arm::Obstacles obstacles_{{parameters_.clearance_limit_m, parameters_.clearance_m, parameters_.keep_out}};
   robot_arm::Guidance guidance_{{known_, drives_, obstacles_, parameters_}};

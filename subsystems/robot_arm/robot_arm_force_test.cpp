@@ -24,6 +24,7 @@ constexpr std::uint16_t joints_met = 1025, wrist_met = 1065, sensor_lost = 1066;
 
 [[nodiscard]] std::string sensing() {
   std::string text = robot_arm::testing::with_force_sensor(robot_arm::testing::descriptor_text());
+  replace_all(text, robot_arm::testing::self_test_required, "");
   replace_all(text, "value=\"robot_arm.urdf\"", "value=\"" + std::string{folder} + "robot_arm.urdf\"");
   return text;
 }

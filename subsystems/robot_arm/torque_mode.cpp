@@ -44,7 +44,7 @@ Outcome TorqueMode::may_press(const JointVector& torque) noexcept {
 Outcome TorqueMode::drive(const FunctionValues& values) noexcept {
   const std::size_t joints = parts_.known.joints();
   const JointVector torque = vector_of(std::span{values}.first(joints));
-  const JointVector held = parts_.model.held(parts_.model.payload());
+  const JointVector held = parts_.model.held(parts_.model.payload()) + parts_.control.laws().carried();
   if (const Outcome may = parts_.limits.may_hold(held + torque); may.kind == Outcome::Kind::Refused) return may;
   if (const Outcome may = may_press(torque); may.kind == Outcome::Kind::Refused) return may;
   if (!drives()) {
@@ -68,8 +68,8 @@ void TorqueMode::advance() noexcept {
   }
   left_s_ -= cycle_s_;
   weigh();
-  const Driven& driven = drive_.step(parts_.drives.measured(),
-                                     {.held = parts_.model.held(parts_.model.payload()), .moved = mass_.diagonal()},
+  const JointVector held = parts_.model.held(parts_.model.payload()) + parts_.control.laws().carried();
+  const Driven& driven = drive_.step(parts_.drives.measured(), {.held = held, .moved = mass_.diagonal()},
                                      parts_.known.bounds(), parts_.parameters.torque_limit.load(), cycle_s_);
   parts_.control.laws().drive(driven);
   parts_.parameters.desired_torque.store(joints_of(driven.torque));

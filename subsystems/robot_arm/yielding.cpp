@@ -33,7 +33,8 @@ void Yielding::take_law(LawKind kind) noexcept {
   if (parts_.control.led() || (kind == LawKind::Position && parts_.control.gives_way()))
     parts_.guidance.setpoints().settle(measured.position, measured.velocity);
   if (kind == LawKind::Float) parts_.guidance.engage();
-  parts_.control.laws().set(kind, kind == LawKind::Float ? let_go_s : Laws::smooth_s);
+  const bool lets_go = kind == LawKind::Float || parts_.control.kind() == LawKind::Torque;
+  parts_.control.laws().set(kind, lets_go ? let_go_s : Laws::smooth_s);
   arm(Before::Counts);
 }
 

@@ -95,7 +95,10 @@ TEST_F(FollowingTest, IsBehindByATenthOfASecondWithAJerkOfTenTimesTheAcceleratio
 
 TEST_F(FollowingTest, RestsWithinTheTimesThatItsLimitsTakeAndStaysThere) {
   begin(zeros);
-  for (int cycle = 0; cycle < 700; ++cycle) following->go_with(vector_of(std::array{2.5, 1.0}));
+  for (int cycle = 0; cycle < 700; ++cycle) {
+    following->go_with(vector_of(std::array{2.5, 1.0}));
+    ASSERT_NO_FATAL_FAILURE(keeps_limits());
+  }
   EXPECT_FALSE(following->at_rest());
   int cycles = 0;
   while (!following->at_rest() && cycles < 5000) {

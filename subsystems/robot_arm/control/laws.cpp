@@ -64,11 +64,10 @@ void Laws::carry(const JointVector& answer, Bounds bounds) noexcept {
 
 JointVector Laws::torque(const Setpoint& wanted, const Measured& measured, robotics::Dynamics& dynamics,
                          const Payload& payload, Bounds bounds, const Settings& settings) noexcept {
-  JointVector torque, carrying;
+  JointVector torque, carrying, answer;
   if (kind_ == LawKind::Position) {
     torque = law_.torque(wanted, measured, dynamics, payload, bounds, settings.position);
-    const JointVector answer = law_.answer(settings.position);
-    carry(answer, bounds);
+    answer = law_.answer(settings.position);
     carrying = law_.unbounded() - answer;
   } else {
     torque = compliance_.torque(wanted, measured, dynamics, payload, bounds,
@@ -91,9 +90,13 @@ JointVector Laws::torque(const Setpoint& wanted, const Measured& measured, robot
     for (Eigen::Index i = 0; i < torque.size(); ++i) torque[i] += fading_s_ / fade_s_ * kept_[i];
   if (settings.lever != nullptr) {
     const JointVector within = within_work(torque, carrying, measured.velocity, *settings.lever, settings.work);
-    if (within != torque) law_.hold_back();
+    if (within != torque) {
+      law_.hold_back();
+      answer = within - carrying;  // what was held back was no answer to a load
+    }
     torque = within;
   }
+  if (kind_ == LawKind::Position) carry(answer, bounds);
   for (Eigen::Index i = 0; i < torque.size(); ++i) {
     double value = torque[i];
     if (!std::isfinite(value)) value = 0;

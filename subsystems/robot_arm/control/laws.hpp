@@ -29,6 +29,8 @@ class Laws {
   void set(LawKind kind, double over_s = smooth_s) noexcept;
   void set(LawKind kind, const Impedance& impedance) noexcept;
   void set_tool(const Vector3& place_m) noexcept;
+  /// For what the model does not know, on top of it, in every law that gives way.
+  [[nodiscard]] const JointVector& carried() const noexcept { return carried_; }
   void drive(const Driven& driven) noexcept { compliance_.drive(driven); }
   [[nodiscard]] LawKind kind() const noexcept { return kind_; }
   /// Where it is may be far from its setpoint, and that is meant.

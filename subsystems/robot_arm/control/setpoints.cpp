@@ -177,7 +177,8 @@ JointVector Setpoints::braked() const noexcept {
     return now_.position + line_.posture_at(rest_s) - line_.posture_at(path_s_);
   }
   if (kind_ == Kind::JointPath) {
-    path_.at(rest_on(path_, bounds_, {path_s_ + pace_ * cycle_s_, pace_}, cycle_s_), sample);
+    const double pace = std::min(1.0, pace_ + (braking_ ? 0.0 : quickening() * cycle_s_));
+    path_.at(rest_on(path_, bounds_, {path_s_ + pace * cycle_s_, pace}, cycle_s_), sample);
     return sample.position;
   }
   JointVector there = now_.position;
@@ -264,14 +265,14 @@ std::optional<std::size_t> Setpoints::joint_in_the_way() const noexcept {
   return std::nullopt;
 }
 
-/// `onward`: what the joints do at full pace, besides what brings them back to the line. Braked, the pace is the least that their accelerations permit.
+/// `onward`: what the joints do at full pace, besides what brings them back to the line. Braked, or for its power, the pace is the least that their accelerations permit.
 void Setpoints::keep_pace(const JointVector& onward, const JointVector& back) noexcept {
-  const double most = std::min(line_.pace(path_s_), power_.share(onward));
-  if (!braking_) {
-    pace_ = std::min(most, pace_ + line_.change_per_s(path_s_) * cycle_s_);
+  const double most = line_.pace(path_s_), power = power_.share(onward);
+  if (!braking_ && power >= pace_) {
+    pace_ = std::min({most, power, pace_ + line_.change_per_s(path_s_) * cycle_s_});
     return;
   }
-  double least = std::max(0.0, pace_ - cycle_s_ / Line::ramp_s);
+  double least = std::max(braking_ ? 0.0 : power, pace_ - cycle_s_ / Line::ramp_s);
   for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
     const auto i = static_cast<Eigen::Index>(joint);
     if (std::abs(onward[i]) < no_way) continue;
