@@ -48,7 +48,7 @@ void SimulatedDevice::step(TimePoint now) {
   const std::int64_t due = clock_.due(now, exchanged);
   // What the watchdog forgives, the world does not live through: a command that its subsystem had no time to follow up would drive the
   // motors on, and a control loop left open for tens of milliseconds came back to torques beyond the hard limit.
-  const std::int64_t lived = forgiven > Duration{0} && !exchanged && active() ? 0 : due;
+  const std::int64_t lived = forgiven > Duration{0} && !exchanged && active() && has_world_alone() ? 0 : due;
   const Duration cycle = clock_.world_cycle();
   for (std::int64_t i = 0; i < lived; ++i) {
     advance(cycle);

@@ -155,6 +155,8 @@ class SimulatedDevice {
  private:
   /// Moves the world by one cycle under the last accepted payload; output() tells what to do with it.
   virtual void advance(Duration cycle) noexcept = 0;
+  /// Nobody else moves in its world: it may stand for this one's sake.
+  [[nodiscard]] virtual bool has_world_alone() const noexcept { return true; }
   /// Takes the payload of an accepted active command. Malformed: wrong size.
   [[nodiscard]] virtual Result<> take(OctetReader payload) noexcept = 0;
   virtual void write_sensors(OctetWriter& payload) noexcept = 0;

@@ -53,6 +53,8 @@ class MujocoDevice final : public SimulatedDevice {
   /// For whoever is in the same world.
   [[nodiscard]] MujocoRobot& robot() noexcept { return *robot_; }
   [[nodiscard]] bool has_world() const noexcept { return robot_.has_value(); }
+  /// A part of another device moves in its world from now on.
+  void share() noexcept { shared_ = true; }
   /// From now on these joints (NAME,NAME,...) are another device's, in the order of the file. NotPermitted: it runs already. NotFound,
   /// InvalidArgument: one does not move by itself or is not its own, or none would be left.
   /// Of a robot that is mounted in its world: NAME/JOINT,..., all of them of one robot.
@@ -67,6 +69,7 @@ class MujocoDevice final : public SimulatedDevice {
  private:
   [[nodiscard]] Result<> make_world() override;
   void advance(Duration cycle) noexcept override;
+  [[nodiscard]] bool has_world_alone() const noexcept override { return !shared_; }
   [[nodiscard]] Result<> take(OctetReader payload) noexcept override { return bus_.take(payload); }
   void write_sensors(OctetWriter& payload) noexcept override;
   [[nodiscard]] Result<> do_fault(const Words& words) override;
@@ -86,6 +89,7 @@ class MujocoDevice final : public SimulatedDevice {
   RobotLines lines_;
   std::string problem_;  ///< why there is no world, or what it was asked for is not done
   bool driven_{false};
+  bool shared_{false};  ///< parts of others are in its world
   bool has_force_sensor_{false};
   bool force_silent_{false};
   std::array<double, 6> force_{};  ///< that it told last

@@ -18,6 +18,7 @@ PartDevice::PartDevice(FlowFactory& flows, FlowAddress address, const Settings& 
 Result<> PartDevice::make_world() {
   if (whole_ == nullptr || !whole_->has_world())
     return fail(ErrorCode::Unavailable, "it is in the world of a device of hirosco-sim-mujoco, and there is none");
+  whole_->share();
   return ok();
 }
 

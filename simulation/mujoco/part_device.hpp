@@ -28,6 +28,7 @@ class PartDevice final : public SimulatedDevice {
  private:
   [[nodiscard]] Result<> make_world() override;
   void advance(Duration cycle) noexcept override;
+  [[nodiscard]] bool has_world_alone() const noexcept override { return false; }
   [[nodiscard]] Result<> take(OctetReader payload) noexcept override { return bus_.take(payload); }
   void write_sensors(OctetWriter& payload) noexcept override { bus_.write_sensors(whole_->robot(), payload); }
   [[nodiscard]] Result<> do_fault(const Words& words) override;

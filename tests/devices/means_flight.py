@@ -10,7 +10,7 @@ import time
 
 import flight
 
-ADDRESS = 'address="rokviss-joystick" '
+ADDRESS = 'address="joystick-handle" '
 
 
 def main():

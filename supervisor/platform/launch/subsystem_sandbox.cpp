@@ -11,6 +11,7 @@
 #include "hirosco/descriptor/model/member_reach.hpp"
 #include "hirosco/descriptor/model/setting_files.hpp"
 #include "hirosco/utilities/os/installation.hpp"
+#include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/sanitizer.hpp"
 
 namespace hirosco::supervisor {
@@ -61,7 +62,8 @@ ProcessLimits limits_of(const descriptor::Resources& resources) noexcept {
   using descriptor::Resource;
   ProcessLimits limits;
   constexpr std::uint64_t octets_per_kb = 1024;
-  if (const auto memory_kb = amount_of(resources.most, Resource::Memory); memory_kb && !built_with_sanitizer)
+  if (const auto memory_kb = amount_of(resources.most, Resource::Memory);
+      memory_kb && !built_with_sanitizer && !sandbox_is_off())
     limits.memory_octets = *memory_kb * octets_per_kb;
   if (const auto descriptors = amount_of(resources.most, Resource::Descriptors)) limits.descriptors = *descriptors;
   return limits;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/sanitizer.hpp"
 
 namespace hirosco::supervisor {
@@ -70,13 +71,16 @@ std::optional<ResourceHandling::Excess> ResourceHandling::excess_of(const Member
                                                    {Resource::SharedMemory, usage.shared_memory_kb},
                                                    {Resource::Threads, usage.threads}};
   for (const auto& [resource, used] : taken) {
-    if (built_with_sanitizer && resource == Resource::Memory) continue;
+    if ((built_with_sanitizer || sandbox_is_off()) && resource == Resource::Memory) continue;
     if (const auto limit = amount_of(most, resource); limit && used > *limit) return Excess{resource, used, *limit};
   }
   const auto limit = amount_of(most, Resource::Processor);
   const auto percent = seen.processor.look(usage.processor, craft_.now);
   if (!limit || !percent) return std::nullopt;
-  seen.too_much = *percent > *limit ? seen.too_much + 1 : 0;
+  // On its way up or down it reads files and meshes: how long that may last is the guard's.
+  const auto state = member.state();
+  const bool on_its_way = state && is_transient(*state);
+  seen.too_much = *percent > *limit && !on_its_way ? seen.too_much + 1 : 0;
   if (seen.too_much < windows_too_much) return std::nullopt;
   return Excess{Resource::Processor, *percent, *limit};
 }

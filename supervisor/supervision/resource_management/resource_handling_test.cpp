@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 
+#include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/sanitizer.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
@@ -87,7 +88,7 @@ TEST_F(ResourceHandlingTest, MemoryBeyondWhatItSaysEndsItUnlessASanitizerTakesIt
   start_all(Operational);
   use_of(arm) = {.memory_kb = 30'001, .threads = 4};
   look();
-  EXPECT_EQ(killed.empty(), built_with_sanitizer);
+  EXPECT_EQ(killed.empty(), built_with_sanitizer || sandbox_is_off());
 }
 
 TEST_F(ResourceHandlingTest, ProcessorTimeIsARunawaysWhenItIsTooMuchForThreeSeconds) {
@@ -103,6 +104,17 @@ TEST_F(ResourceHandlingTest, ProcessorTimeIsARunawaysWhenItIsTooMuchForThreeSeco
   wait(1s);
   look();
   EXPECT_TRUE(was_told("ARM has taken 41 % of processor, its descriptor says 40 % at most: it is ended"));
+}
+
+TEST_F(ResourceHandlingTest, ProcessorTimeOnTheWayUpMakesNobodyARunaway) {
+  start_all(State::SoftwareInit);
+  for (int second = 0; second < 6; ++second) {
+    look();
+    use_of(arm).processor += 1s;
+    wait(1s);
+  }
+  look();
+  EXPECT_TRUE(killed.empty()) << "it reads files and meshes";
 }
 
 TEST_F(ResourceHandlingTest, OfWhoSaysNothingNothingIsTooMuch) {
