@@ -64,13 +64,18 @@ struct Options {
   std::filesystem::path runtime;     ///< folder of this flight: sockets, what was injected
   std::string mode;                  ///< to start in; empty = the mission's
   Console::Style style{Console::Style::Text};
+  bool own_users{false};             ///< who started this has the right to end such
   int screen{-1};                    ///< descriptor that a screen reads from; -1: none
 };
 
-constexpr std::array known_options{
-    ProgramOption{"--mission", "FILE"},     ProgramOption{"--log", "FILE"}, ProgramOption{"--runtime", "FOLDER"},
-    ProgramOption{"--mode", "NAME"},        ProgramOption{"--json"},        ProgramOption{"--quiet"},
-    ProgramOption{"--screen", "DESCRIPTOR"}};
+constexpr std::array known_options{ProgramOption{"--mission", "FILE"},
+                                   ProgramOption{"--log", "FILE"},
+                                   ProgramOption{"--runtime", "FOLDER"},
+                                   ProgramOption{"--mode", "NAME"},
+                                   ProgramOption{"--json"},
+                                   ProgramOption{"--quiet"},
+                                   ProgramOption{"--own-users"},
+                                   ProgramOption{"--screen", "DESCRIPTOR"}};
 
 [[nodiscard]] std::expected<Options, std::string> read_options(int argc, char** argv) {
   auto given = given_options(argc, argv, known_options);
@@ -82,6 +87,7 @@ constexpr std::array known_options{
     else if (name == "--runtime") options.runtime = value;
     else if (name == "--mode") options.mode = value;
     else if (name == "--json") options.style = Console::Style::Json;
+    else if (name == "--own-users") options.own_users = true;
     else if (name == "--screen") std::from_chars(value.data(), value.data() + value.size(), options.screen);
     else if (name == "--quiet") options.style = Console::Style::Quiet;
   }
@@ -196,7 +202,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   const SystemClock clock;
   SystemFlowFactory flows;
   const bool realtime = realtime_permitted();
-  const Deployment deployment = deploy({.mission = mission, .clock = clock, .flows = flows, .realtime = realtime});
+  const Deployment deployment = deploy(
+      {.mission = mission, .clock = clock, .flows = flows, .realtime = realtime, .own_users = options.own_users});
   if (!deployment.launcher) return exit_environment;
   FlightLauncher& launcher = *deployment.launcher;
   const auto strategy = from_text<DatabaseStrategy>(mission.database.strategy).value_or(DatabaseStrategy::Sqlite);

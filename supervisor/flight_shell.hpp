@@ -26,13 +26,14 @@ struct FlightParts {
   const Clock& clock;
   FlowFactory& flows;
   bool realtime{false};
+  bool own_users{false};  ///< who started the flight has the right to end users of their own (docs/adr/0177)
 };
 
 /// Makes it, or prints why not and leaves the launcher empty.
 using MakeDeployment = std::function<Deployment(const FlightParts& parts)>;
 
 /// Flies a mission; returns the exit code. `arguments` are those of main(): --mission FILE [--log FILE] [--runtime FOLDER] [--mode NAME]
-/// [--json|--quiet|--screen DESCRIPTOR].
+/// [--own-users] [--json|--quiet|--screen DESCRIPTOR].
 int fly(int argc, char** argv, const MakeDeployment& deploy);
 
 }  // namespace hirosco::supervisor

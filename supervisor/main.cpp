@@ -7,9 +7,10 @@
 /// The first deployment: each member is a process of its own (docs/adr/0001).
 int main(int argc, char** argv) {
   hirosco::SealedMemory memory;
-  return hirosco::supervisor::fly(argc, argv, [&](const hirosco::supervisor::FlightParts&) {
-    return hirosco::supervisor::Deployment{.launcher = std::make_unique<hirosco::supervisor::SystemLauncher>(),
-                                           .memory = &memory,
-                                           .links = hirosco::standard_link_mechanisms()};
+  return hirosco::supervisor::fly(argc, argv, [&](const hirosco::supervisor::FlightParts& parts) {
+    return hirosco::supervisor::Deployment{
+        .launcher = std::make_unique<hirosco::supervisor::SystemLauncher>(parts.own_users),
+        .memory = &memory,
+        .links = hirosco::standard_link_mechanisms()};
   });
 }

@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 BINARIES = pathlib.Path(os.environ["HIROSCO_BIN"])
-FLIGHT = "--mission FILE, --log FILE, --runtime FOLDER, --mode NAME, --json, --quiet, --screen DESCRIPTOR (started by 'hirosco run MISSION')"
+FLIGHT = "--mission FILE, --log FILE, --runtime FOLDER, --mode NAME, --json, --quiet, --own-users, --screen DESCRIPTOR (started by 'hirosco run MISSION')"
 # Of each: an option with a value, one that is nearly an option of it and which, what there is and who starts it.
 PROGRAMS = {
     "hirosco-supervisor": ("--mission", "FILE", "--quite", "--quiet", FLIGHT),

@@ -15,14 +15,10 @@ AS_NOBODY = ("setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-group
 
 
 @contextlib.contextmanager
-def ordinary_user(mission=flight.ROKVISS):
-    """Arguments of a Flight that an ordinary user starts. For root: as nobody, who may not even read the repository."""
-    if os.geteuid() != 0:
-        yield {"mission": mission, "prefix": ("setpriv", "--no-new-privs")}
-        return
-    with tempfile.TemporaryDirectory(prefix="hirosco-nobody-") as folder:
+def open_to_all(mission=flight.ROKVISS):
+    """Arguments of a Flight in a copy of programs and descriptors that every user may read, which the repository need not be."""
+    with tempfile.TemporaryDirectory(prefix="hirosco-open-") as folder:
         home = pathlib.Path(folder)
-        home.chmod(0o755)
         for name in ("supervisor", "subsystems", "missions"):
             for descriptor in (flight.REPOSITORY / name).rglob("*.xml"):
                 to = home / descriptor.relative_to(flight.REPOSITORY)
@@ -32,5 +28,17 @@ def ordinary_user(mission=flight.ROKVISS):
         for program in flight.BINARIES.glob("hirosco*"):
             shutil.copy(program, home / "bin" / program.name)
         (home / "flight").mkdir()
-        yield {"mission": home / pathlib.Path(mission).relative_to(flight.REPOSITORY), "binaries": home / "bin", "prefix": AS_NOBODY,
-               "folder": home / "flight", "owner": NOBODY}
+        for path in [home, *home.rglob("*")]:
+            mode = path.stat().st_mode
+            path.chmod(mode | (0o555 if mode & 0o100 else 0o444))
+        yield {"mission": home / pathlib.Path(mission).relative_to(flight.REPOSITORY), "binaries": home / "bin", "folder": home / "flight"}
+
+
+@contextlib.contextmanager
+def ordinary_user(mission=flight.ROKVISS):
+    """Arguments of a Flight that an ordinary user starts. For root: as nobody, who may not even read the repository."""
+    if os.geteuid() != 0:
+        yield {"mission": mission, "prefix": ("setpriv", "--no-new-privs")}
+        return
+    with open_to_all(mission) as arguments:
+        yield {**arguments, "prefix": AS_NOBODY, "owner": NOBODY}

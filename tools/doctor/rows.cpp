@@ -65,6 +65,8 @@ Finding isolation(const System& system) {
                             : open.find("Landlock") != std::string::npos
                                 ? "sudo sed -i 's/^GRUB_CMDLINE_LINUX=\"/&lsm=landlock,lockdown,yama,apparmor /' "
                                   "/etc/default/grub && sudo update-grub  # and restart"
+                            : open.find("users of their own") != std::string::npos
+                                ? "sudo systemctl edit hirosco@NAME  # rights of a unit: docs/guide/installing.md"
                                 : "";
   return system.isolation_required ? missing(open + "; the mission requires all", mends) : worth_knowing(open, mends);
 }

@@ -98,6 +98,11 @@ const std::vector<Case>& cases() {
        Verdict::WorthKnowing, "files are open to all", "lsm=landlock"},
       {"isolation",
        [](System& system) {
+         system.open = {"all are of one user: for users of their own the flight lacks CAP_SETUID, CAP_KILL"};
+       },
+       Verdict::WorthKnowing, "lacks CAP_SETUID, CAP_KILL", "sudo systemctl edit hirosco@NAME"},
+      {"isolation",
+       [](System& system) {
          system.open = {"everything is open: HIROSCO_SANDBOX is off"};
          system.isolation_required = true;
        },

@@ -189,7 +189,8 @@ void check_file(const std::filesystem::path& file, const CheckOptions& options, 
   for (const auto& member : reading.value->subsystems) findings.add(script_problems(member.subsystem, source));
   auto missing = unready(*reading.value, FlownAs::Processes);
   for (auto& problem : missing)
-    if ((problem.code == "E0401" || problem.code == "E0364" || problem.code == "E0365") && !options.fly)
+    if ((problem.code == "E0401" || problem.code == "E0364" || problem.code == "E0365" || problem.code == "E0368") &&
+        !options.fly)
       problem.grade = descriptor::Grade::Warning;
   findings.add(std::move(missing));
   if (options.fly) findings.add(unintroduced(*reading.value));

@@ -32,6 +32,7 @@
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/version.hpp"
 #include "supervisor/keeper/keeper.hpp"
+#include "supervisor/platform/launch/own_users.hpp"
 #include "supervisor/platform/launch/sha256.hpp"
 #include "tools/hirosco/instance.hpp"
 
@@ -109,6 +110,8 @@ void look_at_rights(System& system, const descriptor::Mission& mission) {
   system.priority_limit = limit_of(RLIMIT_RTPRIO);
   system.memory_limit = limit_of(RLIMIT_MEMLOCK);
   system.open = isolation_lacks();
+  if (const std::string one_user = supervisor::why_one_user(mission, true); !one_user.empty())
+    system.open.push_back(one_user);
   system.isolation_required = mission.isolation_required;
 }
 

@@ -3,15 +3,18 @@
 #include "tools/hirosco/readiness.hpp"
 
 #include <fmt/format.h>
+#include <pwd.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <string>
 
 #include "hirosco/data_transfer/device/local_flows.hpp"
+#include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 #include "simulation/devices/device_arguments.hpp"
 #include "simulation/spacecraft/modules.hpp"
+#include "supervisor/platform/launch/own_users.hpp"
 #include "supervisor/platform/launch/program_image.hpp"
 
 namespace hirosco::tools {
@@ -59,6 +62,20 @@ class Lacking {
       add(member.at, "E0365",
           fmt::format("{} has the SHA-256 {}, the manifest says {}", file.string(), image->digest(), listed->digest),
           hint);
+  }
+
+  /// What a subsystem that is a user of its own does not get at, and whose number it has (docs/adr/0177).
+  void own_user(const descriptor::MissionSubsystem& member, std::uint32_t user) {
+    const auto cannot = [&](const std::string& why, const char* hint) {
+      add(member.at, "E0368", fmt::format("{} cannot be user {}: {}", member.subsystem.name, user, why), hint);
+    };
+    if (const passwd* const account = ::getpwuid(user); account != nullptr)
+      return cannot(fmt::format("that is {}", account->pw_name),
+                    "numbers that no account has, for example 60600-60699");
+    // One that runs from memory has no file.
+    const auto program = mission_.manifest ? std::filesystem::path{} : find_program(member.executable);
+    if (const auto closed = supervisor::what_is_closed(member, user, program, flight_instance()); !closed.empty())
+      cannot("it " + closed, "chmod o+rx of what is closed, or all of it where everybody may read: /opt, /usr/local");
   }
 
   /// As a flight would make it: what it takes may depend on the files that it is given, and on what else is in its world.
@@ -131,6 +148,9 @@ std::vector<Diagnostic> unready(const descriptor::Mission& mission, FlownAs flow
     return found != modules.missing.end() ? found->second : std::string{};
   };
   Lacking findings{mission, flown_as};
+  // Without the right to it all are of the user who flies, which is told at the start.
+  const bool own_users =
+      flown_as == FlownAs::Processes && mission.users && supervisor::why_one_user(mission, true).empty();
   for (const auto& member : mission.subsystems) {
     std::string why_not = missing(member.executable);
     const auto maker = modules.subsystems.find(member.executable);
@@ -139,6 +159,7 @@ std::vector<Diagnostic> unready(const descriptor::Mission& mission, FlownAs flow
       why_not = simulation::SubsystemMaker::no_ground_link;
     findings.subsystem(member.executable, "subsystem " + member.subsystem.name, member.at, why_not);
     if (flown_as == FlownAs::Processes && mission.manifest) findings.listed(member);
+    if (own_users && member.user) findings.own_user(member, *member.user);
   }
   for (const auto& device : mission.devices) {
     findings.device(device.executable, "simulated device " + device.name, device.at, missing(device.executable));

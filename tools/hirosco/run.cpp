@@ -15,10 +15,12 @@
 #include "hirosco/subsystem/author/ground_transport.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/installation.hpp"
+#include "hirosco/utilities/os/own_user.hpp"
 #include "hirosco/utilities/os/process_usage.hpp"
 #include "simulation/devices/device_arguments.hpp"
 #include "supervisor/keeper/keeper.hpp"
 #include "supervisor/keeper/kept_endnodes.hpp"
+#include "supervisor/platform/launch/own_users.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/flight_lock.hpp"
 #include "tools/hirosco/instance.hpp"
@@ -85,11 +87,34 @@ void clear_sockets(const descriptor::Mission& mission, const std::filesystem::pa
 }
 
 /// Nobody of this flight lives any more, and no other has its name. Where it is its mission's name they stay, as many as descriptors name:
-/// those of another mission that has the same devices may be the same, and somebody be let in there by now (docs/adr/0169).
-void clear_places(const descriptor::Mission& mission, const FlightEntry& flight) {
-  if (!flight.named()) return;
+/// those of another mission that has the same devices may be the same, and somebody be let in there by now (docs/adr/0169). Into those of
+/// users of their own nobody else is let, so they go.
+void clear_places(const descriptor::Mission& mission, const FlightEntry& flight, ProcessUser user) {
+  if (!flight.named() && user == ProcessUser::WhoeverFlies) return;
   for (const auto& member : mission.subsystems)
-    for (const FlowAddress& flow : descriptor::flows_of(member.subsystem)) remove_place(flow, flight.instance);
+    for (const FlowAddress& flow : descriptor::flows_of(member.subsystem)) remove_place(flow, flight_instance(), user);
+}
+
+/// Before the first device makes anything: the folders of all that are users of their own. False: one cannot be, which was printed.
+[[nodiscard]] bool take_users(const descriptor::Mission& mission) {
+  const auto& users = *mission.users;
+  if (const std::string other = process_of_users(users.first, users.last); !other.empty()) {
+    fmt::print(
+        stderr,
+        "hirosco run: users {} to {} are to be this flight's alone, and {} is one of them: end it, or name others "
+        "in <Isolation>\n",
+        users.first, users.last, other);
+    return false;
+  }
+  for (const auto& member : mission.subsystems)
+    if (const auto made =
+            supervisor::make_own_places(member, {member.user.value_or(users.first), {users.first, users.last}},
+                                        flight_instance(), PlaceTime::BeforeFlight);
+        !made) {
+      fmt::print(stderr, "hirosco run: {}\n", made.error());
+      return false;
+    }
+  return true;
 }
 
 /// One flight of an instance at a time: the lock lives as long as the process. It tells `hirosco safe` whom to signal.
@@ -227,6 +252,9 @@ int run(const RunOptions& options) {
   tell_children(flight, *mission);
   clear_injections(*mission, folder);
   fix_epoch();
+  // As its supervisor, too, has to find: else all are of this user, which that tells (docs/adr/0177).
+  const bool own_users = mission->users && !options.threads && supervisor::why_one_user(*mission, true).empty();
+  if (own_users && !take_users(*mission)) return exit_environment;
   supervisor::KeeperPlan plan;
   plan.run_for = options.run_for;
   if (!start_devices(*mission, folder, plan.devices)) return exit_environment;
@@ -265,6 +293,8 @@ int run(const RunOptions& options) {
   constexpr int first_lock = supervisor::keeper_texts_descriptor + 1;
   plan.supervisor.inherited = {{locks->folder.get(), first_lock}, {locks->registry.get(), first_lock + 1}};
   if (locks->log) plan.supervisor.inherited.push_back({locks->log.get(), first_lock + 2});
+  plan.supervisor.over_users = own_users;
+  if (own_users) plan.supervisor.arguments.emplace_back("--own-users");
   if (options.json) plan.supervisor.arguments.emplace_back("--json");
   if (options.quiet) plan.supervisor.arguments.emplace_back("--quiet");
   auto screen = wants_screen ? terminal::FlightScreen::start(flight.log) : std::nullopt;
@@ -278,7 +308,7 @@ int run(const RunOptions& options) {
   const int code = supervisor::keep(std::move(plan));
   screen.reset();
   clear_sockets(*mission, folder);
-  clear_places(*mission, flight);
+  clear_places(*mission, flight, own_users ? ProcessUser::ItsOwn : ProcessUser::WhoeverFlies);
   return code;
 }
 

@@ -62,13 +62,22 @@ struct Flying {
                    [&](std::string_view words) { fmt::print("{}: {}\n", flight.name, words); });
 }
 
+/// What a process runs; of one that has more rights than this one the system tells the beginning of its name only (docs/adr/0177).
+[[nodiscard]] std::string program_of(int process) {
+  std::error_code failed;
+  const auto program = std::filesystem::read_symlink(fmt::format("/proc/{}/exe", process), failed);
+  if (!failed) return program.filename().string();
+  std::string name;
+  std::ifstream file{fmt::format("/proc/{}/comm", process)};
+  std::getline(file, name);
+  return name;
+}
+
 /// The keeper of a flight; empty when this number is by now none of our programs.
 [[nodiscard]] std::optional<Process> keeper_of(const Flying& flight) {
   if (flight.keeper <= 0) return std::nullopt;
   auto process = Process::adopt(flight.keeper);  // before we look: nobody else gets its number behind this handle
-  std::error_code failed;
-  const auto program = std::filesystem::read_symlink(fmt::format("/proc/{}/exe", flight.keeper), failed);
-  if (!process || failed || !program.filename().string().starts_with("hirosco")) return std::nullopt;
+  if (!process || !program_of(flight.keeper).starts_with("hirosco")) return std::nullopt;
   return std::move(*process);
 }
 

@@ -34,7 +34,7 @@ SPELT = {"__errno_location": "errno", "__assert_fail": "assert", "___errno_locat
 # What is not to be found in the list, or the list is of no use: extensions of Linux, of the BSDs and of the GNU library.
 PLANTED = "accept4 epoll_wait eventfd gettid memfd_create pipe2 ppoll prctl pthread_setname_np recvmmsg signalfd syscall".split()
 # Of the default build: what HIROSCO_OS=linux has by itself, so that it is not looked at here.
-OF_LINUX = {"socket_channel.cpp.o", "linux_flow_means.cpp.o", "framed_stream.cpp.o", "message_queue_flow.cpp.o", "serial_flow.cpp.o",
+OF_LINUX = {"socket_channel.cpp.o", "linux_flow_means.cpp.o", "framed_stream.cpp.o", "message_queue_flow.cpp.o", "private_memory_folder.cpp.o", "serial_flow.cpp.o",
             "shared_memory_flow.cpp.o", "side_lock.cpp.o", "tcp_flow.cpp.o", "linux_mechanisms.cpp.o", "udp_link.cpp.o", "sealed_memory.cpp.o", "run.cpp.o"}
 LIBRARIES = "utilities_portable data_transfer_portable resource xml parameter data_transfer descriptor pus subsystem".split()
 OF_POSIX = "utilities resource xml parameter data_transfer descriptor pus subsystem".split()

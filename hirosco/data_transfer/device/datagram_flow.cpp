@@ -12,8 +12,10 @@
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "hirosco/data_transfer/device/device_socket.hpp"
+#include "hirosco/data_transfer/device/private_folder.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
 
@@ -135,13 +137,16 @@ Result<std::unique_ptr<DataFlow>> open_udp_flow(const FlowOpening& opening) {
 Result<std::unique_ptr<DataFlow>> open_unix_flow(const std::string& address, FlowSide side) {
   if (address.empty() || address.size() > 90 || address.find('\0') != std::string::npos)
     return fail(ErrorCode::InvalidArgument, "path of a socket");
-  const std::string subsystem = address + ".subsystem";
-  const std::string& own_path = side == FlowSide::Device ? address : subsystem;
+  const std::string device = socket_at(address), subsystem = device + ".subsystem";
+  const std::string& own_path = side == FlowSide::Device ? device : subsystem;
   const Address own = unix_address(own_path);
   HIROSCO_TRY_LET(FileDescriptor socket, make_unix_socket());
   remove_stale(own_path, own);
-  HIROSCO_TRY(bind_to(socket, own));
-  return std::make_unique<DatagramFlow>(std::move(socket), unix_address(side == FlowSide::Device ? subsystem : address),
+  {
+    const OpenInPrivate opening{own_path};
+    HIROSCO_TRY(bind_to(socket, own));
+  }
+  return std::make_unique<DatagramFlow>(std::move(socket), unix_address(side == FlowSide::Device ? subsystem : device),
                                         false, own_path);
 }
 
@@ -161,5 +166,22 @@ void let_in_unix(const std::string& address, Sandbox& sandbox) {
 }
 
 bool is_reached_by_unix(const std::string&, const Sandbox& sandbox) { return sandbox.sockets.local; }
+
+std::string own_unix_folder(const std::string& address) {
+  std::error_code nowhere;
+  const auto place = std::filesystem::absolute(address, nowhere);
+  return nowhere ? std::string{} : place.string();
+}
+
+Result<> make_own_unix_folder(const std::string& address, const OwnGroup& own) {
+  return make_private_folder(own_unix_folder(address), own.group, own.of_flight);
+}
+
+void let_in_own_unix(const std::string& address, Sandbox& sandbox) {
+  std::string folder = own_unix_folder(address);
+  if (folder.empty()) return;
+  let_write(std::move(folder), sandbox);
+  sandbox.sockets.local = true;
+}
 
 }  // namespace hirosco

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/data_transfer/device/own_flow_access.hpp"
 #include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/result.hpp"
 
@@ -22,17 +24,32 @@ struct FlowAccess {
   Result<> (*make_place)(const std::string& address){nullptr};
   /// Removes that where nobody who was let in lives any more.
   void (*remove_place)(const std::string& address){nullptr};
+  /// For a subsystem that is a user of its own. Null: nothing is known of whose the flow is, so that none of its subsystems is one.
+  const OwnFlowAccess* own{nullptr};
 };
+
+/// When a place is made: with those of all others, or as a process starts, in flight.
+enum class PlaceTime : std::uint8_t { BeforeFlight, AtStart };
 
 /// What the row of a subsystem's flow adds in the flight of this instance; of a means that is not built in nothing: who opens one all the same
 /// is refused by the system, which names the call.
-void let_in(const FlowAddress& flow, const std::string& instance, Sandbox& sandbox);
+void let_in(const FlowAddress& flow, const std::string& instance, Sandbox& sandbox,
+            ProcessUser user = ProcessUser::WhoeverFlies);
 /// Of a means that is not built in nothing is known: whoever it is reaches it.
 [[nodiscard]] bool is_reached(const FlowAddress& held, const Sandbox& sandbox);
 /// Errors of the means: it is not to be let in.  Realtime: blocks, allocates.
 [[nodiscard]] Result<> make_place(const FlowAddress& flow, const std::string& instance);
 /// Realtime: blocks, allocates.
-void remove_place(const FlowAddress& flow, const std::string& instance);
+void remove_place(const FlowAddress& flow, const std::string& instance, ProcessUser user = ProcessUser::WhoeverFlies);
+
+/// Why a subsystem that is a user of its own cannot have it for itself, in words; empty: it can.
+[[nodiscard]] std::string why_not_own(const FlowAddress& flow);
+/// The folder of such a subsystem that the flow is in, or is to be; empty: there is none.
+[[nodiscard]] std::string own_folder(const FlowAddress& flow, const std::string& instance);
+/// As make_place(), for such a subsystem; at its start nothing on a disk. NotPermitted: nothing is known of whose it is; else errors of the
+/// means: the flow is not its own.  Realtime: blocks, allocates.
+[[nodiscard]] Result<> make_own_place(const FlowAddress& flow, const std::string& instance, const OwnGroup& own,
+                                      PlaceTime time);
 
 /// To write, with all below; once.
 void let_write(std::string place, Sandbox& sandbox);

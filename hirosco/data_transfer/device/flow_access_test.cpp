@@ -4,10 +4,16 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <stdlib.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
+#include <string>
 #include <type_traits>
 
 #include "hirosco/data_transfer/device/flow_means.hpp"
+#include "hirosco/data_transfer/device/private_folder.hpp"
 
 namespace hirosco {
 namespace {
@@ -50,6 +56,55 @@ TEST(FlowAccess, OfAUnixSocketIsToTheFolderThatItIsInAndReachesAllOfThem) {
   EXPECT_EQ(open.sockets, (SandboxSockets{.local = true}));
   EXPECT_TRUE(reaches(open, Transfer::Unix, "/elsewhere/socket"));
   EXPECT_EQ(let_in_for(Transfer::Unix, "").sockets, SandboxSockets{}) << "an address that is none";
+}
+
+TEST(FlowAccess, OfAUserOfItsOwnIsAPartOfThatWhereAllAreOfOneUser) {
+  for (const FlowMeans& means : standard_flow_means()) {
+    const FlowAddress at{means.transfer, means.form == AddressForm::HostPort ? "127.0.0.1:5000" : "/dev/arm"};
+    if (!why_not_own(at).empty()) continue;
+    Sandbox own;
+    let_in(at, "", own, ProcessUser::ItsOwn);
+    const Sandbox open = let_in_for(at.transfer, at.address);
+    for (const std::string& place : own.writable) EXPECT_TRUE(may_write(place, open)) << place;
+    EXPECT_EQ(own.sockets, open.sockets) << to_text(means.transfer);
+    EXPECT_TRUE(own.queues == open.queues && own.readable == open.readable) << to_text(means.transfer);
+  }
+}
+
+TEST(FlowAccess, OfAUserOfItsOwnToAUnixSocketIsToAFolderOfItsAddressWhichIsMadeBeforeTheFlightAlone) {
+  std::string root = (std::filesystem::temp_directory_path() / "hirosco-own-XXXXXX").string();
+  ASSERT_NE(::mkdtemp(root.data()), nullptr);
+  const FlowAddress at{Transfer::Unix, root + "/arm"};
+  const std::string folder = root + "/arm.twin";
+  EXPECT_EQ(own_folder(at, "twin"), folder);
+  Sandbox own;
+  let_in(at, "twin", own, ProcessUser::ItsOwn);
+  EXPECT_THAT(own.writable, ElementsAre(folder));
+  EXPECT_EQ(own.sockets, (SandboxSockets{.local = true}));
+  const OwnGroup group{.group = ::getegid()};
+  EXPECT_TRUE(make_own_place(at, "twin", group, PlaceTime::AtStart));
+  EXPECT_FALSE(std::filesystem::exists(folder)) << "no disk is asked in flight";
+  EXPECT_TRUE(make_own_place(at, "twin", group, PlaceTime::BeforeFlight));
+  EXPECT_TRUE(is_private_folder(folder, group.group));
+  std::ofstream{folder + "/socket"};
+  remove_place(at, "twin", ProcessUser::ItsOwn);
+  EXPECT_TRUE(std::filesystem::exists(folder)) << "somebody is in it";
+  std::filesystem::remove(folder + "/socket");
+  remove_place(at, "twin", ProcessUser::ItsOwn);
+  EXPECT_FALSE(std::filesystem::exists(folder));
+  std::filesystem::remove_all(root);
+  EXPECT_EQ(own_folder({Transfer::Unix, ""}, ""), "") << "an address that is none";
+}
+
+TEST(FlowAccess, OfAMeansThatSaysNothingOfAUserOfItsOwnIsNobodysAndLetsNobodyIn) {
+  const FlowAddress at{Transfer::Ethercat, "eth1"};
+  EXPECT_EQ(why_not_own(at), "by ethercat nothing is known of whose it is");
+  EXPECT_EQ(make_own_place(at, "", {}, PlaceTime::BeforeFlight).error().code, ErrorCode::NotPermitted);
+  Sandbox own;
+  let_in(at, "", own, ProcessUser::ItsOwn);
+  EXPECT_TRUE(own.writable.empty());
+  remove_place(at, "", ProcessUser::ItsOwn);
+  EXPECT_EQ(own_folder(at, ""), "");
 }
 
 TEST(FlowAccess, OfUdpReachesAllThatListensInThisComputer) {

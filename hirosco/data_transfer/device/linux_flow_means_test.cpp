@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
 
 #include "hirosco/data_transfer/device/flow_access.hpp"
 #include "hirosco/data_transfer/device/flow_means.hpp"
+#include "hirosco/data_transfer/device/private_folder.hpp"
 
 /// What the means that need Linux ask of a sandbox, and what they reach by it.
 namespace hirosco {
@@ -61,6 +66,31 @@ TEST(LinuxFlowAccess, OfQueuesIsToAllOfThem) {
   EXPECT_TRUE(open.queues);
   EXPECT_THAT(open.writable, ElementsAre("/dev/mqueue"));
   EXPECT_TRUE(is_held_reached(Transfer::MessageQueue, "enable", open));
+}
+
+TEST(LinuxFlowAccess, OfAUserOfItsOwnIsToAFolderOrALineOfItsOwnAndToNoPseudoTerminalOrQueue) {
+  Sandbox own;
+  let_in({Transfer::SharedMemory, "arm"}, "twin", own, ProcessUser::ItsOwn);
+  let_in({Transfer::Serial, "/dev/ttyS0@9600"}, "twin", own, ProcessUser::ItsOwn);
+  let_in({Transfer::MessageQueue, "arm"}, "twin", own, ProcessUser::ItsOwn);
+  EXPECT_THAT(own.writable, ElementsAre("/dev/shm/hirosco/arm.twin", "/dev/ttyS0"));
+  EXPECT_FALSE(own.queues);
+  EXPECT_EQ(why_not_own({Transfer::SharedMemory, "arm"}), "");
+  EXPECT_EQ(why_not_own({Transfer::Tcp, "127.0.0.1:5000"}), "");
+  EXPECT_EQ(why_not_own({Transfer::Serial, "/dev/ttyS0"}), "");
+  EXPECT_EQ(why_not_own({Transfer::Serial, "arm"}), "a pseudo-terminal belongs to whoever plays the device");
+  EXPECT_EQ(why_not_own({Transfer::MessageQueue, "arm"}), "by message_queue nothing is known of whose it is");
+}
+
+TEST(LinuxFlowAccess, OfAUserOfItsOwnToSharedMemoryIsMadeAtEachStartAndRemovedAtTheEnd) {
+  const FlowAddress at{Transfer::SharedMemory, "own-access." + std::to_string(::getpid())};
+  const OwnGroup group{.group = ::getegid()};
+  for (const PlaceTime time : {PlaceTime::BeforeFlight, PlaceTime::AtStart}) {
+    ASSERT_TRUE(make_own_place(at, "", group, time));
+    EXPECT_TRUE(is_private_folder(own_folder(at, ""), group.group));
+    remove_place(at, "", ProcessUser::ItsOwn);
+    EXPECT_FALSE(std::filesystem::exists(own_folder(at, "")));
+  }
 }
 
 }  // namespace

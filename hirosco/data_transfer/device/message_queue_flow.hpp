@@ -16,7 +16,7 @@ namespace hirosco {
 /// `address`: 1 .. 200 characters, "/" becomes ".". AlreadyExists: another live flow has this side.
 [[nodiscard]] Result<std::unique_ptr<DataFlow>> open_message_queue_flow(const std::string& address, FlowSide side);
 
-/// All queues of the user: no rule tells one from another.
+/// All queues of the user: no rule tells one from another, and none is a user's of its own: it belongs to who comes first.
 void let_in_queues(const std::string& address, Sandbox& sandbox);
 [[nodiscard]] bool is_reached_by_queues(const std::string& address, const Sandbox& sandbox);
 inline constexpr FlowAccess message_queue_access{let_in_queues, is_reached_by_queues};

@@ -255,4 +255,8 @@ bool is_reached_by_serial(const std::string& address, const Sandbox& sandbox) {
   return may_write(file_of_line(address), sandbox);
 }
 
+std::string_view why_not_own_serial(const std::string& address) {
+  return address.starts_with('/') ? "" : "a pseudo-terminal belongs to whoever plays the device";
+}
+
 }  // namespace hirosco

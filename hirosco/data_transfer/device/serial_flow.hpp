@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "hirosco/data_transfer/device/flow_access.hpp"
 #include "hirosco/data_transfer/device/flow_means.hpp"
@@ -20,6 +22,10 @@ namespace hirosco {
 /// Which pseudo-terminal a name leads to is known when it is there: all of them.
 void let_in_serial(const std::string& address, Sandbox& sandbox);
 [[nodiscard]] bool is_reached_by_serial(const std::string& address, const Sandbox& sandbox);
-inline constexpr FlowAccess serial_access{let_in_serial, is_reached_by_serial};
+/// Of a user of its own: a line that the computer gives it, and no pseudo-terminal.
+[[nodiscard]] std::string_view why_not_own_serial(const std::string& address);
+inline constexpr OwnFlowAccess own_serial_access{.why_not = why_not_own_serial};
+inline constexpr FlowAccess serial_access{
+    .let_in = let_in_serial, .is_reached = is_reached_by_serial, .own = &own_serial_access};
 
 }  // namespace hirosco

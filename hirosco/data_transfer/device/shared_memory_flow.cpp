@@ -16,6 +16,8 @@
 #include <cstring>
 
 #include "hirosco/data_transfer/device/device_memory_name.hpp"
+#include "hirosco/data_transfer/device/private_folder.hpp"
+#include "hirosco/data_transfer/device/private_memory_folder.hpp"
 #include "hirosco/data_transfer/device/side_lock.hpp"
 
 // Invariants:
@@ -91,7 +93,11 @@ Result<std::unique_ptr<DataFlow>> SharedMemoryFlow::open(const std::string& addr
 }
 
 Result<std::unique_ptr<SharedMemoryFlow>> SharedMemoryFlow::try_open(const std::string& path, FlowSide side) {
-  FileDescriptor file{::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)};
+  FileDescriptor file;
+  {
+    const OpenInPrivate opening{path};
+    file.reset(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, opening.mode()));
+  }
   if (!file)
     return fail(errno == ENOENT ? ErrorCode::Unavailable : ErrorCode::SystemFailure, "open shared memory", errno);
   if (!lock_side(file.get(), side == FlowSide::Subsystem ? 0 : 1))
@@ -217,6 +223,10 @@ void let_in_shared_memory(const std::string& address, Sandbox& sandbox) {
 
 bool is_reached_by_shared_memory(const std::string& address, const Sandbox& sandbox) {
   return may_write(device_memory_file(address, FlowHolder::Supervisor), sandbox);
+}
+
+Result<> make_own_memory_folder(const std::string& address, const OwnGroup& own) {
+  return make_private_memory_folder(address, own.group);
 }
 
 }  // namespace hirosco

@@ -53,7 +53,13 @@ class SharedMemoryFlow final : public DataFlow {
 /// The folder of its frames, which is made before anybody is let in (docs/adr/0169). What the supervisor's side holds lies where nobody is.
 void let_in_shared_memory(const std::string& address, Sandbox& sandbox);
 [[nodiscard]] bool is_reached_by_shared_memory(const std::string& address, const Sandbox& sandbox);
-inline constexpr FlowAccess shared_memory_access{let_in_shared_memory, is_reached_by_shared_memory,
-                                                 make_device_memory_folder, remove_device_memory_folder};
+/// Of a user of its own: the same folder, shut to all others.
+[[nodiscard]] Result<> make_own_memory_folder(const std::string& address, const OwnGroup& own);
+inline constexpr OwnFlowAccess own_memory_access{.folder = device_memory_folder, .make_folder = make_own_memory_folder};
+inline constexpr FlowAccess shared_memory_access{.let_in = let_in_shared_memory,
+                                                 .is_reached = is_reached_by_shared_memory,
+                                                 .make_place = make_device_memory_folder,
+                                                 .remove_place = remove_device_memory_folder,
+                                                 .own = &own_memory_access};
 
 }  // namespace hirosco

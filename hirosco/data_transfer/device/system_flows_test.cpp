@@ -21,6 +21,8 @@
 #include <thread>
 
 #include "hirosco/data_transfer/device/device_memory_name.hpp"
+#include "hirosco/data_transfer/device/private_folder.hpp"
+#include "hirosco/data_transfer/device/private_memory_folder.hpp"
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/data_transfer/device/testing/flow_conformance.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
@@ -228,6 +230,56 @@ TEST(SharedMemoryFlow, HasAFolderForEachAddressWhoeverComesFirst) {
     remove_device_memory_folder("a." + address.address);
     EXPECT_FALSE(fs::exists(folder));
   }
+}
+
+TEST(SharedMemoryFlow, OfAUserOfItsOwnIsOpenToBothInAFolderThatIsShutToAllOthers) {
+  namespace fs = std::filesystem;
+  SystemFlowFactory factory{""};
+  const FlowAddress address = SharedMemoryTraits::address();
+  const std::string folder = device_memory_folder(address.address);
+  const auto rights = [](const std::string& place) { return static_cast<int>(fs::status(place).permissions()); };
+  auto before = factory.open(address, FlowSide::Device);
+  ASSERT_TRUE(before);
+  EXPECT_EQ(rights(folder + "/frames"), 0600);
+  EXPECT_EQ(make_private_memory_folder(address.address, ::getegid()).error().code, ErrorCode::Mismatch)
+      << "who has them open would go on with frames that the other may not open";
+  EXPECT_NE(rights(folder), 0770) << "and is found again";
+  before->reset();
+  fs::remove_all(folder);
+  make_device_memory_folder(address.address).value();
+  std::ofstream{folder + "/frames"} << "left by somebody who died";
+  ASSERT_TRUE(make_private_memory_folder(address.address, ::getegid()));
+  EXPECT_EQ(rights(folder), 0770);
+  EXPECT_FALSE(fs::exists(folder + "/frames")) << "whoever had made them";
+  auto device = factory.open(address, FlowSide::Device);
+  auto subsystem = factory.open(address, FlowSide::Subsystem);
+  ASSERT_TRUE(device && subsystem);
+  EXPECT_EQ(rights(folder + "/frames"), 0666);
+  EXPECT_TRUE(make_private_memory_folder(address.address, ::getegid())) << "at each start: frames of now stay";
+  EXPECT_TRUE(fs::exists(folder + "/frames"));
+  device->reset();
+  subsystem->reset();
+  remove_device_memory_folder(address.address);
+}
+
+TEST(UnixFlow, OfAUserOfItsOwnHasSocketsThatBothMaySendToInAFolderThatIsShut) {
+  namespace fs = std::filesystem;
+  std::string root = (fs::temp_directory_path() / "hirosco-sockets-XXXXXX").string();
+  ASSERT_NE(::mkdtemp(root.data()), nullptr);
+  ASSERT_TRUE(make_private_folder(root + "/arm", ::getegid(), {}));
+  SystemFlowFactory factory{""};
+  {
+    const auto device = factory.open({Transfer::Unix, root + "/arm"}, FlowSide::Device);
+    const auto subsystem = factory.open({Transfer::Unix, root + "/arm"}, FlowSide::Subsystem);
+    ASSERT_TRUE(device && subsystem);
+    for (const char* end : {"/arm/socket", "/arm/socket.subsystem"})
+      EXPECT_EQ(static_cast<int>(fs::status(root + end).permissions()), 0777) << end;
+    ASSERT_TRUE((*device)->send(std::array{std::byte{7}}));
+    std::array<std::byte, 8> buffer{};
+    EXPECT_EQ((*subsystem)->receive(buffer)->octets, 1U);
+  }
+  EXPECT_TRUE(fs::is_empty(root + "/arm"));
+  fs::remove_all(root);
 }
 
 TEST(SharedMemoryFlow, IsOpenedInNoFolderThatALinkOrAnAddressLeadsTo) {

@@ -18,6 +18,7 @@ namespace hirosco {
 /// To its port, wherever that is.
 void let_in_tcp(const std::string& address, Sandbox& sandbox);
 [[nodiscard]] bool is_reached_by_tcp(const std::string& address, const Sandbox& sandbox);
-inline constexpr FlowAccess tcp_access{let_in_tcp, is_reached_by_tcp};
+inline constexpr FlowAccess tcp_access{
+    .let_in = let_in_tcp, .is_reached = is_reached_by_tcp, .own = &own_as_of_one_user};
 
 }  // namespace hirosco

@@ -60,6 +60,9 @@ struct MissionSubsystem {
   Location at;
   /// What the files that its devices' settings name bring along (brought_files()), when they were read last (docs/adr/0144).
   std::vector<std::filesystem::path> brought{};
+  /// User and group of its process, where the mission names numbers for that and the flight has the right to (docs/adr/0177); else it is the user
+  /// who flies.
+  std::optional<std::uint32_t> user{};
   bool carries_ground{false};  ///< the ground link
   std::vector<LinkMethod> link_methods{};  ///< how links of the mission that begin or end here may travel
 };
@@ -199,6 +202,13 @@ struct ShownValue {
   std::uint8_t decimals{3};
 };
 
+/// Numbers of users of the system, the last one among them, that a mission gives its subsystems in its order (docs/adr/0177).
+struct UserNumbers {
+  std::uint32_t first{0};
+  std::uint32_t last{0};
+  friend bool operator==(const UserNumbers&, const UserNumbers&) = default;
+};
+
 /// A parameter by which a subsystem tells what electrical power there is (docs/adr/0124).
 struct MeasuredPower {
   std::string name;  ///< "SUBSYSTEM.PARAMETER"
@@ -220,6 +230,7 @@ struct Mission {
   /// Outside this computer, where devices may be reached (docs/adr/0112); empty: nowhere.
   std::vector<DeviceNetwork> device_networks{};
   bool isolation_required{false};  ///< no subsystem is started where this computer cannot isolate it (adr 0081)
+  std::optional<UserNumbers> users{};  ///< of subsystems' processes; none: all are of the user who flies (adr 0177)
   Amounts budget{};  ///< of all subsystems together; what is empty is not limited
   std::vector<MissionSubsystem> subsystems;
   std::vector<SimulatedDevice> devices;

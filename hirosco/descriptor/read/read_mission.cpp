@@ -118,7 +118,7 @@ void MissionReader::read(const xml::Element& root) {
                     id->name.size());
   }
   // What is referred to is read before what refers to it, whatever the order in the file.
-  std::vector<const xml::Element*> grounds, powers, budgets, devices, links, modes, recoveries, consoles;
+  std::vector<const xml::Element*> grounds, powers, budgets, isolations, devices, links, modes, recoveries, consoles;
   const auto later = [](auto& list) { return [&list](const xml::Element& element) { list.push_back(&element); }; };
   for (const xml::Element& child : root.children)
     if (child.name == "DeviceNetwork") device_addresses_.read_device_network(child);
@@ -133,7 +133,7 @@ void MissionReader::read(const xml::Element& root) {
               {"Power", later(powers), 1},
               {"Resources", later(budgets), 1},
               {"Manifest", [this](const auto& element) { read_manifest(element, draft_, source_); }, 1},
-              {"Isolation", [this](const auto& element) { read_isolation(element, mission_, problems_); }, 1},
+              {"Isolation", later(isolations), 1},
               {"DeviceNetwork", [](const xml::Element&) {}, max_device_networks},
               {"Subsystem", [this](const auto& element) { members_.read_member(element); }, 255},
               {"SimulatedDevice", later(devices), 255},
@@ -157,6 +157,7 @@ void MissionReader::read(const xml::Element& root) {
     read_resources(*element, mission_, problems_);
     if (draft_.whole) check_resources(*element, mission_, problems_);
   }
+  for (const auto* element : isolations) read_isolation(*element, draft_);
   read_simulated_devices(devices, draft_);
   for (const auto* element : links) links_.read_links(*element);
   for (const auto* element : modes) modes_.read_modes(*element);

@@ -87,12 +87,6 @@ void read_resources(const xml::Element& element, Mission& mission, Problems& pro
   mission.budget = read_amounts(attributes);
 }
 
-void read_isolation(const xml::Element& element, Mission& mission, Problems& problems) {
-  Attributes attributes{element, problems};
-  no_children(element, problems);
-  mission.isolation_required = attributes.yes("required", false);
-}
-
 /// Whoever says nothing would take from what is promised to the others.
 void check_resources(const xml::Element& element, const Mission& mission, Problems& problems) {
   for (std::size_t i = 0; i < counted_resources; ++i) {

@@ -56,6 +56,10 @@ struct ProcessStart {
   std::vector<int> blocked{};
   ProcessLimits limits{};
   const PreparedSandbox* sandbox{nullptr};  ///< null: none; outlives the call
+  /// A user and a group of this number, in no other group and without our rights, in place of what we are. Needs own_user.hpp's.
+  std::optional<std::uint32_t> user{};
+  bool over_users{
+      false};  ///< it may start others as users of their own and end them, as far as we may; else only as root
 };
 
 /// A process in a group of its own. It outlives this object and this process: nothing here kills it but send_signal().

@@ -123,6 +123,8 @@ class ProcessLauncher {
   virtual void kill(std::uint32_t process) = 0;
   /// What those that it starts are not kept from, in words; empty: they are isolated (docs/adr/0081).
   [[nodiscard]] virtual std::vector<std::string> isolation_lacks() const { return {}; }
+  /// What would isolate them more and the mission does not ask for, in words; empty: nothing (docs/adr/0177).
+  [[nodiscard]] virtual std::string isolation_not_asked() const { return {}; }
   /// What it has taken; empty where it has no process of its own or has ended. Allocates nothing.
   [[nodiscard]] virtual std::optional<ProcessUsage> usage(std::uint32_t /*process*/) noexcept { return std::nullopt; }
   /// Memory that a process has in RAM, 0 = the supervisor's own; 0 where it has no process of its own or has ended.

@@ -75,9 +75,9 @@ bool is_script(const std::filesystem::path& program) {
 }
 
 Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program,
-                   const std::string& instance) {
+                   const std::string& instance, ProcessUser user) {
   Sandbox sandbox = without_flows(subsystem, program);
-  for (const FlowAddress& flow : descriptor::flows_of(subsystem.subsystem)) let_in(flow, instance, sandbox);
+  for (const FlowAddress& flow : descriptor::flows_of(subsystem.subsystem)) let_in(flow, instance, sandbox, user);
   return sandbox;
 }
 

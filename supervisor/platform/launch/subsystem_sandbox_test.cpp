@@ -262,6 +262,18 @@ TEST(SubsystemInItsSandbox, HearsItsDeviceByEachMeansOfTransferAsItsRowSaysAndBy
   }
 }
 
+/// Apart (CMakeLists.txt), as above. The group is this process's: that of another is tried in a flight (tests/fault/own_users_test.py).
+TEST(SubsystemInItsSandbox, HearsItsDeviceFromTheFolderThatIsItsOwnWhereItIsAUserOfItsOwn) {
+  for (const FlowMeans& means : standard_flow_means()) {
+    const FlowAddress at{means.transfer, own_address(means.form)};
+    if (!why_not_own(at).empty()) continue;
+    const auto arm = with_device(means.transfer, at.address.c_str());
+    ASSERT_TRUE(make_own_place(at, {}, {.group = ::getegid()}, PlaceTime::BeforeFlight)) << to_text(means.transfer);
+    EXPECT_TRUE(is_answered(sandbox_of(arm, {}, {}, ProcessUser::ItsOwn), at, 5000)) << to_text(means.transfer);
+    remove_place(at, {}, ProcessUser::ItsOwn);
+  }
+}
+
 /// Apart (CMakeLists.txt), as above.
 TEST(SubsystemInItsSandbox, OpensTheFramesOfItsDeviceAndNoSecondInhibitNorThoseOfAnother) {
   const std::string address = "sandboxed." + std::to_string(::getpid());

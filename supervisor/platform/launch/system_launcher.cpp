@@ -23,6 +23,7 @@
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/installation.hpp"
+#include "supervisor/platform/launch/own_users.hpp"
 #include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
 namespace hirosco::supervisor {
@@ -118,6 +119,10 @@ template <class Page>
 }  // namespace
 
 std::expected<std::string, std::string> SystemLauncher::begin(const descriptor::Mission& mission) {
+  users_ = mission.users;
+  one_user_ = why_one_user(mission, own_users_granted_);
+  for (const auto& subsystem : mission.subsystems)
+    if (subsystem.user) user_of_[subsystem.subsystem.name] = *subsystem.user;
   if (!mission.manifest) return std::string{};
   const SystemClock clock;
   const TimePoint begun = clock.now();
@@ -163,7 +168,8 @@ void SystemLauncher::drop(const descriptor::MissionSubsystem& subsystem, const s
 
 std::string SystemLauncher::shut_out(const descriptor::MissionSubsystem& flown,
                                      const descriptor::MissionSubsystem& fresh) {
-  const Sandbox had = sandbox_of(flown, {}, instance_), wants = sandbox_of(fresh, {}, instance_);
+  const ProcessUser user = user_of_processes();
+  const Sandbox had = sandbox_of(flown, {}, instance_, user), wants = sandbox_of(fresh, {}, instance_, user);
   for (const std::string& place : wants.writable)
     if (std::ranges::find(had.writable, place) == had.writable.end()) return place;
   if (wants.sockets.local && !had.sockets.local) return "UNIX sockets";
@@ -178,6 +184,18 @@ std::string SystemLauncher::shut_out(const descriptor::MissionSubsystem& flown,
 std::string SystemLauncher::left_open(const descriptor::MissionSubsystem& subsystem) const {
   return sandbox_is_off() || subsystem.carries_ground ? ""
                                                       : supervisor::left_open(sandbox_of(subsystem, {}, instance_));
+}
+
+std::vector<std::string> SystemLauncher::isolation_lacks() const {
+  auto lacks = hirosco::isolation_lacks();
+  if (!one_user_.empty()) lacks.push_back(one_user_);
+  return lacks;
+}
+
+std::string SystemLauncher::isolation_not_asked() const {
+  if (users_) return {};
+  return "subsystems are all of the user who flies: who may open a UNIX socket opens each of his; <Isolation "
+         "users=\"FIRST-LAST\"/> makes each a user of its own";
 }
 
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
@@ -222,12 +240,22 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   // Below those of devices, guard and keeper, whatever it asks for.
   start.limits.realtime_priority = descriptor::greatest_cycle_priority;
   start.limits.goes_first = true;  // and not the supervisor
+  if (user_of_processes() == ProcessUser::ItsOwn) {
+    const auto user = user_of_.find(subsystem.subsystem.name);
+    if (user == user_of_.end()) return fail(ErrorCode::NotFound, "the mission has no user for it");
+    const OwnGroup own{user->second, {users_->first, users_->last}};
+    if (const auto made = make_own_places(subsystem, own, instance_, PlaceTime::AtStart); !made)
+      return fail(ErrorCode::Mismatch, "a folder of its device is open to others, or of another user");
+    start.user = user->second;
+  }
   std::optional<PreparedSandbox> sandbox;
   if (image != nullptr) start.image = image->descriptor();
   if (image != nullptr && script) start.inherited.push_back({image->descriptor(), script_number});
   if (!sandbox_is_off() && !script) {
     // Of one that runs from memory no file is executed.
-    sandbox.emplace(make_sandbox(subsystem, image != nullptr ? "" : program, instance_));
+    const std::filesystem::path file = image != nullptr ? "" : program;
+    sandbox.emplace(start.user ? sandbox_of(subsystem, file, instance_, ProcessUser::ItsOwn)
+                               : make_sandbox(subsystem, file, instance_));
     start.sandbox = &*sandbox;
   }
   // What it writes is shown with its name, within limits. The terminal of whoever flies is not its own: by it, whoever has it stops him (docs/adr/0164).
@@ -258,6 +286,9 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
 
 Result<LaunchedSubsystem> SystemLauncher::hold(Process& process, FileDescriptor channel, Mapping vital,
                                                Mapping permit) {
+  // Nobody is let go whom nobody could end.
+  if (const auto reached = process.send_signal(0); !reached && reached.error().code == ErrorCode::NotPermitted)
+    return fail(ErrorCode::NotPermitted, "it is a user whom the supervisor may not end");
   HIROSCO_TRY_LET(auto grip, grip_of(process));
   LaunchedSubsystem launched;
   launched.vital = std::move(vital);

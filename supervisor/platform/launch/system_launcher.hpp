@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "hirosco/data_transfer/device/own_flow_access.hpp"
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/data_transfer/memory/sealed_memory.hpp"
 #include "hirosco/utilities/os/process.hpp"
@@ -25,6 +26,9 @@ namespace hirosco::supervisor {
 /// who is proven by the inherited socket (decision 2).  Thread: the supervisor's.
 class SystemLauncher final : public FlightLauncher {
  public:
+  /// \param own_users Who started the flight may end users of their own (docs/adr/0177): they are what it starts where the mission and our
+  /// rights have it so.
+  explicit SystemLauncher(bool own_users = false) : own_users_granted_{own_users} {}
   /// Holds to the mission's manifest where it has one.
   [[nodiscard]] std::expected<std::string, std::string> begin(const descriptor::Mission& mission) override;
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
@@ -44,7 +48,8 @@ class SystemLauncher final : public FlightLauncher {
   const HeldPrograms& hold_to(const descriptor::Mission& mission);
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
-  [[nodiscard]] std::vector<std::string> isolation_lacks() const override { return hirosco::isolation_lacks(); }
+  [[nodiscard]] std::vector<std::string> isolation_lacks() const override;
+  [[nodiscard]] std::string isolation_not_asked() const override;
   [[nodiscard]] std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override;
   [[nodiscard]] std::uint32_t resident_kb(std::uint32_t process) noexcept override;
   void kill_all() override;
@@ -64,6 +69,15 @@ class SystemLauncher final : public FlightLauncher {
             const MemoryHandle& permit, const FileDescriptor& errors);
   [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;
 
+  [[nodiscard]] ProcessUser user_of_processes() const noexcept {
+    return users_ && one_user_.empty() ? ProcessUser::ItsOwn : ProcessUser::WhoeverFlies;
+  }
+
+  bool own_users_granted_;
+  std::optional<descriptor::UserNumbers> users_{};  ///< that the mission asks for
+  std::map<std::string, std::uint32_t, std::less<>>
+      user_of_;  ///< by name, whatever a mission says that is read in flight
+  std::string one_user_{};  ///< why they are not given, in words; empty: they are, or none are asked for
   const std::string instance_{flight_instance()};  ///< part of where the frames of devices are
   SealedMemory memory_;
   StandardError errors_;

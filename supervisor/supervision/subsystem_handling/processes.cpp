@@ -35,6 +35,7 @@ constexpr int killed = 9;
 void Processes::start_all() {
   for (const std::string& open : craft_.launcher.isolation_lacks())
     craft_.tell("subsystems are not isolated as they should be: " + open, supervisor_apid);
+  if (const std::string more = craft_.launcher.isolation_not_asked(); !more.empty()) craft_.tell(more, supervisor_apid);
   for (Member& member : craft_.members) {
     const std::string& name = member.descriptor().name;
     if (!member.described().starts) {

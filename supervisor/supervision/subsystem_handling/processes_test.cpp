@@ -22,6 +22,8 @@ struct ProcessesTest : PartsTest {
   const char* not_held{""};  ///< what of those that are started no manifest holds
   const char* open{""};  ///< why those that are started are in no sandbox
   [[nodiscard]] std::vector<std::string> isolation_lacks() const override { return lacks; }
+  std::string not_asked{};  ///< of isolation
+  [[nodiscard]] std::string isolation_not_asked() const override { return not_asked; }
   std::string reached{};  ///< beyond what is its own, by ARM
   [[nodiscard]] std::string left_open(const descriptor::MissionSubsystem& subsystem) const override {
     return subsystem.subsystem.id == arm ? reached : "";
@@ -118,6 +120,14 @@ TEST_F(ProcessesTest, WhatKeepsNobodyFromOthersIsToldAndRefusedWhereTheMissionWa
   EXPECT_TRUE(was_told("cannot start ARM: the mission wants it isolated, and files are open to all"));
   lacks.clear();
   EXPECT_TRUE(parts.processes.start(arm));
+}
+
+TEST_F(ProcessesTest, WhatAMissionDoesNotAskForIsToldAndKeepsNobodyFromFlying) {
+  not_asked = "subsystems are all of the user who flies";
+  craft.mission.isolation_required = true;
+  parts.processes.start_all();
+  EXPECT_EQ(story.front(), not_asked);
+  EXPECT_TRUE(craft.member(arm)->alive());
 }
 
 TEST_F(ProcessesTest, OneThatIsInNoSandboxIsToldAndEndedWhereTheMissionWantsIt) {

@@ -19,8 +19,8 @@ void read_power(const xml::Element& element, MissionDraft& draft);
 void read_resources(const xml::Element& element, Mission& mission, Problems& problems);
 /// And whether what they say they take fits into it.
 void check_resources(const xml::Element& element, const Mission& mission, Problems& problems);
-/// Whether subsystems fly where this computer cannot isolate them.
-void read_isolation(const xml::Element& element, Mission& mission, Problems& problems);
+/// Whether subsystems fly where this computer cannot isolate them, and as which users. Behind all subsystems and their devices.
+void read_isolation(const xml::Element& element, MissionDraft& draft);
 /// What may be started.
 void read_manifest(const xml::Element& element, MissionDraft& draft, const FileSource& source);
 /// All <SimulatedDevice> of the mission.

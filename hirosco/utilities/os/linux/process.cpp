@@ -20,6 +20,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "hirosco/utilities/os/own_user.hpp"
+
 namespace hirosco {
 namespace {
 
@@ -42,6 +44,8 @@ struct Plan {
   sigset_t blocked{};
   ProcessLimits limits;
   const PreparedSandbox* sandbox{nullptr};
+  std::optional<std::uint32_t> user;
+  bool over_users{false};
   int report{-1};  ///< the child writes errno here when it fails
 };
 
@@ -69,6 +73,8 @@ void add_texts(std::vector<char*>& texts, const std::vector<std::string>& values
   plan.image = start.image.value_or(-1);
   plan.limits = start.limits;
   plan.sandbox = start.sandbox;
+  plan.user = start.user;
+  plan.over_users = start.over_users;
   if (!start.working_directory.empty()) plan.directory = start.working_directory.c_str();
   return plan;
 }
@@ -147,6 +153,10 @@ void offer_to_go_first() noexcept {
   // Last: until then all of ours are still open, and a sandbox opens two more.
   set_limit(plan, RLIMIT_DATA, plan.limits.memory_octets);
   set_limit(plan, RLIMIT_NOFILE, plan.limits.descriptors);
+  // Behind all that our rights are needed for: files of its sandbox, priority and limits.
+  if (plan.user)
+    if (const int error = become_user(*plan.user); error != 0) give_up(plan.report, error);
+  if (!plan.over_users) lay_down_rights_over_users();
   if (plan.image >= 0)
     ::syscall(SYS_execveat, plan.image, "", plan.arguments.data(), plan.environment_used, AT_EMPTY_PATH);
   else ::execve(plan.executable, plan.arguments.data(), plan.environment_used);

@@ -3,7 +3,6 @@
 #include "hirosco/utilities/os/sandbox.hpp"
 
 #include <fcntl.h>
-#include <linux/capability.h>
 #include <linux/landlock.h>
 #include <linux/seccomp.h>
 #include <sys/prctl.h>
@@ -21,6 +20,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hirosco/utilities/os/linux/rights.hpp"
 #include "hirosco/utilities/os/linux/sandbox_calls.hpp"
 
 namespace hirosco {
@@ -131,26 +131,11 @@ constexpr std::uint64_t of_plain_files = LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_A
 
 // --- rights -----------------------------------------------------------------------------------------------------------------
 
-/// Whether a limit says which priorities of real time there are for it: then root's right to all of them is given up.
-[[nodiscard]] bool priority_is_limited() noexcept {
-  rlimit limit{};
-  return ::getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur > 0;
-}
-
-/// Root's right that stays: memory that is never taken to disk.
 void give_up_rights() noexcept {
   constexpr int highest = 63;
-  const bool limited = priority_is_limited();
+  const std::uint64_t left = rights::left_to_subsystems();
   for (int right = 0; right <= highest; ++right)
-    if (right != CAP_IPC_LOCK && (limited || right != CAP_SYS_NICE))
-      static_cast<void>(::prctl(PR_CAPBSET_DROP, right, 0, 0, 0));
-}
-
-/// Root without this right cannot give who it starts a limit that it has not itself.
-[[nodiscard]] bool may_raise_limits() noexcept {
-  __user_cap_header_struct about{_LINUX_CAPABILITY_VERSION_3, 0};
-  std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> has{};
-  return ::syscall(SYS_capget, &about, has.data()) == 0 && (has[0].effective & (1U << CAP_SYS_RESOURCE)) != 0;
+    if ((left & rights::one(right)) == 0) static_cast<void>(::prctl(PR_CAPBSET_DROP, right, 0, 0, 0));
 }
 
 }  // namespace
@@ -172,7 +157,8 @@ std::vector<std::string> isolation_lacks() {
   const std::uint32_t trap = SECCOMP_RET_TRAP;
   if (::syscall(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &trap) != 0)
     lacks.emplace_back("every system call is open (no seccomp filters)");
-  if (::geteuid() == 0 && !priority_is_limited() && !may_raise_limits())
+  // Root without this right cannot give who it starts a limit that it has not itself.
+  if (::geteuid() == 0 && !rights::priority_is_limited() && !rights::has(CAP_SYS_RESOURCE))
     lacks.emplace_back("every real-time priority is open (root without CAP_SYS_RESOURCE)");
   return lacks;
 }
