@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The group is the test's own: others need rights that it may not have.
-struct PrivateFolder : testing::Test {
+struct PrivateFolder : ::testing::Test {
   std::string root = (fs::temp_directory_path() / "hirosco-private-XXXXXX").string();
   std::string folder;
   std::uint32_t group = ::getegid();
