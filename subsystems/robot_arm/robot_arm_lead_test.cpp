@@ -138,8 +138,10 @@ TEST_F(RobotArmLead, GoesWhereItIsLedAndStandsWhereWhoeverLeadsItStands) {
 TEST_F(RobotArmLead, BeginsWithoutAJumpAndOnlyWhereItIsLedNearToWhereItIs) {
   cycle(500);
   told.position[3] += 0.2;
+  cycle(2);
   EXPECT_THAT(asked("FOLLOW"), StartsWith("1 4:8020"));
   told.position[3] = start[3] + 0.04;
+  cycle(2);
   const JointVector commanded = flown.commanded;
   const auto request = flown.rig.call("FOLLOW");
   JointVector last = commanded;
@@ -249,7 +251,7 @@ TEST_F(RobotArmLead, StandsBeforeItIsLedIntoItself) {
     cycle();
   }
   EXPECT_EQ(flown.rig.events(1026), 1);
-  EXPECT_GT(flown.off(folded), 0.1);
+  EXPECT_GT(flown.off(folded), 0.01) << "who may go on is within a milliradian of where it is led";
   EXPECT_EQ(flown.rig.events(unfit), 0);
   holds();
 }

