@@ -12,7 +12,7 @@ namespace hirosco::campaign {
 using descriptor::State;
 
 void Finale::fly(Duration begin) {
-  if (parts_.craft.supervisor().finished()) return;
+  if (parts_.craft.finished()) return;
   parts_.actions.end_faults();
   parts_.time.run(100ms);
   // A store that has failed takes nothing more; a new one does.

@@ -19,7 +19,7 @@ void PingedTime::look() {
 void PingedTime::run_until(Duration since_start) {
   simulation::Spacecraft& craft = parts_.craft;
   const TimePoint end = start_of_flight + since_start;
-  while (craft.now() < end && !craft.supervisor().finished()) {
+  while (craft.now() < end && !craft.finished()) {
     const auto since_ping = (craft.now() - start_of_flight) % ping_every;
     const TimePoint next_ping = craft.now() - since_ping + ping_every;
     static_cast<void>(craft.run_until(
@@ -40,7 +40,7 @@ void PingedTime::run(Duration span) { run_until(parts_.craft.now() - start_of_fl
 void PingedTime::run_until(const std::function<bool()>& condition, Duration limit) {
   const TimePoint end = parts_.craft.now() + limit;
   constexpr Duration look_every = 1ms;
-  while (!condition() && parts_.craft.now() < end && !parts_.craft.supervisor().finished()) run(look_every);
+  while (!condition() && parts_.craft.now() < end && !parts_.craft.finished()) run(look_every);
 }
 
 }  // namespace hirosco::campaign

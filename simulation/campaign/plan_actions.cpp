@@ -9,7 +9,7 @@
 namespace hirosco::campaign {
 
 void PlanActions::perform(const Action& action) {
-  if (parts_.craft.supervisor().finished()) return;
+  if (parts_.craft.finished()) return;
   const bool done = do_action(action.words);
   if (parts_.defect.after_action) parts_.defect.after_action(action.words);
   std::string words;
@@ -39,11 +39,7 @@ bool PlanActions::do_action(const std::vector<std::string>& words) {
     for (std::size_t i = 2; i < words.size(); ++i) line += words[i] + " ";
     return device != nullptr && device->fault(line).has_value();
   }
-  if (subject == parts_.mission.supervisor.name && (verb == "stop" || verb == "go")) {
-    supervisor_stopped_ = verb == "stop";
-    parts_.craft.stop(subject, supervisor_stopped_);
-    return true;
-  }
+  if (subject == parts_.mission.supervisor.name) return supervisor_fault(words);
   if (!parts_.craft.alive(subject)) return false;
   if (verb == "kill") parts_.craft.kill(subject);
   else if (verb == "stop" || verb == "go") parts_.craft.stop(subject, verb == "stop");
@@ -54,6 +50,23 @@ bool PlanActions::do_action(const std::vector<std::string>& words) {
     if (!cycles || !takes_us) return false;
     parts_.craft.strain(subject, static_cast<int>(*cycles), std::chrono::microseconds{*takes_us});
   } else return false;
+  return true;
+}
+
+/// stop|go|kill|hang SUPERVISOR; of the last two with the milliseconds for which nobody is there, or nothing is done
+bool PlanActions::supervisor_fault(const std::vector<std::string>& words) {
+  const std::string& verb = words[0];
+  if (verb == "stop" || verb == "go") {
+    supervisor_stopped_ = verb == "stop";
+    parts_.craft.stop(words[1], supervisor_stopped_);
+    return true;
+  }
+  const auto milliseconds = number_of(words.size() > 2 ? words[2] : "");
+  if (!milliseconds || !parts_.craft.supervised()) return false;
+  const Duration span = std::chrono::milliseconds{*milliseconds};
+  if (verb == "kill") parts_.craft.kill_supervisor(span);
+  else if (verb == "hang") parts_.craft.hang_supervisor(span);
+  else return false;
   return true;
 }
 

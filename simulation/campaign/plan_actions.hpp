@@ -36,6 +36,7 @@ class PlanActions {
 
  private:
   [[nodiscard]] bool do_action(const std::vector<std::string>& words);
+  [[nodiscard]] bool supervisor_fault(const std::vector<std::string>& words);
   [[nodiscard]] bool disk_fault(const std::vector<std::string>& words);
   [[nodiscard]] bool telecommand(const std::vector<std::string>& words);
   [[nodiscard]] bool flood(const std::vector<std::string>& words);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/campaign/planned_flight.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "simulation/spacecraft/flight_origin.hpp"
@@ -35,7 +36,8 @@ PlannedFlight::PlannedFlight(const descriptor::Mission& mission, simulation::Mod
       .make_log = [this](const Clock& clock) { return log_on(disk_, clock); },
       .make_log_readings = [this](const Clock& clock) { return readings_on(disk_, clock); },
       .open_database = [this](supervisor::DatabaseStrategy) { return database_on(disk_); },
-      .wrap_channel = defect_->wrap_channel});
+      .wrap_channel = defect_->wrap_channel,
+      .revives_after = revives_after()});
   defect_->craft = craft_.get();
   observer_.craft = craft_.get();
   trace_ = std::make_unique<WorldTrace>(mission_, *craft_, defect_->clock_percent,
@@ -49,6 +51,16 @@ PlannedFlight::PlannedFlight(const descriptor::Mission& mission, simulation::Mod
                                       .disk = disk_,
                                       .trace = *trace_,
                                       .traffic = *traffic_});
+}
+
+/// A keeper stands behind the supervisors of flights that lose one; without it those of the others fly as they always have.
+std::optional<Duration> PlannedFlight::revives_after() const {
+  constexpr Duration next_one_takes = 300ms;
+  const bool loses_supervisor = std::ranges::any_of(plan_.actions, [&](const Action& action) {
+    const auto& words = action.words;
+    return words.size() > 1 && (words[0] == "kill" || words[0] == "hang") && words[1] == mission_.supervisor.name;
+  });
+  return loses_supervisor ? std::optional{next_one_takes} : std::nullopt;
 }
 
 void PlannedFlight::fly() {

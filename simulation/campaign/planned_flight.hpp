@@ -42,6 +42,8 @@ class PlannedFlight {
     std::string text;
   };
 
+  [[nodiscard]] std::optional<Duration> revives_after() const;
+
   descriptor::Mission mission_;
   FlightPlan plan_;
   std::unique_ptr<PlantedDefect> defect_;

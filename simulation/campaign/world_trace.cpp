@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/campaign/world_trace.hpp"
 
+#include <utility>
+
 namespace hirosco::campaign {
 namespace {
 
@@ -32,14 +34,20 @@ std::int64_t WorldTrace::now_us() const {
 void WorldTrace::look() {
   for (Member& member : members_) look_at(member);
   for (Device& device : devices_) look_at(device);
+  if (std::exchange(supervised_, craft_.supervised()) != craft_.supervised()) say("supervised {:d}", supervised_);
+  if (supervised_) look_at_links();
+  if (craft_.now() < next_count_) return;
+  next_count_ = craft_.now() + count_every;
+  count_cycles();
+}
+
+/// As the supervisor has them: while there is none nobody does.
+void WorldTrace::look_at_links() {
   std::string up;
   for (std::uint8_t id = 1; id < 32; ++id)
     if (craft_.supervisor().links().is_up(id)) up += fmt::format(" {}", id);
   if (up != links_up_) say("links{}", up);
   links_up_ = std::move(up);
-  if (craft_.now() < next_count_) return;
-  next_count_ = craft_.now() + count_every;
-  count_cycles();
 }
 
 void WorldTrace::look_at(Member& member) {

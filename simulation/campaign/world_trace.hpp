@@ -53,13 +53,14 @@ class WorldTrace {
   [[nodiscard]] std::int64_t now_us() const;
   void look_at(Member& member);
   void look_at(Device& device);
+  void look_at_links();
   void count_cycles();
 
   simulation::Spacecraft& craft_;
   std::vector<Member> members_;
   std::vector<Device> devices_;
   TimePoint next_count_{};
-  std::uint64_t supervisor_beats_{0};
+  bool supervised_{true};
   std::string links_up_;
   std::string text_;
 };

@@ -22,10 +22,10 @@ void SimulatedKeeper::count_start() {
   stops_.emplace(*page_);
 }
 
-std::optional<TimePoint> SimulatedKeeper::lose_supervisor(TimePoint now) {
+std::optional<TimePoint> SimulatedKeeper::lose_supervisor(TimePoint now, std::optional<Duration> pause) {
   if (!bridge_) return std::nullopt;
   bridge_->begin_at(now);
-  return now + *revives_after_;
+  return now + pause.value_or(*revives_after_);
 }
 
 TimePoint SimulatedKeeper::step(TimePoint now) {

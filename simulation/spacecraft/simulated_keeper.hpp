@@ -40,9 +40,11 @@ class SimulatedKeeper {
   /// Stops asked for beside telecommands, as the newest supervisor has them.
   [[nodiscard]] supervisor::AskedStops& stops() noexcept { return *stops_; }
 
-  /// The supervisor has died.
+  /// A supervisor that dies is gone on for.
+  [[nodiscard]] bool revives() const noexcept { return revives_after_.has_value(); }
+  /// The supervisor has died.  \param pause Until the next one, in place of what it mostly is.
   /// \return when another one goes on; until then step() is due from now on. Empty: nobody does.
-  std::optional<TimePoint> lose_supervisor(TimePoint now);
+  std::optional<TimePoint> lose_supervisor(TimePoint now, std::optional<Duration> pause = {});
   /// Tells each device what the guard told it last.  \return when it is due again.
   TimePoint step(TimePoint now);
   /// The next supervisor's guard is about to take the devices over.

@@ -38,7 +38,7 @@ void SimulatedSupervisor::make(std::uint32_t first_epoch) {
                                     .first_sequence_count = first_count(parts_.seed + parts_.keeper.starts() - 1),
                                     .journal = parts_.keeper.journal(),
                                     .values = &parts_.stores.values(),
-                                    .log_readings = parts_.stores.log_readings(),
+                                    .log_readings = parts_.stores.begin_log_readings(),
                                     .readings = &parts_.stores.readings()});
   supervisor_wake_ = clock_.now();
 }
@@ -46,13 +46,14 @@ void SimulatedSupervisor::make(std::uint32_t first_epoch) {
 // --- virtual time ------------------------------------------------------------------------------------------------------
 
 TimePoint SimulatedSupervisor::next_wake() const noexcept {
-  return std::min({supervisor_wake_, guard_wake_, revive_at_.value_or(never)});
+  return std::min({supervisor_due(), guard_wake_, revive_at_.value_or(never), ended_at()});
 }
 
 void SimulatedSupervisor::step(TimePoint now) {
+  if (ended_at() <= now) kill();
   if (revive_at_ && *revive_at_ <= now) revive(now);
   if (guard_wake_ <= now) guard_wake_ = guard_ ? guard_->step(now) : parts_.keeper.step(now);
-  if (supervisor_wake_ <= now) step_supervisor(now);
+  if (supervisor_due() <= now) step_supervisor(now);
 }
 
 void SimulatedSupervisor::step_supervisor(TimePoint now) {
@@ -64,7 +65,21 @@ void SimulatedSupervisor::step_supervisor(TimePoint now) {
   kill();
 }
 
-void SimulatedSupervisor::stop(bool stopped) { supervisor_wake_ = guard_wake_ = stopped ? never : clock_.now(); }
+void SimulatedSupervisor::stop(bool stopped) {
+  if (!supervisor_) return;  // what is due then is the keeper's
+  supervisor_wake_ = guard_wake_ = stopped ? never : clock_.now();
+}
+
+void SimulatedSupervisor::hang(Duration span) {
+  if (!supervisor_) return;
+  const TimePoint now = clock_.now();
+  if (hangs_until_ <= now) patience_over_ = now + supervisor::supervisor_patience;
+  hangs_until_ = std::max(hangs_until_, now + span);
+}
+
+TimePoint SimulatedSupervisor::ended_at() const noexcept {
+  return parts_.keeper.revives() && hangs_until_ > patience_over_ ? patience_over_ : never;
+}
 
 void SimulatedSupervisor::stop_beside_flight() {
   supervisor::AskedStops& stops = parts_.keeper.stops();
@@ -75,7 +90,7 @@ void SimulatedSupervisor::stop_beside_flight() {
 
 // --- its death ---------------------------------------------------------------------------------------------------------
 
-void SimulatedSupervisor::kill() {
+void SimulatedSupervisor::kill(std::optional<Duration> pause) {
   if (!supervisor_) return;
   ++deaths_;
   const std::uint32_t highest = guard_->highest_epoch();
@@ -84,7 +99,8 @@ void SimulatedSupervisor::kill() {
   guard_.reset();
   parts_.processes.keep_channels(false);
   supervisor_wake_ = guard_wake_ = never;
-  const auto next_one = parts_.keeper.lose_supervisor(clock_.now());
+  hangs_until_ = patience_over_ = {};
+  const auto next_one = parts_.keeper.lose_supervisor(clock_.now(), pause);
   if (!next_one) return;
   next_first_epoch_ = highest + 1;
   guard_wake_ = clock_.now();

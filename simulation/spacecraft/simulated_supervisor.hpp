@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -37,16 +38,20 @@ class SimulatedSupervisor {
   [[nodiscard]] supervisor::Supervisor& supervisor() noexcept { return *supervisor_; }
   [[nodiscard]] supervisor::Guard& guard() noexcept { return *guard_; }
   [[nodiscard]] bool finished() const noexcept { return supervisor_ && supervisor_->finished(); }
+  /// There is one, and it does not hang.
+  [[nodiscard]] bool supervises() const noexcept { return supervisor_ && clock_.now() >= hangs_until_; }
 
   /// When supervisor, guard or what stands in for them is due.
   [[nodiscard]] TimePoint next_wake() const noexcept;
-  /// What is due: the next one goes on, guard or keeper, supervisor.
+  /// What is due: the keeper ends one that hangs, the next one goes on, guard or keeper, supervisor.
   void step(TimePoint now);
-  /// Its process stands still, as by SIGSTOP, and goes on.
+  /// Its process stands still, as by SIGSTOP, and goes on. Nothing, where there is none.
   void stop(bool stopped);
+  /// Its loop makes no step for that long, beside its guard, as one that spins in a step. The keeper ends it when its patience is over.
+  void hang(Duration span);
 
-  /// It ends without a word, as by kill -9, between two of its steps.
-  void kill();
+  /// It ends without a word, as by kill -9, between two of its steps.  \param pause Until the next one, where there is one.
+  void kill(std::optional<Duration> pause = {});
   /// Nobody goes on for it.
   void keep_down() noexcept { revive_at_.reset(); }
   /// Those that have died.
@@ -65,6 +70,9 @@ class SimulatedSupervisor {
   void make(std::uint32_t first_epoch);
   void revive(TimePoint now);
   void step_supervisor(TimePoint now);
+  [[nodiscard]] TimePoint supervisor_due() const noexcept { return std::max(supervisor_wake_, hangs_until_); }
+  /// When the keeper ends it, as it hangs; `never`: it does not, or not as long.
+  [[nodiscard]] TimePoint ended_at() const noexcept;
 
   Parts parts_;
   const Clock& clock_{parts_.platform.clock};
@@ -76,6 +84,8 @@ class SimulatedSupervisor {
   std::unique_ptr<supervisor::Supervisor> supervisor_;
   TimePoint supervisor_wake_{};
   TimePoint guard_wake_{};
+  TimePoint hangs_until_{};
+  TimePoint patience_over_{};  ///< the keeper's, with one that hangs as long
 };
 
 }  // namespace hirosco::simulation

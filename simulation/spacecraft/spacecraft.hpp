@@ -70,10 +70,18 @@ class Spacecraft final {
   [[nodiscard]] SimulatedDevice* device(std::string_view name) noexcept { return devices_.find(name); }
 
   // --- the supervisor and its guard -----------------------------------------------------------------------------------
+  /// Not to be asked while there is none.
   [[nodiscard]] supervisor::Supervisor& supervisor() noexcept { return supervision_.supervisor(); }
   [[nodiscard]] supervisor::Guard& guard() noexcept { return supervision_.guard(); }
-  /// The supervisor ends without a word, as by kill -9, between two of its steps.
-  void kill_supervisor() { supervision_.kill(); }
+  /// There is a supervisor, and it does not hang.
+  [[nodiscard]] bool supervised() const noexcept { return supervision_.supervises(); }
+  /// It has ended the flight in order.
+  [[nodiscard]] bool finished() const noexcept { return supervision_.finished(); }
+  /// The supervisor ends without a word, as by kill -9, between two of its steps.  \param pause Until another one goes on, in place of
+  /// `revives_after`.
+  void kill_supervisor(std::optional<Duration> pause = {}) { supervision_.kill(pause); }
+  /// It makes no step for that long, beside its guard; where another one would go on, the keeper ends it when its patience is over.
+  void hang_supervisor(Duration span) { supervision_.hang(span); }
   /// Nobody goes on for it.
   void keep_down() noexcept { supervision_.keep_down(); }
   /// Supervisors that have died.

@@ -27,14 +27,22 @@ SupervisorStores::SupervisorStores(const Parts& parts)
   log_ = parts.make_log ? parts.make_log(parts.clock)
                         : std::make_unique<supervisor::DirectPacketLog>(parts.clock,
                                                                         std::make_unique<BorrowedDatabase>(parts.log));
-  if (parts.make_log_readings) log_readings_ = parts.make_log_readings(parts.clock);
+  if (parts.make_log_readings)
+    make_log_readings_ = [make = parts.make_log_readings, &clock = parts.clock] { return make(clock); };
   else if (!parts.make_log)
-    log_readings_ = std::make_unique<supervisor::DirectLogReadings>(
-        [&log = parts.log](const supervisor::LogQuery& query) { return log.read(query); });
+    make_log_readings_ = [&log = parts.log] {
+      return std::make_unique<supervisor::DirectLogReadings>(
+          [&log](const supervisor::LogQuery& query) { return log.read(query); });
+    };
   if (!open_database_)
     open_database_ = [](supervisor::DatabaseStrategy) -> std::unique_ptr<supervisor::Database> {
       return std::make_unique<supervisor::MemoryDatabase>();
     };
+}
+
+supervisor::LogReadings* SupervisorStores::begin_log_readings() {
+  log_readings_ = make_log_readings_ ? make_log_readings_() : nullptr;
+  return log_readings_.get();
 }
 
 }  // namespace hirosco::simulation

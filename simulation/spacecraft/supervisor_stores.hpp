@@ -33,8 +33,8 @@ class SupervisorStores {
   SupervisorStores& operator=(const SupervisorStores&) = delete;
 
   [[nodiscard]] supervisor::PacketLog& log() noexcept { return *log_; }
-  /// Null: its log is not read.
-  [[nodiscard]] supervisor::LogReadings* log_readings() noexcept { return log_readings_.get(); }
+  /// Of one more supervisor: for what the one before had asked of the log nobody waits. Null: its log is not read.
+  [[nodiscard]] supervisor::LogReadings* begin_log_readings();
   /// For SET_DATABASE.
   [[nodiscard]] const supervisor::DatabaseOpener& open_database() const noexcept { return open_database_; }
   /// Of persistent parameters.
@@ -44,6 +44,7 @@ class SupervisorStores {
 
  private:
   std::unique_ptr<supervisor::PacketLog> log_;
+  std::function<std::unique_ptr<supervisor::LogReadings>()> make_log_readings_;  ///< empty: it is not read
   std::unique_ptr<supervisor::LogReadings> log_readings_;
   supervisor::DatabaseOpener open_database_;
   supervisor::ValueStore* values_;
