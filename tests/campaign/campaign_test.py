@@ -15,7 +15,7 @@ from shrink import shrink, split  # noqa: E402
 
 MISSION = str(HERE.parents[1] / "missions" / "rokviss")
 # The planted defects bear the name of the invariant that they break.
-DEFECTS = ["I1", "I2", "I3", "I4", "I5", "I6", "I8", "I9", "I10", "I11", "I12", "I13", "I14"]
+DEFECTS = ["I1", "I2", "I3", "I4", "I5", "I6", "I8", "I9", "I10", "I11", "I12", "I13", "I14", "I15", "I16", "I17"]
 MOST_FLIGHTS = 40          # until a planted defect is found
 SLICE = 20
 CALLS = 1_000              # of functions with arguments of every type

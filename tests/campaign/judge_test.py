@@ -7,10 +7,10 @@ import inspect, sys, tempfile
 
 from judge_flight import MISSION, S, Written
 from judge_cases import CASES
-import judge, packet_rules, record, retrieval_rules, rules
-import judge_cases_packets, judge_cases_permits, judge_cases_retrieval, judge_cases_stays, judge_cases_stops, judge_cases_world  # noqa: F401  (cases register themselves)
+import judge, packet_rules, record, retrieval_rules, rules, succession_rules
+import judge_cases_packets, judge_cases_permits, judge_cases_retrieval, judge_cases_stays, judge_cases_stops, judge_cases_succession, judge_cases_world  # noqa: F401  (cases register themselves)
 
-RULES = {rule.__name__: rule for table in (rules.WORLD, packet_rules.PACKETS, retrieval_rules.RETRIEVALS) for each in table.values() for rule in each}
+RULES = {rule.__name__: rule for table in (rules.WORLD, packet_rules.PACKETS, retrieval_rules.RETRIEVALS, succession_rules.SUCCESSIONS) for each in table.values() for rule in each}
 
 # --- who counts as struck --------------------------------------------------------------------------------------------------
 SPANS = [
@@ -34,6 +34,9 @@ SPANS = [
      "JOYSTICK", [(1.0, 4.0)]),
     ("a hand is no fault", ["did fault joystick hand wander at 1.0", "did fault robot hook 2 at 1.0"], "JOYSTICK", []),
     ("a fault of the log until after calm", ["did log full at 1.0", "calm at 4.0"], "LOG", [(1.0, 4.3)]),
+    ("nobody supervises, until a second after another one does", ["did kill SUPERVISOR 300 at 1.0", "supervised 0 at 1.0", "supervised 1 at 1.3"],
+     "SUCCESSION", [(1.0, 2.3)]),
+    ("a supervisor that is killed is no member", ["did hang SUPERVISOR 5000 at 1.0", "supervised 0 at 1.0"], "SUPERVISOR", []),
     ("a flood for a second", ["did flood ground valid 100 at 1.0"], "FLOOD", [(1.0, 2.0)]),
 ]
 
@@ -64,7 +67,7 @@ def lines_of(module):
 
 
 def main():
-    problems, reached = [], {module.__file__: set() for module in (rules, packet_rules, retrieval_rules, record)}
+    problems, reached = [], {module.__file__: set() for module in (rules, packet_rules, retrieval_rules, succession_rules, record)}
 
     def trace(frame, what, _):
         if frame.f_code.co_filename not in reached:
@@ -89,7 +92,7 @@ def main():
         wants = {bool(each.found) for each in CASES if each.rule == rule}
         if wants != {True, False}:
             problems.append(f"{rule} has no case that is found, or none that is not")
-    for module in (rules, packet_rules, retrieval_rules):
+    for module in (rules, packet_rules, retrieval_rules, succession_rules):
         for line in sorted(lines_of(module) - reached[module.__file__]):
             problems.append(f"no case reaches {module.__name__}.py:{line}: {inspect.getsource(module).splitlines()[line - 1].strip()}")
     endless = Written().without("end")

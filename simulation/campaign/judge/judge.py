@@ -10,6 +10,7 @@ from packet_rules import PACKETS
 from record import Record
 from retrieval_rules import RETRIEVALS
 from rules import WORLD
+from succession_rules import SUCCESSIONS
 
 MOST_TOLD = 5  # of one invariant in one flight
 
@@ -58,7 +59,7 @@ def judge(mission, folder):
     flight = Record(mission, folder)
     victims = flight.victims()
     violations = []
-    for name, rules in sorted({**WORLD, **PACKETS, **RETRIEVALS}.items()):
+    for name, rules in sorted({**WORLD, **PACKETS, **RETRIEVALS, **SUCCESSIONS}.items()):
         for rule in rules:
             for place, (time, text) in enumerate(rule(flight, victims)):
                 if place == MOST_TOLD:

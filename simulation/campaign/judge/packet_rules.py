@@ -58,7 +58,7 @@ def i2_one_final_report(flight, victims):
 
 
 def given_up(flight, victims):
-    """The supervisor ends a telecommand in the place of who is gone, and of nobody else."""
+    """The supervisor ends a telecommand in the place of who is gone, or of one whose report may have gone with a supervisor, and of nobody else."""
     forwarded = {r.telecommand.key: r for r in flight.log if r.kind == "telecommand-forwarded" and r.telecommand}
     for record in flight.log:
         said = record.report
@@ -70,7 +70,8 @@ def given_up(flight, victims):
         name = name_of(flight, asked.peer)
         # Whoever shuts the craft down ends what was on its way just then, or comes meanwhile; what was asked long before had its end.
         on_its_way = flight.finished() <= min(record.time, asked.time + LAST_SECOND_US)
-        if not on_its_way and not meets(victims[name], asked.time - LAST_SECOND_US, record.time):
+        gone = victims[name] + victims["SUCCESSION"]
+        if not on_its_way and not meets(gone, asked.time - LAST_SECOND_US, record.time):
             yield record.time, f"TC[{asked.telecommand.service},{asked.telecommand.subtype}] to {name} was given up though nothing was done to it"
 
 

@@ -119,6 +119,7 @@ class Record:
         self.inhibited, self.period_ns = table(), table()
         self.device_period_ns = {}
         self.links = Series(frozenset())
+        self.supervised = Series(1)
         self.cycles = []   # (time, {name: cycles})
         self.sent, self.lost_sends, self.down = [], 0, []
         self.damaged_sent = 0
@@ -149,6 +150,8 @@ class Record:
             self.device_period_ns[rest[0]] = int(rest[2].split("=")[1])
         elif what == "links":
             self.links.set(time, frozenset(map(int, rest)))
+        elif what == "supervised":
+            self.supervised.set(time, int(rest[0]))
         elif what == "still":
             self.still[rest[0]].set(int(rest[1].split("=")[1]), 1)
         elif what == "moves":
@@ -185,6 +188,10 @@ class Record:
         """When the supervisor began to end the flight."""
         return self.ending
 
+    def absences(self):
+        """[(from, to)]: in these no supervisor made a step, as it had died or hung."""
+        return self.supervised.spans(self.end, lambda there: not there)
+
     def mode(self):
         series = Series(self.mission.initial_mode)
         for record in self.log:
@@ -210,13 +217,17 @@ class Record:
 
     # --- whom something was done to ------------------------------------------------------------------------------------
     def victims(self):
-        """{name: [(start, end)]}: members, devices and SUPERVISOR while something is done to them; 'LOG' too."""
+        """{name: [(start, end)]}: members, devices and SUPERVISOR while something is done to them; 'LOG' too. SUCCESSION: while none
+        supervises, and as another one begins to."""
         spans = collections.defaultdict(list)
+        spans["SUCCESSION"] = [(gone, back + AFTERMATH_US) for gone, back in self.absences()]
         calm = self.mark("calm") or self.end
         forever = self.end + 1
         opened = {}
         for time, words in self.did:
             verb, subject = words[0], words[1] if len(words) > 1 else ""
+            if subject == self.mission.supervisor.name and verb in ("kill", "hang"):
+                continue
             if verb in ("kill", "spin"):
                 back = next((t for t, v in zip(self.alive[subject].times, self.alive[subject].values) if t > time and v), forever)
                 spans[subject].append((time, min(back + AFTERMATH_US, forever)))

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Invariants on what happened in the world: who died, what moved, which states and links there were, how time passed."""
 from descriptors import EDGES, ERROR, OFFLINE, OPERATIONAL, STATES, reachable_unseen
-from record import meets
+from record import AFTERMATH_US, meets
 
 CYCLES_TO_SAFE = 5             # actuators of a network, in cycles of whoever acts
 WATCHDOG_US = 12_000           # and two periods: of the device itself, when its member says nothing any more
@@ -86,7 +86,12 @@ def released_after(flight, time, member):
 def ground_link_works(flight, victims, start, end):
     ground = flight.mission.ground
     return (all(state == OPERATIONAL for state in flight.state[ground].during(start, end)) and
-            not any(meets(victims[name], start - 100_000, end) for name in (ground, "SUPERVISOR")))
+            not meets(victims[ground] + unattended(victims), start - 100_000, end))
+
+
+def unattended(victims):
+    """While the supervisor is stopped, dead or hangs."""
+    return victims["SUPERVISOR"] + victims["SUCCESSION"]
 
 
 def networks(flight, time):
@@ -125,7 +130,7 @@ def i4_a_network_goes_down_with_its_member(flight, victims):
         until = (told_at(flight, struck, time) if words[0] == "fault" else time) + OFFLINE_US
         if until > min(flight.finished(), flight.mark("calm") or flight.end):
             continue
-        if meets(victims["SUPERVISOR"], time - OFFLINE_US, until):
+        if meets(unattended(victims), time - OFFLINE_US, until):
             continue
         for name in group - {struck, flight.mission.ground}:
             if meets(victims[name], time - 1, until):
@@ -157,10 +162,13 @@ def i4_who_begins_is_let_go(flight, victims):
 
 def i4_a_stop_stays(flight, victims):
     """Behind a stop nobody acts before ground has said so after it: a state for that member, or a mode."""
-    stops = [time for time, words in flight.did if words == ["safe"]]
+    asked = [(time, 0) for time, words in flight.did if words == ["safe"]]
     answered = {(down[5], down[6]) for down in flight.down if down[3] == 1 and down[4] == 7 and len(down) > 6}
     answered |= {r.report.request_key for r in flight.log if r.report and (r.report.service, r.report.subtype) == (1, 7)}
-    stops += [sent.time for sent in flight.sent if sent.function == "SAFE_ALL" and sent.key in answered]
+    asked += [(sent.time, AFTERMATH_US) for sent in flight.sent if sent.function == "SAFE_ALL" and sent.key in answered]
+    # What nobody was there to carry out the next supervisor does, and what it has to read as soon as it listens.
+    stops = [(time, max([time, *(back + listens for gone, back in flight.absences() if gone - STOP_BEGINS_US <= time <= back)]))
+             for time, listens in asked]
     arguments = {r.telecommand.key: r.telecommand.first_argument for r in flight.log if r.telecommand}
     leaves = {name: [] for name in flight.members}
     for sent in flight.sent:
@@ -175,7 +183,7 @@ def i4_a_stop_stays(flight, victims):
     acting = [(device, member) for device, (member, name) in flight.mission.devices.items() if name in flight.mission.by_name(member).actuators]
     for device, member in acting:
         for start, _ in flight.active[device].spans(flight.end):
-            stopped = max((time for time in stops if time + STOP_BEGINS_US < start), default=None)
+            stopped = max((time for time, read in stops if read + STOP_BEGINS_US < start), default=None)
             if stopped is not None and not any(stopped <= time <= start for time in leaves[member]):
                 yield start, f"{device} acts again {(start - stopped) // 1000} ms after a stop, and nobody has let {member} go"
 
@@ -236,10 +244,11 @@ def muted(flight, apid):
 
 def i10_commandable_again(flight, victims):
     recovered, flown = flight.mark("recovered"), flight.mark("flown")
-    # A supervisor that stood still finds ground's SHUTDOWN when it goes on: then that is how this flight ends.
+    # A supervisor that stood still finds ground's SHUTDOWN when it goes on, and one that goes on for another ends what that had begun to
+    # end: then that is how this flight ends.
     asked_to_end = recovered is not None and any(
         sent.function == "SHUTDOWN" and sent.time < flight.finished() < recovered and
-        meets(victims["SUPERVISOR"], sent.time, flight.finished()) for sent in flight.sent)
+        (meets(victims["SUPERVISOR"], sent.time, flight.finished()) or meets(victims["SUCCESSION"], sent.time, recovered)) for sent in flight.sent)
     if recovered is None or asked_to_end:
         return
     answered = {d[6] for d in flight.down if d[3] == 1 and d[4] == 7 and d[5] == 0}
@@ -265,14 +274,15 @@ def i12_no_operational_without_required_link(flight, victims):
             configuration = member.configurations.get(flight.configuration[member.name].at(start))
             for wanted in configuration.requires if configuration else []:
                 link = next((i for i, (_, to, name) in flight.mission.links.items() if (to, name) == (member.name, wanted.name)), None)
-                if not wanted.required or meets(victims["SUPERVISOR"], start - lag, start + lag):
+                if not wanted.required or meets(unattended(victims), start - lag, start + lag):
                     continue
                 if not any(link in up for up in flight.links.during(start - lag, start)):
                     yield start, f"{member.name} entered Operational without {wanted.name}"
                 for first, last in flight.links.spans(flight.end, lambda up: link not in up) if wanted.inhibits else []:
                     first, last = max(first, start) + lag, min(last, end)
                     free = [bits for bits in flight.inhibited[member.name].during(first, last) if not bits]
-                    if first < last and free and not meets(victims[member.name], first - lag, last):
+                    struck = meets(victims[member.name], first - lag, last) or meets(victims["SUCCESSION"], first - lag, first)
+                    if first < last and free and not struck:
                         yield first, f"{member.name} is Operational and not inhibited without {wanted.name}"
 
 
