@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
@@ -196,10 +198,58 @@ void i14(PlantedDefect& defect) {
              }});
 }
 
+/// When there was no supervisor last.
+class LastAbsence {
+ public:
+  void look(const PlantedDefect& defect) {
+    if (!defect.craft->supervised()) last_ = defect.craft->now();
+  }
+  /// Another one has begun, no longer than that ago.
+  [[nodiscard]] bool ended_within(Duration span, const PlantedDefect& defect) const {
+    return last_ && defect.craft->now() - *last_ < span;
+  }
+
+ private:
+  std::optional<TimePoint> last_;
+};
+
+/// What the next supervisor finds is stopped in its first 50 ms, whatever permission it had.
+void i15(PlantedDefect& defect) {
+  defect.each_instant = [&defect, absence = LastAbsence{}, stopped = false]() mutable {
+    absence.look(defect);
+    const bool stops = defect.craft->supervised() && absence.ended_within(50ms, defect);
+    if (!std::exchange(stopped, stops) && !stops) return;
+    for (const std::string_view name : members(defect, Whose::Others))
+      if (auto* page = defect.craft->permit(name)) page->stop.store(stops ? 1 : 0);
+  };
+}
+
+/// Somebody beats on for a supervisor that is gone, and no second inhibit ends.
+void i16(PlantedDefect& defect) {
+  defect.edit = [](descriptor::Mission& mission) {
+    for (auto& member : mission.subsystems)
+      for (auto& device : member.subsystem.devices) device.enable.reset();
+  };
+  defect.each_instant = [&defect] {
+    if (defect.craft->supervised()) return;
+    for (const auto& member : defect.mission->subsystems)
+      if (auto* page = defect.craft->permit(member.subsystem.name)) page->heartbeat.fetch_add(1);
+  };
+}
+
+/// The telecommands that the next supervisor finds in the ground link's channel are lost.
+void i17(PlantedDefect& defect) {
+  auto absence = std::make_shared<LastAbsence>();
+  defect.each_instant = [&defect, absence] { absence->look(defect); };
+  on_channel(defect, Whose::GroundLink, {.receives = [&defect, absence](const Message& message, MessageBuffer&) {
+               return !absence->ended_within(200ms, defect) || !pus::TelecommandView::parse(message.packet);
+             }});
+}
+
 const std::map<std::string_view, MakeDefect>& planted_defects() {
   static const std::map<std::string_view, MakeDefect> all{
-      {"I1", i1}, {"I2", i2},   {"I3", i3},   {"I4", i4},   {"I5", i5},   {"I6", i6},  {"I8", i8},
-      {"I9", i9}, {"I10", i10}, {"I11", i11}, {"I12", i12}, {"I13", i13}, {"I14", i14}};
+      {"I1", i1},   {"I2", i2},   {"I3", i3},   {"I4", i4},   {"I5", i5},   {"I6", i6},   {"I8", i8},   {"I9", i9},
+      {"I10", i10}, {"I11", i11}, {"I12", i12}, {"I13", i13}, {"I14", i14}, {"I15", i15}, {"I16", i16}, {"I17", i17}};
   return all;
 }
 

@@ -126,12 +126,32 @@ def fly_plan():
     return parse([MISSION]).fly_plan
 
 
+def losses_drawn():
+    """How the supervisor is lost in a hundred plans, and in the middle of what; that some lose none is seen to, too."""
+    campaign, found, without = Campaign(parse([MISSION])), set(), 0
+    for index in range(100):
+        draw, begun = Draw(campaign.mission, 1, index), []
+        begin_what = draw.begin_what
+        draw.begin_what = lambda dice, what, time: (begun.append(what), begin_what(dice, what, time))
+        lines = [line.split()[1:] for line in draw.text().splitlines()]
+        lost = [words for words in lines if words[0] in ("kill", "hang") and words[1] == campaign.mission.supervisor.name]
+        without += not lost
+        found.update(words[0] for words in lost)
+        found.update(begun)
+        if lost and not begun:
+            found.add("long" if int(lost[0][2]) > 2000 and lost[0][0] == "kill" else "anything")
+    return found if without > 40 else set()
+
+
 def tools():
     for misfit in (gone := defects_flown.misfits() + defects_in_unit_tests.misfits()):
         print(misfit)
     check(not gone, "every finding that is put back into a copy of the code still has its place there")
     plan = Campaign(parse([MISSION, "--seed", "7"])).plan(3)
     check(plan == Campaign(parse([MISSION, "--seed", "7"])).plan(3), "the same seed draws the same plan")
+    lost = losses_drawn()
+    check(lost >= {"kill", "hang", "long", "mode", "plan", "stop", "nothing", "anything"},
+          f"the supervisor dies and hangs, alone and in the middle of things: {', '.join(sorted(lost))}")
     octets = []
     for _ in range(2):
         with tempfile.TemporaryDirectory() as folder:

@@ -157,6 +157,74 @@ TEST(SupervisorDeath, WithNobodyToGoOnTheCraftIsSafeAfterItsTime) {
   for (const char* name : movers) EXPECT_NE(flight.inhibited(name), 0U) << name;
 }
 
+TEST(SupervisorDeath, WhoIsLostForLongerThanASubsystemGoesOnIsGoneOnForByOneThatLetsNobodyMove) {
+  MortalFlight mortal{0};
+  Flight& flight = mortal.flight;
+  ASSERT_TRUE(flight.commission());
+  flight.craft().kill_supervisor(3s);
+  flight.craft().run(2100ms);
+  EXPECT_FALSE(flight.craft().supervised());
+  for (const char* name : movers) EXPECT_NE(flight.inhibited(name), 0U) << name;
+  flight.craft().run(2s);
+  EXPECT_TRUE(flight.craft().supervised());
+  for (const char* name : movers) EXPECT_FALSE(mortal.may_move(name)) << name << "\n" << mortal.text();
+}
+
+TEST(SupervisorDeath, OfOneThatHangsForLessThanTheKeepersPatienceNobodyKnows) {
+  MortalFlight mortal{0};
+  Flight& flight = mortal.flight;
+  ASSERT_TRUE(flight.commission());
+  flight.craft().run(500ms);
+  const auto cycles = flight.cycles("MANIPULATOR");
+  flight.craft().hang_supervisor(700ms);
+  flight.craft().run(600ms);
+  EXPECT_FALSE(flight.craft().supervised());
+  flight.craft().run(3400ms);
+  EXPECT_TRUE(flight.craft().supervised());
+  EXPECT_EQ(flight.craft().supervisor_deaths(), 0);
+  EXPECT_EQ(flight.cycles("MANIPULATOR") - cycles, 8000U) << "2 kHz, all the time";
+  for (const char* name : movers) EXPECT_TRUE(mortal.may_move(name)) << name << "\n" << mortal.text();
+}
+
+TEST(SupervisorDeath, OneThatHangsLongerIsEndedByTheKeeperAndAnotherOneGoesOn) {
+  MortalFlight mortal{0};
+  Flight& flight = mortal.flight;
+  ASSERT_TRUE(flight.commission());
+  flight.craft().run(500ms);
+  const auto cycles = flight.cycles("MANIPULATOR");
+  flight.craft().hang_supervisor(60s);
+  flight.craft().run(4s);
+  EXPECT_EQ(flight.craft().supervisor_deaths(), 1);
+  EXPECT_EQ(flight.cycles("MANIPULATOR") - cycles, 8000U) << "2 kHz, all the time";
+  EXPECT_EQ(flight.craft().supervisor().links().up_count(), 2U);
+  for (const char* name : movers) EXPECT_TRUE(mortal.may_move(name)) << name << "\n" << mortal.text();
+}
+
+TEST(SupervisorDeath, WhereNobodyWouldGoOnTheGuardStopsAllForOneThatHangs) {
+  Flight flight{{.edit = simulation::hand_rests}};
+  ASSERT_TRUE(flight.commission());
+  flight.craft().run(500ms);
+  flight.craft().hang_supervisor(1500ms);
+  flight.craft().run(1100ms);
+  EXPECT_EQ(flight.craft().supervisor_deaths(), 0);
+  for (const char* name : movers) {
+    const auto* page = flight.craft().permit(name);
+    EXPECT_TRUE(page == nullptr || !page->permits(page->epoch.load())) << name << "\n" << flight.story().text();
+  }
+}
+
+TEST(SupervisorDeath, ASignalToAProcessThatIsGoneReachesNobody) {
+  MortalFlight mortal{0};
+  Flight& flight = mortal.flight;
+  ASSERT_TRUE(flight.commission());
+  flight.craft().kill_supervisor();
+  flight.craft().hang_supervisor(60s);
+  for (const bool stopped : {true, false}) flight.craft().stop("SUPERVISOR", stopped);
+  flight.craft().run(settles);
+  EXPECT_TRUE(flight.craft().supervised());
+  for (const char* name : movers) EXPECT_TRUE(mortal.may_move(name)) << name << "\n" << mortal.text();
+}
+
 TEST(SupervisorDeath, AtEveryMomentOfAModeChangeEndsInTheOldModeTheNewOneOrSafe) {
   std::map<std::string, int> ends;
   int told_twice = 0;
