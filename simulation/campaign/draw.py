@@ -4,7 +4,7 @@
 import functools, importlib.util, pathlib, random, struct, sys, types
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent / "judge"), str(pathlib.Path(__file__).resolve().parent)]
-import retrieval  # noqa: E402
+import losses, retrieval  # noqa: E401, E402
 from descriptors import ERROR, OFFLINE, OPERATIONAL, POST, PRE, SAFE, STATES, TYPES  # noqa: E402
 
 FINALE_S = 26.0
@@ -22,12 +22,6 @@ SILENCED_EVERY, SILENCED_AT = 5, 3   # flights that end with an unplug that grou
 SILENCED_S = 5.5        # of the end of such a flight, in which nothing else happens
 REBOOTS = 0.25          # of flights
 STOPS_BESIDE = 0.3      # of flights: somebody on board stops everything, beside ground and its telecommands
-LOSSES = 0.5            # of flights: their supervisor dies or hangs, and another one goes on
-# What is under way then: nothing, for a moment or for longer than a subsystem goes on alone, the change of a mode, a plan, a stop, or anything.
-LOST_IN = ["nothing", "nothing", "nothing", "nothing for long", "nothing for long", "mode", "plan", "stop", "anything", "anything"]
-SHORT_LOSSES = ["kill {} 300"] * 3 + ["kill {} 50", "kill {} 1000", "hang {} 50", "hang {} 300", "hang {} 700", "hang {} 5000"]  # milliseconds
-LONG_LOSSES = ["kill {} 2300", "kill {} 3000", "kill {} 4000"]
-LOST_S = 9.0            # that such an episode takes: it begins a second before the craft is brought up
 MOST_STRIKES = 2        # of a member in one flight by what may end it: who dies too often stays down
 # Of every subsystem, beside those of its descriptor: states, failures, lost devices and stale sets.
 FRAMEWORK_EVENTS = [*range(0xF000, 0xF006), *range(0xF100, 0xF103), *range(0xF200, 0xF204)]
@@ -440,6 +434,11 @@ class Draw:
         for event in [*victim.events, *FRAMEWORK_EVENTS]:
             self.add(time, f"tc ground {victim.apid} 5 6 15 01{event:04x}  # {victim.name} no report of {event}")
 
+    def hear(self, time, member):
+        """What ground silenced before it hears again."""
+        for event in [*member.events, *FRAMEWORK_EVENTS]:
+            self.add(time, f"tc ground {member.apid} 5 5 15 01{event:04x}  # {member.name} report of {event}")
+
     def ask_again(self):
         """Some flights ask for what was said before. By a dice of its own: whatever else is drawn stays as it is."""
         dice = random.Random(f"retrieval of {self.flight_seed}")
@@ -464,59 +463,6 @@ class Draw:
         for _ in range(dice.choice([1, 1, 2, 3]) if crossed else 0):
             self.add(dice.choice(crossed) + dice.choice([0.0, 0.0002, 0.001, 0.002, 0.005, 0.02]), "safe")
 
-    def lose_supervisor(self):
-        """In some flights the supervisor dies or hangs. By a dice of its own, and drawn last of all: other flights stay as they are."""
-        dice = random.Random(f"losses of the supervisor {self.flight_seed}")
-        if dice.random() >= LOSSES or self.index % SILENCED_EVERY == SILENCED_AT:
-            return
-        what = dice.choice(LOST_IN)
-        if what == "anything":
-            crossed = [time for time, _ in self.lines if 0.5 < time < FINALE_S - 2]
-            for _ in range(dice.choice([1, 1, 2, 3]) if crossed else 0):
-                self.lose(dice, dice.choice(crossed) + dice.choice([0.0, 0.0002, 0.001, 0.002, 0.005, 0.02, 0.1]))
-            return
-        begin = dice.uniform(0.5, FINALE_S - LOST_S - 0.5)
-        time = self.begin_alone(begin) + 1.1 + dice.uniform(0, 0.02)
-        after = dice.choice([0.0, 0.0005, dice.uniform(0, 0.02), dice.uniform(0, 0.2), dice.uniform(0, 0.6)])
-        if what == "nothing for long":
-            return self.lose(dice, time, LONG_LOSSES)
-        self.begin_what(dice, what, time)
-        self.lose(dice, time + after)
-        if dice.random() < 0.3:  # and the next one, too, as it goes on or soon after
-            self.lose(dice, time + after + 0.3 + dice.choice([0.0001, dice.uniform(0, 0.03), dice.uniform(0, 0.3)]))
-
-    def lose(self, dice, time, losses=SHORT_LOSSES):
-        self.add(time, dice.choice(losses).format(self.mission.supervisor.name))
-
-    def begin_alone(self, begin):
-        """Of all else nothing happens for the time of an episode: the faults end, hands rest, who died comes back, and both ends of the network are
-        brought up. When they are."""
-        self.lines = [line for line in self.lines if not begin <= line[0] < begin + LOST_S]
-        self.struck = {"LOG", *(member.name for member in self.mission.members)}
-        self.calm(begin)
-        for device in self.mission.devices:  # who has no hand refuses it
-            self.add(begin + 0.02, f"fault {device} hand hold 0 0")
-        self.silence_ends(begin + 0.03)
-        return self.drive(begin + 1.0, OPERATIONAL, "COUPLED")
-
-    def silence_ends(self, time):
-        """What ground silenced before is heard again: a member that stops for a reason of its own says so."""
-        for member in self.acting:
-            for event in [*member.events, *FRAMEWORK_EVENTS]:
-                self.add(time, f"tc ground {member.apid} 5 5 15 01{event:04x}  # {member.name} report of {event}")
-
-    def begin_what(self, dice, what, time):
-        mission = self.mission
-        if what == "mode":
-            mode = dice.choice([mode for mode in mission.modes if mode != "safe"])
-            self.function(time, mission.supervisor, "SET_MODE", mission.mode_ids[mode])
-        elif what == "stop":
-            self.function(time, mission.supervisor, "SAFE_ALL")
-        elif what == "plan":
-            device, (owner, _) = dice.choice(sorted(mission.devices.items()))
-            self.add(time, dice.choice([f"kill {owner}", f"fault {device} unplug"]))
-            self.add(time + 4, f"fault {device} plug")
-
     # --- all of it ---------------------------------------------------------------------------------------------------
     def text(self):
         aimed = self.aim() if self.wanted_commands or self.wanted_faults else 0.3
@@ -527,7 +473,8 @@ class Draw:
         self.stop_beside()
         if self.index % SILENCED_EVERY == SILENCED_AT:
             self.strike_silenced()
-        self.lose_supervisor()
+        elif losses.loses(self):
+            losses.lose_supervisor(self, BEGIN_S, FINALE_S)
         self.lines.sort(key=lambda line: line[0])
         head = [f"seed {self.flight_seed}", f"mode {self.mode}", f"finale {FINALE_S}", *([" ".join(["ends", *self.ends])] if self.ends else [])]
         return "\n".join(head + [f"{time:.6f} {words}" for time, words in self.lines]) + "\n"

@@ -3,14 +3,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A slice of the campaign has no violation, the same seed gives the same octets, a failing plan shrinks to what it needs,
 and each planted defect is found. campaign_test.py [flights|typed|authors|defects|tools] [DEFECT...]"""
-import collections, contextlib, os, pathlib, subprocess, sys, tempfile
+import collections, contextlib, os, pathlib, subprocess, sys, tempfile, unittest.mock
 from concurrent.futures import ThreadPoolExecutor
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "simulation" / "campaign")]
 from campaign import Campaign, Pilot, parse  # noqa: E402
 from draw import Draw  # noqa: E402
-import defects_in_unit_tests, defects_flown  # noqa: E401, E402
+import defects_in_unit_tests, defects_flown, losses  # noqa: E401, E402
 from shrink import shrink, split  # noqa: E402
 
 MISSION = str(HERE.parents[1] / "missions" / "rokviss")
@@ -130,10 +130,9 @@ def losses_drawn():
     """How the supervisor is lost in a hundred plans, and in the middle of what; that some lose none is seen to, too."""
     campaign, found, without = Campaign(parse([MISSION])), set(), 0
     for index in range(100):
-        draw, begun = Draw(campaign.mission, 1, index), []
-        begin_what = draw.begin_what
-        draw.begin_what = lambda dice, what, time: (begun.append(what), begin_what(dice, what, time))
-        lines = [line.split()[1:] for line in draw.text().splitlines()]
+        begun = []
+        with unittest.mock.patch.object(losses, "begin_what", lambda draw, dice, what, time: begun.append(what)):
+            lines = [line.split()[1:] for line in Draw(campaign.mission, 1, index).text().splitlines()]
         lost = [words for words in lines if words[0] in ("kill", "hang") and words[1] == campaign.mission.supervisor.name]
         without += not lost
         found.update(words[0] for words in lost)

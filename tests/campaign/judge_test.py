@@ -102,9 +102,11 @@ def main():
 
 
 def ends(whole, endless):
-    """A flight without an end is a violation by itself; a quiet one is none."""
+    """A flight without an end is a violation by itself; a quiet one is none, nor is one that loses its supervisor, whatever rule looks at it."""
+    lost = Written().at(2 * S, "did kill SUPERVISOR 300", "supervised 0").at(2_300_000, "supervised 1")
+    lost.at(3 * S, "did hang SUPERVISOR 50", "supervised 0").at(3_050_000, "supervised 1")
     found = []
-    for written, wanted in ((endless, [["I1", 0.05, "the flight has no end"]]), (Written(), [])):
+    for written, wanted in ((endless, [["I1", 0.05, "the flight has no end"]]), (Written(), []), (lost, [])):
         with tempfile.TemporaryDirectory() as folder:
             written.write(folder)
             said = whole(MISSION, folder)["violations"]

@@ -124,6 +124,8 @@ def i4_a_network_goes_down_with_its_member(flight, victims):
             struck = flight.mission.devices[words[1]][0] if words[0] == "fault" else words[1]
         else:
             continue
+        if struck == flight.mission.supervisor.name:
+            continue
         if words[0] == "fault" and (flight.state[struck].at(time) != OPERATIONAL or "shut_down_network" not in flight.mission.high_plan):
             continue
         group = next(group for group in networks(flight, time - 1) if struck in group)
