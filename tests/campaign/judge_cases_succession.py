@@ -317,3 +317,8 @@ def acts_again_though_the_supervisor_before_had_heard_of_a_stop(w):
     w.at(60 * MS, ACTS).at(1 * S, "did safe").at(1005 * MS, "active robot 0")
     lost(w)
     w.at(2400 * MS, "active robot 1")
+
+
+@case("i4_a_network_goes_down_with_its_member")
+def a_supervisor_that_dies_takes_no_network_down(w):
+    lost(w)
