@@ -31,7 +31,6 @@ class AMissionAsJson : public ::testing::Test {
 
 TEST_F(AMissionAsJson, HasEverybodyTheSupervisorFirst) {
   EXPECT_EQ(told["name"], "WORKSHOP");
-  EXPECT_EQ(told["id"], 9);
   EXPECT_EQ(told["start_mode"], "work");
   ASSERT_EQ(told["subsystems"].size(), 3U);
   EXPECT_EQ(told["subsystems"][0]["name"], "SUPERVISOR");

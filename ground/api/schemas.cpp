@@ -141,7 +141,6 @@ void add_mission(const Basic& is, json& into) {
                            {"faults", list_of(object({{"line", is.text}, {"text", is.text}}))}});
   into["Mission"] =
       object({{"name", is.text},
-              {"id", is.whole},
               {"simulated", is.yes_or_no},
               {"epoch_unix_s", described(is.whole, "added to an on-board time it makes UNIX time")},
               {"start_mode", is.text},

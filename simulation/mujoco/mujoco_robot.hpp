@@ -136,7 +136,9 @@ class MujocoRobot {
   void set_gravity(double x, double y, double z) noexcept { world_.set_gravity(x, y, z); }
   /// As a sensor between the tip and what hangs on it and pushes it: force in N, moment in N m, in the axes of the tip. What touches the tip's own
   /// shapes it does not feel.
-  [[nodiscard]] std::array<double, 6> tip_force(std::size_t robot = 0) const noexcept { return world_.tip_force(robot); }
+  [[nodiscard]] std::array<double, 6> tip_force(std::size_t robot = 0) const noexcept {
+    return world_.tip_force(robot);
+  }
   /// A force at the tip's origin, N, in the axes of the base, until it is another.
   void push(double x, double y, double z, std::size_t robot = 0) noexcept { world_.push({x, y, z}, robot); }
 

@@ -38,13 +38,17 @@ FirstMinute fly(std::uint64_t seed) {
   return minute;
 }
 
+constexpr std::uint16_t what_it_has_taken = 4790;  // ports, too, of which a link by UDP takes one
+
 /// Housekeeping of the manipulator without headers: what the world did, not how packets are counted.
 std::vector<std::vector<std::byte>> robot_housekeeping(const std::vector<LogRecord>& records) {
   std::vector<std::vector<std::byte>> all;
   for (const LogRecord& record : records) {
     const auto report = pus::TelemetryView::parse(record.packet);
-    if (report && report->apid() == 10 && report->service() == 3)
-      all.emplace_back(report->source_data().begin(), report->source_data().end());
+    if (!report || report->apid() != 10 || report->service() != 3) continue;
+    OctetReader structure{report->source_data(), std::endian::big};
+    if (structure.get<std::uint16_t>() == what_it_has_taken) continue;
+    all.emplace_back(report->source_data().begin(), report->source_data().end());
   }
   return all;
 }

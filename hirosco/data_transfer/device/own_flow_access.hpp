@@ -17,7 +17,7 @@ enum class ProcessUser : std::uint8_t { WhoeverFlies, ItsOwn };
 
 /// Numbers of users and their groups that one flight gives its subsystems, the last one among them.
 struct GroupRange {
-  std::uint32_t first{0};
+  std::uint32_t first{1};  ///< as it begins there is none in it
   std::uint32_t last{0};
   [[nodiscard]] bool contains(std::uint32_t group) const noexcept { return first <= group && group <= last; }
 };

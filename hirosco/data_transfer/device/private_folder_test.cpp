@@ -73,6 +73,7 @@ TEST_F(PrivateFolder, OfAGroupOfTheSameFlightIsGivenToAnother) {
 
 TEST_F(PrivateFolder, IsNoLinkToOneAndNoFile) {
   ASSERT_EQ(::mkdir((root + "/elsewhere").c_str(), 0755), 0);
+  ASSERT_EQ(::chmod((root + "/elsewhere").c_str(), 0755), 0);
   fs::create_symlink(root + "/elsewhere", folder);
   EXPECT_EQ(make_private_folder(folder, group, {group, group}).error().code, ErrorCode::Mismatch);
   EXPECT_EQ(make_private(folder, group).error().code, ErrorCode::Mismatch);

@@ -227,8 +227,7 @@ double Setpoints::quickening() const noexcept {
 void Setpoints::advance_path() noexcept {
   const double most = braking_ ? 0.0 : power_.share(sample_.velocity);
   double slower = 0;
-  if (pace_ > most)
-    slower = std::min(slowing(path_, bounds_, {path_s_, pace_}, cycle_s_), (pace_ - most) / cycle_s_);
+  if (pace_ > most) slower = std::min(slowing(path_, bounds_, {path_s_, pace_}, cycle_s_), (pace_ - most) / cycle_s_);
   if (pace_ < most) slower = -std::min(quickening(), (most - pace_) / cycle_s_);
   pace_ = std::max(0.0, pace_ - slower * cycle_s_);
   path_s_ += pace_ * cycle_s_;

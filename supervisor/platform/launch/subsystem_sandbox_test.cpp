@@ -256,7 +256,11 @@ TEST(SubsystemInItsSandbox, HearsItsDeviceByEachMeansOfTransferAsItsRowSaysAndBy
   for (const FlowMeans& means : standard_flow_means()) {
     const FlowAddress at{means.transfer, own_address(means.form)};
     const auto arm = with_device(means.transfer, at.address.c_str());
-    EXPECT_TRUE(is_answered(make_sandbox(arm, {}, {}), at, 5000)) << to_text(means.transfer);
+    const Sandbox let_in = make_sandbox(arm, {}, {});
+    // What is not mounted here nobody is let into: /dev/mqueue of a container.
+    const bool is_there =
+        std::ranges::all_of(let_in.writable, [](const std::string& place) { return std::filesystem::exists(place); });
+    EXPECT_EQ(is_answered(let_in, at, is_there ? 5000 : 100), is_there) << to_text(means.transfer);
     EXPECT_FALSE(is_answered(make_sandbox(bare, {}, {}), at, 100)) << to_text(means.transfer);
     remove_place(at, {});
   }
