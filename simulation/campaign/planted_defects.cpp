@@ -215,12 +215,19 @@ class LastAbsence {
 
 /// What the next supervisor finds is stopped in its first 50 ms, whatever permission it had.
 void i15(PlantedDefect& defect) {
-  defect.each_instant = [&defect, absence = LastAbsence{}, stopped = false]() mutable {
+  defect.each_instant = [&defect, absence = LastAbsence{},
+                         taken = std::map<std::string_view, std::uint64_t>{}]() mutable {
     absence.look(defect);
     const bool stops = defect.craft->supervised() && absence.ended_within(50ms, defect);
-    if (!std::exchange(stopped, stops) && !stops) return;
-    for (const std::string_view name : members(defect, Whose::Others))
-      if (auto* page = defect.craft->permit(name)) page->stop.store(stops ? 1 : 0);
+    for (const std::string_view name : members(defect, Whose::Others)) {
+      auto* page = defect.craft->permit(name);
+      if (page == nullptr) continue;
+      if (stops) {
+        if (const auto word = page->go.exchange(0); word != 0) taken[name] = word;
+      } else if (const auto its = taken.extract(name); !its.empty()) {
+        page->go.store(its.mapped());
+      }
+    }
   };
 }
 
@@ -242,7 +249,7 @@ void i17(PlantedDefect& defect) {
   auto absence = std::make_shared<LastAbsence>();
   defect.each_instant = [&defect, absence] { absence->look(defect); };
   on_channel(defect, Whose::GroundLink, {.receives = [&defect, absence](const Message& message, MessageBuffer&) {
-               return !absence->ended_within(200ms, defect) || !pus::TelecommandView::parse(message.packet);
+               return !absence->ended_within(1s, defect) || !pus::TelecommandView::parse(message.packet);
              }});
 }
 

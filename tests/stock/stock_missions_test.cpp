@@ -115,9 +115,11 @@ TEST_F(StockMission, TwoRobotsOfTwoFilesStandInOneWorldWhereEachMovesByItsOwnDev
   const auto met = flown->craft().command("ARM", "MOVE_J", {-0.8, -0.2, 0.6, 0.5, -0.5, 1.0, 0.2}, 70s);
   EXPECT_EQ(static_cast<std::uint16_t>(met.failure.value()), 0x8004) << flown->story().text();
   EXPECT_GT(met_n, 1);
-  EXPECT_TRUE(flown->craft().command("ARM", "MOVE_J", {0.2, 0.5, 1.2, -0.6, 0.7, 0.1, 0.2}, 70s).completed)
-      << "it may go away\n"
-      << flown->story().text();
+  flown->craft().run(1s);  // it comes to rest
+  const auto away = flown->craft().command("ARM", "MOVE_J", {0.2, 0.5, 1.2, -0.6, 0.7, 0.1, 0.2}, 70s);
+  EXPECT_TRUE(away.completed) << "it may go away: " << static_cast<int>(away.failure.value_or(pus::FailureCode{}))
+                              << "\n"
+                              << flown->story().text();
   EXPECT_EQ(truth("arm", "contacts"), 0);
   EXPECT_TRUE(flown->craft().command("GRIPPER", "OPEN", {0.1}, 10s).completed) << flown->story().text();
 }
