@@ -88,11 +88,11 @@ class OwnUsers(unittest.TestCase):
         """Arguments of a flight; the joystick's device is reached by a UNIX socket."""
         with ordinary_user.open_to_all() as arguments:
             home = arguments["binaries"].parent
-            self.socket = arguments["folder"] / "rokviss-joystick/socket"
+            self.socket = arguments["folder"] / "joystick-handle/socket"
             text = arguments["mission"].read_text()
             arguments["mission"].write_text(text.replace("  <Power budget_W", f'  <Isolation users="{FIRST}-{LAST}"/>\n  <Power budget_W', 1))
             stick = home / "subsystems/joystick/joystick.xml"
-            text, replaced = re.subn(r'transfer="shared_memory" address="rokviss-joystick"', 'transfer="unix" address="rokviss-joystick"',
+            text, replaced = re.subn(r'transfer="shared_memory" address="joystick-handle"', 'transfer="unix" address="joystick-handle"',
                                      stick.read_text())
             self.assertGreater(replaced, 0)
             stick.write_text(text)
@@ -113,7 +113,7 @@ class OwnUsers(unittest.TestCase):
     def ends_clean(self, craft, codes=(0,)):
         self.assertIn(craft.end(), codes, "\n".join(craft.errors))
         self.assertEqual(processes_of(FIRST, LAST), [])
-        for folder in (pathlib.Path("/dev/shm/hirosco/rokviss-robot"), self.socket.parent):
+        for folder in (pathlib.Path("/dev/shm/hirosco/manipulator-robot"), self.socket.parent):
             self.assertFalse(folder.exists(), "a folder that nobody else is let into goes")
 
     def test_nobody_gets_at_another_and_all_are_stopped_and_end_and_fly_again(self):
@@ -142,11 +142,11 @@ class OwnUsers(unittest.TestCase):
         self.assertEqual(numbers(craft.pid_of("hirosco-supervisor"), "Uid"), [os.geteuid()] * 4)
 
     def nobody_gets_at_another(self, craft):
-        frames = pathlib.Path("/dev/shm/hirosco/rokviss-robot/frames")
+        frames = pathlib.Path("/dev/shm/hirosco/manipulator-robot/frames")
         supervisor, stick, robot = craft.pid_of("hirosco-supervisor"), self.process_of(STICK), self.process_of(ROBOT)
         ends = [("connect", self.socket), ("connect", f"{self.socket}.subsystem")]
         guards = [("signal", supervisor), ("signal", craft.process.pid), ("open", f"/proc/{supervisor}/mem"),
-                  ("open", "/dev/shm/hirosco.rokviss-robot-enable"), ("open", "/dev/shm/hirosco.rokviss-joystick-enable")]
+                  ("open", "/dev/shm/hirosco.manipulator-robot-enable"), ("open", "/dev/shm/hirosco.joystick-handle-enable")]
         of_stick = [*ends, ("list", self.socket.parent), ("make", self.socket.parent / "mine"), ("signal", stick),
                     ("open", f"/proc/{stick}/mem"), ("read", f"/proc/{stick}/environ")]
         of_robot = [("open", frames), ("list", frames.parent), ("make", frames.parent / "mine"), ("signal", robot), ("open", f"/proc/{robot}/mem")]

@@ -177,6 +177,13 @@ Result<> make_own_unix_folder(const std::string& address, const OwnGroup& own) {
   return make_private_folder(own_unix_folder(address), own.group, own.of_flight);
 }
 
+void forget_own_unix(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  for (const char* const end : {"/socket", "/socket.subsystem"})
+    if (fs::is_socket(fs::symlink_status(folder + end, failed))) fs::remove(folder + end, failed);
+}
+
 void let_in_own_unix(const std::string& address, Sandbox& sandbox) {
   std::string folder = own_unix_folder(address);
   if (folder.empty()) return;

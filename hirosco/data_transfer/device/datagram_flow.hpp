@@ -31,8 +31,12 @@ void let_in_unix(const std::string& address, Sandbox& sandbox);
 [[nodiscard]] std::string own_unix_folder(const std::string& address);
 [[nodiscard]] Result<> make_own_unix_folder(const std::string& address, const OwnGroup& own);
 void let_in_own_unix(const std::string& address, Sandbox& sandbox);
-inline constexpr OwnFlowAccess own_unix_access{
-    .folder = own_unix_folder, .make_folder = make_own_unix_folder, .let_in = let_in_own_unix, .on_disk = true};
+void forget_own_unix(const std::string& folder);
+inline constexpr OwnFlowAccess own_unix_access{.folder = own_unix_folder,
+                                               .make_folder = make_own_unix_folder,
+                                               .let_in = let_in_own_unix,
+                                               .forget = forget_own_unix,
+                                               .on_disk = true};
 inline constexpr FlowAccess unix_access{
     .let_in = let_in_unix, .is_reached = is_reached_by_unix, .own = &own_unix_access};
 

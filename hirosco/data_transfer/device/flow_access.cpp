@@ -46,8 +46,10 @@ void remove_place(const FlowAddress& flow, const std::string& instance, ProcessU
     namespace fs = std::filesystem;
     std::error_code failed;
     const std::string folder = own_folder(flow, instance);
-    // One with something in it stays.
-    if (fs::is_directory(fs::symlink_status(folder, failed))) fs::remove(folder, failed);
+    if (!fs::is_directory(fs::symlink_status(folder, failed))) return;
+    if (own->forget != nullptr) own->forget(folder);
+    // One with something else in it stays.
+    fs::remove(folder, failed);
     return;
   }
   if (means != nullptr && means->access.remove_place != nullptr)

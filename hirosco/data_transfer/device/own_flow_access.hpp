@@ -39,6 +39,8 @@ struct OwnFlowAccess {
   Result<> (*make_folder)(const std::string& address, const OwnGroup& own){nullptr};
   /// In place of the row's, of which this is a part: whose inhibits are out of reach with that are so with this.
   void (*let_in)(const std::string& address, Sandbox& sandbox){nullptr};
+  /// Removes from that folder what ends of a flow have left there that were killed. Null: they leave nothing.
+  void (*forget)(const std::string& folder){nullptr};
   /// Where the folder is: it is made before the flight, in which a supervisor asks no disk (docs/adr/0144).
   bool on_disk{false};
 };
