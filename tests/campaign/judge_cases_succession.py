@@ -256,6 +256,28 @@ def a_ping_of_a_subsystem_or_of_another_time(w):
 
 
 @case(NONE_LOST)
+def a_ping_that_stands_nowhere_as_the_log_was_in_trouble(w):
+    w.at(1 * S, "did log full")
+    w.at(1200 * MS, "did log slow 100")
+    w.at(1500 * MS, "did log heal")
+    ping(w, read=False)
+
+
+@case(NONE_LOST)
+def a_ping_that_was_deleted_with_the_log(w):
+    ping(w, read=False)
+    w.at(4 * S, "did log deleted")
+
+
+@case(NONE_LOST, found="TC[17,1] of ground to SUPERVISOR is lost with the supervisor")
+def a_ping_that_is_lost_long_after_the_log_was_healed(w):
+    w.at(100 * MS, "did log heal")
+    w.at(200 * MS, "did log full")
+    w.at(400 * MS, "did log heal")
+    ping(w, read=False)
+
+
+@case(NONE_LOST)
 def a_ping_as_the_flight_ends(w):
     w.action(2500 * MS, "shutdown asked for")
     ping(w, read=False)

@@ -18,6 +18,12 @@ def lost_records(records):
     return sum(record.lost for record in records if record.kind == "gap")
 
 
+def died_with_who_asked(flight, record):
+    """What a supervisor asks of itself on its way up nobody else waits for."""
+    own = record.source == record.peer == flight.mission.supervisor.apid
+    return own and any(record.time <= gone <= record.time + LAST_SECOND_US for gone, _ in flight.absences())
+
+
 def i2_one_final_report(flight, victims):
     """Each telecommand that was accepted ends in exactly one final report; none that was sent vanishes without a word."""
     finals, starts_failed, reported = collections.Counter(), set(), set()
@@ -38,7 +44,7 @@ def i2_one_final_report(flight, victims):
             continue
         key = record.telecommand.key
         logged.add(key)
-        if record.kind != "telecommand-forwarded" or record.time >= late:
+        if record.kind != "telecommand-forwarded" or record.time >= late or died_with_who_asked(flight, record):
             continue
         wants_end = record.telecommand.ack & 8
         if wants_end and not finals[key] and key not in starts_failed and key not in ended_below:

@@ -11,6 +11,7 @@ BACK_US = 1_000_000        # from the next supervisor's first moment: by then it
 ON_ITS_WAY_US = 200_000    # what was said so shortly before a death may not have had its end
 ALONE_US = 900_000         # in which nothing was done, so that nothing is under way
 SILENCE_US = 2_000_000     # longer than that a subsystem does not go on without a supervisor
+HEALED_US = 1_000_000      # what waited for the log stands there by then
 WITHDRAWN_US = 60_000      # the enable of a device that nobody tells any more
 FRAMEWORK, DEVICE_LOST, STALE = 0xF000, 0xF100, 0xF200  # events: from here on those that are not of a descriptor
 
@@ -27,11 +28,12 @@ def losses(flight):
 
 
 def left_alone(flight, victims, start, end):
-    """Nothing else was done to anybody, nobody was told anything, and nothing of what was before was under way."""
+    """Nothing else was done to anybody but the log, on which nobody waits to go on, nobody was told anything, and nothing of what was before was
+    under way."""
     supervisor = flight.mission.supervisor.name
     done = any(start <= time <= end for time, words in flight.did if words[1:2] != [supervisor])
     told = any(start <= sent.time <= end and sent.service != 17 for sent in flight.sent)
-    struck = any(meets(spans, start, end) for name, spans in victims.items() if name != "SUCCESSION")
+    struck = any(meets(spans, start, end) for name, spans in victims.items() if name not in ("SUCCESSION", "LOG"))
     acts = any(record.kind == "action" and start <= record.time <= end and not before_itself(record, flight, start) for record in flight.log)
     return not (done or told or struck or acts)
 
@@ -95,12 +97,30 @@ def i17_a_stop_is_carried_out(flight, victims):
                     yield sent.time, f"{device} acts on though SAFE_ALL came as the supervisor was lost"
 
 
+def log_in_trouble(flight, start, end):
+    """What came then may stand nowhere, or late: until the log is healed, and what was deleted later."""
+    begun = None
+    for time, words in flight.did:
+        if words[0] != "log":
+            continue
+        if words[1] == "deleted" and time >= start:
+            return True
+        if words[1] != "heal":
+            begun = time if begun is None else begun
+        elif begun is not None:
+            if begun <= end and start <= time + HEALED_US:
+                return True
+            begun = None
+    return begun is not None and begun <= end
+
+
 def asked_meanwhile(flight, victims, sent, gone, back):
     """By ground, as the supervisor was lost or while none was there, over a ground link that nothing was done to."""
     ground, end = flight.mission.ground, back + BACK_US
     return (sent.origin == "ground" and gone - ON_ITS_WAY_US <= sent.time <= back and
             all(state == OPERATIONAL for state in flight.state[ground].during(sent.time, end)) and
-            not any(meets(victims[name], sent.time - 100_000, end) for name in (ground, "SUPERVISOR", "LOG", "FLOOD")))
+            not any(meets(victims[name], sent.time - 100_000, end) for name in (ground, "SUPERVISOR", "FLOOD")) and
+            not log_in_trouble(flight, sent.time - 100_000, end))
 
 
 def i17_no_telecommand_is_lost(flight, victims):
