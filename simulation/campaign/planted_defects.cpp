@@ -107,13 +107,16 @@ void i4(PlantedDefect& defect) {
   });
 }
 
-/// Stale samples are used on where the descriptor says that they inhibit, and who stands still is not missed for 100 ms:
-/// otherwise the guard stops the network before it matters.
+/// Stale samples are used on where the descriptor says that they inhibit, nobody finds them stale and who stands still is not missed for a
+/// hundred cycles: otherwise the guard stops the network before it matters.
 void i5(PlantedDefect& defect) {
   defect.edit = [](descriptor::Mission& mission) {
     constexpr std::uint32_t cycles = 100;
     for (auto& member : mission.subsystems) member.subsystem.hang = {.realtime = cycles, .reduced = cycles};
-    each_requirement(mission, [](descriptor::Requires& wanted) { wanted.missing = descriptor::MissingPolicy::Hold; });
+    each_requirement(mission, [](descriptor::Requires& wanted) {
+      wanted.missing = descriptor::MissingPolicy::Hold;
+      wanted.age = {.realtime = cycles, .reduced = cycles};
+    });
   };
 }
 
