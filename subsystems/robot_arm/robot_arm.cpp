@@ -217,14 +217,12 @@ void RobotArm::watch_contact() noexcept {
   if (met) raise(contact_, static_cast<std::uint8_t>(met->joint + 1), met->torque, met->limit, met->reaction);
   const auto felt = force_sensor_.meet(control_.floats());
   if (felt) raise(wrist_contact_, felt->force_n, felt->moment_n_m, static_cast<std::uint8_t>(yielding_.reaction()));
-  if (!met && !felt) {
-    since_contact_ = std::min(since_contact_ + 1, one_contact);
-    return;
-  }
-  const bool told = guidance_.retracting() && since_contact_ < one_contact && felt.has_value() != felt_at_wrist_;
-  felt_at_wrist_ = felt.has_value();
-  if (told) return;
+  since_contact_ = std::min(since_contact_ + 1, one_contact);
+  if (!met && !felt) return;
+  // Whoever told of it first may tell of another one at any time.
+  if (guidance_.retracting() && since_contact_ < one_contact && felt.has_value() != felt_at_wrist_) return;
   since_contact_ = 0;
+  felt_at_wrist_ = felt.has_value();
   const bool stood = guidance_.at_rest() && !motion_;
   end_motion(Trouble::contact);
   yielding_.react({.stood = stood, .stopping = stop_.has_value()});
