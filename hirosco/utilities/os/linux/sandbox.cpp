@@ -146,10 +146,11 @@ bool sandbox_is_off() noexcept {
 }
 
 std::vector<std::string> isolation_lacks() {
-  if (sandbox_is_off())
-    return {std::string{"everything is open: "} +
-            (built_without != nullptr ? built_without : "HIROSCO_SANDBOX is off")};
   std::vector<std::string> lacks;
+  if (sandbox_is_off()) {
+    lacks.emplace_back("everything is open: ").append(built_without != nullptr ? built_without : "HIROSCO_SANDBOX is off");
+    return lacks;
+  }
   const long rules_known = rules_version();
   if (rules_known < 1) lacks.emplace_back("files are open to all (no Landlock)");
   else if (rules_known < 4)
