@@ -34,7 +34,8 @@ struct Sensing : Flown {
   Vector3 force{Vector3::Zero()}, moment{Vector3::Zero()};  ///< in the tip's axes
   std::uint32_t age_ms{0};
 
-  Sensing() : Flown{model_of(std::string{folder} + "robot_arm.urdf"), sensing()} {}
+  explicit Sensing(const std::string& descriptor_text)
+      : Flown{model_of(std::string{folder} + "robot_arm.urdf"), descriptor_text} {}
   void exchange_once() {
     std::array<std::byte, max_device_frame_octets> frame{};
     const auto found = device->receive(frame);
@@ -74,6 +75,7 @@ struct RobotArmForce : ::testing::Test {
   JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
   JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
 
+  explicit RobotArmForce(const std::string& descriptor_text = sensing()) : arm{descriptor_text} {}
   void SetUp() override {
     arm.plant.place(start);
     arm.rig.bring_to(State::PreOperational, 1);
@@ -89,6 +91,14 @@ struct RobotArmForce : ::testing::Test {
     robotics::Dynamics dynamics{arm.model, robotics::Base::Fixed};
     dynamics.update({.q = at, .qd = JointVector::Zero(6)});
     return dynamics.frame_pose(arm.model.find_frame("tool").value()).rotation;
+  }
+  /// What such a force at the tool takes at the joints, there.
+  [[nodiscard]] JointVector at_joints(const Vector3& force_n, const JointVector& at) const {
+    robotics::Dynamics dynamics{arm.model, robotics::Base::Fixed};
+    dynamics.update({.q = at, .qd = JointVector::Zero(6)});
+    robotics::Jacobian jacobian;
+    dynamics.jacobian(arm.model.find_frame("tool").value(), jacobian);
+    return jacobian.bottomRows<3>().transpose() * force_n;
   }
 };
 
@@ -134,6 +144,58 @@ TEST_F(RobotArmForce, MovesUnderWhatStandsThereAndEndsForWhatComesToIt) {
   arm.force *= 2;
   arm.fly(20);
   EXPECT_EQ(arm.rig.outcome(next), "1 3 8:8004");
+}
+
+/// 35 of the range of 100 N or 10 N m stand there with a limit of 0.3, a motion begins with them, and they go away.
+TEST_F(RobotArmForce, WhatStoodThereAndHasGoneIsBorneNoMore) {
+  int told = 0;
+  for (const bool turns : {false, true}) {
+    const auto acts = [&](double share) {
+      const Vector3 along = turned(start).transpose() * Vector3{0, 0, -share};
+      arm.force = turns ? Vector3{Vector3::Zero()} : Vector3{100 * along};
+      arm.moment = turns ? Vector3{10 * along} : Vector3{Vector3::Zero()};
+    };
+    acts(0.35);
+    arm.fly(100);
+    ASSERT_EQ(arm.rig.events(wrist_met), ++told) << turns;
+    const auto motion = arm.move_j(start + (turns ? 0.02 : 0.01) * (goal - start), 0.3);
+    ASSERT_EQ(arm.asked(motion), "1 3 5:0001 7") << turns;
+    acts(0);
+    arm.fly(20);
+    acts(-0.1);
+    arm.fly(20);
+    EXPECT_EQ(arm.rig.events(wrist_met), told) << turns << ": from the other side nothing stood there";
+    acts(0.35);
+    arm.fly(20);
+    EXPECT_EQ(arm.rig.events(wrist_met), ++told) << turns << ": who comes back is met";
+    acts(0);
+    arm.fly(20);
+  }
+}
+
+/// It hangs there, a motion begins with it, and then it is said what it is: WRIST tells nothing of it from then on.
+TEST_F(RobotArmForce, ALoadThatWasBorneIsBorneNoMoreOnceItIsDeclared) {
+  constexpr double mass_kg = 3.6;
+  const Vector3 weight{0, 0, -9.81 * mass_kg};
+  const auto lifted_by = [&](double force_n) {
+    arm.force = turned(start).transpose() * (weight + Vector3{0, 0, force_n});
+  };
+  lifted_by(0);
+  arm.outside = at_joints(weight, start);
+  arm.fly(100);
+  ASSERT_EQ(arm.rig.events(wrist_met), 1);
+  const auto motion = arm.move_j(start + 0.01 * (goal - start), 0.3);
+  ASSERT_EQ(arm.asked(motion), "1 3 5:0001 7");
+  const auto taken = arm.rig.call_with("SET_PAYLOAD", {Value{mass_kg}, Value{0.0}, Value{0.0}, Value{0.0}});
+  ASSERT_EQ(arm.asked(taken), "1 3 7") << ::testing::PrintToString(arm.rig.explanations);
+  arm.fly(50);
+  lifted_by(10);
+  arm.fly(20);
+  EXPECT_EQ(arm.rig.events(wrist_met), 1) << "a third of the limit";
+  lifted_by(40);
+  arm.fly(20);
+  EXPECT_EQ(arm.rig.events(wrist_met), 2);
+  EXPECT_EQ(arm.rig.events(joints_met), 0);
 }
 
 TEST_F(RobotArmForce, FallsBackToWhatItsJointsFeelWhenItIsLostAndSaysSo) {
