@@ -20,7 +20,7 @@ using robot_arm::testing::folder;
 using robot_arm::testing::model_of;
 using robot_arm::testing::replace_all;
 
-constexpr std::uint16_t joints_met = 1025, wrist_met = 1065, sensor_lost = 1066;
+constexpr std::uint16_t joints_met = 1025, went_back = 1027, wrist_met = 1065, sensor_lost = 1066;
 
 [[nodiscard]] std::string sensing() {
   std::string text = robot_arm::testing::with_force_sensor(robot_arm::testing::descriptor_text());
@@ -222,6 +222,108 @@ TEST_F(RobotArmForce, FallsBackToWhatItsJointsFeelWhenItIsLostAndSaysSo) {
   arm.age_ms = 500;
   arm.fly(10);
   EXPECT_EQ(arm.rig.events(sensor_lost), 2) << "each time";
+}
+
+/// Goes back by 0.3 rad from whoever it meets, which of a motion with 0.4 of the velocities is some two thirds of what it has come. Wrist and joints feel one push after
+/// another: the wrist after three cycles, the joints behind the filter of what acts from outside.
+struct RobotArmForceGoesBack : RobotArmForce {
+  JointVector met_at;
+  testing::Sent motion;
+
+  RobotArmForceGoesBack() : RobotArmForce{going_back()} {}
+  [[nodiscard]] static std::string going_back() {
+    std::string text = sensing();
+    replace_all(text, R"(init="0.1" minimum="0.01" maximum="0.5")", R"(init="0.3" minimum="0.01" maximum="0.5")");
+    return text;
+  }
+  void SetUp() override {
+    ASSERT_NO_FATAL_FAILURE(RobotArmForce::SetUp());
+    const auto set = arm.rig.call_with("SET_CONTACT", {Value{Number{std::uint8_t{3}}}, Value{0.3}});
+    ASSERT_EQ(arm.asked(set), "1 3 7");
+    motion = arm.move_j(goal, 0.4);
+    arm.fly(600);
+    ASSERT_EQ(arm.rig.events(wrist_met) + arm.rig.events(joints_met), 0);
+  }
+  void at_wrist(double force_n) { arm.force = {0, force_n, 0}; }
+  /// Of the first joint; the motion leads it to less, and back to more.
+  void at_joint(double torque_n_m) { arm.outside[0] = torque_n_m; }
+  void lets_go() { at_wrist(0), at_joint(0); }
+  /// Once more.
+  void is_told(std::uint16_t event) {
+    const int before = arm.rig.events(event);
+    for (int i = 0; i < 90 && arm.rig.events(event) == before; ++i) arm.fly();
+    ASSERT_EQ(arm.rig.events(event), before + 1);
+    if (met_at.size() == 0) met_at = arm.plant.measured().position;
+  }
+  /// How far the first joint has gone back once it stands: of the whole way that is 1 / 1.2, since another one has the farthest.
+  [[nodiscard]] double gone_back() {
+    for (int i = 0; i < 5000 && arm.rig.events(went_back) == 0; ++i) arm.fly();
+    EXPECT_EQ(arm.rig.events(went_back), 1);
+    arm.fly(500);
+    const JointVector there = arm.plant.measured().position;
+    arm.fly(200);
+    EXPECT_LT(arm.off(there), 1e-3);
+    EXPECT_EQ(arm.rig.events(went_back), 1);
+    EXPECT_EQ(arm.rig.outcome(motion), "1 3 8:8004");
+    EXPECT_EQ(arm.rig.inhibited(), 0u);
+    return there[0] - met_at[0];
+  }
+  static constexpr double whole_way = 0.25, far_less = 0.1;
+};
+
+TEST_F(RobotArmForceGoesBack, TheWholeWayThoughItsJointsFeelLaterWhatItsWristHasFelt) {
+  at_wrist(35), at_joint(60);
+  ASSERT_NO_FATAL_FAILURE(is_told(wrist_met));
+  ASSERT_NO_FATAL_FAILURE(is_told(joints_met));
+  lets_go();
+  EXPECT_NEAR(gone_back(), whole_way, 0.03);
+  EXPECT_EQ(arm.rig.events(wrist_met), 1);
+  EXPECT_EQ(arm.rig.events(joints_met), 1);
+}
+
+TEST_F(RobotArmForceGoesBack, TheWholeWayThoughItsWristFeelsLaterWhatItsJointsHaveFelt) {
+  at_joint(60);
+  ASSERT_NO_FATAL_FAILURE(is_told(joints_met));
+  at_wrist(35);
+  ASSERT_NO_FATAL_FAILURE(is_told(wrist_met));
+  lets_go();
+  EXPECT_NEAR(gone_back(), whole_way, 0.03);
+}
+
+/// Who has told of the first one is heard about the next one at once, though the other has had its say about the first meanwhile.
+TEST_F(RobotArmForceGoesBack, AndStandsWhenItsWristMeetsAnotherOneAtOnce) {
+  at_wrist(35), at_joint(60);
+  ASSERT_NO_FATAL_FAILURE(is_told(wrist_met));
+  ASSERT_NO_FATAL_FAILURE(is_told(joints_met));
+  lets_go();
+  arm.fly(2);
+  at_wrist(-35);
+  ASSERT_NO_FATAL_FAILURE(is_told(wrist_met));
+  lets_go();
+  EXPECT_LT(gone_back(), far_less);
+}
+
+TEST_F(RobotArmForceGoesBack, AndStandsWhenItsJointsMeetAnotherOneAtOnce) {
+  at_joint(60);
+  ASSERT_NO_FATAL_FAILURE(is_told(joints_met));
+  at_wrist(35);
+  ASSERT_NO_FATAL_FAILURE(is_told(wrist_met));
+  at_wrist(0), at_joint(-50);
+  ASSERT_NO_FATAL_FAILURE(is_told(joints_met));
+  lets_go();
+  EXPECT_LT(gone_back(), far_less);
+}
+
+/// A tenth of a second behind the first one it is another one, whoever feels it.
+TEST_F(RobotArmForceGoesBack, AndStandsForWhatItsJointsMeetLongBehindWhatItsWristHasMet) {
+  at_wrist(35);
+  ASSERT_NO_FATAL_FAILURE(is_told(wrist_met));
+  lets_go();
+  arm.fly(120);
+  at_joint(-50);
+  ASSERT_NO_FATAL_FAILURE(is_told(joints_met));
+  lets_go();
+  EXPECT_LT(gone_back(), far_less);
 }
 
 }  // namespace
