@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "subsystems/robot_arm/testing/flown.hpp"
 
 /// An arm that is driven by torques, for as long as somebody says so.
@@ -115,6 +117,35 @@ TEST_F(RobotArmDriven, HoldAndStopEndIt) {
   EXPECT_EQ(flown.rig.outcome(stopped), "1 3 8:0204");
   flown.cycle(5);
   EXPECT_EQ(flown.mode, DeviceMode::Off);
+}
+
+/// It presses against what does not move: what is measured stands, and the law of before asks for nothing by itself. What it pressed with goes as it goes for who is let go of, and
+/// not within the third of a second of any other change.
+TEST_F(RobotArmDriven, PressesNobodyLongerThanItTakesToLetGoOfHimOnceItIsOver) {
+  const auto press = [&](int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      flown.plant.place(start);
+      flown.cycle();
+    }
+  };
+  flown.cycle(200);
+  flown.told = flown.plant.measured();
+  flown.told->velocity.setZero();
+  for (const bool soft : {false, true}) {
+    if (soft) {
+      ASSERT_EQ(asked("IMPEDANCE_J", {200, 200, 100, 20, 20, 20, 0.7}), "1 3 7");
+      press(400);
+    }
+    const auto request = drive(0, 20, 1);
+    press(400);
+    ASSERT_GT(flown.commanded[0], 18) << soft;
+    ASSERT_EQ(asked("HOLD", {}), "1 3 7");
+    EXPECT_EQ(flown.rig.outcome(request), "1 3 8:0204");
+    press(60);
+    EXPECT_LT(std::abs(flown.commanded[0]), 0.5) << soft;
+    press(400);
+  }
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
 }
 
 TEST_F(RobotArmDriven, IsNotDrivenThroughTheEndOfARangeHoweverLongItIsPushed) {
