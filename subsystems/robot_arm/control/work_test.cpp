@@ -91,6 +91,35 @@ TEST_F(WorkTest, NoLawPressesHarderThanTheCommandedShareOfTheLimit) {
   }
 }
 
+/// Something is in its way for seconds, and it presses with all that its limit leaves. A law that gives way behind that carries what was learnt for the load that it is not: that
+/// is what it pressed with, and not what it would have pressed with.
+TEST_F(WorkTest, WhatALimitOfForceHeldBackIsNotPressedWithByWhoGivesWayBehindIt) {
+  constexpr double limit_n = 10;
+  const Impedance impedance{vector_of(std::array{200.0, 200.0, 100.0, 20.0, 20.0, 20.0}), 400, 20, 0.7};
+  const JointVector beside = start + JointVector::Constant(6, 0.05);
+  const Laws::Settings settings{
+      .position = {.gravity_m_s2 = {0, 0, -9.81}}, .lever = &lever, .work = {.force_n = limit_n}};
+  robotics::Coordinates gravity;
+  dynamics.bias(gravity);
+  const JointVector carried = gravity;
+  for (const LawKind kind : {LawKind::JointImpedance, LawKind::ToolImpedance, LawKind::Float, LawKind::Torque}) {
+    Laws laws{model, tip, cycle_s};
+    const auto pressed_n = [&](const JointVector& wanted) {
+      const JointVector torque =
+          laws.torque({wanted, zeros, zeros}, {start, zeros, zeros}, dynamics, {}, bounds, settings);
+      return lever.force(torque - carried).norm();
+    };
+    for (int i = 0; i < 3000; ++i) ASSERT_LE(pressed_n(beside), commanded_share * limit_n + 1e-6) << i;
+    laws.set(kind, impedance);
+    double last_n = 0;
+    for (int i = 0; i < 600; ++i) {
+      last_n = pressed_n(start);
+      ASSERT_LE(last_n, commanded_share * limit_n + 1e-6) << static_cast<int>(kind) << " " << i;
+    }
+    EXPECT_GT(last_n, 0.5 * limit_n) << static_cast<int>(kind) << ": what it did press with is learnt as ever";
+  }
+}
+
 TEST_F(WorkTest, WhatKeepsItsLimitsIsPutOutToTheLastDigit) {
   for (int i = 0; i < 100; ++i) {
     const JointVector torque = some(100), carried = some(100);
