@@ -224,6 +224,51 @@ TEST_F(WorkTest, AMotionGoesSlowerForThePowerOfItsJointsAndReachesItsGoal) {
   EXPECT_GT(kept_cycles, 2 * free_cycles);
 }
 
+/// Somebody sets the limit at any moment of the line: it slows down there as its joints' accelerations permit, and is not beside it meanwhile.
+TEST_F(WorkTest, ALimitThatIsSetWhileItIsOnALineHasItGoSlowerOnThatLine) {
+  Setpoints setpoints{model, tip, bounds, cycle_s};
+  setpoints.begin(start);
+  robotics::Pose goal = setpoints.tool();
+  goal.position += Vector3{-0.15, 0.25, -0.1};
+  const auto power_w = [&] {
+    double sum_w = 0;
+    for (Eigen::Index i = 0; i < 6; ++i)
+      sum_w += 0.3 * bounds[static_cast<std::size_t>(i)].effort * std::abs(setpoints.now().velocity[i]);
+    return sum_w;
+  };
+  double free_w = 0;
+  const auto fly = [&](int set_at, double limit_w) {
+    setpoints.begin(start);
+    setpoints.keep_power(zeros, HUGE_VAL);
+    EXPECT_TRUE(setpoints.go_straight(goal, {0.4, 1}));
+    JointVector before = zeros;
+    double off_m = 0;
+    int cycles = 0;
+    for (; cycles < 20'000 && (cycles == 0 || !setpoints.at_rest()); ++cycles) {
+      if (cycles == set_at) setpoints.keep_power(zeros, limit_w);
+      const Setpoint& now = setpoints.advance();
+      for (Eigen::Index i = 0; i < 6; ++i)
+        EXPECT_LE(std::abs(now.velocity[i] - before[i]),
+                  1.001 * bounds[static_cast<std::size_t>(i)].motion.acceleration * cycle_s);
+      before = now.velocity;
+      off_m = std::max(off_m, setpoints.off_line_m());
+      if (cycles < set_at) free_w = std::max(free_w, power_w());
+      if (cycles > set_at + 600) {
+        EXPECT_LT(power_w(), limit_w);
+      }
+    }
+    EXPECT_LT(off_m, 5e-4) << set_at;
+    EXPECT_LT((setpoints.tool().position - goal.position).norm(), 1e-6) << set_at;
+    return cycles;
+  };
+  const int free_cycles = fly(20'000, HUGE_VAL);
+  const double limit_w = 0.4 * free_w;
+  ASSERT_GT(limit_w, 5);
+  ASSERT_GT(free_cycles, 900);
+  for (int set_at = 100; set_at < 1000; set_at += 150)
+    EXPECT_GT(fly(set_at, limit_w), free_cycles + (set_at < 800 ? 100 : 0)) << set_at;
+}
+
 TEST_F(WorkTest, AJogGoesSlowerForThePowerOfItsJoints) {
   Setpoints setpoints{model, tip, bounds, cycle_s};
   const auto reached = [&](double most_w) {
