@@ -32,14 +32,17 @@ void OnBoardModel::update() noexcept {
   updated_ = true;
 }
 
-/// With which force something acts on the tool, and how much work joints do, and the tool against it.
+/// With which force something acts on the tool, and how much work joints give, and the tool does against it. A joint that brakes takes work: that is none that it gives, and none of
+/// what another gives (docs/adr/0184).
 void OnBoardModel::tell_work() noexcept {
   const Measured& measured = parts_.drives.measured();
   lever_.update(*dynamics_, parts_.known.tip(), pose_of(parts_.parameters.tool_place.load()).position);
   const Vector3 force = lever_.force(observer_->external());
   parts_.parameters.tool_force_n.store({force.x(), force.y(), force.z()});
   parts_.parameters.tool_power_w.store(std::abs(force.dot(lever_.velocity(measured.velocity))));
-  parts_.parameters.joint_power_w.store(measured.torque.cwiseProduct(measured.velocity).cwiseAbs().sum());
+  // In this way what is no number stays none, and is beyond every limit.
+  const JointVector work_w = measured.torque.cwiseProduct(measured.velocity);
+  parts_.parameters.joint_power_w.store(0.5 * (work_w + work_w.cwiseAbs()).sum());
 }
 
 void OnBoardModel::forget_external() noexcept {

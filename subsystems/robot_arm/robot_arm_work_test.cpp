@@ -91,6 +91,36 @@ TEST_F(RobotArmWork, MorePowerThanItsLimitIsStoppedByNameThoughNoTorqueAndNoSpee
   EXPECT_EQ(flown.rig.events(1023), 0);
 }
 
+/// It goes as fast as its limit permits about an axis that carries nothing, and somebody pushes it on from behind. What holds it back and brakes it takes more than the limit, and its
+/// drives give next to nothing: it stands as SET_CONTACT says, and has not been left to its brakes before it felt whom it met.
+TEST_F(RobotArmWork, WhoBrakesHardForSomebodyGivesNoPowerAndIsNotStoppedForIt) {
+  constexpr double limit_w = 30;
+  ASSERT_EQ(asked("SET_POWER_LIMIT", {limit_w, no_limit}), "1 3 7");
+  const auto motion = flown.ask("JOG_J", {0.5, 0, 0, 0, 0, 0, 1});
+  flown.cycle(300);
+  EXPECT_NEAR(flown.plant.measured().velocity[0], 0.5, 0.01);
+  flown.outside[0] = 60;
+  int taken_beyond = 0;
+  double given_w = 0;
+  for (int i = 0; i < 300; ++i) {
+    if (i == 80) flown.outside[0] = 0;
+    flown.cycle();
+    const auto& measured = flown.plant.measured();
+    const JointVector work_w = measured.torque.cwiseProduct(measured.velocity);
+    given_w = std::max(given_w, work_w.cwiseMax(0.0).sum());
+    if (work_w.cwiseMin(0.0).sum() < -limit_w) ++taken_beyond;
+  }
+  ASSERT_GT(taken_beyond, 10) << "counted as given it would be stopped";
+  EXPECT_LT(given_w, 0.5 * limit_w);
+  EXPECT_EQ(flown.rig.events(1025), 1);
+  EXPECT_EQ(flown.rig.outcome(motion), "1 3 8:8004");
+  EXPECT_EQ(flown.rig.events(1041), 0);
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+  const auto next = flown.move_j(start);
+  flown.finish(next);
+  EXPECT_EQ(flown.rig.outcome(next), "1 3 5:0001 7");
+}
+
 TEST_F(RobotArmWork, WhoPushesTheToolHarderThanItsLimitHasTheArmStopped) {
   ASSERT_EQ(asked("SET_CONTACT", {0, 0.3}), "1 3 7");
   ASSERT_EQ(asked("SET_FORCE_LIMIT", {60}), "1 3 7");

@@ -26,8 +26,9 @@ JointVector within_work(const JointVector& torque, const JointVector& carried, c
   if (share < 1) kept = carried + share * pressing;
   double power = 0, driving = 0;
   for (Eigen::Index i = 0; i < kept.size(); ++i) {
-    power += std::abs(kept[i] * speed[i]);
-    if (kept[i] * speed[i] > 0) driving += (kept[i] - carried_of(kept[i], carried[i])) * speed[i];
+    if (!(kept[i] * speed[i] > 0)) continue;
+    power += kept[i] * speed[i];
+    driving += (kept[i] - carried_of(kept[i], carried[i])) * speed[i];
   }
   const double beyond = power - commanded_share * limits.power_w;
   if (!(beyond > 0) || !(driving > 0)) return kept;

@@ -9,7 +9,7 @@ namespace hirosco::robot_arm {
 
 struct WorkLimits {
   double force_n{HUGE_VAL};  ///< at the tool
-  double power_w{HUGE_VAL};  ///< of all joints, what they give and what they take alike
+  double power_w{HUGE_VAL};  ///< of all joints, what they give; who is braked takes, which is neither added nor set off
   double tool_power_w{HUGE_VAL};  ///< of the tool's force along its way
 };
 

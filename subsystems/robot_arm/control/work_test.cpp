@@ -143,7 +143,7 @@ TEST_F(WorkTest, PowerOfTheJointsIsTakenFromWhatDrivesAndNeverFromWhatCarriesOrB
   for (int i = 0; i < 1000; ++i) {
     const JointVector torque = some(100), carried = some(50), speed = some(2);
     const JointVector kept = within_work(torque, carried, speed, lever, {.power_w = limit_w});
-    const double power_w = kept.cwiseProduct(speed).cwiseAbs().sum();
+    const double power_w = kept.cwiseProduct(speed).cwiseMax(0.0).sum();
     for (Eigen::Index j = 0; j < 6; ++j) {
       if (torque[j] * speed[j] <= 0) {
         EXPECT_EQ(kept[j], torque[j]);
@@ -156,6 +156,19 @@ TEST_F(WorkTest, PowerOfTheJointsIsTakenFromWhatDrivesAndNeverFromWhatCarriesOrB
         EXPECT_NEAR(kept[j], least, 1e-9);
       }
     }
+  }
+}
+
+/// However hard others brake: what they take is none of the power that goes to somebody, nor does it make good for what another gives.
+TEST_F(WorkTest, AJointThatBrakesTakesNothingFromWhatAnotherMayGive) {
+  const JointVector speed = vector_of(std::array{1.0, -1.0, 0.0, 0.0, 0.0, 0.0});
+  for (const double braking : {0.0, 50.0, 140.0}) {
+    const JointVector within = vector_of(std::array{-braking, -30.0, 0.0, 0.0, 0.0, 0.0});
+    EXPECT_EQ(within_work(within, zeros, speed, lever, {.power_w = 40}), within) << braking;
+    const JointVector beyond = vector_of(std::array{-braking, -60.0, 0.0, 0.0, 0.0, 0.0});
+    const JointVector kept = within_work(beyond, zeros, speed, lever, {.power_w = 40});
+    EXPECT_EQ(kept[0], -braking) << "who brakes goes on braking";
+    EXPECT_NEAR(kept[1], -commanded_share * 40, 1e-9) << braking;
   }
 }
 
