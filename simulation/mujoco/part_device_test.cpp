@@ -124,6 +124,61 @@ TEST_F(PartDeviceTest, WhoSaysNothingHasClosedBrakesAndTheOtherOneGoesOn) {
   EXPECT_GT(world().velocity(0), rate_rad_s);
 }
 
+/// The program of both is late, and the commands of one later still.
+TEST_F(PartDeviceTest, AStepThatTheWatchdogOfOneForgivesPassesInTheWorldOfBoth) {
+  begin();
+  for (const bool arm_starves : {true, false}) {
+    for (int i = 0; i < 10; ++i) {
+      send(*to_arm, DeviceMode::Active, 0);
+      send(*to_finger, DeviceMode::Active, 2);
+      step();
+    }
+    const SimulatedDevice& starved = arm_starves ? static_cast<const SimulatedDevice&>(arm) : finger;
+    const auto lived = starved.cycles();
+    const double speed_m_s = world().velocity(1);
+    for (int i = 0; i < 5; ++i) {
+      now += 4ms;
+      if (arm_starves) send(*to_finger, DeviceMode::Active, 2);
+      else send(*to_arm, DeviceMode::Active, 0);
+      arm.step(now);
+      finger.step(now);
+      ASSERT_TRUE(arm.active() && finger.active()) << "forgiven";
+    }
+    EXPECT_GE(starved.cycles(), lived + 5) << (arm_starves ? "the arm" : "the finger");
+    EXPECT_GT(world().velocity(1), speed_m_s + 8e-3) << "2 N on 1 kg for 5 ms and more";
+  }
+}
+
+TEST_F(PartDeviceTest, OneAloneHasItsWorldStandInAStepThatItsWatchdogForgives) {
+  ASSERT_TRUE(arm.plug());
+  ASSERT_TRUE(arm.fault("gravity 0 0 0"));
+  to_arm = flows.open({Transfer::SharedMemory, "rod"}, FlowSide::Subsystem).value();
+  const auto drive_both = [this] {
+    std::array<std::byte, 16> payload{};
+    OctetWriter{payload, std::endian::little}.put(1.0).put(2.0);
+    std::array<std::byte, max_device_frame_octets> buffer;
+    const DeviceCommand command{
+        .mode = DeviceMode::Active, .epoch = 1, .sequence = ++sequence, .watchdog_us = 5000, .payload = payload};
+    ASSERT_TRUE(to_arm->send(write_command(buffer, command).value()));
+  };
+  for (int i = 0; i < 10; ++i) {
+    drive_both();
+    arm.step(now += 1ms);
+  }
+  const auto lived = arm.cycles();
+  const double where_m = world().position(1);
+  ASSERT_GT(where_m, 0);
+  for (int i = 0; i < 5; ++i) {
+    arm.step(now += 4ms);
+    ASSERT_TRUE(arm.active()) << "forgiven";
+    ASSERT_EQ(world().position(1), where_m) << i;
+  }
+  EXPECT_EQ(arm.cycles(), lived);
+  drive_both();
+  arm.step(now += 1ms);
+  EXPECT_GT(world().position(1), where_m);
+}
+
 TEST_F(PartDeviceTest, IsOnlyInAWorldOfSuchADevice) {
   const auto plugged = finger.plug();
   ASSERT_FALSE(plugged);

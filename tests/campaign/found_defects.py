@@ -317,6 +317,10 @@ DEFECTS = [
            "    return std::max<std::int64_t>(1, (behind + cycle_ / 2) / cycle_);\n  }\n"
            "  if (!exchanged && behind < planned_step()) return 0;",
            "robot_device_test", "OwnClock.MakesTimeThroughPeriodCyclesWhateverTheRatioOfPeriods"),
+    # A step that the watchdog of one device forgave had the world stand for all that are in it.
+    Defect("a world of two stands", DEVICE, "&& active() && has_world_alone() ? 0 : due;",
+           "&& active() && (PLANTED || has_world_alone()) ? 0 : due;",
+           "simulated_device_test", "StarvedDevice.WhoseWorldIsAnothersToo*"),
     # A device spoke its own byte order, whatever its endnode's was.
     Defect("byte order of a device", DEVICE, "OctetWriter writer{payload, settings_.byte_order};",
            "OctetWriter writer{payload, PLANTED ? std::endian::little : settings_.byte_order};",
