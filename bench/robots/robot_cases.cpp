@@ -205,7 +205,8 @@ class Flown {
         flight_{{.mission = mission, .subsystems = {}, .devices = {}, .seed = seed}},
         kinematics_{arm.robot.model, robotics::Base::Fixed} {}
 
-  CaseFound fly(const RobotCase& wanted) {
+  CaseFound fly(const RobotCase& wanted, const std::function<void(simulation::Flight&)>& look) {
+    if (look) look(flight_);
     fly_all(wanted);
     for (const auto& line : flight_.story().lines()) {
       const bool grave =
@@ -403,14 +404,14 @@ std::expected<RobotTask, std::string> robot_task(const std::filesystem::path& fi
 }
 
 CaseFound fly_case(const std::filesystem::path& mission, const RobotTask& task, const RobotCase& wanted,
-                   std::uint64_t seed) {
+                   std::uint64_t seed, const std::function<void(simulation::Flight&)>& look) {
   CaseFound nothing;
   try {
     const auto reading = descriptor::read_mission(mission, descriptor::file_system());
     if (!reading.value) throw std::runtime_error{"its mission cannot be read"};
     const auto arm = known(arm_of(*reading.value)->subsystem);
     if (!arm) throw std::runtime_error{arm.error()};
-    return Flown{mission, task, *arm, seed}.fly(wanted);
+    return Flown{mission, task, *arm, seed}.fly(wanted, look);
   } catch (const std::runtime_error& error) {
     nothing.problems.emplace_back(error.what());
   }

@@ -5,8 +5,13 @@
 #include <cstdint>
 #include <expected>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
+
+namespace hirosco::simulation {
+class Flight;
+}
 
 /// An arm in worlds that differ from its file: a mission that `hirosco new robot` made, on virtual time, judged by what its world tells.
 namespace hirosco::bench {
@@ -53,7 +58,8 @@ struct CaseFound {
   [[nodiscard]] bool reaches_goals() const noexcept;  ///< of first_task()
   [[nodiscard]] bool holds() const noexcept;  ///< of robot_task()
 };
+/// `look`: at the flight, before it begins.
 [[nodiscard]] CaseFound fly_case(const std::filesystem::path& mission, const RobotTask& task, const RobotCase& wanted,
-                                 std::uint64_t seed);
+                                 std::uint64_t seed, const std::function<void(simulation::Flight&)>& look = {});
 
 }  // namespace hirosco::bench

@@ -31,13 +31,23 @@ bool SimulatedLoops::cycles_wait() const noexcept {
 }
 
 void SimulatedLoops::step_cycle(SimulatedProcess& process, TimePoint now) {
-  if (!process.step_cycle()) return;
+  if (!(measured_by_ != nullptr ? measured_cycle(process) : process.step_cycle())) return;
   // The device answers the exchange at once: its status is there for the next cycle (decision 29).
   parts_.devices.step_of(process.name(), now);
   if (watch_) watch_(process.name(), now);
   // Whose cycle starts with a sample is woken when its producer's cycle is over, by the word that wakes a process; in the order of
   // processes, so that one seed stays one flight.
   for (const auto& waiting : parts_.processes.all()) waiting->wake_cycle(now);
+}
+
+bool SimulatedLoops::measured_cycle(SimulatedProcess& process) {
+  const Duration used = measured_by_->processor();
+  const TimePoint begun = measured_by_->now();
+  const bool made = process.step_cycle();
+  const Duration wall = measured_by_->now() - begun;
+  const Duration processor = measured_by_->processor() - used;
+  if (made) taken_(process.name(), {.wall = wall, .processor = processor});
+  return made;
 }
 
 }  // namespace hirosco::simulation

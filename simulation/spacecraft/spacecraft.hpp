@@ -60,6 +60,10 @@ class Spacecraft final {
   [[nodiscard]] TimePoint now() const noexcept { return clock_.now(); }
   /// Called after every cycle of the fastest subsystem, for traces and checks at cycle rate.
   void on_cycle(std::function<void(std::string_view subsystem, TimePoint)> watch) { loops_.on_cycle(std::move(watch)); }
+  /// Called after every cycle with what it took by `clock`, which must outlive it. The flight is the same.
+  void measure_cycles(const Clock& clock, std::function<void(std::string_view subsystem, CycleTaken)> told) {
+    loops_.measure_cycles(clock, std::move(told));
+  }
 
   // --- ground and devices ---------------------------------------------------------------------------------------------
   [[nodiscard]] SimulatedGround& ground() noexcept { return ground_; }

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <functional>
 #include <iostream>
+#include <map>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -91,6 +93,40 @@ TEST(Determinism, LinksByUdpCarryInAWorldOfOneProcessWhatMemoryCarries) {
   ASSERT_FALSE(udp.first.empty());
   EXPECT_EQ(udp.first, again.first);
   EXPECT_EQ(udp.first, memory.first);
+}
+
+/// Each of its readings is later than the one before.
+class ClockThatRuns final : public Clock {
+  [[nodiscard]] TimePoint do_now() const noexcept override { return TimePoint{++readings_ * 1us}; }
+  [[nodiscard]] OnboardTime do_onboard() const noexcept override { return {}; }
+  [[nodiscard]] Duration do_processor() const noexcept override { return ++readings_ * 1us; }
+  mutable std::int64_t readings_{0};
+};
+
+TEST(Determinism, IsOfAFlightWhoseCyclesAreMeasuredToo) {
+  constexpr Duration looked_at = 3s;
+  std::vector<LogRecord> with;
+  {
+    const ClockThatRuns clock;
+    Flight flight{{}};
+    std::map<std::string, std::uint64_t, std::less<>> cycles;
+    bool as_they_took = true;
+    flight.craft().measure_cycles(clock, [&](std::string_view subsystem, simulation::CycleTaken taken) {
+      ++cycles[std::string{subsystem}];
+      as_they_took = as_they_took && taken.wall == 1us && taken.processor == 3us;
+    });
+    flight.craft().run(looked_at);
+    EXPECT_TRUE(as_they_took) << "readings stand around the cycle, and nothing else reads that clock";
+    for (const char* name : {"MANIPULATOR", "JOYSTICK"}) {
+      EXPECT_GT(cycles[name], 1000U) << name;
+      EXPECT_EQ(cycles[name], flight.cycles(name)) << name;
+    }
+    with = flight.records();
+  }
+  Flight other{{}};
+  other.craft().run(looked_at);
+  ASSERT_FALSE(with.empty());
+  EXPECT_TRUE(with == other.records());
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include "bench/robots/arm_cycles.hpp"
 #include "bench/robots/robot_cases.hpp"
 #include "tools/new_folder/robot.hpp"
 
@@ -52,6 +53,54 @@ TEST_F(MadeRobot, GoesWhereItIsToldToWithALoadThatNobodyDeclared) {
                            1e3 * found.joint_rad, 1e3 * found.tool_m, 1e3 * found.beside_m);
   EXPECT_TRUE(found.holds()) << fmt::format("{}", fmt::join(found.problems, "\n"));
   EXPECT_EQ(found.lines, 2) << "there and back";
+}
+
+/// How long they take here says nothing: others are at work beside this.
+TEST_F(MadeRobot, HasCyclesThatAreMeasuredInMotionWithAllThatBelongsToThem) {
+  auto task = robot_task(mission);
+  ASSERT_TRUE(task) << task.error();
+  task->goals.erase(task->goals.begin(), task->goals.end() - 2);
+  task->lines.erase(task->lines.begin() + 1, task->lines.end());
+  constexpr std::size_t wanted = 1500;
+  const auto found = measure_arm_cycles(mission, *task, wanted, 1);
+  EXPECT_TRUE(found.problems.empty()) << fmt::format("{}", fmt::join(found.problems, "\n"));
+  EXPECT_TRUE(found.missing().empty()) << fmt::format("{}", fmt::join(found.missing(), "\n"));
+  EXPECT_EQ(found.period_us, 1000);
+  EXPECT_GE(found.processor_ns.size(), wanted);
+  EXPECT_EQ(found.wall_ns.size(), found.processor_ns.size());
+  EXPECT_GT(found.processor().p50, 0);
+  EXPECT_GE(found.processor().p99, found.processor().p50);
+  EXPECT_GT(found.told, 0);
+  EXPECT_GT(found.most_external, 0);
+  EXPECT_GT(found.least_clearance_m, 0);
+}
+
+TEST(ArmCycles, HoldWithATenthOfThePeriodAndAllThatBelongsToThemOnly) {
+  ArmCycles found;
+  found.period_us = 1000;
+  // The hundredth longest of ten thousand, and those that are longer.
+  found.processor_ns.assign(9900, 99'000);
+  found.processor_ns.insert(found.processor_ns.end(), 100, 900'000);
+  found.wall_ns = found.processor_ns;
+  found.told = 1;
+  found.most_external = 0.1;
+  found.least_clearance_m = 0.02;
+  EXPECT_TRUE(found.holds());
+  EXPECT_EQ(found.processor().max, 900);
+  const auto without = [&](auto change) {
+    ArmCycles other = found;
+    change(other);
+    return !other.holds();
+  };
+  EXPECT_TRUE(without([](ArmCycles& one) { one.processor_ns.insert(one.processor_ns.end(), 100, 101'000); }));
+  EXPECT_TRUE(without([](ArmCycles& one) { one.period_us = 980; }));
+  EXPECT_TRUE(without([](ArmCycles& one) { one.processor_ns.clear(); }));
+  EXPECT_TRUE(without([](ArmCycles& one) { one.told = 0; }));
+  EXPECT_TRUE(without([](ArmCycles& one) { one.by_positions = false; }));
+  EXPECT_TRUE(without([](ArmCycles& one) { one.watches_contact = false; }));
+  EXPECT_TRUE(without([](ArmCycles& one) { one.most_external = 0; }));
+  EXPECT_TRUE(without([](ArmCycles& one) { one.least_clearance_m = HUGE_VAL; }));
+  EXPECT_TRUE(without([](ArmCycles& one) { one.problems.emplace_back("a contact"); }));
 }
 
 TEST(RobotCases, HoldOnlyWhereSomethingWasFlownAndNothingWasWrong) {
