@@ -55,6 +55,8 @@ constexpr int supervisor_priority = 30;
 constexpr Duration last_wait = 2s;
 static_assert(ending_patience > 3 * last_wait, "the keeper ends nobody who waits for a disk at its end");
 constexpr Duration log_start_limit = 3s;
+/// Members fly on under a permission of two seconds: what a disk has not said by then is not waited for.
+constexpr Duration log_resumption_limit = 200ms;
 /// More than one step takes: 256 messages of each member, each of 1 kB and copied for log and ground.
 constexpr std::size_t memory_of_a_step = std::size_t{4} << 20;
 
@@ -107,6 +109,12 @@ constexpr std::array known_options{ProgramOption{"--mission", "FILE"},
                                     LogLimits{.rotate_octets = use.rotate_mb * mega,
                                               .rotate_age = std::chrono::hours{use.rotate_h},
                                               .keep_octets = use.keep_mb * mega});
+}
+
+/// In force: as the mission says until a telecommand has said otherwise, to this supervisor or to one before it.
+[[nodiscard]] DatabaseStrategy strategy_of(const descriptor::Mission& mission, const KeeperPage& page) {
+  if (const auto noted = page.database.load(); noted != 0) return static_cast<DatabaseStrategy>(noted - 1);
+  return from_text<DatabaseStrategy>(mission.database.strategy).value_or(DatabaseStrategy::Sqlite);
 }
 
 /// What was injected into simulated devices: each writes the monotonic time of what it was told beside its control socket.
@@ -206,7 +214,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
       {.mission = mission, .clock = clock, .flows = flows, .realtime = realtime, .own_users = options.own_users});
   if (!deployment.launcher) return exit_environment;
   FlightLauncher& launcher = *deployment.launcher;
-  const auto strategy = from_text<DatabaseStrategy>(mission.database.strategy).value_or(DatabaseStrategy::Sqlite);
+  const auto strategy = strategy_of(mission, page);
   const auto log_path = options.log.empty() ? std::filesystem::path{mission.database.path} : options.log;
   auto log_progress = WakeEvent::create();
   auto guard_found = WakeEvent::create();
@@ -241,9 +249,11 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
     log_progress->notify();
   };
   log_options.number = &page.log_number;
-  if (const auto run = page.log_run.load(); goes_on && run != 0)
+  if (const auto run = page.log_run.load(); goes_on && run != 0) {
+    const LogResumption noted{OnboardTime{Duration{run}}, page.log_number.load(), page.log_durable.load()};
     log_options.resume =
-        resumption_of(log_path, {OnboardTime{Duration{run}}, page.log_number.load(), page.log_durable.load()});
+        resumption_within(log_resumption_limit, noted, [log_path, noted] { return resumption_of(log_path, noted); });
+  }
   ThreadedPacketLog log{clock, std::move(store), std::move(log_options)};
   written = &log;
   page.log_run.store(log.run().time_since_epoch().count());
@@ -261,9 +271,10 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   if (realtime) keep_code_in_memory();
   static_cast<void>(realtime ? set_fifo_priority(supervisor_priority) : ask_for_short_slices());
   EpochFile epochs{std::filesystem::path{log_path}.replace_extension(".epoch")};
-  const auto first_epoch = epochs.first(clock.onboard());
+  const auto first_epoch = goes_on ? epochs.next(clock.onboard()) : epochs.first(clock.onboard());
   if (!first_epoch) {
-    if (!log_refused()) errors.say(fmt::format("hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text));
+    if (goes_on || !log_refused())
+      errors.say(fmt::format("hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text));
     return exit_environment;
   }
   Guard guard{
@@ -285,7 +296,9 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
        .guard = guard,
        .log = log,
        .open_database = [&](DatabaseStrategy wanted) -> std::unique_ptr<Database> {
-         return make_store(wanted, log_path, mission.database);
+         auto opened = make_store(wanted, log_path, mission.database);
+         if (opened) page.database.store(static_cast<std::uint32_t>(wanted) + 1);
+         return opened;
        },
        .observer = causes,
        .first_sequence_count = static_cast<std::uint16_t>(clock.onboard().time_since_epoch().count() % 16'384),
@@ -307,7 +320,9 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   bool ends_as_a_whole = false, asked_to_end = false;
   const MemoryReserve reserve{memory_of_a_step};
   AskedStops stops{page};
-  if (log_refused()) return exit_environment;  // not asked before: its disk works while all that is made
+  // Not asked before: its disk works while all that is made. A flight goes on without a log, and a death of its supervisor changes nothing
+  // in that (docs/adr/0036, 0192).
+  if (!goes_on && log_refused()) return exit_environment;
   if (goes_on) {
     keeper.take_inhibits(clock);
     stops.carry_out([&](bool any) {
@@ -429,6 +444,7 @@ int fly(int argc, char** argv, const MakeDeployment& deploy) {
   const char* const slash = std::strrchr(argv[0], '/');
   const char* const program = slash != nullptr ? slash + 1 : argv[0];
   say_last_words(program);
+  set_thread_name(program);  // the system names it by the number of the descriptor that it is executed from
   const auto said = read_options(argc, argv);
   if (!said) {
     fmt::print(stderr, "{}: {} (started by 'hirosco run MISSION')\n", program, said.error());
@@ -442,6 +458,11 @@ int fly(int argc, char** argv, const MakeDeployment& deploy) {
   // Who goes on for another one waits for nobody who reads this, from here on.
   LineWriter errors{STDERR_FILENO};
   Inheritance keeper;
+  if (!keeper.fits()) {
+    errors.say(
+        fmt::format("{}: the keeper of this flight is of another version: build both from one hirosco\n", program));
+    return exit_environment;
+  }
   const auto source = keeper.source();
   auto reading = descriptor::read_mission(options.mission, source);
   for (const auto& problem : reading.problems) errors.say(descriptor::render(problem, source, false));

@@ -24,6 +24,8 @@ class Inheritance {
   Inheritance& operator=(const Inheritance&) = delete;
 
   [[nodiscard]] KeeperPage& page() noexcept { return *page_; }
+  /// False: the keeper is of another build, and nothing of what it holds can be told.
+  [[nodiscard]] bool fits() const noexcept { return page_->layout.load() == KeeperPage::layout_now; }
   /// There was a supervisor before this one.
   [[nodiscard]] bool goes_on() const noexcept { return page_->starts.load() > 1; }
   [[nodiscard]] StoreClient store() const noexcept;

@@ -179,7 +179,9 @@ class Flight {
     start.blocked = {SIGTERM, SIGINT, SIGUSR1};
     HIROSCO_TRY_LET(Process process, Process::spawn(start));
     supervisor_.emplace(std::move(process));
-    progress_ = Progress{supervisor_patience};
+    // Of the first one nothing flies until it has begun; its way there may take a disk's time.
+    progress_ =
+        page_.starts.load() > 1 ? Progress{supervisor_patience, successor_patience} : Progress{supervisor_patience};
     began_ = clock_.now();
     bridge_.watch(supervisor_->pid());
     if (asked_) static_cast<void>(supervisor_->send_signal(SIGTERM));
@@ -205,7 +207,15 @@ class Flight {
     if (revive_at_) {
       if (now < *revive_at_) return std::nullopt;
       revive_at_.reset();
-      if (!start()) return exit_internal;
+      const auto started = start();
+      if (started) return std::nullopt;
+      // What the system refuses now, as what it ended the one before by, it may have again in a moment.
+      const auto pause = asked_ ? std::nullopt : revivals_.next(Duration{0});
+      errors_.say(std::string{"hirosco: another supervisor cannot be started"} +
+                  (pause ? ", it is tried again: " : ": ") + std::strerror(static_cast<int>(started.error().value)) +
+                  "\n");
+      if (!pause) return exit_internal;
+      revive_at_ = now + *pause;
       return std::nullopt;
     }
     const auto end = supervisor_->poll();
@@ -225,7 +235,8 @@ class Flight {
     const bool began = page_.starts.load() > 1 || page_.supervisor.load() != 0;
     const int code = end.kind == ExitStatus::Kind::Exited ? end.value : exit_internal;
     const bool alone = page_.alone.load() != 0;
-    const auto pause = in_order || asked_ || alone || !began ? std::nullopt : revivals_.next(now - began_);
+    const Duration lived = page_.supervisor.load() != 0 ? now - began_ : Duration{0};
+    const auto pause = in_order || asked_ || alone || !began ? std::nullopt : revivals_.next(lived);
     if (!pause) return code == 0 && !in_order ? exit_internal : code;
     bridge_.begin();
     shared_.store->take();

@@ -8,12 +8,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
 #include "supervisor/keeper/keeper.hpp"
+#include "supervisor/keeper/kept.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
 
 /// Keeper and supervisor look at each other's counter on a page that both may write (hazards SF18 and SF19). And the keeper with a shell in
@@ -26,6 +29,19 @@ using namespace std::chrono_literals;
 TEST(Progress, BeforeTheFirstStepNobodyStandsStill) {
   Progress progress;
   for (TimePoint now{1s}; now < TimePoint{60s}; now += 100ms) EXPECT_FALSE(progress.stands_still(0, now));
+}
+
+TEST(Progress, OfOneThatGoesOnWithAFlightTheFirstStepIsAwaitedSoLongAndNoLonger) {
+  Progress progress{supervisor_patience, successor_patience};
+  TimePoint now{1s};
+  for (; now <= TimePoint{1s} + successor_patience; now += 100ms) EXPECT_FALSE(progress.stands_still(0, now));
+  EXPECT_TRUE(progress.stands_still(0, now));
+  Progress other{supervisor_patience, successor_patience};
+  EXPECT_FALSE(other.stands_still(0, TimePoint{1s}));
+  EXPECT_FALSE(other.stands_still(1, TimePoint{1s} + 100ms));
+  EXPECT_FALSE(other.stands_still(1, TimePoint{1s} + 500ms));
+  EXPECT_FALSE(other.stands_still(1, TimePoint{1s} + 900ms));
+  EXPECT_TRUE(other.stands_still(1, TimePoint{1s} + 1s)) << "once it has begun, as any other";
 }
 
 /// Looks every 100 ms from then to the end.
@@ -63,8 +79,8 @@ TEST(Progress, NoDamageOfTheCounterHidesThatItStandsStillForLongerThanOnePatienc
   }
 }
 
-/// What stands in the keeper's page first: its own count and the supervisor's (kept.hpp). A shell that writes there has moved.
-constexpr const char* moves = "printf aaaaaaaabbbbbbbb >&7; ";
+/// What stands in the keeper's page first: its layout, the keeper's count and the supervisor's (kept.hpp). A shell that writes there has moved.
+constexpr const char* moves = "printf llllllllaaaaaaaabbbbbbbb >&7; ";
 
 struct KeeperTest : ::testing::Test {
   TestFolder folder;
@@ -91,7 +107,7 @@ struct KeeperTest : ::testing::Test {
       if (!unread_stays) unread.reset();
       ::alarm(20);
       KeeperPlan plan;
-      plan.supervisor.executable = "/bin/sh";
+      plan.supervisor.executable = shell;
       plan.supervisor.arguments = {"-c", "echo $$ >> '" + starts + "'; " + supervisor};
       ::_exit(keep(std::move(plan)));
     }
@@ -109,6 +125,7 @@ struct KeeperTest : ::testing::Test {
     return static_cast<std::size_t>(std::count(std::istreambuf_iterator<char>{lines}, {}, '\n'));
   }
   bool unread_stays{true};
+  std::string shell{"/bin/sh"};  ///< the supervisor's program
 };
 
 TEST_F(KeeperTest, EndsASupervisorThatStandsStillThoughNobodyReadsItsStandardError) {
@@ -138,6 +155,25 @@ TEST_F(KeeperTest, HearsAnEndAskedForThoughNobodyReadsItsStandardError) {
            "kill -KILL $$; fi; kill -TERM $PPID; until grep -q '^ShdPnd:.*4...$' /proc/$$/status; do :; done");
   ASSERT_TRUE(WIFEXITED(how)) << how;
   EXPECT_EQ(supervisors(), 2U);
+}
+
+TEST_F(KeeperTest, TriesAgainWhereTheSystemRefusesToStartAnotherSupervisor) {
+  // Its program is gone until the keeper has tried twice, which stands in its page (kept.hpp).
+  shell = (folder.path() / "shell").string();
+  std::filesystem::copy_file("/bin/sh", shell);
+  const std::string away = shell + ".away", starts_at = std::to_string(offsetof(KeeperPage, starts));
+  const int how = kept("if [ $(wc -l < '" + starts + "') = 1 ]; then " + moves + "mv '" + shell + "' '" + away +
+                       "'; (until [ $(od -An -tu4 -j" + starts_at + " -N4 /proc/self/fd/7) -ge 3 ]; do :; done; mv '" +
+                       away + "' '" + shell + "') & kill -KILL $$; fi");
+  ASSERT_TRUE(WIFEXITED(how)) << how;
+  EXPECT_EQ(supervisors(), 2U) << "the second one's words say that it has finished";
+}
+
+TEST_F(KeeperTest, EndsASuccessorThatNeverTakesItsFirstStep) {
+  const int how =
+      kept("case $(wc -l < '" + starts + "') in 1) " + moves + "kill -KILL $$ ;; 2) while :; do :; done ;; esac");
+  ASSERT_TRUE(WIFEXITED(how)) << how;
+  EXPECT_EQ(supervisors(), 3U);
 }
 
 TEST_F(KeeperTest, IsStoppedByNoTerminal) {

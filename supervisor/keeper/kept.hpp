@@ -72,6 +72,10 @@ inline constexpr std::size_t most_ends = 64;
 /// Memory in which keeper and supervisor see each other move: one that is alive and stands still is as lost as one that
 /// has died (hazard SF18).
 struct KeeperPage {
+  /// Of this layout. Keeper and supervisor of one flight are of one build; whoever finds another number knows nothing of what is there, not
+  /// even whether a craft flies already.
+  static constexpr std::uint64_t layout_now = 0x484B'5047'0000'0002;  // "HKPG"
+  std::atomic<std::uint64_t> layout{layout_now};
   std::atomic<std::uint64_t> keeper{0};
   std::atomic<std::uint64_t> supervisor{0};
   std::atomic<std::uint32_t> finished{0};  ///< 1: the supervisor ends by itself, and the flight with it
@@ -87,6 +91,8 @@ struct KeeperPage {
   std::atomic<std::uint64_t> log_number{0};  ///< of the newest record
   std::atomic<std::uint64_t> log_durable{0};  ///< up to here they are on the disk
   std::atomic<std::uint32_t> end_asked{0};  ///< number of the signal that asked for an end; 0: none did
+  std::atomic<std::uint32_t> database{
+      0};  ///< of the log since SET_DATABASE: 1 and a DatabaseStrategy; 0: the mission's
   static constexpr std::uint32_t end_of_time = 0xFFFF;  ///< in its place: the time of the flight is over
   std::atomic<std::uint64_t> stops_asked{0};  ///< by SIGUSR1, of the keeper or a guard, and on the guard's local socket
   std::atomic<std::uint64_t> stops_taken{
@@ -144,14 +150,18 @@ inline constexpr Duration keeper_patience = std::chrono::seconds{3};
 inline constexpr Duration ending_patience = std::chrono::seconds{10};
 /// The supervisor: less than its own guard grants it before all is fenced, so that another one can go on with what moves.
 inline constexpr Duration supervisor_patience = std::chrono::milliseconds{800};
+/// The same until its first step: it waits for no disk and for nobody on the way there.
+inline constexpr Duration successor_patience = std::chrono::seconds{5};
 
 /// Looks at one counter of the page from time to time.
 class Progress {
  public:
   /// Of the time between two looks no more counts: while the whole computer was stopped neither could move.
   static constexpr Duration most_unwatched = std::chrono::milliseconds{400};
-  explicit Progress(Duration patience = keeper_patience) : patience_{patience} {}
-  /// True while it has moved and then stood still for longer than the patience. A counter that is damaged has moved once.
+  /// \param before_the_first How long it may take until it moves for the first time.
+  explicit Progress(Duration patience = keeper_patience, Duration before_the_first = Duration::max())
+      : patience_{patience}, before_the_first_{before_the_first} {}
+  /// True while it stands still for longer than the patience. A counter that is damaged has moved once.
   [[nodiscard]] bool stands_still(std::uint64_t count, TimePoint now) noexcept {
     if (has_looked_) still_ += std::min(now - looked_, most_unwatched);
     looked_ = now;
@@ -161,11 +171,11 @@ class Progress {
       begun_ = true;
       still_ = Duration{0};
     }
-    return begun_ && still_ > patience_;
+    return still_ > (begun_ ? patience_ : before_the_first_);
   }
 
  private:
-  Duration patience_;
+  Duration patience_, before_the_first_;
   std::uint64_t seen_{0};
   bool begun_{false};
   Duration still_{};

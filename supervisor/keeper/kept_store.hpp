@@ -46,6 +46,7 @@ class StoreClient {
  public:
   /// -1: there is no keeper, nothing is kept.
   explicit StoreClient(int socket) noexcept : socket_{socket} {}
+  [[nodiscard]] bool has_keeper() const noexcept { return socket_ >= 0; }
   /// Unavailable: the keeper is gone or takes nothing; OutOfRange: there is no such slot.
   [[nodiscard]] Result<> keep(std::size_t slot, const std::array<int, kept_roles>& descriptors) noexcept;
   /// It has ended.

@@ -50,6 +50,7 @@ struct Craft {
   TimePoint now{};
   bool shutting_down{false};
   bool restoring_ground_link{false};
+  bool taking_over{false};  ///< for a supervisor that died: this one is on its own way up
 
   /// What outlives this supervisor is noted now, not at the end of its step: before something is done that must not be done by halves.
   void remember() const {

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""A log whose file system stands still: SAFE_ALL stops the actuators all the same, and nothing that was logged is lost."""
+"""A log whose file system stands still: SAFE_ALL stops the actuators all the same, nothing that was logged is lost, and a supervisor
+that dies meanwhile is replaced (docs/adr/0192)."""
 import contextlib
 import os
 import pathlib
@@ -11,6 +12,8 @@ import time
 import unittest
 
 import flight
+
+ADOPTED_S = 1.0
 
 
 class FrozenDisk:
@@ -71,6 +74,34 @@ class FrozenLog(unittest.TestCase):
             for name in ("MANIPULATOR", "JOYSTICK"):
                 rokviss.wait_told(f"{name} info STATE_CHANGED STATE=SafeOperational", 20.0, begin)
             self.nothing_is_lost(rokviss)
+            self.assertEqual(rokviss.end(seconds=30.0), 0, rokviss.errors)
+
+    def test_a_supervisor_that_dies_while_nothing_can_be_logged_is_replaced(self):
+        with tempfile.TemporaryDirectory(prefix="hirosco-frozen-") as folder, FrozenDisk(folder) as disk, \
+             flight.Flight(folder=folder) as rokviss:
+            rokviss.wait_commissioned()
+            rokviss.fault("joystick", "hand", "sine", 2, 0.05, 0.5)
+            disk.freeze()
+            time.sleep(1.0)
+            for death in range(2):
+                begin = rokviss.count()
+                killed = rokviss.kill("hirosco-supervisor")
+                adopted = rokviss.wait_line(lambda l: "goes on with MANIPULATOR" in l.told, 5.0, begin)
+                flight.measure(f"death {death + 1} over a frozen log: another supervisor after {adopted.received - killed:.3f} s")
+                self.assertNotIn("stopped", adopted.told)
+                self.assertLess(adopted.received - killed, ADOPTED_S)
+                time.sleep(2.5)
+                self.assertNotEqual(rokviss.truth("robot")["motor_1"], 0.0, "it moves on when nobody would without a supervisor")
+            begun = time.monotonic()
+            code, reports = rokviss.tc("supervisor", "SAFE_ALL")
+            flight.measure(f"SAFE_ALL answered {1e3 * (time.monotonic() - begun):.0f} ms after the command was started")
+            self.assertEqual((code, reports[-1:]), (0, ["1,7"]), reports)
+            self.actuators_were_inhibited(rokviss)
+            disk.thaw()
+            for name in ("MANIPULATOR", "JOYSTICK"):
+                rokviss.wait_told(f"{name} info STATE_CHANGED STATE=SafeOperational", 20.0, begin)
+            self.nothing_is_lost(rokviss)
+            self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0, "what has to be durable goes on")
             self.assertEqual(rokviss.end(seconds=30.0), 0, rokviss.errors)
 
     def actuators_were_inhibited(self, rokviss):

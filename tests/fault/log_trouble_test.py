@@ -45,6 +45,11 @@ class LogTrouble(unittest.TestCase):
                         while True:
                             file.write(bytes(4096))
                     rokviss.wait_told("no space for log", 20.0, begin)
+                    # A flight goes on without a log, and another supervisor with the flight.
+                    rokviss.kill("hirosco-supervisor")
+                    rokviss.wait_told("goes on with MANIPULATOR", 2.0, begin)
+                    rokviss.wait_told("no space for log", 20.0, rokviss.count() - 1)
+                    begin = rokviss.count()
                     filler.unlink()
                     rokviss.wait_told("log storage works", 10.0, begin)
                     rokviss.wait_told("SUPERVISOR low LOG_RESUMED", 5.0, begin)
@@ -56,6 +61,20 @@ class LogTrouble(unittest.TestCase):
                     self.assertEqual(covered, records[-1]["number"])
             finally:
                 subprocess.run(["umount", "-l", str(disk)], capture_output=True, check=False)
+
+    def test_the_database_that_a_telecommand_has_chosen_outlives_the_supervisor(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            self.assertEqual(rokviss.tc("supervisor", "SET_DATABASE", "ascii")[0], 0)
+            self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0)
+            begin = rokviss.count()
+            rokviss.kill("hirosco-supervisor")
+            rokviss.wait_told("goes on with MANIPULATOR", 2.0, begin)
+            self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0)
+            self.assertEqual(rokviss.end(), 0, rokviss.errors)
+            pieces = sorted(path.name for path in (rokviss.folder / "log").iterdir() if ".2" in path.name or ".3" in path.name)
+            self.assertEqual([pathlib.Path(name).suffix for name in pieces], [".log"], "one piece of text, and nothing behind it")
+            self.assertEqual(rokviss.log()[-1]["number"], len(rokviss.log()))
 
     def test_nothing_flies_without_a_log(self):
         with tempfile.TemporaryDirectory(prefix="hirosco-nolog-") as folder:

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <signal.h>
@@ -285,6 +286,9 @@ int run(const RunOptions& options) {
     return exit_environment;
   }
   plan.supervisor.executable = program.string();
+  // The next supervisor of this flight is the same program, whatever an upgrade has put in its place by then.
+  const FileDescriptor image{::open(program.c_str(), O_PATH | O_CLOEXEC)};
+  if (image) plan.supervisor.image = image.get();
   plan.supervisor.arguments = {"--mission", mission->file.string(), "--runtime", folder.string()};
   if (!options.mode.empty())
     plan.supervisor.arguments.insert(plan.supervisor.arguments.end(), {"--mode", options.mode});

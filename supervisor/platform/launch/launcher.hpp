@@ -52,6 +52,8 @@ struct LaunchedSubsystem {
   std::uint32_t process{0};          ///< names it to the launcher
   std::shared_ptr<ProcessGrip> grip; ///< null where a process cannot be gripped
   std::string_view not_held{};  ///< what of it the mission's manifest does not hold; empty: all, or there is none
+  std::string_view
+      not_kept{};  ///< why it would end with this supervisor, where the keeper holds others; empty: it is held, or nobody is
   std::string_view not_isolated{};  ///< why this one is in no sandbox, where others are; empty: it is, or none is
 };
 

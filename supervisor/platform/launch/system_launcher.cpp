@@ -314,15 +314,17 @@ bool SystemLauncher::keep_with(StoreClient store, const descriptor::Mission& mis
 }
 
 /// What cannot be kept ends with this process, as everything did that has no keeper.
-void SystemLauncher::keep(const std::string& name, const LaunchedSubsystem& launched, const MemoryHandle& vital,
+void SystemLauncher::keep(const std::string& name, LaunchedSubsystem& launched, const MemoryHandle& vital,
                           const MemoryHandle& permit, const FileDescriptor& errors) {
   const auto slot = slots_.find(name);
   const auto process = processes_.find(launched.process);
   if (slot == slots_.end() || process == processes_.end()) return;
   const int handle = process->second.handle().get();
-  if (store_.keep(slot->second, {launched.port->channel().wait_descriptor(), SealedMemory::descriptor(vital),
-                                 SealedMemory::descriptor(permit), handle, errors ? errors.get() : handle}))
-    kept_[launched.process] = slot->second;
+  const auto taken =
+      store_.keep(slot->second, {launched.port->channel().wait_descriptor(), SealedMemory::descriptor(vital),
+                                 SealedMemory::descriptor(permit), handle, errors ? errors.get() : handle});
+  if (taken) kept_[launched.process] = slot->second;
+  else if (store_.has_keeper()) launched.not_kept = taken.error().text;
 }
 
 std::expected<AdoptedSubsystem, NotAdopted> SystemLauncher::adopt(const descriptor::MissionSubsystem& subsystem) {

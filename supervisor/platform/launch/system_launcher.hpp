@@ -65,8 +65,8 @@ class SystemLauncher final : public FlightLauncher {
   [[nodiscard]] NotAdopted end_at_once(std::size_t slot, Process process, const Error& why);
   /// 0, or as which process it is still to be seen to its end.
   std::uint32_t end_now(Process process);
-  void keep(const std::string& name, const LaunchedSubsystem& launched, const MemoryHandle& vital,
-            const MemoryHandle& permit, const FileDescriptor& errors);
+  void keep(const std::string& name, LaunchedSubsystem& launched, const MemoryHandle& vital, const MemoryHandle& permit,
+            const FileDescriptor& errors);
   [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;
 
   [[nodiscard]] ProcessUser user_of_processes() const noexcept {

@@ -10,8 +10,10 @@
 #include <concepts>
 #include <deque>
 #include <fstream>
+#include <limits>
 #include <set>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include "hirosco/utilities/crc32.hpp"
@@ -173,6 +175,12 @@ Result<LogPage> AsciiDatabase::do_read(const LogQuery& query) {
   std::deque<LogRecord> found;
   std::set<std::pair<OnboardTime, std::uint64_t>> seen;
   std::vector<char> buffer(max_line + 1);
+  std::error_code failed;
+  const std::uint64_t octets = query.tail_octets != 0 ? std::filesystem::file_size(path_, failed) : 0;
+  if (!failed && octets > query.tail_octets) {
+    file.seekg(static_cast<std::streamoff>(octets - query.tail_octets));
+    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');  // the rest of a line
+  }
   while (file.getline(buffer.data(), std::ssize(buffer)) || file.gcount() > 0) {
     if (file.fail() && !file.eof()) {  // longer than any line of ours
       file.clear();

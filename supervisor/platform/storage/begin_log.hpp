@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -20,5 +21,11 @@ void begin_log(ThreadedPacketLog& log);
 /// A log whose program died, from what that had noted last: more may have reached the disk since. Looks at the two newest pieces.
 /// Realtime: blocks.
 [[nodiscard]] LogResumption resumption_of(const std::filesystem::path& log, LogResumption noted);
+
+/// The same for who must not wait for a disk: what was noted, where that does not answer within `limit` (docs/adr/0192). What it has beyond
+/// counts as lost then, and is there all the same.
+/// \param find In a thread of its own, which outlives this call where the disk holds it up.
+/// Realtime: waits for `limit` at most.
+[[nodiscard]] LogResumption resumption_within(Duration limit, LogResumption noted, std::function<LogResumption()> find);
 
 }  // namespace hirosco::supervisor

@@ -128,6 +128,39 @@ TEST_F(ResumedLog, LooksAtTheTwoNewestPiecesWhateverTheirStrategy) {
   EXPECT_EQ(resumption_of(path, noted(30, 4)).durable, 4U) << "what is older would have been noted long ago";
 }
 
+TEST_F(ResumedLog, LooksAtTheEndOfATextOnly) {
+  constexpr std::uint64_t many = 20'000;
+  store(1, batch_of(1, many), DatabaseStrategy::Ascii);
+  const auto piece = piece_path(path, DatabaseStrategy::Ascii, 1);
+  const auto octets = std::filesystem::file_size(piece);
+  ASSERT_GT(octets, std::uint64_t{2} << 20) << "more than is looked at";
+  EXPECT_EQ(resumption_of(path, noted(30, 4)).durable, many);
+  const auto tail = [&](std::uint64_t of_it) {
+    const auto opened = open_database(DatabaseStrategy::Ascii, piece, DatabaseAccess::Read);
+    return (*opened)->read({.last = 2 * many, .tail_octets = of_it})->records;
+  };
+  EXPECT_EQ(tail(0).size(), many);
+  EXPECT_EQ(tail(2 * octets).size(), many);
+  const auto newest = tail(octets / 2);
+  EXPECT_NEAR(static_cast<double>(newest.size()), many / 2.0, many / 10.0);
+  EXPECT_EQ(newest.back().number, many);
+}
+
+TEST(ResumptionWithin, IsWhatTheDiskSaysOrWhatWasNoted) {
+  const LogResumption noted{.run = OnboardTime{Duration{7}}, .last = 13, .durable = 4};
+  auto better = noted;
+  better.durable = 10;
+  EXPECT_EQ(resumption_within(long_enough, noted, [better] { return better; }).durable, 10U);
+  const auto stall = std::make_shared<Stall>();
+  const auto found = resumption_within(1ms, noted, [stall, better] {
+    stall->release.wait();
+    return better;
+  });
+  EXPECT_EQ(found.durable, 4U) << "the disk does not answer";
+  EXPECT_EQ(found.last, 13U);
+  stall->release.count_down();
+}
+
 TEST_F(ResumedLog, PassesOverAPieceThatCannotBeRead) {
   store(1, batch_of(1, 10));
   std::ofstream{piece_path(path, DatabaseStrategy::Sqlite, 2)} << std::string(5000, 'x');

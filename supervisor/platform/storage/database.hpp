@@ -101,6 +101,8 @@ struct LogQuery {
   OnboardTime stored_from{OnboardTime::min()}, stored_to{OnboardTime::max()};  ///< both included
   std::size_t last{1000};
   LogEnd end{LogEnd::Newest};
+  /// No more than so many octets at the end are looked through, where a strategy would read all that is stored before them; 0: all are.
+  std::uint64_t tail_octets{0};
 };
 [[nodiscard]] bool matches(const LogRecord& record, const LogQuery& query);
 

@@ -61,7 +61,7 @@ EpochFile::EpochFile(std::filesystem::path path) : file_{std::make_shared<File>(
 const std::filesystem::path& EpochFile::path() const noexcept { return file_->path; }
 std::uint32_t EpochFile::kept() const noexcept { return file_->kept.load(std::memory_order_acquire); }
 
-Result<std::uint32_t> EpochFile::first(OnboardTime now) {
+Result<std::uint32_t> EpochFile::above_kept(OnboardTime now) const {
   std::uint64_t kept = 0;
   std::ifstream{path()} >> kept;
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now.time_since_epoch()).count() - year_2020_s;
@@ -69,17 +69,33 @@ Result<std::uint32_t> EpochFile::first(OnboardTime now) {
   if (first > last_first)
     return fail(ErrorCode::OutOfRange, "the epochs of devices have run out: reset the devices, then remove this file",
                 static_cast<std::int64_t>(kept));
-  const auto number = static_cast<std::uint32_t>(first);
+  return static_cast<std::uint32_t>(first);
+}
+
+Result<std::uint32_t> EpochFile::first(OnboardTime now) {
+  HIROSCO_TRY_LET(const std::uint32_t number, above_kept(now));
   if (write(path(), number + block)) file_->kept = number + block;
   else next_try_ = number + pause;
   return number;
 }
 
+Result<std::uint32_t> EpochFile::next(OnboardTime now) {
+  HIROSCO_TRY_LET(const std::uint32_t number, above_kept(now));
+  next_try_ = number + pause;
+  keep_in_a_thread(number + block);
+  return number;
+}
+
 void EpochFile::keep_above(std::uint32_t used) {
-  if (used + block / 2 <= kept() || used < next_try_ || file_->busy.exchange(true)) return;
+  if (used + block / 2 <= kept() || used < next_try_) return;
   next_try_ = used + pause;
+  keep_in_a_thread(used + block);
+}
+
+void EpochFile::keep_in_a_thread(std::uint32_t reserved) {
+  if (file_->busy.exchange(true)) return;
   try {
-    std::thread{[file = file_, reserved = used + block] {
+    std::thread{[file = file_, reserved] {
       if (write(file->path, reserved)) file->kept.store(reserved, std::memory_order_release);
       file->busy = false;
     }}.detach();

@@ -20,6 +20,8 @@ class EpochFile {
   /// Epoch that a flight begins with: above all that were kept, and not below the seconds since 2020. Blocks until the disk has it.
   /// OutOfRange: the numbers have run out. A file that cannot be read or written leaves the clock's number.
   [[nodiscard]] Result<std::uint32_t> first(OnboardTime now);
+  /// The same for whoever goes on with a flight: waits for no disk, a thread of its own writes.
+  [[nodiscard]] Result<std::uint32_t> next(OnboardTime now);
   /// Reserves further epochs before they are used up, which no ordinary flight comes to. Waits for no disk: a thread of its own writes,
   /// and one that cannot is tried again later.
   void keep_above(std::uint32_t used);
@@ -29,6 +31,8 @@ class EpochFile {
 
  private:
   struct File;
+  [[nodiscard]] Result<std::uint32_t> above_kept(OnboardTime now) const;
+  void keep_in_a_thread(std::uint32_t reserved);
   std::shared_ptr<File> file_;  ///< a write that the disk holds up outlives the flight's own end
   std::uint32_t next_try_{0};
 };

@@ -69,10 +69,28 @@ TEST_F(EpochFileTest, ADiskThatHangsOrFailsHoldsNobodyUpAndIsTriedAgain) {
   EXPECT_GT(EpochFile{path}.first(seconds_after_2020(10)).value(), first + 120'000);
 }
 
+TEST_F(EpochFileTest, WhoGoesOnIsHeldUpByNoDiskAndIsAboveWhatWasKept) {
+  const auto first = EpochFile{path}.first(seconds_after_2020(10)).value();
+  // Whoever writes a pipe waits for a reader.
+  auto beside = path;
+  beside += ".new";
+  ASSERT_EQ(::mkfifo(beside.c_str(), 0600), 0);
+  EpochFile file{path};
+  const auto next = file.next(seconds_after_2020(11));
+  ASSERT_TRUE(next);
+  EXPECT_GT(*next, first + 60'000);
+  std::string text;
+  std::ifstream{beside} >> text;  // its thread is still at it
+  EXPECT_GT(std::stoul(text), *next) << text;
+  std::filesystem::remove(beside);
+  EXPECT_EQ(EpochFile{path}.next(seconds_after_2020(10)).value(), *next) << "nobody has kept it by then";
+}
+
 TEST_F(EpochFileTest, NumbersThatHaveRunOutAreRefused) {
   std::filesystem::create_directories(path.parent_path());
   std::ofstream{path} << 0xFFFF'FFFFu;
   EXPECT_EQ(EpochFile{path}.first(seconds_after_2020(10)).error().code, ErrorCode::OutOfRange);
+  EXPECT_EQ(EpochFile{path}.next(seconds_after_2020(10)).error().code, ErrorCode::OutOfRange);
 }
 
 }  // namespace

@@ -84,10 +84,12 @@ void Telecommands::take(const Incoming& incoming) {
                           .peer = apid,
                           .packet = incoming.packet,
                           .note = std::string_view{text}};
-  // Nobody could command anything until the ground link is back: its own restoration waits for no disk either.
+  // Nobody could command anything until the ground link is back, or this supervisor itself where it goes on for another one: neither
+  // waits for a disk.
   const Member* addressee = craft_.member(apid);
-  const bool restores = incoming.origin.is_supervisor() && craft_.restoring_ground_link && addressee != nullptr &&
-                        craft_.is_ground_link(*addressee);
+  const bool is_awaited = addressee != nullptr ? craft_.restoring_ground_link && craft_.is_ground_link(*addressee)
+                                               : craft_.taking_over && apid == supervisor_apid;
+  const bool restores = incoming.origin.is_supervisor() && is_awaited;
   if (decision->essential || restores) {
     const auto call = called_function(*telecommand);
     const auto own = apid == supervisor_apid && call ? at_once_.find(call->name) : at_once_.end();

@@ -83,7 +83,11 @@ void Adoption::begin(bool stop_asked) {
   const bool stopped =
       std::ranges::any_of(craft_.members, [](const Member& member) { return !member.fences_when_free; });
   if (stop_asked_ || stopped) craft_.guard.void_what_was_said();
-  parts_.commissioning.start_itself([this](bool) { go_on(); });
+  craft_.taking_over = true;
+  parts_.commissioning.start_itself([this](bool) {
+    craft_.taking_over = false;
+    go_on();
+  });
 }
 
 /// Once: this supervisor is Operational, or cannot be by now (its log stands still), which must not hold up what is to stop.

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "supervisor/platform/storage/testing/test_databases.hpp"
 #include "supervisor/supervision/procedures/steps/hand_over.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
@@ -96,6 +97,34 @@ struct AdoptionTest : PartsTest {
                                        next.commanded, next.losses, next.waiting});
   }
 };
+
+/// A disk that takes nothing, from now on.
+struct OverAFullDisk : AdoptionTest {
+  std::shared_ptr<HeldDatabase::Hold> hold = std::make_shared<HeldDatabase::Hold>();
+  void SetUp() override {
+    AdoptionTest::SetUp();
+    start_all(SafeOperational);
+    ASSERT_TRUE(notes.note());
+    hold->tries = 1'000'000;
+    log.switch_to(std::make_unique<HeldDatabase>(hold, std::make_shared<MemoryDatabase>()));
+  }
+};
+
+TEST_F(OverAFullDisk, ASupervisorThatGoesOnIsOperationalAndReadsWhatIsSaid) {
+  SupervisorParts& next = go_on();
+  ASSERT_TRUE(next.adoption.waits());
+  for (int step = 0; step < 200 && next.adoption.waits(); ++step) {
+    wait(1ms);
+    next.craft.now = clock.now();
+    next.telecommands.forward_durable();
+    static_cast<void>(next.own.step(clock.now()));
+    next.reception.read_own();
+  }
+  EXPECT_FALSE(next.adoption.waits()) << next.commissioning.waiting_for();
+  EXPECT_EQ(next.own.state(), Operational);
+  EXPECT_FALSE(next.craft.failed());
+  EXPECT_FALSE(next.craft.taking_over) << "what it says of itself from now on waits for the disk as ever";
+}
 
 constexpr const char* hand_was_stopped = "HAND was stopped, and nobody has let it go since";
 

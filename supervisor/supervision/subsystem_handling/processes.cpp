@@ -94,12 +94,20 @@ Result<> Processes::launch(Member& member) {
     }
   }
   craft_.guard.adopt(member.apid(), *launched);
+  tell_not_kept(member, *launched);
   member.started(std::move(*launched));
   if (!std::exchange(member.was_started, true) && member.fences_when_free)
     member.fences_when_free = craft_.guard.fences(member.apid());
   member.enter_mode(craft_.mode_epoch);
   craft_.tell("started " + name, member.apid());
   return ok();
+}
+
+void Processes::tell_not_kept(const Member& member, const LaunchedSubsystem& launched) {
+  if (!launched.not_kept.empty())
+    craft_.tell(
+        fmt::format("{} ends with this supervisor, should that die: {}", member.descriptor().name, launched.not_kept),
+        member.apid());
 }
 
 std::optional<MemoryHandle> Processes::adopt(Member& member, std::string_view against) {
@@ -133,6 +141,7 @@ std::optional<MemoryHandle> Processes::adopt(Member& member, std::string_view ag
   if (adopted->stopped) member.fences_when_free.reset();
   static_cast<void>(parts_.resources.claim(member));  // it has it already
   const std::string_view why = craft_.guard.take_over(member.apid(), *adopted, against);
+  tell_not_kept(member, adopted->launched);
   member.started(std::move(adopted->launched));
   member.enter_mode(craft_.mode_epoch);
   const bool operational = member.state() == State::Operational;

@@ -20,6 +20,7 @@ using enum descriptor::State;
 struct ProcessesTest : PartsTest {
   std::vector<std::string> lacks;
   const char* not_held{""};  ///< what of those that are started no manifest holds
+  const char* not_kept{""};  ///< why the keeper does not hold them
   const char* open{""};  ///< why those that are started are in no sandbox
   [[nodiscard]] std::vector<std::string> isolation_lacks() const override { return lacks; }
   std::string not_asked{};  ///< of isolation
@@ -36,6 +37,7 @@ struct ProcessesTest : PartsTest {
     auto launched = PartsTest::launch(subsystem);
     if (launched) launched->not_isolated = open;
     if (launched) launched->not_held = not_held;
+    if (launched) launched->not_kept = not_kept;
     return launched;
   }
   void dies(std::uint16_t apid) {
@@ -170,6 +172,12 @@ TEST_F(ProcessesTest, WhatOfAnExecutableTheManifestDoesNotHoldIsTold) {
   not_held = "it is a script, whose interpreter is another file";
   EXPECT_TRUE(parts.processes.start(arm));
   EXPECT_TRUE(was_told("not all of ARM is in the manifest: it is a script, whose interpreter is another file"));
+}
+
+TEST_F(ProcessesTest, WhomTheKeeperDoesNotHoldIsTold) {
+  not_kept = "the keeper takes nothing";
+  EXPECT_TRUE(parts.processes.start(arm));
+  EXPECT_TRUE(was_told("ARM ends with this supervisor, should that die: the keeper takes nothing"));
 }
 
 TEST_F(ProcessesTest, WhoIsNotInTheStartListIsStartedWhenTheGroundAsks) {
