@@ -25,7 +25,7 @@ constexpr std::size_t asked_each = 500;
 constexpr int most_flights = 200;
 
 /// What it tells of itself: how near its links are, whether somebody whom it meets counts, by which law it goes, and what its observer finds.
-constexpr std::array asked{"CLEARANCE", "CONTACT_WATCH", "LAW", "EXTERNAL_TORQUE"};
+constexpr std::array looked_at{"CLEARANCE", "CONTACT_WATCH", "LAW", "EXTERNAL_TORQUE"};
 
 /// At one flight.
 class Look {
@@ -67,10 +67,10 @@ class Look {
   void ask() {
     const VitalPage* vital = flight_->craft().vital(task_.subsystem);
     if (vital != nullptr) found_.period_us = 1e-3 * static_cast<double>(vital->period_ns.load());
-    std::array<std::byte, 1 + 4 * asked.size()> data;
+    std::array<std::byte, 1 + 4 * looked_at.size()> data;
     OctetWriter writer{data};
-    writer.put(static_cast<std::uint8_t>(asked.size()));
-    for (const char* name : asked) {
+    writer.put(static_cast<std::uint8_t>(looked_at.size()));
+    for (const char* name : looked_at) {
       const auto* its = arm_->find_parameter(name);
       writer.put(its != nullptr ? ParameterId{arm_->id, its->field.type, its->id}.wire() : 0U);
     }
@@ -85,9 +85,9 @@ class Look {
   /// An arm that lacks one of them answers with a refusal, and has told nothing.
   void hear(Octets data) {
     OctetReader reader{data};
-    if (reader.get<std::uint8_t>() != asked.size()) return;
+    if (reader.get<std::uint8_t>() != looked_at.size()) return;
     std::vector<OctetReader> told;
-    for (const char* name : asked) {
+    for (const char* name : looked_at) {
       static_cast<void>(reader.get<std::uint32_t>());
       told.emplace_back(reader.get(arm_->find_parameter(name)->octets()));
     }

@@ -164,16 +164,16 @@ TEST_F(KeeperTest, TriesAgainWhereTheSystemRefusesToStartAnotherSupervisor) {
   const std::string away = shell + ".away", starts_at = std::to_string(offsetof(KeeperPage, starts));
   const int how = kept("if [ $(wc -l < '" + starts + "') = 1 ]; then " + moves + "mv '" + shell + "' '" + away +
                        "'; (until [ $(od -An -tu4 -j" + starts_at + " -N4 /proc/self/fd/7) -ge 3 ]; do :; done; mv '" +
-                       away + "' '" + shell + "') & kill -KILL $$; fi");
+                       away + "' '" + shell + "') & kill -KILL $$; fi; " + moves);
   ASSERT_TRUE(WIFEXITED(how)) << how;
   EXPECT_EQ(supervisors(), 2U) << "the second one's words say that it has finished";
 }
 
 TEST_F(KeeperTest, EndsASuccessorThatNeverTakesItsFirstStep) {
-  const int how =
-      kept("case $(wc -l < '" + starts + "') in 1) " + moves + "kill -KILL $$ ;; 2) while :; do :; done ;; esac");
+  const int how = kept("case $(wc -l < '" + starts + "') in 1) " + moves +
+                       "kill -KILL $$ ;; 2) while :; do :; done ;; esac; " + moves);
   ASSERT_TRUE(WIFEXITED(how)) << how;
-  EXPECT_EQ(supervisors(), 3U);
+  EXPECT_EQ(supervisors(), 3U) << "the third one's words say that it has finished";
 }
 
 TEST_F(KeeperTest, IsStoppedByNoTerminal) {

@@ -148,7 +148,8 @@ bool sandbox_is_off() noexcept {
 std::vector<std::string> isolation_lacks() {
   std::vector<std::string> lacks;
   if (sandbox_is_off()) {
-    lacks.emplace_back("everything is open: ").append(built_without != nullptr ? built_without : "HIROSCO_SANDBOX is off");
+    lacks.emplace_back("everything is open: ")
+        .append(built_without != nullptr ? built_without : "HIROSCO_SANDBOX is off");
     return lacks;
   }
   const long rules_known = rules_version();
