@@ -62,7 +62,11 @@ void Obstacles::tell(const JointVector& position) noexcept {
 std::optional<Obstacles::Nearest> Obstacles::watch_way(const JointVector& now, const JointVector& way,
                                                        double noise_m) noexcept {
   if (clearance_->keeps_limits(now)) clear_at_ = now;
-  const Nearest ahead = clearance_->nearer(clear_at_, now + way, noise_m);
+  return near_at(now + way, noise_m);
+}
+
+std::optional<Obstacles::Nearest> Obstacles::near_at(const JointVector& posture, double noise_m) noexcept {
+  const Nearest ahead = clearance_->nearer(clear_at_, posture, noise_m);
   if (ahead.distance_m == HUGE_VAL) return std::nullopt;
   return ahead;
 }

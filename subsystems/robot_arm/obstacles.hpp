@@ -57,6 +57,8 @@ class Obstacles {
   /// where nobody was. What shakes about the limit comes no nearer by that, however often it begins.
   [[nodiscard]] std::optional<Nearest> watch_way(const JointVector& now, const JointVector& way,
                                                  double noise_m) noexcept;
+  /// Of a posture on his way, that is judged before he goes: likewise.
+  [[nodiscard]] std::optional<Nearest> near_at(const JointVector& posture, double noise_m) noexcept;
   /// Of watch_way(): it stands there, near or not, and may go away.
   void stand_at(const JointVector& position) noexcept { clear_at_ = position; }
   /// Each cycle: who would meet, if it is not braked now. Who is too near already may go away.

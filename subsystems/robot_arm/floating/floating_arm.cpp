@@ -158,6 +158,10 @@ void FloatingArm::advance() noexcept {
       tell_ill_conditioned(parameters_.conditioning.load());
       braked_ = true;
       return;
+    case FloatingGuidance::News::TooNear:
+      end_motion(Trouble::too_near, robot_arm::millimetres(guidance_.in_the_way().distance_m),
+                 guidance_.in_the_way().names);
+      return;
   }
 }
 

@@ -21,9 +21,8 @@ void FloatingCraft::begin(ToolLaw law, double cycle_s) {
 
 void FloatingCraft::update() noexcept {
   follow_base();
-  const robotics::Pose base{attitude(), base_.position_m()};
   // A robot with masses always has an inertia; without one the last state stays, and the law's torques are bounded.
-  static_cast<void>(model_->update(base, parts_.drives.measured().position));
+  static_cast<void>(model_->update(base(), parts_.drives.measured().position));
   parts_.parameters.tool.store({three_of(tool().position), four_of(robotics::Quaternion{tool().rotation})});
   parts_.parameters.base.store({three_of(base_.position_m()), four_of(base_.orientation())});
   parts_.parameters.conditioning.store(model_->conditioning());

@@ -44,6 +44,7 @@ class FloatingCraft {
   [[nodiscard]] const robotics::Pose& tool() const noexcept { return model_->tool(); }
   /// Of the base.
   [[nodiscard]] robotics::Matrix3 attitude() const noexcept { return base_.orientation().toRotationMatrix(); }
+  [[nodiscard]] robotics::Pose base() const noexcept { return {attitude(), base_.position_m()}; }
 
  private:
   void follow_base() noexcept;

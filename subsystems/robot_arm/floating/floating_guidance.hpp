@@ -12,6 +12,7 @@
 #include "subsystems/robot_arm/floating/floating_parameters.hpp"
 #include "subsystems/robot_arm/floating/range_ends.hpp"
 #include "subsystems/robot_arm/floating/stop_ramp.hpp"
+#include "subsystems/robot_arm/floating/tool_way.hpp"
 #include "subsystems/robot_arm/obstacles.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
@@ -19,14 +20,14 @@ namespace hirosco::robot_arm {
 
 /// Where joints and tool of a craft that floats are to be from cycle to cycle, how fast the joints go for that, and how far a motion is, one at a
 /// time. It reports nothing: it says what is to be told.
-/// Realtime: bounded, no allocation. Thread: the cycle, and the service loop while there is none.
+/// Realtime: bounded, but begin(). Thread: the cycle, and the service loop while there is none.
 class FloatingGuidance {
  public:
   struct Parts {
     const UrdfArm& known;
     const Drives& drives;
     const FloatingCraft& craft;
-    Obstacles& obstacles;  ///< no goal of joints is near them
+    Obstacles& obstacles;  ///< no goal of joints is near them, and no way of the tool
     FloatingParameters& parameters;  ///< PROGRESS, PHASE and ERR tell how far it is
   };
   enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked, Stops };
@@ -36,11 +37,12 @@ class FloatingGuidance {
     Reached,
     NotReached,  ///< its path has ended, and it is not there
     IllConditioned,  ///< it cannot move the tool and leave the base unturned
+    TooNear,  ///< its way was judged before it went, and it stands: in_the_way()
   };
   explicit FloatingGuidance(const Parts& parts) noexcept : parts_{parts} {}
 
-  /// In configure(), when drives and craft have begun.
-  void begin(double cycle_s) noexcept;
+  /// In configure(), when drives and craft have begun.  Realtime: allocates. Thread: the service loop.
+  void begin(double cycle_s);
   /// Takes the present place as the reference: entering Operational moves nothing.
   void engage() noexcept;
   /// Keeps joints and tool where they are.
@@ -52,10 +54,13 @@ class FloatingGuidance {
 
   // --- functions: refused, or running; numbers in the order of the descriptor ---------------------------------------------
   [[nodiscard]] Outcome move_joint(const FunctionValues& values) noexcept;
+  /// Its way is walked along while it stands, in the next cycles, and judged before it goes.
   [[nodiscard]] Outcome move_tool(const std::array<double, 3>& offset_m, double duration_s) noexcept;
 
   // --- in each cycle ------------------------------------------------------------------------------------------------------
   [[nodiscard]] News advance() noexcept;
+  /// Of TooNear: who, and how near.
+  [[nodiscard]] const Obstacles::Nearest& in_the_way() const noexcept { return in_the_way_; }
   /// rad/s or m/s of each joint, none faster than it may be.
   [[nodiscard]] JointVector wanted_rates() const noexcept;
   /// Who of them goes to an end of its range too fast to stand before it. Of a law of the tool alone: both ends of a path of joints are in range, and
@@ -71,6 +76,7 @@ class FloatingGuidance {
 
  private:
   void start(Phase phase, double duration_s) noexcept;
+  [[nodiscard]] News judge() noexcept;
   [[nodiscard]] News arrive() noexcept;
   [[nodiscard]] bool keeps_tool() const noexcept;
 
@@ -80,6 +86,9 @@ class FloatingGuidance {
   double moved_s_{0}, duration_s_{0}, settled_s_{0};
   JointVector joints_from_, joints_goal_;
   StopRamp stop_;
+  std::optional<ToolWay> way_;
+  bool judges_{false};  ///< its way, while it stands
+  Obstacles::Nearest in_the_way_;
   ToolGoal tool_goal_;
   Vector3 tool_from_{Vector3::Zero()}, tool_offset_{Vector3::Zero()};
   robotics::Matrix3 base_kept_{robotics::Matrix3::Identity()};
