@@ -84,6 +84,7 @@ std::optional<Lead::End> Lead::advance() noexcept {
   if (phase_ == Phase::Follows) end = unfit(limits_.load().distance);
   if (end) phase_ = Phase::Stops;
   Setpoints& setpoints = parts_.guidance.setpoints();
+  following_->keep_power(setpoints.power());
   setpoints.take(next());
   if (phase_ == Phase::Stops && following_->at_rest()) {
     setpoints.rest(following_->now().position);

@@ -18,7 +18,7 @@
 namespace hirosco::robot_arm {
 
 /// Whoever leads the arm over a real-time link, and whether it still goes along (docs/adr/0179). What is put out goes through Following, whatever is
-/// asked; who is lost, lets go, or asks for what no arm should do, is followed no more: it slows down within its limits, and stands.
+/// asked, and no faster than the joints' power may be; who is lost, lets go, or asks for what no arm should do, is followed no more: it slows down within its limits, and stands.
 /// Realtime: bounded, but begin(). Thread: the cycle, and the service loop while there is none.
 class Lead {
  public:

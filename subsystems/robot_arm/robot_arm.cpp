@@ -128,8 +128,8 @@ void RobotArm::measure(const Cycle& cycle) noexcept {
 // --- what comes of it, told ----------------------------------------------------------------------------------------------
 
 void RobotArm::advance() noexcept {
-  if (const auto end = lead_.advance()) tell(*end);
   guidance_.keep_power(model_.held(model_.payload()));
+  if (const auto end = lead_.advance()) tell(*end);
   const bool drove = torque_mode_.drives();
   torque_mode_.advance();
   if (drove && !torque_mode_.drives()) force_sensor_.arm(true);

@@ -135,6 +135,41 @@ TEST_F(RobotArmLead, GoesWhereItIsLedAndStandsWhereWhoeverLeadsItStands) {
   EXPECT_EQ(flown.rig.outcome(motion), "1 3 5:0001 7");
 }
 
+/// Led upwards, against its weight, with more power than it may: it is not stopped on its way, but behind, and there in the end.
+TEST_F(RobotArmLead, GoesSlowerForItsPowerAndIsNotStopped) {
+  robotics::Dynamics dynamics{flown.model, robotics::Base::Fixed};
+  dynamics.set_gravity({0, 0, -9.81});
+  dynamics.update({.q = start, .qd = JointVector::Zero(6)});
+  robotics::Coordinates held;
+  dynamics.bias(held);
+  constexpr double led_rad_s = 0.5;
+  const double limit_w = 0.6 * std::abs(held[1]) * led_rad_s;
+  ASSERT_GT(limit_w, 10);
+  const auto set = flown.ask("SET_POWER_LIMIT", {limit_w, 10'000});
+  cycle(3);
+  ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
+  ASSERT_EQ(asked("FOLLOW"), "1 3 7") << ::testing::PrintToString(flown.rig.explanations);
+  double most_w = 0;
+  const auto goes = [&] {
+    cycle();
+    const auto& measured = flown.plant.measured();
+    most_w = std::max(most_w, measured.torque.cwiseProduct(measured.velocity).cwiseAbs().sum());
+  };
+  told.velocity[1] = -led_rad_s;
+  for (int i = 0; i < 800; ++i) {
+    told.position[1] -= led_rad_s * 1e-3;
+    goes();
+  }
+  EXPECT_GT(place()[1], told.position[1] + 0.1) << "behind whoever leads";
+  told.velocity.setZero();
+  for (int i = 0; i < 6000; ++i) goes();
+  EXPECT_LT(flown.off(told.position), 1e-3);
+  EXPECT_LT(most_w, limit_w);
+  EXPECT_GT(most_w, 0.2 * limit_w);
+  EXPECT_EQ(flown.rig.events(1041) + flown.rig.events(lost) + flown.rig.events(unfit), 0);
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+}
+
 TEST_F(RobotArmLead, BeginsWithoutAJumpAndOnlyWhereItIsLedNearToWhereItIs) {
   cycle(500);
   told.position[3] += 0.2;

@@ -60,19 +60,35 @@ const Setpoint& Following::go_with(const JointVector& velocity) noexcept { retur
 
 const Setpoint& Following::slow_down() noexcept { return step(JointVector::Zero(place_.size())); }
 
+/// Within accelerations. While others still slow down, nobody gets faster than their power leaves.
+void Following::change_velocity(const JointVector& goal) noexcept {
+  const double pace = power_.share(goal);
+  JointVector next = velocity_;
+  for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    const double change = accelerations_[joint] * cycle_s_;
+    next[i] += std::clamp(pace * goal[i] - velocity_[i], -change, change);
+  }
+  const double share = power_.quickening_share(velocity_, next);
+  for (Eigen::Index i = 0; i < next.size(); ++i)
+    if (share < 1 && std::abs(next[i]) > std::abs(velocity_[i]))
+      next[i] = velocity_[i] + share * (next[i] - velocity_[i]);
+  velocity_ = next;
+}
+
 const Setpoint& Following::step(const JointVector& wanted) noexcept {
-  bool still = true;
+  JointVector goal = wanted;
   for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
     const auto i = static_cast<Eigen::Index>(joint);
     const JointBounds& its = bounds_[joint];
-    const double most = its.motion.velocity, change = accelerations_[joint] * cycle_s_;
+    const double most = its.motion.velocity;
     const double up = std::min(most, approach(std::max(0.0, its.highest - place_[i]), accelerations_[joint]));
     const double down = std::min(most, approach(std::max(0.0, place_[i] - its.lowest), accelerations_[joint]));
-    const double goal = std::clamp(wanted[i], -down, up);
-    velocity_[i] += std::clamp(goal - velocity_[i], -change, change);
-    place_[i] += velocity_[i] * cycle_s_;
-    still = still && velocity_[i] == 0;
+    goal[i] = std::clamp(wanted[i], -down, up);
   }
+  change_velocity(goal);
+  place_ += velocity_ * cycle_s_;
+  const bool still = velocity_.isZero(0);
   sum_ += velocity_ - velocities_[next_];
   since_turn_ += velocity_;
   velocities_[next_] = velocity_;

@@ -113,6 +113,55 @@ TEST_F(FollowingTest, RestsWithinTheTimesThatItsLimitsTakeAndStaysThere) {
   EXPECT_TRUE(following->now().velocity.isZero(0));
 }
 
+/// However it is led: from rest on, and while one joint takes over from another.
+TEST_F(FollowingTest, NeverNeedsMorePowerThanItMay) {
+  std::mt19937 random{11};
+  const auto any = [&](double least, double most) {
+    return std::uniform_real_distribution<double>{least, most}(random);
+  };
+  double most_share = 0;
+  for (int flight = 0; flight < 60; ++flight) {
+    cycle_s = std::array{0.0005, 0.001, 0.002, 0.01}[static_cast<std::size_t>(flight % 4)];
+    for (JointBounds& its : bounds) its.motion = {any(0.2, 10), any(0.1, 20), std::pow(10, any(0, 3))};
+    begin(vector_of(std::array{any(-1, 2), any(-5, 5)}));
+    const JointVector held = vector_of(std::array{any(-8, 8), any(-8, 8)});
+    const double limit_w = any(1, 20);
+    PowerPace power;
+    power.set(held, bounds, limit_w);
+    following->keep_power(power);
+    JointVector place = following->now().position, velocity = zeros;
+    for (int cycle = 0; cycle < 3000; ++cycle) {
+      if (any(0, 1) < 0.01) {
+        place = vector_of(std::array{any(-1.5, 2.5), any(-9, 9)});
+        velocity = vector_of(std::array{any(-11, 11), any(-11, 11)});
+      }
+      if (flight % 3 == 0) following->go_with(velocity);
+      else following->go_to(place, flight % 3 == 1 ? zeros : velocity);
+      ASSERT_NO_FATAL_FAILURE(keeps_limits()) << flight << " " << cycle;
+      double needed_w = 0;
+      for (Eigen::Index i = 0; i < 2; ++i)
+        needed_w += (std::abs(held[i]) + 0.3 * 10) * std::abs(following->now().velocity[i]);
+      most_share = std::max(most_share, needed_w / limit_w);
+      ASSERT_LE(needed_w, 0.8 * limit_w * (1 + 1e-9) + 1e-9) << flight << " " << cycle;
+    }
+  }
+  EXPECT_GT(most_share, 0.79) << "and all of it is there to be had";
+}
+
+TEST_F(FollowingTest, GoesAsEverWhereItsPowerSuffices) {
+  const JointVector there = vector_of(std::array{0.5, -0.3});
+  std::array<JointVector, 2> places;
+  for (const std::size_t limited : {0U, 1U}) {
+    begin(zeros);
+    PowerPace power;
+    power.set(vector_of(std::array{4.0, -4.0}), bounds, 100);
+    if (limited == 1) following->keep_power(power);
+    for (int cycle = 0; cycle < 300; ++cycle) following->go_to(there, zeros);
+    places[limited] = following->now().position;
+  }
+  EXPECT_EQ(places[0], places[1]);
+}
+
 /// There is room for so many cycles; who has less jerk than that takes accelerates less.
 TEST_F(FollowingTest, AcceleratesLessWhereTheJerkHasNoTimeForMore) {
   for (JointBounds& its : bounds) its.motion = {2, 20, 1};

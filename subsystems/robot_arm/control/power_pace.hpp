@@ -21,9 +21,23 @@ class PowerPace {
   }
   /// Of these rates; 1: with all of them.
   [[nodiscard]] double share(const JointVector& rates) const noexcept {
+    const double power_w = power(rates);
+    return power_w > planned_w_ ? planned_w_ / power_w : 1.0;
+  }
+  /// What these rates are taken to need.
+  [[nodiscard]] double power(const JointVector& rates) const noexcept {
     double power_w = 0;
     for (Eigen::Index i = 0; i < std::min(rates.size(), most_.size()); ++i) power_w += most_[i] * std::abs(rates[i]);
-    return power_w > planned_w_ ? planned_w_ / power_w : 1.0;
+    return power_w;
+  }
+  /// From rates `now` to `next`: of what joints get faster by, the share that leaves the power what it may be; others slow down in full.
+  [[nodiscard]] double quickening_share(const JointVector& now, const JointVector& next) const noexcept {
+    const double power_w = power(next);
+    if (!(power_w > planned_w_)) return 1;
+    double more_w = 0;
+    for (Eigen::Index i = 0; i < std::min(next.size(), most_.size()); ++i)
+      more_w += most_[i] * std::max(0.0, std::abs(next[i]) - std::abs(now[i]));
+    return more_w > 0 ? std::clamp(1 - (power_w - planned_w_) / more_w, 0.0, 1.0) : 1.0;
   }
 
  private:

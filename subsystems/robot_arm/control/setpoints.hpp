@@ -49,6 +49,8 @@ class Setpoints {
 
   /// From now on it goes no faster than this power permits while joints hold so much; on its path, where there is one.
   void keep_power(const JointVector& held, double limit_w) noexcept { power_.set(held, bounds_, limit_w); }
+  /// Likewise for whoever finds setpoints in its place.
+  [[nodiscard]] const PowerPace& power() const noexcept { return power_; }
 
   /// Moves on by one cycle.
   const Setpoint& advance() noexcept;
