@@ -9,8 +9,8 @@
 namespace hirosco::robot_arm {
 namespace {
 
-/// What brakes held is taken for something from outside until then: five times the filter's time of what acts from outside.
-constexpr double felt_after_s = 0.1;
+/// Until then drives may not yet give what they are told, and what brakes held would be taken for something from outside.
+constexpr double felt_after_s = 0.05;
 
 }  // namespace
 

@@ -32,8 +32,10 @@ class LimitWatch {
   /// Each cycle: what is to be told now; nothing mostly. `setpoint` null: nobody is to follow it.
   [[nodiscard]] std::optional<Finding> update(const JointVector* setpoint) noexcept;
 
-  /// Besides, each cycle: force at the tool, and work. `free`: no brakes hold it.
+  /// Besides, each cycle: force at the tool, and work. `free`: no brakes hold it, in whatever law and motion.
   [[nodiscard]] std::optional<WorkFinding> update_work(bool free) noexcept;
+  /// Brakes have just let it go: what the model feels by now is theirs.
+  [[nodiscard]] bool lets_go() const noexcept { return free_s_ > 0 && !feels(); }
   /// Of force and work, as they are set.
   [[nodiscard]] WorkLimits work_limits() const noexcept;
 

@@ -2,14 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/on_board_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hirosco::robot_arm {
+namespace {
+
+/// N m or N, of what fades.
+constexpr double nothing = 1e-9;
+
+}  // namespace
 
 void OnBoardModel::begin(double cycle_s) {
   const robotics::Model& model = parts_.known.model();
   dynamics_.emplace(model, robotics::Base::Fixed);
   observer_.emplace(model.joint_count(), cycle_s, observer_gain_per_s);
+  brakes_.setZero(model.joint_count());
+  fades_ = std::max(0.0, 1 - observer_gain_per_s * cycle_s);
   updated_ = false;
 }
 
@@ -28,6 +37,8 @@ void OnBoardModel::update() noexcept {
                    JointVector::Zero(known.model().joint_count()), of_payload);
   observer_->update(measured, *dynamics_, of_payload);
   parts_.parameters.external_torque.store(joints_of(observer_->external()));
+  brakes_ *= fades_;
+  if (brakes_.cwiseAbs().maxCoeff() < nothing) brakes_.setZero();
   tell_work();
   updated_ = true;
 }
@@ -37,7 +48,7 @@ void OnBoardModel::update() noexcept {
 void OnBoardModel::tell_work() noexcept {
   const Measured& measured = parts_.drives.measured();
   lever_.update(*dynamics_, parts_.known.tip(), pose_of(parts_.parameters.tool_place.load()).position);
-  const Vector3 force = lever_.force(observer_->external());
+  const Vector3 force = lever_.force(observer_->external() - brakes_);
   parts_.parameters.tool_force_n.store({force.x(), force.y(), force.z()});
   parts_.parameters.tool_power_w.store(std::abs(force.dot(lever_.velocity(measured.velocity))));
   // In this way what is no number stays none, and is beyond every limit.
@@ -47,6 +58,7 @@ void OnBoardModel::tell_work() noexcept {
 
 void OnBoardModel::forget_external() noexcept {
   if (observer_) observer_->reset();
+  brakes_.setZero();
 }
 
 Payload OnBoardModel::payload() const noexcept {

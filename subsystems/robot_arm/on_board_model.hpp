@@ -35,6 +35,8 @@ class OnBoardModel {
   [[nodiscard]] bool updated() const noexcept { return updated_; }
   /// Something else hangs at the tool: what acts from outside is felt anew.
   void forget_external() noexcept;
+  /// What is felt by now brakes held: of the force at the tool it is none, and what the filter still has of it fades. Contacts count it as ever.
+  void forget_brakes() noexcept { brakes_ = external(); }
 
   /// Of update(), gravity included.
   [[nodiscard]] robotics::Dynamics& dynamics() noexcept { return *dynamics_; }
@@ -52,6 +54,8 @@ class OnBoardModel {
   std::optional<robotics::Dynamics> dynamics_;
   std::optional<MomentumObserver> observer_;
   ToolLever lever_;
+  JointVector brakes_;  ///< what the observer still has of them
+  double fades_{1};  ///< to, in a cycle: as the observer forgets
   robotics::State state_;
   bool updated_{false};
 };

@@ -189,6 +189,7 @@ void RobotArm::watch(bool follows) noexcept {
 
 void RobotArm::watch_work(bool free) noexcept {
   const auto found = limits_.update_work(free);
+  if (limits_.lets_go()) model_.forget_brakes();
   if (!found) return;
   raise(found->what == Work::ToolForce ? force_exceeded_
         : found->what == Work::Power   ? power_exceeded_

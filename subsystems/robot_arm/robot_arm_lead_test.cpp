@@ -142,7 +142,7 @@ TEST_F(RobotArmLead, GoesSlowerForItsPowerAndIsNotStopped) {
   dynamics.update({.q = start, .qd = JointVector::Zero(6)});
   robotics::Coordinates held;
   dynamics.bias(held);
-  constexpr double led_rad_s = 0.5;
+  constexpr double led_rad_s = 0.6;
   const double limit_w = 0.6 * std::abs(held[1]) * led_rad_s;
   ASSERT_GT(limit_w, 10);
   const auto set = flown.ask("SET_POWER_LIMIT", {limit_w, 10'000});
@@ -156,7 +156,7 @@ TEST_F(RobotArmLead, GoesSlowerForItsPowerAndIsNotStopped) {
     most_w = std::max(most_w, measured.torque.cwiseProduct(measured.velocity).cwiseAbs().sum());
   };
   told.velocity[1] = -led_rad_s;
-  for (int i = 0; i < 800; ++i) {
+  for (int i = 0; i < 700; ++i) {
     told.position[1] -= led_rad_s * 1e-3;
     goes();
   }

@@ -159,5 +159,123 @@ TEST_F(RobotArmWork, BroughtUpAnewUnderALowLimitItIsNotStoppedForItsOwnWeight) {
   EXPECT_EQ(flown.rig.inhibited(), 0u);
 }
 
+/// Who leans on it when it is let go is felt before the filter would have forgotten what brakes held.
+TEST_F(RobotArmWork, IsWatchedSoonAfterItsBrakesHaveLetItGo) {
+  ASSERT_EQ(asked("SET_CONTACT", {0, 0.3}), "1 3 7");
+  ASSERT_EQ(asked("SET_FORCE_LIMIT", {60}), "1 3 7");
+  flown.command(State::SafeOperational);
+  flown.cycle(200);
+  flown.command(State::Operational);
+  flown.outside = at_tool({0, 90, 0});
+  int cycles = 0;
+  for (; cycles < 200 && flown.rig.events(1040) == 0; ++cycles) flown.cycle();
+  EXPECT_LE(cycles, 85);
+  expect_stopped(1040);
+}
+
+/// Brakes hold more than the limit of its weight there, and drives nothing.
+TEST_F(RobotArmWork, IsNotToldOfItsOwnBrakesWhereNoTorqueReachesADrive) {
+  ASSERT_EQ(asked("SET_FORCE_LIMIT", {20}), "1 3 7");
+  for (const State state : {State::SafeOperational, State::ErrorOperational}) {
+    flown.command(state);
+    flown.told = flown.plant.measured();
+    flown.told->torque.setZero();
+    for (int i = 0; i < 300; ++i) {
+      flown.cycle();
+      ASSERT_NE(flown.mode, DeviceMode::Active) << to_text(state);
+      ASSERT_THAT(flown.commanded, Each(0.0)) << to_text(state);
+    }
+    EXPECT_EQ(flown.rig.events(1040), 0) << to_text(state);
+  }
+}
+
+/// What an arm may be about while torques reach its drives.
+struct About {
+  const char* what;
+  void (*begin)(RobotArmWork& arm);
+};
+struct RobotArmWorkWhile : RobotArmWork, ::testing::WithParamInterface<About> {
+  /// Somebody holds the first joint up until it is felt, and is gone.
+  static void meet(RobotArmWork& arm, double reaction) {
+    static_cast<void>(arm.flown.move_j(arm.goal, 0.3));
+    arm.flown.cycle(300);
+    ASSERT_EQ(arm.asked("SET_CONTACT", {reaction, 0.3}), "1 3 7");
+    arm.flown.outside[0] = 70;
+    for (int i = 0; i < 200 && arm.flown.rig.events(1025) == 0; ++i) arm.flown.cycle();
+    EXPECT_EQ(arm.flown.rig.events(1025), 1);
+    arm.flown.outside.setZero();
+    arm.flown.cycle(70);
+    ASSERT_EQ(arm.asked("SET_CONTACT", {0, 0.3}), "1 3 7");
+  }
+  static void brake(RobotArmWork& arm, const char* function) {
+    static_cast<void>(arm.flown.move_j(arm.goal, 1));
+    arm.flown.cycle(500);
+    static_cast<void>(arm.flown.rig.call(function));
+    arm.flown.cycle(5);
+  }
+};
+
+TEST_P(RobotArmWorkWhile, ItDoesWhateverMoreForceThanItsLimitStopsIt) {
+  ASSERT_EQ(asked("SET_CONTACT", {0, 0.3}), "1 3 7");
+  flown.cycle(100);
+  GetParam().begin(*this);
+  ASSERT_EQ(asked("SET_FORCE_LIMIT", {60}), "1 3 7");
+  ASSERT_EQ(flown.mode, DeviceMode::Active);
+  ASSERT_EQ(flown.rig.events(1040), 0);
+  flown.outside = at_tool({0, 90, 0});
+  for (int i = 0; i < 100 && flown.rig.events(1040) == 0; ++i) flown.cycle();
+  expect_stopped(1040);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, RobotArmWorkWhile,
+    ::testing::Values(About{"Holds", [](RobotArmWork&) {}},
+                      About{"Moves",
+                            [](RobotArmWork& arm) {
+                              static_cast<void>(arm.flown.move_j(arm.goal, 0.3));
+                              arm.flown.cycle(300);
+                            }},
+                      About{"JogsItsJoints",
+                            [](RobotArmWork& arm) {
+                              static_cast<void>(arm.flown.ask("JOG_J", {0.2, 0, 0, 0, 0, 0, 1}));
+                              arm.flown.cycle(300);
+                            }},
+                      About{"JogsItsTool",
+                            [](RobotArmWork& arm) {
+                              static_cast<void>(arm.flown.ask("JOG_L", {0, 0.05, 0, 0, 0, 0, 1}));
+                              arm.flown.cycle(300);
+                            }},
+                      About{"GoesBack",
+                            [](RobotArmWork& arm) {
+                              static_cast<void>(arm.fly_to(arm.goal));
+                              static_cast<void>(arm.flown.ask("RETREAT", {0.5}));
+                              arm.flown.cycle(200);
+                            }},
+                      About{"IsSoftInItsJoints",
+                            [](RobotArmWork& arm) {
+                              EXPECT_EQ(arm.asked("IMPEDANCE_J", {200, 200, 100, 20, 20, 20, 0.7}), "1 3 7");
+                              arm.flown.cycle(200);
+                            }},
+                      About{"IsSoftAtItsTool",
+                            [](RobotArmWork& arm) {
+                              EXPECT_EQ(arm.asked("IMPEDANCE_L", {400, 20, 0.7}), "1 3 7");
+                              arm.flown.cycle(200);
+                            }},
+                      About{"IsDriven",
+                            [](RobotArmWork& arm) {
+                              EXPECT_THAT(arm.asked("TORQUE_J", {3, 0, 0, 0, 0, 0, 1}), StartsWith("1 3"));
+                              arm.flown.cycle(100);
+                            }},
+                      About{"Floats",
+                            [](RobotArmWork& arm) {
+                              RobotArmWorkWhile::meet(arm, 2);
+                              EXPECT_THAT(arm.asked("MOVE_J", {0, 0, 0, 0, 0, 0, 0.1}), StartsWith("1 4:800c"));
+                            }},
+                      About{"StandsBehindAContact", [](RobotArmWork& arm) { RobotArmWorkWhile::meet(arm, 1); }},
+                      About{"BacksOffFromAContact", [](RobotArmWork& arm) { RobotArmWorkWhile::meet(arm, 3); }},
+                      About{"BrakesForHold", [](RobotArmWork& arm) { RobotArmWorkWhile::brake(arm, "HOLD"); }},
+                      About{"BrakesForStop", [](RobotArmWork& arm) { RobotArmWorkWhile::brake(arm, "STOP"); }}),
+    [](const ::testing::TestParamInfo<About>& about) { return about.param.what; });
+
 }  // namespace
 }  // namespace hirosco
