@@ -80,7 +80,7 @@ TEST(ToolWay, EndsWhereTheLawTakesTheJointsInEachLawAndDirection) {
     }
   std::cout << "  a joint is off by " << 1e3 * most << " mrad at most, by another law's base by " << 1e3 * laws_apart
             << " mrad at least\n";
-  EXPECT_LT(most, 0.03);
+  EXPECT_LT(most, 0.01);
   EXPECT_GT(laws_apart, most) << "how the base gives way is in it";
 }
 
