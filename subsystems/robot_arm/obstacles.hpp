@@ -59,6 +59,10 @@ class Obstacles {
                                                  double noise_m) noexcept;
   /// Of a posture on his way, that is judged before he goes: likewise.
   [[nodiscard]] std::optional<Nearest> near_at(const JointVector& posture, double noise_m) noexcept;
+  /// Of watch_way(): it comes by there on its way to a stop that is under way.
+  void pass(const JointVector& now) noexcept {
+    if (clearance_->keeps_limits(now)) clear_at_ = now;
+  }
   /// Of watch_way(): it stands there, near or not, and may go away.
   void stand_at(const JointVector& position) noexcept { clear_at_ = position; }
   /// Each cycle: who would meet, if it is not braked now. Who is too near already may go away.
