@@ -8,37 +8,47 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <type_traits>
+#include <vector>
 
 namespace hirosco {
 
 /// Distance that keeps two atomics from sharing a cache line.
 inline constexpr std::size_t cache_line_octets = 64;
 
-/// Queue of N values from one thread to one other. Each end keeps its own copy of the other end's position and looks
-/// again only when that copy says full (or empty), so that an undisturbed transfer moves one cache line.
-/// Realtime: wait-free, allocates nothing. Thread: one producer, one consumer; size() and dropped() any.
-template <class T, std::size_t N>
+/// Queue of N values from one thread to one other; without N of as many as are said when it is made. Each end keeps its
+/// own copy of the other end's position and looks again only when that copy says full (or empty), so that an undisturbed
+/// transfer moves one cache line.
+/// Realtime: wait-free, allocates nothing once constructed. Thread: one producer, one consumer; size() and dropped() any.
+template <class T, std::size_t N = std::dynamic_extent>
 class SpscRing {
+  static constexpr bool sized = N != std::dynamic_extent;
   static_assert(std::is_trivially_copyable_v<T>, "values are copied between threads");
-  static_assert(std::has_single_bit(N), "the length is a power of two");
+  static_assert(!sized || std::has_single_bit(N), "the length is a power of two");
 
  public:
-  SpscRing() = default;
+  SpscRing()
+    requires sized
+  = default;
+  /// Room for `length` values, at least one. Blocks: allocates.
+  explicit SpscRing(std::size_t length)
+    requires(!sized)
+      : slots_(length != 0 ? length : 1) {}
   SpscRing(const SpscRing&) = delete;
   SpscRing& operator=(const SpscRing&) = delete;
 
   /// False, and one more dropped(), when full. Thread: producer.
   bool try_push(const T& value) noexcept {
     const std::uint64_t head = producer_.position.load(std::memory_order_relaxed);
-    if (head - producer_.other == N) {
+    if (head - producer_.other == capacity()) {
       producer_.other = consumer_.position.load(std::memory_order_acquire);
-      if (head - producer_.other == N) {
+      if (head - producer_.other == capacity()) {
         dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
         return false;
       }
     }
-    slots_[head % N] = value;
+    slots_[head % capacity()] = value;
     producer_.position.store(head + 1, std::memory_order_release);
     return true;
   }
@@ -50,7 +60,7 @@ class SpscRing {
       consumer_.other = producer_.position.load(std::memory_order_acquire);
       if (tail == consumer_.other) return false;
     }
-    out = slots_[tail % N];
+    out = slots_[tail % capacity()];
     consumer_.position.store(tail + 1, std::memory_order_release);
     return true;
   }
@@ -67,10 +77,13 @@ class SpscRing {
   [[nodiscard]] std::size_t size() const noexcept {
     const std::uint64_t tail = consumer_.position.load(std::memory_order_acquire);
     const std::uint64_t head = producer_.position.load(std::memory_order_acquire);
-    return head < tail ? 0 : static_cast<std::size_t>(head - tail < N ? head - tail : N);
+    return head < tail ? 0 : static_cast<std::size_t>(head - tail < capacity() ? head - tail : capacity());
   }
   [[nodiscard]] bool empty() const noexcept { return size() == 0; }
-  [[nodiscard]] static constexpr std::size_t capacity() noexcept { return N; }
+  [[nodiscard]] constexpr std::size_t capacity() const noexcept {
+    if constexpr (sized) return N;
+    else return slots_.size();
+  }
   /// Values refused because the ring was full.
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
@@ -84,7 +97,8 @@ class SpscRing {
   End producer_;
   End consumer_;
   alignas(cache_line_octets) std::atomic<std::uint64_t> dropped_{0};
-  alignas(cache_line_octets) std::array<T, N> slots_{};
+  // Never sized anew: positions are places in it.
+  alignas(cache_line_octets) std::conditional_t<sized, std::array<T, sized ? N : 0>, std::vector<T>> slots_{};
 };
 
 }  // namespace hirosco

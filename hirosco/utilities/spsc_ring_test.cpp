@@ -33,6 +33,19 @@ TEST(SpscRing, HoldsItsFullLengthAndCountsWhatItRefuses) {
   EXPECT_EQ(ring.size(), ring.capacity());
 }
 
+TEST(SpscRing, HoldsAsManyAsWereSaidWhenItWasMade) {
+  SpscRing<int> ring{3};
+  EXPECT_EQ(ring.capacity(), 3U);
+  for (int lap = 0; lap < 5; ++lap) {
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(ring.try_push(10 * lap + i));
+    EXPECT_FALSE(ring.try_push(99));
+    EXPECT_EQ(ring.size(), 3U);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(ring.try_pop(), 10 * lap + i);
+    EXPECT_EQ(ring.try_pop(), std::nullopt);
+  }
+  EXPECT_EQ(ring.dropped(), 5U);
+}
+
 TEST(SpscRing, LeavesTheValueAloneWhenEmpty) {
   SpscRing<int, 2> ring;
   int value = 42;

@@ -68,6 +68,12 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
            return x.device == y.device && x.output == y.output && x.most == y.most;
          });
 }
+[[nodiscard]] bool same_resources(const Resources& a, const Resources& b) {
+  return a.most == b.most && a.waiting == b.waiting && a.queues == b.queues && a.warning_percent == b.warning_percent &&
+         std::ranges::equal(a.pools, b.pools, [](const Pool& x, const Pool& y) {
+           return x.block_octets == y.block_octets && x.blocks == y.blocks;
+         });
+}
 [[nodiscard]] bool same_loop(const ServiceLoop& a, const ServiceLoop& b) {
   return a.period == b.period && a.priority == b.priority && a.budget == b.budget && a.queue == b.queue;
 }
@@ -350,13 +356,7 @@ class Comparison {
           [&](const Configuration& a, const Configuration& b) { configuration(fresh, a, b); });
     unless(flown.hang.realtime == hang.realtime && flown.hang.reduced == hang.reduced, {}, "when it counts as hanging",
            guard_why);
-    unless(flown.resources.most == resources.most && flown.resources.waiting == resources.waiting &&
-               flown.resources.warning_percent == resources.warning_percent &&
-               std::ranges::equal(flown.resources.pools, resources.pools,
-                                  [](const Pool& a, const Pool& b) {
-                                    return a.block_octets == b.block_octets && a.blocks == b.blocks;
-                                  }),
-           {}, "its resources", limit_why);
+    unless(same_resources(flown.resources, resources), {}, "its resources", limit_why);
   }
 
   // --- what the configuration in force was made of ---------------------------------------------------------------------

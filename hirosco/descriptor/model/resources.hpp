@@ -26,8 +26,16 @@ enum class Resource : std::uint8_t {
   WaitingAnswers = 8,
   WaitingEvents = 9,
   WaitingHousekeeping = 10,
+  // Queues between the loops of a subsystem (docs/adr/0188); its own likewise.
+  CycleCommands = 11,
+  CycleAnswers = 12,  ///< octets, like those of every ring of reports
+  CycleEvents = 13,
+  CycleHousekeeping = 14,
+  LoopRequests = 15,  ///< of the loop of services that is fullest, like the next
+  LoopReports = 16,
 };
-inline constexpr std::size_t counted_resources = 11;  ///< those among them of which there is no amount
+inline constexpr std::size_t counted_resources = 17;  ///< those among them of which there is no amount
+inline constexpr std::size_t queues_of_subsystem = 6;  ///< from CycleCommands on
 
 /// By Resource; empty = not declared, so not limited.
 using Amounts = std::array<std::optional<std::uint32_t>, counted_resources>;
@@ -62,6 +70,33 @@ inline constexpr std::uint32_t default_waiting = 1024;
   return octets;
 }
 
+/// The queues between the loops of a subsystem, as they lie in memory (docs/adr/0188). Rings of octets are powers of two.
+struct Queues {
+  std::uint32_t commands{64};  ///< from the service loop to the cycle
+  std::uint32_t answers_octets{32U << 10};  ///< from the cycle to the service loop, like the next two
+  std::uint32_t events_octets{32U << 10};
+  std::uint32_t housekeeping_octets{64U << 10};
+  std::uint32_t loop_reports_octets{64U << 10};  ///< from each loop of services of its own to the service loop
+  bool operator==(const Queues&) const = default;
+};
+/// What a command and a record take at most: who makes them says so where it is compiled.
+inline constexpr std::uint32_t command_octets = 288, report_head_octets = 24, reason_octets = 80;
+/// Of a record in a ring: its length, its octets, and what fills them up to eight.
+[[nodiscard]] constexpr std::uint64_t octets_of_record(std::uint64_t octets) noexcept {
+  constexpr std::uint64_t length_octets = 8, grain = 8;
+  return length_octets + (octets + grain - 1) / grain * grain;
+}
+/// Room for so many requests of the longest packet.
+[[nodiscard]] constexpr std::uint64_t loop_requests_octets(std::uint32_t queue) noexcept {
+  constexpr std::uint64_t longest_packet = 4096, head = 4;
+  // One more: where a ring ends the next record may not fit.
+  return (std::uint64_t{queue} + 1) * octets_of_record(head + longest_packet);
+}
+[[nodiscard]] constexpr std::uint64_t octets_of(const Queues& queues) noexcept {
+  return std::uint64_t{queues.commands} * command_octets + queues.answers_octets + queues.events_octets +
+         queues.housekeeping_octets;
+}
+
 inline constexpr std::size_t most_pools = 8;
 inline constexpr std::uint32_t default_warning_percent = 75;
 
@@ -70,6 +105,7 @@ struct Resources {
   Amounts most{};
   std::vector<Pool> pools;  ///< by ascending block size
   Waiting waiting{default_waiting, default_waiting, default_waiting};
+  Queues queues;
   std::uint32_t warning_percent{default_warning_percent};  ///< of a limit or pool: where its use becomes an event
 };
 
@@ -89,6 +125,12 @@ struct EnumTexts<descriptor::Resource> {
                                                                   {Files, "files"},
                                                                   {WaitingAnswers, "answers that wait"},
                                                                   {WaitingEvents, "events that wait"},
-                                                                  {WaitingHousekeeping, "housekeeping that waits"}});
+                                                                  {WaitingHousekeeping, "housekeeping that waits"},
+                                                                  {CycleCommands, "commands to the cycle"},
+                                                                  {CycleAnswers, "answers of the cycle"},
+                                                                  {CycleEvents, "events of the cycle"},
+                                                                  {CycleHousekeeping, "housekeeping of the cycle"},
+                                                                  {LoopRequests, "requests to a service loop"},
+                                                                  {LoopReports, "reports of a service loop"}});
 };
 }  // namespace hirosco

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "hirosco/descriptor/read/detail/mission_parts.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
@@ -19,6 +20,9 @@ constexpr std::uint64_t most_pool_octets = std::uint64_t{1} << 31;
 constexpr std::int64_t least_descriptors = 24;
 /// Messages of one kind: enough for the answers to a few telecommands, and few enough to fit into the memory of a process.
 constexpr std::int64_t least_waiting = 128, most_waiting = 65'536;
+/// To the cycle: enough to bring it up. A ring of octets takes the longest packet by half of itself (utilities/record_ring.hpp).
+constexpr std::int64_t least_commands = 16, most_commands = 1024;
+constexpr std::int64_t least_ring_kb = 16, most_ring_kb = 4096;
 /// What the framework itself starts: service loop and cycle.
 constexpr std::int64_t least_threads = 2;
 
@@ -65,6 +69,18 @@ void read_resources(const xml::Element& element, Resources& resources, Problems&
     return attributes.integer_or<std::uint32_t>(name, least_waiting, most_waiting, default_waiting);
   };
   resources.waiting = {waiting("waiting_answers"), waiting("waiting_events"), waiting("waiting_housekeeping")};
+  Queues& queues = resources.queues;
+  queues.commands =
+      attributes.integer_or<std::uint32_t>("cycle_commands", least_commands, most_commands, queues.commands);
+  // As large as they are in memory: positions in a ring are cut out of a number.
+  const auto ring = [&](const char* name, std::uint32_t otherwise) {
+    constexpr std::uint32_t kb = 1024;
+    return std::bit_ceil(attributes.integer_or<std::uint32_t>(name, least_ring_kb, most_ring_kb, otherwise / kb)) * kb;
+  };
+  queues.answers_octets = ring("cycle_answers_kB", queues.answers_octets);
+  queues.events_octets = ring("cycle_events_kB", queues.events_octets);
+  queues.housekeeping_octets = ring("cycle_housekeeping_kB", queues.housekeeping_octets);
+  queues.loop_reports_octets = ring("loop_reports_kB", queues.loop_reports_octets);
   each_child(element, problems,
              {{"Pool", [&](const auto& pool) { read_pool(pool, resources.pools, problems); }, most_pools}});
   std::ranges::sort(resources.pools, {}, &Pool::block_octets);
@@ -73,12 +89,8 @@ void read_resources(const xml::Element& element, Resources& resources, Problems&
   const auto memory_kb = amount_of(resources.most, Resource::Memory);
   const std::uint64_t limit = memory_kb ? std::uint64_t{*memory_kb} * 1024 : most_pool_octets;
   if (octets > limit)
-    return problems.add(element, "E0240", fmt::format("the pools take {} octets together", octets),
-                        fmt::format("at most {}{}", limit, memory_kb ? ", the memory that it says" : ""));
-  if (const std::uint64_t all = octets + octets_of(resources.waiting); memory_kb && all > limit)
-    problems.add(element, "E0359",
-                 fmt::format("the pools and what may wait for the supervisor take {} octets together", all),
-                 fmt::format("at most {}, the memory that it says: fewer waiting messages, or more memory_kB", limit));
+    problems.add(element, "E0240", fmt::format("the pools take {} octets together", octets),
+                 fmt::format("at most {}{}", limit, memory_kb ? ", the memory that it says" : ""));
 }
 
 void read_resources(const xml::Element& element, Mission& mission, Problems& problems) {

@@ -10,6 +10,7 @@
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/subsystem/author/states.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"
+#include "hirosco/subsystem/cycle/queue_fill.hpp"
 #include "hirosco/utilities/record_ring.hpp"
 #include "hirosco/utilities/spsc_ring.hpp"
 
@@ -32,7 +33,7 @@ enum class CommandKind : std::uint8_t {
   Reconfigure,    ///< go over to another configuration without a break (adr 0096)
 };
 
-/// Service loop -> cycle.
+/// Service loop -> cycle. What it and a report take is reckoned with where a descriptor is read (docs/adr/0188).
 struct CycleCommand {
   CommandKind kind{};
   std::uint16_t index{0};
@@ -41,6 +42,7 @@ struct CycleCommand {
   Reconfiguration* reconfiguration{nullptr};
   pus::ArgumentData arguments{};
 };
+static_assert(sizeof(CycleCommand) <= descriptor::command_octets);
 
 enum class ReportKind : std::uint8_t {
   Housekeeping,   ///< payload: source data of TM[3,25], `index` the structure id
@@ -75,6 +77,7 @@ struct AuthorsError {
     }
   }
 };
+static_assert(sizeof(AuthorsError) <= descriptor::reason_octets);
 
 /// Cycle -> service loop; a payload may follow in the same record.
 struct CycleReport {
@@ -84,15 +87,43 @@ struct CycleReport {
   pus::Request request{};
   AttachedLink* link{nullptr};
 };
+static_assert(sizeof(CycleReport) <= descriptor::report_head_octets);
 
-/// Commands and reports between the loops of one subsystem. Three rings of reports, so that none is crowded out by
-/// another kind: whatever an author raises, and however much housekeeping is asked for, who waits for an answer gets it.
+/// Commands and reports between the loops of one subsystem, as large as its descriptor says. Three rings of reports, so that none is
+/// crowded out by another kind: whatever an author raises, and however much housekeeping is asked for, who waits for an answer gets it.
 struct LoopRings {
-  LoopRings() : answers{32 * 1024}, events{32 * 1024}, housekeeping{64 * 1024} {}
-  SpscRing<CycleCommand, 64> commands;
+  explicit LoopRings(const descriptor::Queues& sizes = {})
+      : commands{sizes.commands},
+        answers{sizes.answers_octets},
+        events{sizes.events_octets},
+        housekeeping{sizes.housekeeping_octets} {}
+  /// False: the cycle has not taken those before it.  Thread: the service loop.
+  [[nodiscard]] bool command(const CycleCommand& wanted) noexcept {
+    const bool taken = commands.try_push(wanted);
+    commands_mark.note(commands.size(), commands.dropped(), commands.capacity());
+    return taken;
+  }
+  /// Before reports are taken, when most of them wait.  Thread: the service loop.
+  void look() noexcept {
+    answers_mark.note(answers.used(), lost_answers(), answers.capacity());
+    events_mark.note(events.used(), lost_events(), events.capacity());
+    housekeeping_mark.note(housekeeping.used(), housekeeping.dropped(), housekeeping.capacity());
+  }
+  /// Since this was asked last.  Thread: the service loop.
+  [[nodiscard]] QueueFills take_fills() noexcept {
+    look();
+    commands_mark.note(commands.size(), commands.dropped(), commands.capacity());
+    const auto fill = [](FillMark& mark, std::size_t room) {
+      return QueueFill{mark.take(), static_cast<std::uint32_t>(room)};
+    };
+    return {fill(commands_mark, commands.capacity()), fill(answers_mark, answers.capacity()),
+            fill(events_mark, events.capacity()), fill(housekeeping_mark, housekeeping.capacity())};
+  }
+  SpscRing<CycleCommand> commands;
   RecordRing answers;  ///< somebody waits for them: at most two for each command, progress, and framework events
   RecordRing events;  ///< the author's
   RecordRing housekeeping;
+  FillMark commands_mark, answers_mark, events_mark, housekeeping_mark;  ///< the service loop's
   // Written by the cycle, besides what the rings count themselves: what may not take the last half of one.
   std::atomic<std::uint64_t> lost_progress{0};
   std::atomic<std::uint64_t> lost_remarks{0};

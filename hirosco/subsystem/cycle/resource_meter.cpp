@@ -53,9 +53,22 @@ void ResourceMeter::note_waiting(const descriptor::Waiting& most) noexcept {
     note(static_cast<Resource>(static_cast<std::size_t>(Resource::WaitingAnswers) + i), most[i]);
 }
 
+void ResourceMeter::note_queues(const QueueFills& fills) noexcept {
+  for (std::size_t i = 0; i < fills.size(); ++i) {
+    if (fills[i].room == 0) continue;
+    queue_rooms_[i] = fills[i].room;
+    note(static_cast<Resource>(static_cast<std::size_t>(Resource::CycleCommands) + i), fills[i].most);
+    const std::uint8_t percent = fills[i].percent();
+    queues_[i].store(percent, std::memory_order_relaxed);
+    if (percent > queues_high_[i].load(std::memory_order_relaxed))
+      queues_high_[i].store(percent, std::memory_order_relaxed);
+  }
+}
+
 std::optional<std::uint32_t> ResourceMeter::limit_of(Resource resource) const noexcept {
   if (built_with_sanitizer && resource == Resource::Memory) return std::nullopt;
   if (resource < Resource::WaitingAnswers) return amount_of(declared_.most, resource);
+  if (resource >= Resource::CycleCommands) return queue_rooms_[place_of(resource)];
   return declared_.waiting[static_cast<std::size_t>(resource) - static_cast<std::size_t>(Resource::WaitingAnswers)];
 }
 
@@ -113,6 +126,10 @@ ResourceStatistics ResourceMeter::statistics() const noexcept {
     const auto resource = static_cast<Resource>(static_cast<std::size_t>(Resource::WaitingAnswers) + i);
     all.waiting.now[i] = small(now(resource));
     all.waiting.high[i] = small(high(resource));
+  }
+  for (std::size_t i = 0; i < queues_.size(); ++i) {
+    all.waiting.queues[i] = queues_[i].load(std::memory_order_relaxed);
+    all.waiting.queues_high[i] = queues_high_[i].load(std::memory_order_relaxed);
   }
   if (pools_ == nullptr) return all;
   for (std::size_t i = 0; i < pools_->size(); ++i) {

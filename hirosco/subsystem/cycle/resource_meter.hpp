@@ -13,6 +13,7 @@
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/resource/pool_resource.hpp"
 #include "hirosco/resource/quota.hpp"
+#include "hirosco/subsystem/cycle/queue_fill.hpp"
 #include "hirosco/utilities/os/process_usage.hpp"
 #include "hirosco/utilities/processor_share.hpp"
 #include "hirosco/utilities/time.hpp"
@@ -46,6 +47,9 @@ struct ResourceStatistics {
   struct Waiting {
     std::array<std::uint16_t, 3> now{};
     std::array<std::uint16_t, 3> high{};
+    /// Of what each holds, in percent, by Resource from CycleCommands on: likewise.
+    std::array<std::uint8_t, descriptor::queues_of_subsystem> queues{};
+    std::array<std::uint8_t, descriptor::queues_of_subsystem> queues_high{};
   } waiting{};
 };
 
@@ -80,6 +84,8 @@ class ResourceMeter {
   void note_held() noexcept;
   /// How many messages have waited at once since this was said last.  Thread: service loop.
   void note_waiting(const descriptor::Waiting& most) noexcept;
+  /// How full its queues have been since this was said last.  Thread: service loop.
+  void note_queues(const QueueFills& fills) noexcept;
   /// Tells each crossing once.  Realtime: bounded. Thread: service loop.
   void tell_crossings(const std::function<void(const Crossing&)>& tell);
 
@@ -104,6 +110,8 @@ class ResourceMeter {
   Quota ports_, files_;
   std::unique_ptr<BlockPools> pools_;
   PoolResource resource_;
+  std::array<std::uint32_t, descriptor::queues_of_subsystem> queue_rooms_{};  ///< the service loop's
+  std::array<std::atomic<std::uint8_t>, descriptor::queues_of_subsystem> queues_{}, queues_high_{};  ///< percent
   std::string problem_;
 };
 

@@ -47,8 +47,7 @@ std::expected<void, pus::FailureNotice> Bumpless::command(const descriptor::Conf
     prepared->sampler = parts_.housekeeping.prepared_sampler();
   }
   change_ = std::move(prepared);
-  if (!parts_.rings.commands.try_push(
-          {.kind = CommandKind::Reconfigure, .request = request, .reconfiguration = change_.get()})) {
+  if (!parts_.rings.command({.kind = CommandKind::Reconfigure, .request = request, .reconfiguration = change_.get()})) {
     change_.reset();
     const LoopsAtRest at_rest{parts_.loops.all()};
     parts_.housekeeping.drop_prepared();

@@ -24,6 +24,7 @@ namespace {
 }  // namespace
 
 void CycleReports::take() {
+  parts_.rings.look();
   const auto head_of = [](Octets record) {
     CycleReport head;
     std::memcpy(&head, record.data(), sizeof head);

@@ -33,6 +33,7 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescr
       platform_{platform},
       channel_{channel},
       vital_{vital},
+      rings_{descriptor_.resources.queues},
       orders_{vital},
       reports_{descriptor_, platform_.clock, channel_, vital},
       resources_{descriptor_.resources},
@@ -154,6 +155,11 @@ void GenericSubsystem::look_at_resources(TimePoint now) {
     if (const auto usage = platform_.usage()) resources_.note(*usage, now);
   resources_.note_held();
   resources_.note_waiting(reports_.take_most_waiting());
+  QueueFills queues = rings_.take_fills();
+  const OwnLoop::Fills of_loops = loops_.take_fills();
+  queues[place_of(descriptor::Resource::LoopRequests)] = of_loops.requests;
+  queues[place_of(descriptor::Resource::LoopReports)] = of_loops.reports;
+  resources_.note_queues(queues);
   resources_.tell_crossings([this](const ResourceMeter::Crossing& found) {
     const std::array<double, 5> arguments{static_cast<double>(found.resource), static_cast<double>(found.block_octets),
                                           static_cast<double>(found.used), static_cast<double>(found.limit),
@@ -183,7 +189,7 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::Func
     return std::unexpected{pus::FailureNotice{pus::FailureCode::ExecutionError}};
   CycleCommand command{.kind = CommandKind::Function, .index = call.function, .request = request};
   command.arguments = call.arguments;
-  if (!calls_.have_room() || !rings_.commands.try_push(command))
+  if (!calls_.have_room() || !rings_.command(command))
     return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
   calls_.handed_over();
   return {};
@@ -192,7 +198,7 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::Func
 std::expected<void, pus::FailureNotice> GenericSubsystem::begin_self_test(const pus::Request& request) {
   if (at_.state != State::SafeOperational || at_.way) return std::unexpected{at_.wrong_state()};
   if (self_tests_.running()) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
-  if (!rings_.commands.try_push({.kind = CommandKind::SelfTest, .request = request}))
+  if (!rings_.command({.kind = CommandKind::SelfTest, .request = request}))
     return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
   self_tests_.begun(request);
   return {};

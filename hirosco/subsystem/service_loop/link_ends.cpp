@@ -74,7 +74,7 @@ Result<LinkRoute> LinkEnds::attach(const pus::st128::AttachRequest& request, con
   if (renewed && !withdraw(request.link))
     return fail(ErrorCode::ResourceExhausted, "the cycle's command queue is full");
   const auto kind = producer ? CommandKind::AttachOutput : CommandKind::AttachInput;
-  if (!parts_.rings.commands.try_push({.kind = kind, .index = slot, .link = link.get()}))
+  if (!parts_.rings.command({.kind = kind, .index = slot, .link = link.get()}))
     return fail(ErrorCode::ResourceExhausted, "the cycle's command queue is full");
   const LinkRoute route = link->writer ? link->writer->route() : link->reader ? link->reader->route() : LinkRoute{};
   ends_.emplace(request.link, End{std::move(link), request.role, request.epoch, slot});
@@ -157,7 +157,7 @@ bool LinkEnds::withdraw(std::uint8_t link) {
   End& end = found->second;
   const bool producer = end.role == pus::st128::Role::Producer;
   const auto kind = producer ? CommandKind::DetachOutput : CommandKind::DetachInput;
-  if (!parts_.rings.commands.try_push({.kind = kind, .index = end.slot, .link = end.link.get()})) return false;
+  if (!parts_.rings.command({.kind = kind, .index = end.slot, .link = end.link.get()})) return false;
   leaving_.push_back(std::move(end.link));
   ends_.erase(found);
   return true;

@@ -11,8 +11,6 @@
 namespace hirosco {
 namespace {
 
-constexpr std::size_t in_octets = 64 * 1024;
-constexpr std::size_t out_octets = 64 * 1024;
 /// In one step, in watched time: longer is no slow request any more.
 constexpr Duration least_hang = std::chrono::milliseconds{500};
 constexpr int hang_periods = 3;
@@ -44,10 +42,16 @@ template <class T>
 }  // namespace
 
 OwnLoop::OwnLoop(const Parts& parts)
-    : parts_{parts}, permit_{&parts.permit}, in_{in_octets}, out_{out_octets}, verification_{*this} {}
+    : parts_{parts},
+      permit_{&parts.permit},
+      in_{static_cast<std::size_t>(descriptor::loop_requests_octets(parts.declared.queue))},
+      out_{parts.reports_octets},
+      verification_{*this} {}
 
 bool OwnLoop::offer(Octets packet, std::uint32_t mode_epoch) noexcept {
-  if (waiting_.load(std::memory_order_acquire) >= parts_.declared.queue) return false;
+  const std::uint32_t waiting = waiting_.load(std::memory_order_acquire);
+  in_mark_.note(std::min(waiting + 1, parts_.declared.queue), 0, 0);
+  if (waiting >= parts_.declared.queue) return false;
   // Counted before it can be taken.
   waiting_.fetch_add(1, std::memory_order_acq_rel);
   if (in_.try_write(octets_of(Offered{mode_epoch}), packet)) return true;
@@ -56,6 +60,7 @@ bool OwnLoop::offer(Octets packet, std::uint32_t mode_epoch) noexcept {
 }
 
 void OwnLoop::tell(const Listener& listener) {
+  out_mark_.note(out_.used(), out_.dropped(), out_.capacity());
   while (listener.has_room()) {
     const auto record = out_.front();
     if (!record) return;
@@ -65,6 +70,12 @@ void OwnLoop::tell(const Listener& listener) {
     else listener.report(said.service, said.subtype, said.number, data);
     out_.pop();
   }
+}
+
+OwnLoop::Fills OwnLoop::take_fills() noexcept {
+  in_mark_.note(waiting_.load(std::memory_order_acquire), 0, 0);
+  return {.requests = {in_mark_.take(), parts_.declared.queue},
+          .reports = {out_mark_.take(), static_cast<std::uint32_t>(out_.capacity())}};
 }
 
 bool OwnLoop::hangs(Duration passed) noexcept {

@@ -15,6 +15,7 @@
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/pus/st01_verification/verification.hpp"
 #include "hirosco/subsystem/cycle/loop_meter.hpp"
+#include "hirosco/subsystem/cycle/queue_fill.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/utilities/os/mutex.hpp"
 #include "hirosco/utilities/record_ring.hpp"
@@ -36,6 +37,7 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
     WriteQueue& writes;
     LoopMeter& meter;
     std::size_t place;  ///< among the loops of its subsystem
+    std::uint32_t reports_octets{descriptor::Queues{}.loop_reports_octets};
   };
   explicit OwnLoop(const Parts& parts);
   /// Another supervisor's page counts from now on; the one before stays mapped until yet another comes.  Thread: the service loop's.
@@ -54,6 +56,11 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
     std::function<void(std::uint16_t event, Octets auxiliary)> event;
   };
   void tell(const Listener& listener);
+  /// The most that has waited on its two ways since this was asked last: requests, octets of what it said.
+  struct Fills {
+    QueueFill requests, reports;
+  };
+  [[nodiscard]] Fills take_fills() noexcept;
   /// Looked at after `passed`: it has been in one step for longer than three of its periods and half a second. One that only waits for
   /// the processor to begin a step is in none.
   [[nodiscard]] bool hangs(Duration passed) noexcept;
@@ -97,6 +104,7 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   std::vector<pus::Service*> services_;
   RecordRing in_;
   RecordRing out_;
+  FillMark in_mark_, out_mark_;  ///< the service loop's
   pus::Verification verification_;
   std::atomic<std::uint32_t> waiting_{0};
   std::atomic<std::uint64_t> steps_{0};

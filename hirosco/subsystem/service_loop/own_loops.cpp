@@ -18,6 +18,7 @@ constexpr Duration most_passed_a_look = 100ms;
 
 OwnLoops::OwnLoops(const Parts& parts)
     : descriptor_{parts.descriptor}, subsystem_{parts.subsystem}, looked_at_{parts.clock.now()} {
+  const std::uint32_t reports_octets = descriptor_.resources.queues.loop_reports_octets;
   for (const descriptor::ServiceLoop& declared : descriptor_.service_loops)
     loops_.push_back(std::make_unique<OwnLoop>(OwnLoop::Parts{.declared = declared,
                                                               .subsystem = parts.subsystem,
@@ -27,7 +28,8 @@ OwnLoops::OwnLoops(const Parts& parts)
                                                               .dictionary = parts.values.dictionary(),
                                                               .writes = parts.values.writes(),
                                                               .meter = parts.meter,
-                                                              .place = loops_.size()}));
+                                                              .place = loops_.size(),
+                                                              .reports_octets = reports_octets}));
 }
 
 OwnLoop* OwnLoops::of(std::uint8_t type) noexcept {
@@ -63,6 +65,20 @@ std::uint64_t OwnLoops::lost() const noexcept {
   std::uint64_t sum = 0;
   for (const auto& loop : loops_) sum += loop->lost();
   return sum;
+}
+
+OwnLoop::Fills OwnLoops::take_fills() noexcept {
+  OwnLoop::Fills fullest;
+  const auto take = [](QueueFill& so_far, const QueueFill& found) {
+    if (so_far.room == 0 || std::uint64_t{found.most} * so_far.room > std::uint64_t{so_far.most} * found.room)
+      so_far = found;
+  };
+  for (const auto& loop : loops_) {
+    const OwnLoop::Fills found = loop->take_fills();
+    take(fullest.requests, found.requests);
+    take(fullest.reports, found.reports);
+  }
+  return fullest;
 }
 
 bool OwnLoops::move(TimePoint now, Reports& reports) {

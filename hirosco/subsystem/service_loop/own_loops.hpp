@@ -42,6 +42,8 @@ class OwnLoops {
   /// What their services have said.
   void tell(Reports& reports);
   [[nodiscard]] std::uint64_t lost() const noexcept;
+  /// Of the loop that is fullest on this way, since it was asked last; nothing where there is none.
+  [[nodiscard]] OwnLoop::Fills take_fills() noexcept;
   /// False while one of them stands still within a step: then the supervisor's guard sees the service loop stand still.
   [[nodiscard]] bool move(TimePoint now, Reports& reports);
 

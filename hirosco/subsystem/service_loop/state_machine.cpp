@@ -94,7 +94,7 @@ bool StateMachine::run_phase(State next, TimePoint now) {
         parts_.cycle.inputs().awaits_first_answer() && now <= phase_deadline_ - transient_limit + first_answer_limit)
       return false;
     awaiting_cycle_ =
-        parts_.rings.commands.try_push({.kind = CommandKind::EnterState, .index = static_cast<std::uint16_t>(next)});
+        parts_.rings.command({.kind = CommandKind::EnterState, .index = static_cast<std::uint16_t>(next)});
     return false;
   }
   if (is_transient(next) && at_.state != next) arrive_transient(next);
