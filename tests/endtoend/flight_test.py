@@ -25,6 +25,7 @@ class Rokviss(unittest.TestCase):
             self.assertEqual(code, 0, rokviss.errors)
             self.assertEqual(rokviss.wait_until_gone(5.0), {})
             self.it_went_down_in_order(rokviss)
+            self.what_it_took_stands_beside_what_it_declares(rokviss)
         self.assertEqual(flight.segments(), before)
 
     def the_robot_follows_the_hand(self, rokviss, telemetry):
@@ -73,6 +74,21 @@ class Rokviss(unittest.TestCase):
             places = [after.index(f"{name} info STATE_CHANGED STATE={state}")
                       for state in ("SafeOperational", "PostOperational", "HardwareDeinit", "SoftwareDeinit", "Offline")]
             self.assertEqual(places, sorted(places), after)
+
+
+    def what_it_took_stands_beside_what_it_declares(self, rokviss):
+        told = rokviss.hirosco("resources", rokviss.mission, "--json")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        rows = {(row["subsystem"], row["resource"]): row for row in map(json.loads, told.stdout.splitlines())}
+        for name in ("MANIPULATOR", "JOYSTICK", "COMMUNICATION"):
+            memory, commands = rows[name, "memory_kB"], rows[name, "cycle_commands"]
+            self.assertEqual((memory["declared"], commands["declared"]), (65536, 64))
+            self.assertGreater(memory["high"], 1000)
+            self.assertEqual(memory["percent"], -(-100 * memory["high"] // 65536))
+            self.assertGreater(commands["high"], 0, "its changes of state went through it")
+            self.assertGreater(rows[name, "cycle_housekeeping_kB"]["percent"], 0)
+            flight.measure(f"{name}: " + ", ".join(f"{key[1]} {row['percent']} %" for key, row in rows.items()
+                                                   if key[0] == name and row["percent"]))
 
 
 class Modes(unittest.TestCase):

@@ -139,6 +139,15 @@ struct LogOptions {
 };
 int log(const LogOptions& options);
 
+struct ResourcesOptions {
+  std::string mission;  ///< as for a connection
+  std::string instance;
+  bool all{false};  ///< of all flights that the log has, not of the newest alone
+  bool json{false};
+};
+/// What each subsystem declares in <Resources> beside the most that it has taken, from the log (adr 0188). 1: of one nothing is there.
+int resources(const ResourcesOptions& options);
+
 struct FaultOptions {
   std::string mission;  ///< as for a connection
   std::string instance;

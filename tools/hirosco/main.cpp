@@ -241,6 +241,16 @@ int read_and_do(int argc, char** argv) {
       "Housekeeping with its values, too, which is left out by itself (--service 3 has it; --json without values)");
   log_command->add_flag("--json", log_options.json, "One JSON object a line");
 
+  ResourcesOptions resources_options;
+  auto* resources_command = app.add_subcommand(
+      "resources", "What each subsystem declares in <Resources> beside the most that it took in the newest flight");
+  resources_command->add_option("mission", resources_options.mission, whose_log);
+  resources_command->add_option("--mission", resources_options.mission, whose_log);
+  resources_command->add_option("--instance", resources_options.instance,
+                                "Whose log, of those that fly or have flown from here");
+  resources_command->add_flag("--all", resources_options.all, "In all flights that the log has");
+  resources_command->add_flag("--json", resources_options.json, "One JSON object a line");
+
   FaultOptions fault_options;
   auto* fault_command =
       app.add_subcommand("fault", "Inject a fault into a simulated device, or move the operator's hand");
@@ -352,6 +362,7 @@ int read_and_do(int argc, char** argv) {
   if (*permissions_command) return permissions(permissions_options);
   if (*status_command) return status(status_options);
   if (*log_command) return log(log_options);
+  if (*resources_command) return resources(resources_options);
   if (*safe_command) return safe(safe_options);
   return fault(fault_options);
 }

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/hirosco/resource_marks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "hirosco/descriptor/model/framework_parameters.hpp"
+
+namespace hirosco::tools {
+namespace {
+
+using descriptor::Resource;
+
+/// What is limited by a number, its member and its attribute.
+struct CountedResource {
+  Resource resource;
+  const char* member;
+  const char* attribute;
+};
+constexpr std::array counted{CountedResource{Resource::Memory, "MEMORY_HIGH", "memory_kB"},
+                             CountedResource{Resource::SharedMemory, "SHARED_MEMORY_HIGH", "shared_memory_kB"},
+                             CountedResource{Resource::Threads, "THREADS_HIGH", "threads"},
+                             CountedResource{Resource::Descriptors, "DESCRIPTORS_HIGH", "descriptors"},
+                             CountedResource{Resource::Processor, "PROCESSOR_HIGH", "processor_percent"},
+                             CountedResource{Resource::Ports, "PORTS_HIGH", "ports"},
+                             CountedResource{Resource::Files, "FILES_HIGH", "files"}};
+constexpr std::array waiting{"waiting_answers", "waiting_events", "waiting_housekeeping"};
+constexpr std::uint64_t whole = 100;
+
+/// Rounded up: what was taken is never told as less.
+[[nodiscard]] constexpr std::uint64_t part_of(std::uint64_t amount, std::uint64_t part, std::uint64_t of) noexcept {
+  return (amount * part + of - 1) / of;
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> ResourceRow::percent() const noexcept {
+  if (!declared || *declared == 0) return std::nullopt;
+  return part_of(high, whole, *declared);
+}
+
+void ResourceMarks::hear(std::span<const pus::HousekeepingValue> values) {
+  const std::string stats = std::string{descriptor::framework_parameter::resource_stats} + ".";
+  for (const pus::HousekeepingValue& value : values) {
+    if (!value.name.starts_with(stats) || !value.name.ends_with("_HIGH")) continue;
+    // The marks of a process end with it; those of the next begin at nothing.
+    auto& so_far = high_[value.name.substr(stats.size())];
+    so_far.resize(std::max(so_far.size(), value.values.size()));
+    for (std::size_t i = 0; i < value.values.size(); ++i)
+      so_far[i] = std::max(so_far[i], static_cast<std::uint64_t>(value.values[i]));
+  }
+}
+
+std::uint64_t ResourceMarks::high(const char* member, std::size_t element) const {
+  const auto found = high_.find(member);
+  return found != high_.end() && element < found->second.size() ? found->second[element] : 0;
+}
+
+std::vector<ResourceRow> ResourceMarks::rows(const descriptor::SubsystemDescriptor& subsystem) const {
+  const descriptor::Resources& declared = subsystem.resources;
+  std::vector<ResourceRow> rows;
+  for (const CountedResource& each : counted)
+    rows.push_back({each.attribute, amount_of(declared.most, each.resource), high(each.member)});
+  for (std::size_t i = 0; i < declared.pools.size(); ++i)
+    rows.push_back(
+        {"Pool " + std::to_string(declared.pools[i].block_octets), declared.pools[i].blocks, high("POOL_HIGH", i)});
+  for (std::size_t i = 0; i < waiting.size(); ++i)
+    rows.push_back({waiting[i], declared.waiting[i], high("WAITING_HIGH", i)});
+  // Told as a share: taken back to the unit that is declared.
+  const auto queue = [&](Resource resource, const char* attribute, std::uint64_t room) {
+    const auto place = static_cast<std::size_t>(resource) - static_cast<std::size_t>(Resource::CycleCommands);
+    rows.push_back({attribute, room, part_of(room, high("QUEUES_HIGH", place), whole)});
+  };
+  constexpr std::uint64_t kb = 1024;
+  queue(Resource::CycleCommands, "cycle_commands", declared.queues.commands);
+  queue(Resource::CycleAnswers, "cycle_answers_kB", declared.queues.answers_octets / kb);
+  queue(Resource::CycleEvents, "cycle_events_kB", declared.queues.events_octets / kb);
+  queue(Resource::CycleHousekeeping, "cycle_housekeeping_kB", declared.queues.housekeeping_octets / kb);
+  if (subsystem.service_loops.empty()) return rows;
+  queue(Resource::LoopRequests, "queue of a loop",
+        std::ranges::min(subsystem.service_loops, {}, &descriptor::ServiceLoop::queue).queue);
+  queue(Resource::LoopReports, "loop_reports_kB", declared.queues.loop_reports_octets / kb);
+  return rows;
+}
+
+}  // namespace hirosco::tools
