@@ -19,15 +19,15 @@ struct CountedResource {
   const char* member;
   const char* attribute;
 };
-constexpr std::array counted{CountedResource{Resource::Memory, "MEMORY_HIGH", "memory_kB"},
-                             CountedResource{Resource::SharedMemory, "SHARED_MEMORY_HIGH", "shared_memory_kB"},
-                             CountedResource{Resource::Threads, "THREADS_HIGH", "threads"},
-                             CountedResource{Resource::Descriptors, "DESCRIPTORS_HIGH", "descriptors"},
-                             CountedResource{Resource::Processor, "PROCESSOR_HIGH", "processor_percent"},
-                             CountedResource{Resource::Ports, "PORTS_HIGH", "ports"},
-                             CountedResource{Resource::Files, "FILES_HIGH", "files"}};
-constexpr std::array waiting{"waiting_answers", "waiting_events", "waiting_housekeeping"};
-constexpr std::uint64_t whole = 100;
+constexpr std::array told_by_number{CountedResource{Resource::Memory, "MEMORY_HIGH", "memory_kB"},
+                                    CountedResource{Resource::SharedMemory, "SHARED_MEMORY_HIGH", "shared_memory_kB"},
+                                    CountedResource{Resource::Threads, "THREADS_HIGH", "threads"},
+                                    CountedResource{Resource::Descriptors, "DESCRIPTORS_HIGH", "descriptors"},
+                                    CountedResource{Resource::Processor, "PROCESSOR_HIGH", "processor_percent"},
+                                    CountedResource{Resource::Ports, "PORTS_HIGH", "ports"},
+                                    CountedResource{Resource::Files, "FILES_HIGH", "files"}};
+constexpr std::array waiting_attributes{"waiting_answers", "waiting_events", "waiting_housekeeping"};
+constexpr std::uint64_t all_percent = 100;
 
 /// Rounded up: what was taken is never told as less.
 [[nodiscard]] constexpr std::uint64_t part_of(std::uint64_t amount, std::uint64_t part, std::uint64_t of) noexcept {
@@ -38,7 +38,7 @@ constexpr std::uint64_t whole = 100;
 
 std::optional<std::uint64_t> ResourceRow::percent() const noexcept {
   if (!declared || *declared == 0) return std::nullopt;
-  return part_of(high, whole, *declared);
+  return part_of(high, all_percent, *declared);
 }
 
 void ResourceMarks::hear(std::span<const pus::HousekeepingValue> values) {
@@ -61,17 +61,17 @@ std::uint64_t ResourceMarks::high(const char* member, std::size_t element) const
 std::vector<ResourceRow> ResourceMarks::rows(const descriptor::SubsystemDescriptor& subsystem) const {
   const descriptor::Resources& declared = subsystem.resources;
   std::vector<ResourceRow> rows;
-  for (const CountedResource& each : counted)
+  for (const CountedResource& each : told_by_number)
     rows.push_back({each.attribute, amount_of(declared.most, each.resource), high(each.member)});
   for (std::size_t i = 0; i < declared.pools.size(); ++i)
     rows.push_back(
         {"Pool " + std::to_string(declared.pools[i].block_octets), declared.pools[i].blocks, high("POOL_HIGH", i)});
-  for (std::size_t i = 0; i < waiting.size(); ++i)
-    rows.push_back({waiting[i], declared.waiting[i], high("WAITING_HIGH", i)});
+  for (std::size_t i = 0; i < waiting_attributes.size(); ++i)
+    rows.push_back({waiting_attributes[i], declared.waiting[i], high("WAITING_HIGH", i)});
   // Told as a share: taken back to the unit that is declared.
   const auto queue = [&](Resource resource, const char* attribute, std::uint64_t room) {
     const auto place = static_cast<std::size_t>(resource) - static_cast<std::size_t>(Resource::CycleCommands);
-    rows.push_back({attribute, room, part_of(room, high("QUEUES_HIGH", place), whole)});
+    rows.push_back({attribute, room, part_of(room, high("QUEUES_HIGH", place), all_percent)});
   };
   constexpr std::uint64_t kb = 1024;
   queue(Resource::CycleCommands, "cycle_commands", declared.queues.commands);

@@ -15,7 +15,8 @@ std::vector<std::string> lines(const std::vector<ResourceRow>& rows) {
   std::vector<std::string> all;
   for (const ResourceRow& row : rows) {
     const auto text = [](const std::optional<std::uint64_t>& number) { return number ? std::to_string(*number) : "-"; };
-    all.push_back(row.attribute + " " + text(row.declared) + " " + std::to_string(row.high) + " " + text(row.percent()));
+    all.push_back(row.attribute + " " + text(row.declared) + " " + std::to_string(row.high) + " " +
+                  text(row.percent()));
   }
   return all;
 }
@@ -42,13 +43,13 @@ TEST_F(ResourceMarksTest, StandBesideWhatIsDeclaredInItsUnitWithTheirShareRounde
                                                  {"RESOURCE_STATS.QUEUES_HIGH", "%", {25, 0, 80, 1, 0, 0}},
                                                  {"CYCLE_STATS.MAX_US", "us", {99}}});
   EXPECT_FALSE(marks.silent());
-  EXPECT_THAT(lines(marks.rows(subsystem)),
-              ::testing::ElementsAre("memory_kB 65536 12000 19", "shared_memory_kB - 0 -", "threads - 3 -",
-                                     "descriptors - 0 -", "processor_percent - 0 -", "ports - 0 -", "files - 0 -",
-                                     "Pool 64 512 128 25", "waiting_answers 128 32 25", "waiting_events 1024 5 1",
-                                     "waiting_housekeeping 1024 0 0", "cycle_commands 64 16 25",
-                                     "cycle_answers_kB 32 0 0", "cycle_events_kB 16 13 82",
-                                     "cycle_housekeeping_kB 64 1 2"));
+  EXPECT_THAT(
+      lines(marks.rows(subsystem)),
+      ::testing::ElementsAre("memory_kB 65536 12000 19", "shared_memory_kB - 0 -", "threads - 3 -", "descriptors - 0 -",
+                             "processor_percent - 0 -", "ports - 0 -", "files - 0 -", "Pool 64 512 128 25",
+                             "waiting_answers 128 32 25", "waiting_events 1024 5 1", "waiting_housekeeping 1024 0 0",
+                             "cycle_commands 64 16 25", "cycle_answers_kB 32 0 0", "cycle_events_kB 16 13 82",
+                             "cycle_housekeeping_kB 64 1 2"));
 }
 
 TEST_F(ResourceMarksTest, AreTheHighestOfAllProcessesThatItHadOneAfterTheOther) {

@@ -35,8 +35,11 @@ class Hearing {
 };
 
 void print_json(const std::string& subsystem, const ResourceRow& row) {
-  nlohmann::ordered_json object{{"subsystem", subsystem}, {"resource", row.attribute}, {"declared", nullptr},
-                                {"high", row.high},       {"percent", nullptr}};
+  nlohmann::ordered_json object{{"subsystem", subsystem},
+                                {"resource", row.attribute},
+                                {"declared", nullptr},
+                                {"high", row.high},
+                                {"percent", nullptr}};
   if (row.declared) object["declared"] = *row.declared;
   if (const auto percent = row.percent()) object["percent"] = *percent;
   fmt::print("{}\n", json_line(object));
@@ -45,7 +48,8 @@ void print_json(const std::string& subsystem, const ResourceRow& row) {
 void print_text(const std::string& subsystem, const ResourceRow& row) {
   const auto percent = row.percent();
   fmt::print("{:<20} {:<22} {:>10} {:>10} {:>7}\n", subsystem, row.attribute,
-             row.declared ? std::to_string(*row.declared) : "-", row.high, percent ? fmt::format("{} %", *percent) : "-");
+             row.declared ? std::to_string(*row.declared) : "-", row.high,
+             percent ? fmt::format("{} %", *percent) : "-");
 }
 
 }  // namespace
@@ -82,7 +86,8 @@ int resources(const ResourcesOptions& options) {
       fmt::print(stderr, "hirosco resources: {}: none of its reports in the log has RESOURCE_STATS\n", member->name);
       continue;
     }
-    for (const ResourceRow& row : marks.rows(*member)) options.json ? print_json(member->name, row) : print_text(member->name, row);
+    for (const ResourceRow& row : marks.rows(*member))
+      options.json ? print_json(member->name, row) : print_text(member->name, row);
   }
   return all_heard ? exit_ok : exit_finding;
 }

@@ -31,7 +31,7 @@ TEST(Queues, AreAsLargeAsEverWhereNothingIsSaidAndPowersOfTwoWhereSomethingIs) {
 }
 
 /// Structures of `octets` octets each, below one id after the other, with the 24 and 8 that a record has beside them.
-std::string structures(int how_many, int octets) {
+std::string blocks_of(int how_many, int octets) {
   std::string text = "<ParamRef name=\"BLOCK\" id=\"1\" type=\"UINT8\" count=\"" + std::to_string(octets) + "\"/>";
   for (int i = 1; i <= how_many; ++i)
     text += "<HKService id=\"" + std::to_string(i) + "\" interval=\"" + std::to_string(i) +
@@ -41,13 +41,13 @@ std::string structures(int how_many, int octets) {
 
 TEST(Queues, HoldAllHousekeepingThatIsDueInOneCycle) {
   // Record: 8 + 24 + 2 + 4054 = 4088; with the end of the ring one more.
-  EXPECT_EQ(problems_with(structures(15, 4054)), "");
-  EXPECT_EQ(problems_with(structures(16, 4054)), "E0369 cycle_housekeeping_kB=\"128\" or more in <Resources>\n");
-  EXPECT_EQ(problems_with("<Resources cycle_housekeeping_kB=\"65\"/>" + structures(16, 4054)), "");
+  EXPECT_EQ(problems_with(blocks_of(15, 4054)), "");
+  EXPECT_EQ(problems_with(blocks_of(16, 4054)), "E0369 cycle_housekeeping_kB=\"128\" or more in <Resources>\n");
+  EXPECT_EQ(problems_with("<Resources cycle_housekeeping_kB=\"65\"/>" + blocks_of(16, 4054)), "");
 }
 
 TEST(Queues, OfOneConfigurationAreThoseThatCount) {
-  const std::string eight = structures(8, 4054);
+  const std::string eight = blocks_of(8, 4054);
   const auto configuration = [](const char* name, int id, int first) {
     std::string text =
         "<Configuration name=\"" + std::string{name} + "\" id=\"" + std::to_string(id) + "\" sampling_us=\"1000\">";
