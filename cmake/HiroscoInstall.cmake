@@ -23,12 +23,20 @@ function(hirosco_headers_of result)
   set(${result} ${found} PARENT_SCOPE)
 endfunction()
 
-# What an author includes. Whatever else these include is installed with them, and nothing else is.
-hirosco_headers_of(HIROSCO_AUTHOR_HEADERS
-  hirosco/descriptor/read/read.hpp hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp hirosco/subsystem/author/module.hpp hirosco/subsystem/process/run.hpp
-  hirosco/subsystem/author/subsystem.hpp hirosco/subsystem/testing/rig.hpp hirosco/resource/counted.hpp hirosco/resource/pool_allocator.hpp hirosco/resource/pool_resource.hpp
+# What an author includes: all of the author's folder, and what a guide or an example to copy names besides (tools/check_author_headers.py holds
+# them to it). Whatever else these include is installed with them, and nothing else is.
+file(GLOB hirosco_author_folder_headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/hirosco/subsystem/author/*.hpp)
+hirosco_headers_of(HIROSCO_AUTHOR_HEADERS ${hirosco_author_folder_headers}
+  hirosco/subsystem/testing/rig.hpp hirosco/subsystem/testing/tried_functions.hpp hirosco/subsystem/process/run.hpp
+  hirosco/descriptor/read/read.hpp hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp
+  hirosco/data_transfer/device/device_frame.hpp hirosco/data_transfer/device/frame_protocol.hpp hirosco/utilities/crc16.hpp
+  hirosco/resource/counted.hpp hirosco/resource/pool_allocator.hpp hirosco/resource/pool_resource.hpp
   robotics/dynamics/integrator.hpp robotics/motion/inverse_kinematics.hpp robotics/motion/point_to_point.hpp robotics/urdf/robot.hpp
   simulation/devices/device_shell.hpp simulation/devices/module.hpp simulation/devices/simulated_device.hpp)
+
+# What a module and who loads it have to agree on: the module's copy of the libraries works on the object of the framework that stands behind
+# its author's class (service_loop/subsystem.cpp), whose headers nobody includes outside. interface_version is a sum over these (docs/adr/0050).
+hirosco_headers_of(HIROSCO_INTERFACE_HEADERS ${HIROSCO_AUTHOR_HEADERS} hirosco/subsystem/service_loop/generic_subsystem.hpp)
 
 # hirosco_install_libraries(targets...): hirosco_NAME becomes hirosco::NAME of the package.
 function(hirosco_install_libraries)
@@ -48,9 +56,6 @@ function(hirosco_install)
     get_filename_component(folder ${header} DIRECTORY)
     install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION include/hirosco/${folder})
   endforeach()
-
-  # For a device's protocol of its own; no module has it in common with who loads it.
-  install(FILES hirosco/utilities/crc16.hpp DESTINATION include/hirosco/hirosco/utilities)
 
   set(package lib/cmake/hirosco)
   install(EXPORT hirosco-targets NAMESPACE hirosco:: DESTINATION ${package})

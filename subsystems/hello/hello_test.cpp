@@ -20,7 +20,7 @@ struct HelloTest : ::testing::Test {
   double position_rad() {
     rig.cycle(500);
     rig.service();
-    const pus::HousekeepingDecoder decoder{rig.subsystem.descriptor()};
+    const pus::HousekeepingDecoder decoder{rig.descriptor()};
     for (auto report = rig.telemetry.rbegin(); report != rig.telemetry.rend(); ++report) {
       if (report->service != 3) continue;
       const auto values = decoder.decode(report->data).value();

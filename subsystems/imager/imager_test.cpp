@@ -117,7 +117,7 @@ struct ImagerTest : ::testing::Test {
       rig.cycle();
       if (rig.clock.now() == before) rig.advance(5ms);  // no configuration, no cycle
       exchange();
-      if (rig.clock.now() >= next_loop) next_loop = rig.subsystem.own_loop_step(0, rig.clock.now());
+      if (rig.clock.now() >= next_loop) next_loop = rig.own_loop(0, rig.clock.now());
       rig.service();
     }
   }

@@ -101,7 +101,7 @@ TEST_F(JoystickTest, EachFunctionThatChangesAProtectionSaysSoInTheDescriptor) {
 
 TEST_F(JoystickTest, WhatCanHaveNoEffectIsRefused) {
   operate(1);
-  rig.permit.fence();
+  rig.fence();
   cycle(3);
   ASSERT_NE(rig.inhibited(), 0u);
   EXPECT_EQ(now("DISPLAY_TORQUE", {0.5, -0.25}).substr(0, 8), "1 4:8001");

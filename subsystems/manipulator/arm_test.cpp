@@ -143,7 +143,7 @@ struct ArmTest : ::testing::TestWithParam<std::size_t> {
   testing::Sent move_to(const std::vector<double>& goal_rad, double duration_s) {
     std::vector<double> numbers = goal_rad;
     numbers.push_back(duration_s);
-    const auto data = pus::encode_call(*rig.subsystem.descriptor().find_function("MOVE_TO"), numbers).value();
+    const auto data = pus::encode_call(*rig.descriptor().find_function("MOVE_TO"), numbers).value();
     std::vector<std::byte> octets(data.begin(), data.end());
     return rig.send(8, 1, octets);
   }

@@ -85,7 +85,7 @@ struct PowerSupplyTest : ::testing::Test {
   /// Of the newest report of structure 4731.
   double told(std::string_view name) {
     cycle(30);
-    const pus::HousekeepingDecoder decoder{rig.subsystem.descriptor()};
+    const pus::HousekeepingDecoder decoder{rig.descriptor()};
     for (auto report = rig.telemetry.rbegin(); report != rig.telemetry.rend(); ++report) {
       if (report->service != 3) continue;
       const auto values = decoder.decode(report->data).value();

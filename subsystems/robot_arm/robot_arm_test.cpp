@@ -293,7 +293,7 @@ TEST_F(RobotArmTest, JogsOnWithoutAHaltWhileItIsToldToAndStandsWithinAMomentOnce
 
 TEST_F(RobotArmTest, JogsNoLongerThanASecondAtAWord) {
   for (const char* function : {"JOG_J", "JOG_L"}) {
-    const auto* declared = flown.rig.subsystem.descriptor().find_function(function);
+    const auto* declared = flown.rig.descriptor().find_function(function);
     EXPECT_TRUE(pus::encode_call(*declared, std::vector{0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 1.0})) << function;
     EXPECT_FALSE(pus::encode_call(*declared, std::vector{0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 1.01})) << function;
   }

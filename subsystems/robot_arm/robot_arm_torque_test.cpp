@@ -97,7 +97,7 @@ TEST_F(RobotArmDriven, GoesOnWhileItIsSaidAnewAndMovesByNothingElseMeanwhile) {
 }
 
 TEST_F(RobotArmDriven, IsDrivenNoLongerThanASecondAtAWord) {
-  const auto* declared = flown.rig.subsystem.descriptor().find_function("TORQUE_J");
+  const auto* declared = flown.rig.descriptor().find_function("TORQUE_J");
   EXPECT_TRUE(pus::encode_call(*declared, std::vector{0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0}));
   EXPECT_FALSE(pus::encode_call(*declared, std::vector{0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.01}));
 }

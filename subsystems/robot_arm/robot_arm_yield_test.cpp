@@ -475,7 +475,7 @@ TEST(RobotArmWithoutImpedance, HasNoneWhereItsDescriptorOffersNone) {
   testing::Rig rig{*arm, text};
   EXPECT_EQ(rig.set_state_now(State::PreOperational), "1 3 7") << ::testing::PrintToString(rig.explanations);
   EXPECT_EQ(rig.configure_now(1), "1 3 7");
-  const auto* contact = rig.subsystem.descriptor().find_function("SET_CONTACT");
+  const auto* contact = rig.descriptor().find_function("SET_CONTACT");
   EXPECT_TRUE(pus::encode_call(*contact, std::vector{1.0, 0.3}));
   EXPECT_FALSE(pus::encode_call(*contact, std::vector{2.0, 0.3}));
 }

@@ -10,6 +10,7 @@ import shutil
 import socket
 import struct
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -81,6 +82,14 @@ class Built(Outside, unittest.TestCase):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn('compatible with requested version "0.99"', " ".join(done.stderr.split()))
         self.assertRegex(done.stderr, r"version: \d+\.\d+\.\d+")
+
+    def test_its_headers_are_what_an_author_includes_and_nothing_of_service_loop_or_cycle(self):
+        sys.path.append(str(flight.REPOSITORY / "tools"))
+        import check_author_headers
+        there = self.prefix / "include/hirosco"
+        headers = {file.relative_to(there).as_posix() for file in there.rglob("*") if file.is_file()}
+        self.assertEqual(headers, check_author_headers.installed(check_author_headers.files()))
+        self.assertEqual([header for header in headers if header.startswith(check_author_headers.ENGINE)], [])
 
     def test_its_modules_have_one_entry_point(self):
         for module in (*self.built.glob("*.so"), *(self.prefix / "lib/hirosco").glob("*.so")):

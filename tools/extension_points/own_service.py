@@ -51,6 +51,6 @@ TEST(OwnService, IsAnsweredAndKnownByName) {
   rig.settle();
   EXPECT_EQ(rig.outcome(sent), "1 3 7");
   EXPECT_EQ(rig.reports(201, 2).at(0), "0007");
-  EXPECT_EQ(hirosco::pus::requests_of(rig.subsystem.descriptor()).back().name, "OPEN");
+  EXPECT_EQ(hirosco::pus::requests_of(rig.descriptor()).back().name, "OPEN");
 }
 """

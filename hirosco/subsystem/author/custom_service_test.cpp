@@ -112,7 +112,7 @@ TEST_F(OwnService, RefusesWhatTheDescriptorDoesNotPermit) {
 
 TEST_F(OwnService, TakesWordsSwitchesAndNamesAsFunctionsDoAndReportsThem) {
   rig.set_state_now(State::PreOperational);
-  const descriptor::Function& note = *rig.subsystem.descriptor().find_named("NOTE");
+  const descriptor::Function& note = *rig.descriptor().find_named("NOTE");
   const auto noted = [&](const std::vector<std::optional<Value>>& values) {
     const auto data = pus::encode_request(note, values);
     return data ? ask(7, *data) : std::string{data.error().text};

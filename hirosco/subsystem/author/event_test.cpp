@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/pus/words/describe.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
 
 /// Events are no telemetry (adr 0020): the supervisor hears of each, whatever ground has switched off.
 namespace hirosco {

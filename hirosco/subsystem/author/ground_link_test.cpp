@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 
 /// Stops of everything and telecommands that lie in a ground link (docs/adr/0156, 0157).
 namespace hirosco {

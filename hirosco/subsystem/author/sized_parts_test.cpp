@@ -151,7 +151,7 @@ TEST_P(SizedParts, ParametersAreWrittenAndReadInTheirLength) {
 }
 
 TEST_P(SizedParts, AFunctionTakesAsManyNumbersAsItsDescriptorDeclares) {
-  const auto data = pus::encode_call(*rig.subsystem.descriptor().find_function("MOVE"), numbers).value();
+  const auto data = pus::encode_call(*rig.descriptor().find_function("MOVE"), numbers).value();
   const auto call = rig.send(8, 1, data);
   rig.settle();
   EXPECT_EQ(rig.outcome(call), "1 3 7");

@@ -55,7 +55,7 @@ struct Programmable final : Subsystem {
 struct TypedFunction : ::testing::Test {
   TypedFunction() { rig.bring_to(State::Operational); }
   std::string program(const std::vector<std::optional<Value>>& values) {
-    const auto data = pus::encode_call(*rig.subsystem.descriptor().find_function("PROGRAM"), values);
+    const auto data = pus::encode_call(*rig.descriptor().find_function("PROGRAM"), values);
     if (!data) return data.error().text;
     const auto sent = rig.send(8, 1, *data);
     rig.settle();
@@ -79,7 +79,7 @@ TEST_F(TypedFunction, BringsEveryValueToItsHandlerAsItWasSent) {
 
 TEST_F(TypedFunction, BringsTheDeclaredValueOfWhatWasLeftOut) {
   const auto data =
-      testing::hex(*pus::encode_call(*rig.subsystem.descriptor().find_function("PROGRAM"),
+      testing::hex(*pus::encode_call(*rig.descriptor().find_function("PROGRAM"),
                                      std::vector<std::optional<Value>>{9007199254740993, INT64_MAX, 7, "", 1, 2, 3}));
   ASSERT_EQ(program({9007199254740993, INT64_MAX, 7, {}, 1, 2, 3}), "1 3 7") << data;
   EXPECT_EQ(author.seen->serial, 9007199254740993U);
@@ -90,7 +90,7 @@ TEST_F(TypedFunction, BringsTheDeclaredValueOfWhatWasLeftOut) {
 }
 
 TEST_F(TypedFunction, IsNotCalledWithWhatItsDescriptorDoesNotPermit) {
-  auto data = *pus::encode_call(*rig.subsystem.descriptor().find_function("PROGRAM"),
+  auto data = *pus::encode_call(*rig.descriptor().find_function("PROGRAM"),
                                 std::vector<std::optional<Value>>{1, 1, 7, "abc", 1, 2, 3});
   const auto note = std::ranges::search(data, std::as_bytes(std::span{"abc", 3}));
   ASSERT_FALSE(note.empty());

@@ -7,7 +7,7 @@
 #include <optional>
 #include <random>
 
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 
 /// A filter whose cycle starts with each sample of an encoder (adr 0094): handshake, cycle, limits, and a producer that floods, stops,
 /// dies in its sample, wakes without one, or is in fault. The test is supervisor, clock and cycle thread.

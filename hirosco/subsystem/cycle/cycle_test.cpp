@@ -7,8 +7,8 @@
 
 #include <optional>
 
+#include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
 
 /// What a cycle does with a permission that ends, with sets that may be missing, and with rings that are full.
 namespace hirosco {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 
 /// A camera lends its images to other subsystems: handshake by ST[128], cycle, age limit, death of the producer. The test is
 /// the supervisor between them.

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
 
 /// What the framework does for safety at real-time links: required ones, stale, lost, damaged and foreign samples, the
 /// producer's status (decisions 20 to 22).

@@ -95,7 +95,7 @@ struct Outputs : ::testing::Test {
   /// By ST[20], which asks from outside of the cycle.
   double read() {
     std::array<std::byte, 5> data{};
-    const auto& parameter = *rig.subsystem.descriptor().find_parameter("ARM_OUTPUT");
+    const auto& parameter = *rig.descriptor().find_parameter("ARM_OUTPUT");
     OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{10, Type::Struct, parameter.id}.wire());
     rig.forget_telemetry();
     static_cast<void>(rig.send(20, 1, data));

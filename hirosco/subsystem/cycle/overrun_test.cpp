@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
 
 /// Cycles that take too long or begin too late, and how their times are told (decision 7, docs/adr/0007).
 namespace hirosco {

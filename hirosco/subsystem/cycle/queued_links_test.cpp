@@ -6,7 +6,7 @@
 #include <memory>
 #include <numeric>
 
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 
 /// An encoder at 1 kHz of which an estimator at 100 Hz gets every sample: handshake by ST[128], cycle, loss, death of the producer.
 /// The test is the supervisor between them.

@@ -7,7 +7,7 @@
 #include <memory_resource>
 #include <vector>
 
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 
 namespace hirosco {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <functional>
 
+#include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
 
 /// What the cycle does by itself when nobody else can: the supervisor is silent, the service loop late, a node failed.
 namespace hirosco {

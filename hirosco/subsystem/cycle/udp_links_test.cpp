@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 
 /// A joint's angle by a link of UDP, from the handshake of ST[128] to the author's port. The test is the supervisor between the two.
 namespace hirosco::angle_by_udp {

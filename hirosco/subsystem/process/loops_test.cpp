@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "hirosco/subsystem/author/custom_service.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/told.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 

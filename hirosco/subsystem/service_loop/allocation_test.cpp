@@ -7,8 +7,8 @@
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/resource/counted.hpp"
 #include "hirosco/resource/pool_resource.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
 #include "hirosco/utilities/allocation_guard.hpp"
 
 /// The cycle never uses the heap: counted over 100,000 cycles with links both ways, an actuator, housekeeping, events,

@@ -8,7 +8,7 @@
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/parameter/number.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 
 /// One configuration follows another while the subsystem acts.
 namespace hirosco {

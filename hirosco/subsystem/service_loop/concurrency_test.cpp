@@ -4,8 +4,8 @@
 
 #include <thread>
 
+#include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
 #include "hirosco/subsystem/testing/told.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/subsystem/author/custom_service.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 
 /// Services in a loop of their own: requests wait for its step, reports go out by the service loop, and one that hangs is seen.
 namespace hirosco {

@@ -5,8 +5,8 @@
 #include <new>
 #include <optional>
 
+#include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
 
 /// A supervisor that goes on for one that died hands over a permit page of its own (docs/adr/0093).
 namespace hirosco {

@@ -5,8 +5,8 @@
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/data_transfer/device/power_frame.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
 
 /// The states at whose doors the power of devices is asked for (adr 0079), and configurations with fall-backs; the test plays the
 /// supervisor's side.

@@ -8,8 +8,8 @@
 
 #include "hirosco/pus/words/describe.hpp"
 #include "hirosco/subsystem/service_loop/open_calls.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
 
 /// An author's reasons reach ground, and what has no effect is refused.
 namespace hirosco {

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 
 /// What a subsystem asks of another one, from its author's words to the end that they hear.
 namespace hirosco {

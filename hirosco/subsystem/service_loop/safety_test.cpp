@@ -10,8 +10,8 @@
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
 
 /// What the framework does for safety whatever the author does: actuator gate, devices, permit page, and the loss of the
 /// supervisor (decisions 7, 21, 22).

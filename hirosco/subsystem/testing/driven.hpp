@@ -76,7 +76,7 @@ struct Driven {
   }
   /// Sets all numbers (DOUBLE) of a parameter by TC[20,3].
   void write(std::string_view name, double value) {
-    const descriptor::SubsystemDescriptor& descriptor = rig.subsystem.descriptor();
+    const descriptor::SubsystemDescriptor& descriptor = rig.descriptor();
     const auto its = std::ranges::find(descriptor.parameters, name, [](const auto& each) { return each.field.name; });
     ASSERT_NE(its, descriptor.parameters.end()) << name;
     std::vector<std::byte> data(1 + 4 + its->field.octets());

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "hirosco/descriptor/read/read.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 
 namespace hirosco::testing {
 
@@ -57,23 +58,44 @@ descriptor::SubsystemDescriptor read_descriptor(const std::string& text, const s
 Rig::Rig(Subsystem& author, const std::string& descriptor_text, bool realtime, bool wakes)
     : Rig{author, read_descriptor(descriptor_text), realtime, wakes} {}
 
+struct Rig::Parts {
+  ChannelPair channels{4096};
+  VitalPage vital{};
+  PermitPage permit{};
+  GenericSubsystem subsystem;
+
+  Parts(Rig& rig, Subsystem& author, descriptor::SubsystemDescriptor described, bool realtime, bool wakes)
+      : subsystem{
+            author,
+            std::move(described),
+            {.clock = rig.clock,
+             .memory = rig.memory,
+             .flows = rig.flows,
+             .realtime = realtime,
+             .wakes = wakes,
+             .explain = [&rig](std::string_view text) { rig.explanations.emplace_back(text); },
+             .read_again =
+                 [this](std::string_view text) { return descriptor::read_again(subsystem.descriptor(), text, {}); }},
+            channels.subsystem_end(),
+            vital,
+            permit} {}
+};
+
 Rig::Rig(Subsystem& author, descriptor::SubsystemDescriptor described, bool realtime, bool wakes)
-    : subsystem{
-          author,
-          std::move(described),
-          {.clock = clock,
-           .memory = memory,
-           .flows = flows,
-           .realtime = realtime,
-           .wakes = wakes,
-           .explain = [this](std::string_view text) { explanations.emplace_back(text); },
-           .read_again =
-               [this](std::string_view text) { return descriptor::read_again(subsystem.descriptor(), text, {}); }},
-          channels.subsystem_end(),
-          vital,
-          permit} {
+    : parts_{std::make_unique<Parts>(*this, author, std::move(described), realtime, wakes)},
+      channels{parts_->channels},
+      vital{parts_->vital},
+      permit{parts_->permit},
+      subsystem{parts_->subsystem} {
   permit.release();
 }
+Rig::~Rig() = default;
+
+TimePoint Rig::own_loop(std::size_t loop, TimePoint planned) { return subsystem.own_loop_step(loop, planned); }
+void Rig::fence() { permit.fence(); }
+const descriptor::SubsystemDescriptor& Rig::descriptor() const { return subsystem.descriptor(); }
+State Rig::state() const { return subsystem.state(); }
+std::uint32_t Rig::inhibited() const { return vital.inhibited.load(); }
 
 void Rig::service() {
   if (!supervisor_silent) permit.heartbeat.fetch_add(1);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -10,16 +12,25 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/data_transfer/channel/channel_pair.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/link/latest_link.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
-#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
+#include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
+#include "hirosco/subsystem/author/subsystem.hpp"
+#include "hirosco/subsystem/pages/inhibition.hpp"
+#include "hirosco/utilities/time.hpp"
+
+namespace hirosco {
+class ChannelPair;
+struct PermitPage;
+struct VitalPage;
+}  // namespace hirosco
 
 /// One subsystem stepped by hand: the test is its supervisor, its clock, its threads and its devices. The parts around it
 /// are the simulated set, no mocks. A simulated device goes on `flows`, at the address of its endnode, and is stepped with the rig's clock
 /// after each cycle (templates/device/newpart_test.cpp); without Settings::enable, as no supervisor holds its second inhibit here.
+/// An author includes this, so nothing of service loop and cycle stands here (docs/adr/0187): tests of these include inside.hpp.
 namespace hirosco::testing {
 
 /// A telecommand on its way: its acknowledgements are found by its request id.
@@ -61,6 +72,9 @@ class Rig {
   /// `wakes`: the test steps the service loop when the cycle has something to report (Platform::wakes).
   Rig(Subsystem& author, const std::string& descriptor_text, bool realtime = true, bool wakes = false);
   Rig(Subsystem& author, descriptor::SubsystemDescriptor described, bool realtime = true, bool wakes = false);
+  Rig(const Rig&) = delete;
+  Rig& operator=(const Rig&) = delete;
+  ~Rig();
 
   // --- stepping -----------------------------------------------------------------------------------------------------
   /// One step of the service loop; collects what the subsystem sent. The supervisor's heart beats unless it is silent.
@@ -70,6 +84,8 @@ class Rig {
   /// Both in turn until nothing can be under way any more.
   void settle(int rounds = 12);
   void advance(Duration span) { clock.advance(span); }
+  /// One step of a loop of services of its own, from 0 on, that was due at `planned`; when the next is due.
+  TimePoint own_loop(std::size_t loop, TimePoint planned);
 
   // --- commanding ---------------------------------------------------------------------------------------------------
   Sent send(std::uint8_t service, std::uint8_t subtype, Octets data, const MemoryHandle& memory = {},
@@ -98,7 +114,12 @@ class Rig {
     answer(request.apid, 1, subtype, data);
   }
 
+  /// The supervisor's stop: no output reaches an actuator from the next cycle on.
+  void fence();
+
   // --- looking ------------------------------------------------------------------------------------------------------
+  /// What it is described as.
+  [[nodiscard]] const descriptor::SubsystemDescriptor& descriptor() const;
   /// The verification reports of a request: "1 3 7", "1 4:000a03" (subtype, colon, code and data of a failure).
   [[nodiscard]] std::string outcome(Sent request) const;
   /// Source data of all reports of a type, in order, as hexadecimal text.
@@ -115,9 +136,9 @@ class Rig {
   }
   /// A lost device or link does not change it: its actuators are inhibited, the supervisor hears of that (`raised`) and acts by the mission's
   /// plans; here that is the test's part. So a test of a loss looks at inhibited().
-  [[nodiscard]] State state() const { return subsystem.state(); }
+  [[nodiscard]] State state() const;
   /// Why no output reaches an actuator, a bit for each reason (Inhibition); 0: it does, in Operational.
-  [[nodiscard]] std::uint32_t inhibited() const { return vital.inhibited.load(); }
+  [[nodiscard]] std::uint32_t inhibited() const;
 
   // --- a partner's end of a link ------------------------------------------------------------------------------------
   struct Partner {
@@ -135,16 +156,23 @@ class Rig {
   ManualClock clock;
   HeapMemory memory;
   LocalFlows flows;
-  ChannelPair channels{4096};
-  VitalPage vital{};
-  PermitPage permit{};
   std::vector<std::string> explanations;
   std::vector<Telemetry> telemetry;
   std::vector<Raised> raised;  ///< told to the supervisor, whatever ST[05] is told
   std::vector<Asked> asked;
   bool supervisor_silent{false};
   std::uint32_t link_epoch{5};  ///< of the next attach()
-  GenericSubsystem subsystem;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;  ///< goes first: what it is given stands above
+
+ public:
+  // --- what stands behind it: known to who includes hirosco/subsystem/testing/inside.hpp, in the repository alone --------
+  ChannelPair& channels;
+  VitalPage& vital;
+  PermitPage& permit;
+  GenericSubsystem& subsystem;
 
  private:
   std::uint16_t count_{0};

@@ -59,7 +59,7 @@ class TriedFunctions {
   }
 
  private:
-  [[nodiscard]] const descriptor::SubsystemDescriptor& descriptor() const { return rig_.subsystem.descriptor(); }
+  [[nodiscard]] const descriptor::SubsystemDescriptor& descriptor() const { return rig_.descriptor(); }
   [[nodiscard]] static bool says(const descriptor::Function& function, std::size_t parameter) {
     return std::ranges::find(function.unrepeated, parameter) != function.unrepeated.end();
   }

@@ -101,7 +101,7 @@ struct Flown : hirosco::testing::Driven {
     return numbers;
   }
   hirosco::testing::Sent ask(const char* function, std::vector<double> numbers) {
-    const auto data = pus::encode_call(*rig.subsystem.descriptor().find_function(function), numbers).value();
+    const auto data = pus::encode_call(*rig.descriptor().find_function(function), numbers).value();
     std::vector<std::byte> octets(data.begin(), data.end());
     return rig.send(8, 1, octets);
   }
