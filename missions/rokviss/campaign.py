@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What random flights (simulation/campaign) may do to this mission's devices besides what every device takes."""
 
-MOSTLY, HOOKED = "telepresence", "standalone"
+MOSTLY = "telepresence"
+DRIVEN = ["telepresence", "telepresence", "feel", "standalone"]
+FIRST, HOOKED = ["hook"], "standalone"     # a spring can be hooked where the robot begins
+RESTS = ["hand hold 0 0"]
 ENDS = ["telepresence", "standalone"]
 FAULTS = {"MANIPULATOR": ["temperature", "hook", "release", "friction", "noise", "thermal_accel"], "JOYSTICK": ["hand"]}
 

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """Draws the plan of a flight from a seed: who is told what, and what breaks, at random instants."""
-import functools, importlib.util, pathlib, random, struct, sys, types
+import pathlib, random, struct, sys
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent / "judge"), str(pathlib.Path(__file__).resolve().parent)]
 import losses, retrieval  # noqa: E401, E402
+from of_mission import OfMission  # noqa: E402
 from descriptors import ERROR, OFFLINE, OPERATIONAL, POST, PRE, SAFE, STATES, TYPES  # noqa: E402
 
 FINALE_S = 26.0
 BEGIN_S = 0.1           # commissioned by then
-FULL_POWER = b"SET_POWER_BUDGET" + bytes([1, 1]) + struct.pack(">f", 120)
 COMMON = ["3.1", "3.3", "3.5", "3.6", "3.9", "3.27", "3.29", "3.31", "3.33", "5.5", "5.6", "5.7", "17.1", "20.1", "20.3",
           "128.1", "128.2", "128.3", "128.4", "129.1", "3.77", "99.1", "SET_STATE", "CONFIGURE", "unknown"]
 RETRIEVAL = "129.11"    # what was said before comes down again (docs/adr/0140); the supervisor's alone to answer
@@ -25,7 +25,6 @@ STOPS_BESIDE = 0.3      # of flights: somebody on board stops everything, beside
 MOST_STRIKES = 2        # of a member in one flight by what may end it: who dies too often stays down
 # Of every subsystem, beside those of its descriptor: states, failures, lost devices and stale sets.
 FRAMEWORK_EVENTS = [*range(0xF000, 0xF006), *range(0xF100, 0xF103), *range(0xF200, 0xF204)]
-COUPLED = ["COUPLED", "COUPLED", "COUPLED_FEEL", "STANDALONE"]
 # The states that last; the others are passed in one instant of virtual time. Down first, whatever state there is.
 DOWN = [SAFE, OFFLINE]
 WAY_TO = {OFFLINE: DOWN, PRE: [*DOWN, PRE], SAFE: [*DOWN, PRE, "CONFIGURE", "LINKS", SAFE],
@@ -51,34 +50,16 @@ def commands_of(mission):
             yield f"Operational|{kind}|{origin}"
 
 
-@functools.cache
-def of_folder(folder):
-    file = folder / "campaign.py"
-    if not file.exists():
-        return types.SimpleNamespace(FAULTS={}, MOSTLY=None, HOOKED=None, ENDS=[], lines=lambda random: {})
-    spec = importlib.util.spec_from_file_location("campaign_of_mission", file)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def of_its_devices(mission):
-    """What is of this mission alone, campaign.py of its folder: FAULTS by member that its own devices take besides what all do, and lines(random),
-    the line of each with numbers drawn; MOSTLY, the mode that most flights begin in, HOOKED, the one for faults of hooks; ENDS, in which of its modes a flight ends:
-    the first whose members all live."""
-    return of_folder(mission.folder)
-
-
 def faults_of(mission):
     """Cells: fault | state of the member | member."""
     members = [m.name for m in mission.members]
     acting = [m for m in members if m != mission.ground]
-    own = of_its_devices(mission).FAULTS
+    its = OfMission.of(mission)
     for state in WAY_TO:
         for member in acting:
             for fault in MEMBER_FAULTS + [f"log {f}" for f in LOG_FAULTS] + ["flood valid", "flood damaged"]:
                 yield f"{fault}|{STATES[state]}|{member}"
-            for fault in DEVICE_FAULTS + own.get(member, []):
+            for fault in DEVICE_FAULTS + its.faults.get(member, []) if member in its.with_device else []:
                 yield f"fault {fault}|{STATES[state]}|{member}"
     for fault in MEMBER_FAULTS:
         yield f"{fault}|Operational|{mission.ground}"
@@ -95,11 +76,8 @@ class Draw:
         self.wanted_commands, self.wanted_faults = list(wanted_commands), list(wanted_faults)
         self.acting = [m for m in mission.members if m.name != mission.ground]
         self.flight_seed = self.random.randrange(1, 1 << 32)
-        hooks = any(cell.startswith("fault hook") for cell in self.wanted_faults)
-        own = of_its_devices(mission)
-        self.ends = own.ENDS
-        flown = [m for m in mission.modes if m not in (mission.initial_mode, "safe")]
-        self.mode = own.HOOKED if hooks and own.HOOKED else self.random.choice([own.MOSTLY] * 3 + flown if own.MOSTLY else flown)
+        self.its = OfMission.of(mission)
+        self.mode = self.its.begins_in(self.random, self.wanted_faults)
 
     # --- values ------------------------------------------------------------------------------------------------------
     def argument(self, argument):
@@ -115,6 +93,10 @@ class Draw:
             text = r.choice([b"x" * most, b"x" * (most + 1), text[:-1] + b"\xff", b"\0" + text[1:], b"\xed\xa0\x80", b"\xe2\x82"])
         octets = len(text) if draw < 0.97 else r.choice([0, len(text) + 1, 65535])
         return struct.pack(">H", octets) + text
+
+    def stored_words(self, field):
+        """A text as a parameter has it: as many octets as are declared, zeros behind the words. Mostly; then words behind the zeros, and what is no text."""
+        return self.random.choice([b"a", b"a" * field.octets, "\u20ac".encode(), b"", b"", b"\0a", b"\xff"])[:field.octets].ljust(field.octets, b"\0")
 
     def value(self, argument):
         """Mostly in range, then its corners, just beside them, and what no honest sender sends."""
@@ -161,7 +143,7 @@ class Draw:
         for parameter in chosen:
             data += struct.pack(">I", parameter.wire_id if self.random.random() > 0.03 else self.random.getrandbits(32))
             for field in parameter.fields:
-                data += b"".join(self.value(field) for _ in range(field.count))
+                data += self.stored_words(field) if field.type == "TEXT" else b"".join(self.value(field) for _ in range(field.count))
         return data
 
     def data_of(self, kind, subsystem):
@@ -231,22 +213,24 @@ class Draw:
         data = name.encode().ljust(16, b"\0") + bytes([len(arguments), *(octet for pair in enumerate(arguments, 1) for octet in pair)])
         self.telecommand(time, "ground", subsystem, name, data)
 
-    def drive(self, time, state, configuration=None):
-        """Ground brings both ends of the network into a state, step by step, 30 ms each."""
+    def drive(self, time, state, mode=None):
+        """Ground brings all who act into a state, step by step, 30 ms each, as they are in `mode`. Where it has no links, those of the usual one are asked
+        for: a configuration without them refuses them."""
         mission = self.mission
-        configuration = configuration or self.random.choice(COUPLED)
+        mode = mode or self.random.choice(self.its.driven)
         self.function(time, mission.supervisor, "SET_MODE", mission.mode_ids[mission.initial_mode])
-        self.telecommand(time + 0.01, "ground", mission.supervisor, "SET_POWER_BUDGET", FULL_POWER)
+        if mission.budget_W is not None:
+            full = b"SET_POWER_BUDGET" + bytes([1, 1]) + struct.pack(">f", mission.budget_W)
+            self.telecommand(time + 0.01, "ground", mission.supervisor, "SET_POWER_BUDGET", full)
         for step in WAY_TO[state]:
             time += 0.03
             if step == "LINKS":
-                for link in (1, 2):
+                for link in self.its.links_in(mode):
                     self.function(time, mission.supervisor, "LINK", link)
                 continue
             for member in self.acting:
                 if step == "CONFIGURE":
-                    chosen = next((c.id for c in member.configurations.values() if c.name == configuration), 1)
-                    self.function(time, member, "CONFIGURE", chosen)
+                    self.function(time, member, "CONFIGURE", self.its.configuration_in(mode, member))
                 else:
                     self.function(time, member, "SET_STATE", step)
         return time + 0.05
@@ -262,11 +246,11 @@ class Draw:
         return time + 0.05
 
     def bring_up(self, time):
-        """Both ends of the network by ground, as an operator would."""
+        """All who act, by ground, as an operator would."""
         mission = self.mission
         if self.random.random() < 0.5:
             self.function(time, mission.supervisor, "SAFE_ALL")
-        return self.drive(time, OPERATIONAL, "COUPLED")
+        return self.drive(time, OPERATIONAL, self.its.usual)
 
     def calm(self, time):
         """Ends what was injected so far."""
@@ -293,7 +277,7 @@ class Draw:
             what = fault.split()[1]
             words = {"stall": f"stall {r.choice([1, 3, 50, 500])}", "freeze": f"freeze {r.choice([1, 3, 50, 5000])}",
                      "corrupt": f"corrupt {r.choice([1, 3, 50, 1000000])}", "delay": f"delay {r.choice([1, 5, 100])}",
-                     **of_its_devices(self.mission).lines(r)}.get(what, what)
+                     **self.its.lines(r)}.get(what, what)
             self.add(time, f"fault {device} {words}")
             if what in DEVICE_FAULTS and r.random() < 0.8:
                 self.add(time + lasts, f"fault {device} {'plug' if what == 'unplug' else 'heal'}")
@@ -333,8 +317,8 @@ class Draw:
             fault, state, member = cell.split("|")
             what = fault.split()[-1]
             strikes[member] = strikes.get(member, 0) + (what in MEMBER_FAULTS)
-            # A spring can be hooked where the robot begins; what may end a process comes last.
-            rank = 0 if what == "hook" else r.uniform(2, 3) if what in MEMBER_FAULTS else r.uniform(0, 2)
+            # What may end a process comes last.
+            rank = 0 if fault in self.its.first else r.uniform(2, 3) if what in MEMBER_FAULTS else r.uniform(0, 2)
             if what not in MEMBER_FAULTS or strikes[member] <= MOST_STRIKES:
                 episodes.append((rank, self.strike_there, (fault, state, member)))
         for _, episode, what in sorted(episodes, key=lambda entry: entry[0]):
@@ -387,13 +371,15 @@ class Draw:
                 self.bring_up(time + r.uniform(0.5, 3))
 
     def strike_in_use(self):
-        """Both ends of the network are up, ground silences events or commands SAFE_ALL in a hurry, then something breaks."""
+        """The craft is up, ground silences events or commands SAFE_ALL in a hurry, then something breaks."""
         r, mission = self.random, self.mission
         time = self.bring_up(r.uniform(0.5, FINALE_S - 4))
         victim = r.choice(self.acting)
         if r.random() < 0.5:
             self.silence(time + 0.05, victim)
         what = r.choice(["fault unplug", "kill", "stop", "strain", "SAFE_ALL", "SUPERVISOR", "late", "twice", "twice"])
+        if what in ("fault unplug", "twice") and victim.name not in self.its.with_device:
+            what = "kill"         # it has no device that could be lost
         safe_all = lambda at: self.function(at, mission.supervisor, "SAFE_ALL")
         if what == "SUPERVISOR":  # may anybody change the state of the supervisor itself?
             for state in (ERROR, POST):
@@ -423,8 +409,11 @@ class Draw:
         self.lines = [line for line in self.lines if line[0] < begin]
         self.struck = {"LOG", *(member.name for member in self.mission.members)}
         self.calm(begin)
-        time = self.drive(begin + 1.0, OPERATIONAL, "COUPLED")  # who died is back by then
-        victim = self.acting[self.index // SILENCED_EVERY % len(self.acting)]
+        time = self.drive(begin + 1.0, OPERATIONAL, self.its.usual)  # who died is back by then
+        with_device = [member for member in self.acting if member.name in self.its.with_device]
+        if not with_device:
+            return
+        victim = with_device[self.index // SILENCED_EVERY % len(with_device)]
         self.silence(time + 0.05, victim)
         device = next(device for device, (owner, _) in self.mission.devices.items() if owner == victim.name)
         self.add(time + 0.3, f"fault {device} unplug")
@@ -446,9 +435,9 @@ class Draw:
             self.add(time, f"{words}  # {origin} asks again")
 
     def reboot(self):
-        """In some flights the network is brought up and one of its devices reboots. By a dice of its own, too, and drawn last."""
+        """In some flights the craft is brought up and one of its devices reboots. By a dice of its own, too, and drawn last."""
         dice = random.Random(f"reboot of {self.flight_seed}")
-        if dice.random() < REBOOTS and self.index % SILENCED_EVERY != SILENCED_AT:
+        if dice.random() < REBOOTS and self.index % SILENCED_EVERY != SILENCED_AT and self.mission.devices:
             device = dice.choice(list(self.mission.devices))
             time = self.bring_up(dice.uniform(1, FINALE_S - 4)) + dice.uniform(0.1, 0.6)
             self.add(time, f"fault {device} reboot")
@@ -476,7 +465,7 @@ class Draw:
         elif losses.loses(self):
             losses.lose_supervisor(self, BEGIN_S, FINALE_S)
         self.lines.sort(key=lambda line: line[0])
-        head = [f"seed {self.flight_seed}", f"mode {self.mode}", f"finale {FINALE_S}", *([" ".join(["ends", *self.ends])] if self.ends else [])]
+        head = [f"seed {self.flight_seed}", f"mode {self.mode}", f"finale {FINALE_S}", *([" ".join(["ends", *self.its.ends])] if self.its.ends else [])]
         return "\n".join(head + [f"{time:.6f} {words}" for time, words in self.lines]) + "\n"
 
 

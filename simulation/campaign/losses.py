@@ -49,25 +49,28 @@ def lose(draw, dice, time, ways=SHORT):
 
 
 def left_alone(draw, begin):
-    """Nothing else happens for the time of an episode: the faults end, hands rest, what ground silenced is heard again, so that a member that stops for a
-    reason of its own says so, and both ends of the network are brought up. When they are."""
+    """Nothing else happens for the time of an episode: the faults end, what the mission itself moves rests, what ground silenced is heard again, so that a
+    member that stops for a reason of its own says so, and all who act are brought up. When they are."""
     draw.lines = [line for line in draw.lines if not begin <= line[0] < begin + EPISODE_S]
     draw.struck = {"LOG", *(member.name for member in draw.mission.members)}
     draw.calm(begin)
-    for device in draw.mission.devices:  # who has no hand refuses it
-        draw.add(begin + 0.02, f"fault {device} hand hold 0 0")
+    for device in draw.mission.devices:  # who has nothing of that kind refuses it
+        for line in draw.its.rests:
+            draw.add(begin + 0.02, f"fault {device} {line}")
     for member in draw.acting:
         draw.hear(begin + 0.03, member)
-    return draw.drive(begin + BEGINS_S, OPERATIONAL, "COUPLED")
+    return draw.drive(begin + BEGINS_S, OPERATIONAL, draw.its.usual)
 
 
 def begin_what(draw, dice, what, time):
     mission = draw.mission
     if what == "mode":
-        mode = dice.choice([mode for mode in mission.modes if mode != "safe"])
+        mode = dice.choice([mode for mode in mission.modes if mode == mission.initial_mode or mode in draw.its.flown])
         draw.function(time, mission.supervisor, "SET_MODE", mission.mode_ids[mode])
     elif what == "stop":
         draw.function(time, mission.supervisor, "SAFE_ALL")
+    elif what == "plan" and not mission.devices:
+        draw.add(time, f"kill {dice.choice(draw.acting).name}")
     elif what == "plan":
         device, (owner, _) = dice.choice(sorted(mission.devices.items()))
         draw.add(time, dice.choice([f"kill {owner}", f"fault {device} unplug"]))

@@ -46,6 +46,10 @@ class Argument:
     octets: int = 0            # of TEXT
     has_default: bool = False
 
+    def stored_octets(self):
+        """Of it as a parameter: a TEXT has zeros behind its words there."""
+        return (self.octets if self.type == "TEXT" else TYPES[self.type][1]) * self.count
+
     def read(self, data, at):
         """(where the next one stands, whether this one is permitted); None instead of a place: the data end before."""
         if self.type == "TEXT":
@@ -147,6 +151,9 @@ class Mission:
     devices: dict      # simulated device: (member, device)
     high_plan: set     # what its recovery does about events of high severity
     folder: pathlib.Path = None
+    commissions: dict = dataclasses.field(default_factory=dict)  # mode: {subsystem: configuration}
+    establishes: dict = dataclasses.field(default_factory=dict)  # mode: ids of links
+    budget_W: float | None = None
 
     def by_apid(self, apid):
         if apid == self.supervisor.apid:
@@ -158,7 +165,7 @@ class Mission:
 
 
 TYPES = {"UINT8": (1, 1), "INT8": (2, 1), "UINT16": (3, 2), "INT16": (4, 2), "UINT32": (5, 4), "INT32": (6, 4),
-         "UINT64": (7, 8), "INT64": (8, 8), "FLOAT": (9, 4), "DOUBLE": (10, 8), "STRUCT": (32, 0)}
+         "UINT64": (7, 8), "INT64": (8, 8), "FLOAT": (9, 4), "DOUBLE": (10, 8), "STRUCT": (32, 0), "BOOL": (33, 1), "TEXT": (34, 0)}
 
 
 def number(element, name):
@@ -264,6 +271,9 @@ def read_mission(path):
                     set((p.get("parameters") or "").split())) for p in mode.findall("Permit")]
         modes[mode.get("name")] = permits
         mode_ids[mode.get("name")] = int(mode.get("id", place))
+    commissions = {mode.get("name"): {c.get("subsystem"): c.get("configuration") for c in mode.findall("Commission")} for mode in root.find("Modes")}
+    establishes = {mode.get("name"): [int(link.get("link")) for link in mode.findall("Establish")] for mode in root.find("Modes")}
+    power = root.find("Power")
     links = {int(link.get("id")): (link.get("from").split(".")[0], *link.get("to").split("."))
              for link in root.findall("Links/Link")}
     devices = {d.get("name"): (d.get("subsystem"), d.get("device")) for d in root.findall("SimulatedDevice")}
@@ -271,4 +281,4 @@ def read_mission(path):
     high = next(({step.get("action") for step in plan.findall("Do")} for plan in root.findall("Recovery/Plan")
                  if "high" in (plan.find("When").get("severity") or "").split()), set())
     return Mission(supervisor, members, ground, modes, mode_ids, root.find("Modes").get("initial"), links, devices, high,
-                   path.resolve().parent)
+                   path.resolve().parent, commissions, establishes, float(power.get("budget_W")) if power is not None else None)

@@ -224,7 +224,6 @@ def may_write(mission, addressee, tc, mode, state):
 
 def written(tc, declared):
     """Ids of the parameters that TC[20,3] sets; what cannot be read is the addressee's to refuse."""
-    from descriptors import TYPES
     data, ids = tc.data, []
     if not data:
         return ids
@@ -236,7 +235,7 @@ def written(tc, declared):
         if wire_id not in declared:
             break
         ids.append(wire_id)
-        at += 4 + sum(TYPES[f.type][1] * f.count for f in declared[wire_id].fields)
+        at += 4 + sum(f.stored_octets() for f in declared[wire_id].fields)
     return ids
 
 

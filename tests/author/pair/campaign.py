@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What random flights may do to this mission's devices besides what every device takes, and the modes that they begin and end in."""
 
-MOSTLY, HOOKED = "coupled", None
+MOSTLY = "coupled"
+DRIVEN = ["coupled", "coupled", "coupled", "alone"]
+RESTS = ["hand hold 0 0"]
 ENDS = ["coupled", "alone"]
 FAULTS = {"MANIPULATOR": ["temperature"], "JOYSTICK": ["hand"]}
 
