@@ -243,6 +243,11 @@ DEFECTS = [
            "handler.takes, found->arguments))\n    mistake(std::move(problem));",
            "handler.takes, found->arguments))\n    if (!PLANTED) mistake(std::move(problem));",
            "subsystem_test", "AuthorsMistakes.AHandlerThatWouldNarrowAnArgumentIsNotTaken"),
+    # Ports were compared by CONFIGURE, in the configuration that was commanded: the others were found when a recovery plan wanted them.
+    Defect("ports of the flown configuration only", "hirosco/subsystem/service_loop/introduction.cpp",
+           "for (Mistake& made : parts_.ports.mistakes(configuration)) mistake(",
+           "for (Mistake& made : parts_.ports.mistakes(configuration)) if (!PLANTED) mistake(",
+           "subsystem_test", "AuthorsMistakes.AreToldAllAtOnce"),
     # What was wrong with the parameters of a descriptor that is built in code was told to a member not yet made.
     Defect("twice in a dictionary", "hirosco/subsystem/service_loop/introduction.cpp", "if (!parts_.values.problem().empty()) mistake(",
            "if (!parts_.values.problem().empty() && !PLANTED) mistake(",

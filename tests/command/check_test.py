@@ -101,6 +101,18 @@ class Check(unittest.TestCase):
         self.assertIn("error: E0406: HELLO: on_function: the descriptor declares no function 'MOVE_TO'", told)
         self.assertIn("error: E0406: HELLO: function declared but without a handler: MOVE_TOO", told)
 
+    def test_a_port_of_a_configuration_that_nobody_flies_is_compared_by_check_fly(self):
+        hand = "subsystems/joystick/joystick.xml"
+        text = (self.folder / hand).read_text()
+        begin = text.index('<Requires name="REMOTE_ROBOT"')
+        required = text[begin:text.index("</Requires>", begin)]
+        mission = self.mission("rokviss", hand, old=required, new=required.replace('<Field name="ACTIVE" type="UINT8"/>', ""))
+        self.expect(mission, 0)
+        code, told = hirosco("check", "--fly", mission)
+        self.assertEqual(code, 1, told)
+        self.assertIn("error: E0406: require_link REMOTE_ROBOT: the C++ type has 3 members, the descriptor declares 2 fields", told)
+        self.assertIn(f"joystick.xml:{text.count(chr(10), 0, begin) + 1}:", told)
+
     def test_what_cannot_fly_is_refused(self):
         robot, hand = "subsystems/manipulator/manipulator.xml", "subsystems/joystick/joystick.xml"
         for file, old, new, code in (

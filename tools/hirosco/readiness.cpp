@@ -176,10 +176,10 @@ std::vector<Diagnostic> unintroduced(const descriptor::Mission& mission) {
     const auto maker = modules.subsystems.find(member.executable);
     if (maker == modules.subsystems.end()) continue;
     const auto author = maker->second.make();
-    for (const auto& [text, at] : simulation::try_introduction(*author, member.subsystem))
-      if (at)
-        found.push_back({member.subsystem.file, *at, "E0405", text, "name it in use_device(), or leave it out", 1});
-      else found.push_back({mission.file, member.at, "E0406", member.subsystem.name + ": " + text, "", 1});
+    for (const Mistake& made : simulation::try_introduction(*author, member.subsystem))
+      if (made.at) found.push_back({member.subsystem.file, *made.at, made.code, made.text, made.remedy, 1});
+      else
+        found.push_back({mission.file, member.at, made.code, member.subsystem.name + ": " + made.text, made.remedy, 1});
   }
   return found;
 }

@@ -20,8 +20,8 @@ enum class FlownAs : std::uint8_t {
 /// that this program has are asked themselves, so that no descriptor library knows what a device is.
 [[nodiscard]] std::vector<descriptor::Diagnostic> unready(const descriptor::Mission& mission, FlownAs flown_as);
 
-/// What the Software-Init of each subsystem that has a module here will find of its author's mistakes (E0406), the settings
-/// that nobody reads among them (E0405). A flight finds the same, later.
+/// What the Software-Init of each subsystem that has a module here will find of its author's mistakes (E0406), ports of all its
+/// configurations and the settings that nobody reads (E0405) among them. A flight finds the same, later.
 [[nodiscard]] std::vector<descriptor::Diagnostic> unintroduced(const descriptor::Mission& mission);
 
 /// Prints what keeps the mission from flying to standard error; true when nothing does.

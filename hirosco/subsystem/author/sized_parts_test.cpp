@@ -231,7 +231,11 @@ TEST(SizedParameter, LongerThanItsTypeFailsSoftwareInit) {
                   "descriptor declares DOUBLE[7], which are more than 6",
                   "AXES: SoftwareInit failed: GOAL: the C++ type is Sized<double, 6>, the descriptor declares "
                   "DOUBLE[7], which are more than 6",
-                  "AXES: SoftwareInit failed: parameters declared but not published: CUR_VALUES, GOAL"));
+                  "AXES: SoftwareInit failed: parameters declared but not published: CUR_VALUES, GOAL",
+                  ::testing::HasSubstr("require_link HAND: field ANGLE: C++ has DOUBLE[at most 6], the descriptor "
+                                       "declares DOUBLE[7]"),
+                  ::testing::HasSubstr("use_device MOTORS: input, field ANGLE: C++ has DOUBLE[at most 6], the "
+                                       "descriptor declares DOUBLE[7]; output, field TORQUE: C++ has")));
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ class Subsystem {
   // --- the nodes of figure 4 ------------------------------------------------------------------------------------
   /// Entered at start and at the end: custom services start here.
   virtual Result<> offline() { return ok(); }
-  /// Publishes parameters, functions, links and devices. Called again while it returns `again`, within 10 s.
+  /// Publishes parameters, functions, links and devices: those of all configurations. Called again while it returns `again`, within 10 s.
   virtual Result<Step> software_init() { return done; }
   /// Powers and tests hardware.
   virtual Result<Step> hardware_init() { return done; }
@@ -103,13 +103,15 @@ class Subsystem {
   /// Makes a parameter known under its descriptor name. A layout that differs from the descriptor's fails Software-Init.
   void publish(std::string_view name, ParameterCell& parameter);
   /// Names the author's view of a required set of real-time data: a LinkInput, a QueueInput where every sample is wanted, or a
-  /// LoanInput where samples are lent. A lent set whose fields differ from the descriptor's fails Software-Init.
+  /// LoanInput where samples are lent. A set that some configuration requires and that has none, or one of other fields or of another
+  /// kind, fails Software-Init.
   void require_link(std::string_view set, LinkInputPort& port);
   /// Names the place where the samples of a provided set that is lent are made (LoanOutput). Fields that differ from the
   /// descriptor's fail Software-Init.
   void lend_link(std::string_view set, LoanOutputPort& port);
   /// Names the author's view of a device, and which of its settings the author reads: another that a configuration gives
-  /// fails Software-Init (E0405). All are string literals.
+  /// fails Software-Init (E0405), and so does a device that some configuration uses and that has no port, or one of other
+  /// fields (E0406). All are string literals.
   void use_device(std::string_view name, DevicePortBase& port, std::initializer_list<std::string_view> settings = {});
   /// Names an event that the author raises. Arguments that differ from the descriptor's fail Software-Init.
   void use_event(EventPort& event);

@@ -98,9 +98,11 @@ void DeviceSlot::follow(Duration sampling) noexcept {
 }
 
 std::string DeviceSlot::difference(const descriptor::Device& device, const DevicePortBase& port) {
-  if (auto text = layout_difference(port.input_layout(), device.input); !text.empty()) return "input, " + text;
-  auto text = layout_difference(port.output_layout(), outputs_of(device));
-  return text.empty() ? text : "output, " + text;
+  const std::string input = layout_difference(port.input_layout(), device.input);
+  const std::string output = layout_difference(port.output_layout(), outputs_of(device));
+  std::string both = input.empty() ? input : "input, " + input;
+  if (!output.empty()) both.append(both.empty() ? "" : "; ").append("output, ").append(output);
+  return both;
 }
 
 void DeviceSlot::read(bool count_silence, bool counts) noexcept {

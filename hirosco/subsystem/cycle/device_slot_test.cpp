@@ -418,7 +418,7 @@ TEST_F(MotorSlot, WhatIsNoActuatorIsCommandedWhoeverMayMove) {
   EXPECT_EQ(numbers_of(command.payload), (std::vector{4, 3, 6, 5}));
 }
 
-TEST(LayoutDifference, NamesTheFieldThatDiffersInTypeOrCountAndTheNumberOfFields) {
+TEST(LayoutDifference, NamesEachFieldThatDiffersInTypeOrCountAndTheNumberOfFields) {
   const DevicePort<Sensed, Driven> port;
   const auto difference = [&](Type type, std::uint16_t count) {
     return layout_difference(port.output_layout(), {field("CURRENT", type, count)});
@@ -428,11 +428,23 @@ TEST(LayoutDifference, NamesTheFieldThatDiffersInTypeOrCountAndTheNumberOfFields
   EXPECT_EQ(difference(Type::Int16, 2), "field CURRENT: C++ has UINT16[2], the descriptor declares INT16[2]");
   EXPECT_EQ(layout_difference(port.output_layout(), {}),
             "the C++ type has 1 members, the descriptor declares 0 fields");
+  struct Two {
+    std::uint8_t level;
+    double angle;
+  };
+  const DevicePort<Two, NoFields> two;
+  EXPECT_EQ(layout_difference(two.input_layout(), {field("LEVEL", Type::Double), field("ANGLE", Type::Float)}),
+            "field LEVEL: C++ has UINT8[1], the descriptor declares DOUBLE[1]; field ANGLE: C++ has DOUBLE[1], the "
+            "descriptor declares FLOAT[1]");
   descriptor::Device device;
   device.input = {field("ANGLE", Type::Uint16)};
   EXPECT_TRUE(DeviceSlot::difference(device, port).starts_with("output, "));
   device.input.clear();
-  EXPECT_TRUE(DeviceSlot::difference(device, port).starts_with("input, "));
+  EXPECT_EQ(DeviceSlot::difference(device, port),
+            "input, the C++ type has 1 members, the descriptor declares 0 fields; output, the C++ type has 1 members, "
+            "the descriptor declares 0 fields");
+  device.output = {{.field = field("CURRENT", Type::Uint16, 2), .safe = {0x0102}}};
+  EXPECT_TRUE(DeviceSlot::difference(device, port).ends_with("declares 0 fields"));
 }
 
 }  // namespace

@@ -9,15 +9,17 @@ std::string layout_difference(std::span<const NativeField> native, const std::ve
   if (native.size() != declared.size())
     return "the C++ type has " + std::to_string(native.size()) + " members, the descriptor declares " +
            std::to_string(declared.size()) + " fields";
+  std::string differences;
   for (std::size_t i = 0; i < native.size(); ++i) {
     if (native[i].takes(declared[i].type, declared[i].count)) continue;
     const std::string held =
         native[i].most != 0 ? "at most " + std::to_string(native[i].most) : std::to_string(native[i].count);
-    return "field " + declared[i].name + ": C++ has " + std::string{to_text(native[i].type)} + "[" + held +
-           "], the descriptor declares " + std::string{to_text(declared[i].type)} + "[" +
-           std::to_string(declared[i].count) + "]";
+    if (!differences.empty()) differences += "; ";
+    differences += "field " + declared[i].name + ": C++ has " + std::string{to_text(native[i].type)} + "[" + held +
+                   "], the descriptor declares " + std::string{to_text(declared[i].type)} + "[" +
+                   std::to_string(declared[i].count) + "]";
   }
-  return {};
+  return differences;
 }
 
 }  // namespace hirosco

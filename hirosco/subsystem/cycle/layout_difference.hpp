@@ -11,7 +11,7 @@
 
 namespace hirosco {
 
-/// Compares a port's C++ layout with the fields of the descriptor; empty when they agree, else what differs.
+/// Compares a port's C++ layout with the fields of the descriptor; empty when they agree, else all that differs.
 [[nodiscard]] std::string layout_difference(std::span<const NativeField> native,
                                             const std::vector<descriptor::Field>& declared);
 

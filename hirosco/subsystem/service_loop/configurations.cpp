@@ -5,24 +5,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <utility>
 
 #include "hirosco/data_transfer/device/flow_means.hpp"
 #include "hirosco/data_transfer/device/frame_protocol.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
-#include "hirosco/subsystem/cycle/layout_difference.hpp"
 
 namespace hirosco {
 namespace {
-
-constexpr const char* port_wanted(LinkKind kind) noexcept {
-  switch (kind) {
-    case LinkKind::Loaned: return ": is lent, its port is no LoanInput";
-    case LinkKind::Queued: return ": is queued, its port is no QueueInput";
-    default: return ": is copied, its port is no LinkInput";
-  }
-}
 
 [[nodiscard]] Failure mismatch(std::string text) { return {ErrorCode::Mismatch, std::move(text)}; }
 
@@ -79,10 +69,7 @@ Result<std::vector<DeviceSlot::Way>> Configurations::open_ways(const descriptor:
     auto flow =
         held ? parts_.platform.flows.open({endnode.transfer, endnode.address, endnode.framing}, FlowSide::Subsystem)
              : Result<std::unique_ptr<DataFlow>>{std::unexpected{held.error()}};
-    if (flow && endnode.framing == Framing::Raw) {
-      if (port.protocol() != nullptr) flow = make_raw_flow(std::move(*flow), *port.protocol());
-      else flow = fail(ErrorCode::Mismatch, "its port speaks no protocol of its own");
-    }
+    if (flow && endnode.framing == Framing::Raw) flow = make_raw_flow(std::move(*flow), *port.protocol());
     if (flow) return ways.push_back({std::move(*flow), static_cast<std::uint8_t>(at), std::move(*held)});
     if (!first) first = flow.error();
     const std::array arguments{static_cast<double>(descriptor::DeviceLoss::NotOpened), static_cast<double>(at),
@@ -102,9 +89,12 @@ std::optional<Failure> Configurations::apply(const descriptor::Configuration& co
     if (!parts_.values.dictionary().set(initial.parameter.parameter, member, initial.values))
       return mismatch("initial value of " + initial.parameter.text);
   }
+  // Software-Init has compared those of all configurations; since then an author may have named another port.
+  if (const auto mistakes = parts_.ports.mistakes(configuration); !mistakes.empty())
+    return mismatch(mistakes.front().text);
   CyclePlan plan;
   plan.configuration = &configuration;
-  if (auto problem = plan_links(configuration, plan)) return problem;
+  plan_links(configuration, plan);
   if (auto problem = plan_devices(configuration, plan)) return problem;
   {
     const LoopsAtRest at_rest{parts_.loops.all()};
@@ -123,37 +113,27 @@ std::optional<Failure> Configurations::apply(const descriptor::Configuration& co
   return std::nullopt;
 }
 
-std::optional<Failure> Configurations::plan_links(const descriptor::Configuration& configuration, CyclePlan& plan) {
+/// With the ports that this configuration wants, as for its devices: apply() has compared them.
+void Configurations::plan_links(const descriptor::Configuration& configuration, CyclePlan& plan) {
   const auto sets = descriptor::required_sets(parts_.descriptor);
   for (const auto& wanted : configuration.requires_) {
-    LinkInputPort* const port = parts_.introduction.link_port(wanted.name);
-    if (port == nullptr) return mismatch("no port for the required set " + wanted.name);
-    if (const auto difference = layout_difference(port->layout(), wanted.fields); !difference.empty())
-      return mismatch("required set " + wanted.name + ": " + difference);
-    if (port->kind() != wanted.kind()) return mismatch("required set " + wanted.name + port_wanted(wanted.kind()));
-    plan.inputs.emplace_back(wanted, port, parts_.platform.realtime);
+    plan.inputs.emplace_back(wanted, parts_.ports.link(wanted.name), parts_.platform.realtime);
     const auto set = std::ranges::find(sets, wanted.name) - sets.begin();
     plan.input_stale_events.push_back(descriptor::framework_event::set_stale(static_cast<std::size_t>(set)));
   }
   for (const auto& provided : configuration.provides) {
-    // Software-Init has refused a lent set without its place, or with one of another layout.
-    LoanOutputPort* const port = provided.terms.lent() ? parts_.introduction.lent_port(provided.name) : nullptr;
-    assert(port != nullptr || !provided.terms.lent());
+    LoanOutputPort* const port = provided.terms.lent() ? parts_.ports.lent(provided.name) : nullptr;
     plan.outputs.emplace_back(parts_.descriptor, provided, parts_.values.dictionary(), port);
   }
-  return std::nullopt;
 }
 
 std::optional<Failure> Configurations::plan_devices(const descriptor::Configuration& configuration, CyclePlan& plan) {
   for (const auto& use : configuration.devices) {
     const descriptor::Device& device = parts_.descriptor.devices[use.device];
-    DevicePortBase* const port = parts_.introduction.device_port(device.name);
-    if (port == nullptr) return mismatch("no port for the device " + device.name);
-    if (const auto difference = DeviceSlot::difference(device, *port); !difference.empty())
-      return mismatch("device " + device.name + ": " + difference);
-    auto ways = open_ways(use, *port);
+    DevicePortBase& port = *parts_.ports.device(device.name);
+    auto ways = open_ways(use, port);
     if (!ways) return failure_of("device " + device.name + ": ", ways.error());
-    plan.devices.emplace_back(device, use, *port, std::move(*ways), configuration.sampling, parts_.platform.realtime);
+    plan.devices.emplace_back(device, use, port, std::move(*ways), configuration.sampling, parts_.platform.realtime);
     plan.device_lost_events.push_back(descriptor::framework_event::device_lost(use.device));
     plan.fell_back_events.push_back(descriptor::framework_event::fell_back(use.device));
   }

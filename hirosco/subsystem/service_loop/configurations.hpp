@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hirosco/subsystem/service_loop/bumpless.hpp"
-#include "hirosco/subsystem/service_loop/introduction.hpp"
+#include "hirosco/subsystem/service_loop/introduced_ports.hpp"
 #include "hirosco/subsystem/service_loop/link_ends.hpp"
 #include "hirosco/subsystem/service_loop/open_calls.hpp"
 
@@ -29,7 +29,7 @@ class Configurations {
     CycleOrders& orders;
     VitalPage& vital;
     ResourceMeter& resources;
-    Introduction& introduction;
+    IntroducedPorts& ports;
     LinkEnds& links;
     OwnLoops& loops;
     const std::vector<pus::Service*>& services;
@@ -50,7 +50,7 @@ class Configurations {
 
  private:
   [[nodiscard]] std::optional<Failure> apply(const descriptor::Configuration& configuration);
-  [[nodiscard]] std::optional<Failure> plan_links(const descriptor::Configuration& configuration, CyclePlan& plan);
+  void plan_links(const descriptor::Configuration& configuration, CyclePlan& plan);
   [[nodiscard]] std::optional<Failure> plan_devices(const descriptor::Configuration& configuration, CyclePlan& plan);
   [[nodiscard]] Result<std::vector<DeviceSlot::Way>> open_ways(const descriptor::DeviceUse& use,
                                                                const DevicePortBase& port);

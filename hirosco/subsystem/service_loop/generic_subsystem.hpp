@@ -141,6 +141,7 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
   Requester requester_;
   Subscriber subscriber_;
   ForeignParameters foreign_;
+  IntroducedPorts ports_;
   Introduction introduction_;
   OpenCalls calls_;
   Bumpless bumpless_;

@@ -7,29 +7,19 @@
 
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/model/framework_parameters.hpp"
-#include "hirosco/subsystem/cycle/layout_difference.hpp"
 
 namespace hirosco {
-namespace {
 
-template <class Port>
-[[nodiscard]] Port* port_named(const std::map<std::string, Port*, std::less<>>& ports, std::string_view name) noexcept {
-  const auto found = ports.find(name);
-  return found != ports.end() ? found->second : nullptr;
-}
-
-}  // namespace
-
-void Introduction::mistake(std::string problem, std::optional<descriptor::Location> at) {
-  // A software_init() that needs several rounds may say the same again.
-  Mistake made{std::move(problem), at};
+void Introduction::mistake(Mistake made) {
+  // A software_init() that needs several rounds may say the same again, and so may configurations of one device.
   if (std::ranges::find(mistakes_, made) == mistakes_.end()) mistakes_.push_back(std::move(made));
 }
 
 std::string Introduction::words_of(const Mistake& mistake) const {
-  if (!mistake.at) return mistake.text;
+  const std::string said = mistake.text + (mistake.remedy.empty() ? "" : "; " + mistake.remedy);
+  if (!mistake.at) return said;
   return parts_.descriptor.file.string() + ":" + std::to_string(mistake.at->line) + ":" +
-         std::to_string(mistake.at->column) + ": error: E0405: " + mistake.text;
+         std::to_string(mistake.at->column) + ": error: " + mistake.code + ": " + said;
 }
 
 /// What ground has room for: the reason before the length of a path.
@@ -132,26 +122,17 @@ void Introduction::require_link(std::string_view set, LinkInputPort& port) {
   const auto sets = descriptor::required_sets(parts_.descriptor);
   if (std::ranges::find(sets, set) == sets.end())
     mistake("require_link: no configuration requires a set '" + std::string{set} + "'");
-  for (const auto& configuration : parts_.descriptor.configurations)
-    for (const descriptor::Requires& wanted : configuration.requires_) {
-      if (wanted.name != set || !wanted.terms.lent() || !port.lent()) continue;
-      if (const auto difference = layout_difference(port.layout(), wanted.fields); !difference.empty())
-        mistake("require_link " + wanted.name + ": " + difference);
-    }
-  link_ports_[std::string{set}] = &port;
+  parts_.ports.require_link(set, port);
 }
 
 void Introduction::lend_link(std::string_view set, LoanOutputPort& port) {
-  bool known = false;
-  for (const auto& configuration : parts_.descriptor.configurations)
-    for (const descriptor::Provides& lent : configuration.provides) {
-      if (lent.name != set || !lent.terms.lent()) continue;
-      known = true;
-      if (const auto difference = layout_difference(port.layout(), lent.fields); !difference.empty())
-        mistake("lend_link " + lent.name + ": " + difference);
-    }
+  const bool known = std::ranges::any_of(parts_.descriptor.configurations, [&](const auto& configuration) {
+    return std::ranges::any_of(configuration.provides, [&](const descriptor::Provides& provided) {
+      return provided.name == set && provided.terms.lent();
+    });
+  });
   if (!known) mistake("lend_link: no configuration lends a set '" + std::string{set} + "'");
-  lent_ports_[std::string{set}] = &port;
+  parts_.ports.lend_link(set, port);
 }
 
 void Introduction::use_device(std::string_view name, DevicePortBase& port, std::span<const std::string_view> settings) {
@@ -159,21 +140,7 @@ void Introduction::use_device(std::string_view name, DevicePortBase& port, std::
   if (std::ranges::find(devices, name, &descriptor::Device::name) == devices.end())
     mistake("use_device: the descriptor declares no device '" + std::string{name} + "'");
   port.will_read(settings);
-  device_ports_[std::string{name}] = &port;
-}
-
-/// What a configuration gives and no code reads: in all of them, so that none has to be flown for it.
-void Introduction::check_settings() {
-  for (const auto& configuration : parts_.descriptor.configurations)
-    for (const auto& use : configuration.devices) {
-      const std::string& device = parts_.descriptor.devices[use.device].name;
-      const auto port = device_ports_.find(device);
-      for (const descriptor::Setting& setting : use.settings)
-        if (port == device_ports_.end() || !port->second->reads(setting.name))
-          mistake("nobody reads setting '" + setting.name + "' of '" + device + "'", setting.at);
-      if (use.endnode.framing == Framing::Raw && port != device_ports_.end() && port->second->protocol() == nullptr)
-        mistake("device '" + device + "' is reached with framing=\"raw\", and its port does not speak() a protocol");
-    }
+  parts_.ports.use_device(name, port);
 }
 
 /// What is missing when the author has said all.
@@ -189,12 +156,10 @@ void Introduction::check() {
     if (event.id < descriptor::framework_event::first && !uses_all_events_ &&
         std::ranges::find(used_events_, event.id) == used_events_.end())
       mistake("event declared but never used: " + event.name);
+  // Of all configurations, so that none has to be flown for it: the one that is commanded when something has failed, too (adr 0189).
   for (const auto& configuration : parts_.descriptor.configurations)
-    for (const descriptor::Provides& lent : configuration.provides)
-      if (lent.terms.lent() && !lent_ports_.contains(lent.name))
-        mistake("set lent but without a place to make it, lend_link: " + lent.name);
+    for (Mistake& made : parts_.ports.mistakes(configuration)) mistake(std::move(made));
   if (std::string problem = parts_.foreign.use(parts_.subscriber); !problem.empty()) mistake(std::move(problem));
-  check_settings();
   for (const CustomService* service : own_services_)
     for (std::string& problem : service->problems()) mistake(std::move(problem));
   for (const auto& declared : parts_.descriptor.services)
@@ -211,16 +176,8 @@ void Introduction::forget() {
   parts_.values.dictionary().unpublish_all();
   for (CustomService* service : own_services_) service->release();
   used_events_.clear();
-  link_ports_.clear();
-  lent_ports_.clear();
-  device_ports_.clear();
+  parts_.ports.forget();
   parts_.cycle.functions().assign(parts_.descriptor.functions.size(), {});
-}
-
-LinkInputPort* Introduction::link_port(std::string_view set) const noexcept { return port_named(link_ports_, set); }
-LoanOutputPort* Introduction::lent_port(std::string_view set) const noexcept { return port_named(lent_ports_, set); }
-DevicePortBase* Introduction::device_port(std::string_view device) const noexcept {
-  return port_named(device_ports_, device);
 }
 
 }  // namespace hirosco

@@ -3,29 +3,24 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hirosco/subsystem/author/custom_service.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "hirosco/subsystem/cycle/cycle.hpp"
+#include "hirosco/subsystem/service_loop/introduced_ports.hpp"
+#include "hirosco/subsystem/service_loop/mistake.hpp"
 #include "hirosco/subsystem/service_loop/own_loops.hpp"
 #include "hirosco/subsystem/service_loop/parameter_values.hpp"
 #include "hirosco/subsystem/service_loop/requester.hpp"
 #include "hirosco/subsystem/service_loop/subscriber.hpp"
 
 namespace hirosco {
-
-/// What an author did not do as the descriptor says, in words.
-struct Mistake {
-  std::string text;
-  std::optional<descriptor::Location> at{};  ///< of a setting that nobody reads (E0405): in the descriptor
-  friend bool operator==(const Mistake& a, const Mistake& b) { return a.text == b.text && a.at == b.at; }
-};
 
 /// How an author introduces its parts in software_init() and offline(), compared with the descriptor: every difference is collected, so
 /// that one look tells all of them.  Thread: the service loop.
@@ -38,6 +33,7 @@ class Introduction {
     ParameterValues& values;
     CycleLoop& cycle;
     const ResourceMeter& resources;
+    IntroducedPorts& ports;
     OwnLoops& loops;
     std::vector<pus::Service*>& services;  ///< the author's own come behind the framework's
     Requester& requester;
@@ -66,27 +62,19 @@ class Introduction {
   [[nodiscard]] Result<Step> step();
   /// All that Software-Init finds, tried in Offline before any flight. Nothing is kept of it.
   [[nodiscard]] std::vector<Mistake> try_all();
-  void mistake(std::string problem, std::optional<descriptor::Location> at = {});
+  void mistake(std::string problem) { mistake(Mistake{std::move(problem)}); }
+  void mistake(Mistake made);
   [[nodiscard]] const std::vector<Mistake>& mistakes() const noexcept { return mistakes_; }
   void forget_mistakes() noexcept { mistakes_.clear(); }
   [[nodiscard]] std::string words_of(const Mistake& mistake) const;
   void forget();
 
-  /// Null: nobody introduced one of that name.
-  [[nodiscard]] LinkInputPort* link_port(std::string_view set) const noexcept;
-  [[nodiscard]] LoanOutputPort* lent_port(std::string_view set) const noexcept;
-  [[nodiscard]] DevicePortBase* device_port(std::string_view device) const noexcept;
-
  private:
   void check();
-  void check_settings();
   [[nodiscard]] std::string short_words_of(const Mistake& mistake) const;
 
   Parts parts_;
   std::vector<CustomService*> own_services_;
-  std::map<std::string, LinkInputPort*, std::less<>> link_ports_;
-  std::map<std::string, LoanOutputPort*, std::less<>> lent_ports_;
-  std::map<std::string, DevicePortBase*, std::less<>> device_ports_;
   std::vector<std::uint16_t> used_events_;
   bool uses_all_events_{false};
   std::vector<Mistake> mistakes_;  ///< all of them fail the same Software-Init

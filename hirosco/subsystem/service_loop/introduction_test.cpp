@@ -167,6 +167,13 @@ TEST(AuthorsMistakes, ADeviceOfItsOwnProtocolNeedsAPortThatSpeaksIt) {
     if (speaks) EXPECT_EQ(rig.configure_now(1), "1 3 7");
     else EXPECT_THAT(rig.explanations, ElementsAre(::testing::HasSubstr("does not speak() a protocol")));
   }
+  Motor forgetful;
+  forgetful.names = [](Motor&) {};
+  Rig rig{forgetful, raw};
+  rig.set_state_now(State::PreOperational);
+  EXPECT_THAT(rig.explanations,
+              ElementsAre(::testing::HasSubstr("use_device MOTOR: the device is used and has no port")))
+      << "which protocol it would speak is not asked";
 }
 
 TEST(AuthorsMistakes, AreFoundWithoutAFlightAndNothingIsKept) {
@@ -182,7 +189,7 @@ TEST(AuthorsMistakes, AreFoundWithoutAFlightAndNothingIsKept) {
   EXPECT_EQ(rig.state(), State::Offline);
 }
 
-TEST(AuthorsMistakes, ALinkPortOfAnotherLayoutFailsTheConfiguration) {
+TEST(AuthorsMistakes, ALinkPortOfAnotherLayoutFailsSoftwareInitWhateverConfigurationRequiresIt) {
   struct Wrong : Probe {
     LinkInput<Angle> short_hand;
     Result<Step> software_init() override {
@@ -191,12 +198,13 @@ TEST(AuthorsMistakes, ALinkPortOfAnotherLayoutFailsTheConfiguration) {
       return done;
     }
   } wrong;
-  EXPECT_EQ(configuration_mistake(wrong, 2),
-            "PROBE: CONFIGURE COUPLED failed: required set HAND: the C++ type has 1 members, the descriptor declares 2 "
-            "fields");
+  EXPECT_EQ(explanation_of(wrong),
+            "PROBE: SoftwareInit failed: probe.xml:42:7: error: E0406: require_link HAND: the C++ type has 1 members, "
+            "the descriptor declares 2 fields; give the C++ type a member for each <Field>, in their order and of "
+            "their types");
 }
 
-TEST(AuthorsMistakes, ADevicePortOfAnotherLayoutFailsTheConfiguration) {
+TEST(AuthorsMistakes, ADevicePortOfAnotherLayoutFailsSoftwareInitWhateverConfigurationUsesIt) {
   struct Wrong : Probe {
     DevicePort<Angle, Lit> wrong_arm;
     Result<Step> software_init() override {
@@ -205,8 +213,21 @@ TEST(AuthorsMistakes, ADevicePortOfAnotherLayoutFailsTheConfiguration) {
       return done;
     }
   } wrong;
-  EXPECT_EQ(configuration_mistake(wrong, 3),
-            "PROBE: CONFIGURE WITH_ARM failed: device ARM: output, field TORQUE: C++ has UINT8[1], the descriptor "
+  EXPECT_THAT(explanation_of(wrong),
+              StartsWith("PROBE: SoftwareInit failed: probe.xml:21:3: error: E0406: use_device ARM: output, field "
+                         "TORQUE: C++ has UINT8[1], the descriptor declares DOUBLE[1]"));
+}
+
+TEST(AuthorsMistakes, APortThatIsNamedBehindSoftwareInitIsComparedBeforeItIsUsed) {
+  struct Late : Probe {
+    DevicePort<Angle, Lit> wrong_arm;
+    Result<Step> hardware_init() override {
+      use_device("ARM", wrong_arm);
+      return Probe::hardware_init();
+    }
+  } late;
+  EXPECT_EQ(configuration_mistake(late, 3),
+            "PROBE: CONFIGURE WITH_ARM failed: use_device ARM: output, field TORQUE: C++ has UINT8[1], the descriptor "
             "declares DOUBLE[1]");
 }
 
@@ -239,7 +260,13 @@ TEST(AuthorsMistakes, AreToldAllAtOnce) {
           begin + "on_function SET_GOAL: argument 1, GOAL: the descriptor declares DOUBLE, -2..2; the handler takes "
                   "float, which does not hold every value",
           begin + "parameters declared but not published: KD, SEEN",
-          begin + "function declared but without a handler: MOVE", begin + "event declared but never used: OWN"));
+          begin + "function declared but without a handler: MOVE", begin + "event declared but never used: OWN",
+          begin + "probe.xml:42:7: error: E0406: require_link HAND: the set is required and has no port; name a "
+                  "LinkInput for it in software_init()",
+          begin + "probe.xml:21:3: error: E0406: use_device ARM: the device is used and has no port; name a DevicePort "
+                  "for it in software_init()",
+          begin + "probe.xml:25:3: error: E0406: use_device LAMP: the device is used and has no port; name a "
+                  "DevicePort for it in software_init()"));
 }
 
 /// One function whose argument is declared as `argument` says.

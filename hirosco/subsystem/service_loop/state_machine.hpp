@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "hirosco/subsystem/service_loop/configurations.hpp"
+#include "hirosco/subsystem/service_loop/introduction.hpp"
 
 namespace hirosco {
 
