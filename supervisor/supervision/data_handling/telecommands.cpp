@@ -93,13 +93,16 @@ void Telecommands::take(const Incoming& incoming) {
   if (decision->essential || restores) {
     const auto call = called_function(*telecommand);
     const auto own = apid == supervisor_apid && call ? at_once_.find(call->name) : at_once_.end();
+    std::optional<FailureNotice> unsent;
     if (own != at_once_.end()) own->second(request);
     else
-      forward({apid, incoming.origin, incoming.packet, incoming.memory, request, 0, true,
-               restores && decision->releases_stop, fences});
+      unsent = send({apid, incoming.origin, incoming.packet, incoming.memory, 0, true,
+                     restores && decision->releases_stop, fences});
     if (foreign) craft_.tell(text, incoming.origin.apid());
     copy_to_ground();
     static_cast<void>(craft_.log.append(received));
+    // Behind that it came in: its end is the last that log and ground hear of it.
+    if (unsent) reject(incoming, request, *unsent);
     return;
   }
   copy_to_ground();
@@ -264,8 +267,9 @@ void Telecommands::forward_durable() {
       start(*next);
       continue;
     }
-    forward({next->apid, next->origin, next->packet, next->memory, next->request, next->mode_epoch, false,
-             releases_stop, next->fences});
+    const auto unsent = send(
+        {next->apid, next->origin, next->packet, next->memory, next->mode_epoch, false, releases_stop, next->fences});
+    if (unsent) reject({.packet = next->packet, .origin = next->origin}, next->request, *unsent);
   }
 }
 
@@ -335,17 +339,15 @@ void Telecommands::start(const WaitingForDisk::Telecommand& waited) {
   verification.completion_failed(waited.request, notice.because({why.code, why.value, why.text}));
 }
 
-void Telecommands::forward(const Outgoing& outgoing) {
-  const auto& [apid, origin, packet, memory, request, mode_epoch, essential, releases_stop, fences] = outgoing;
+std::optional<FailureNotice> Telecommands::send(const Outgoing& outgoing) {
+  const auto& [apid, origin, packet, memory, mode_epoch, essential, releases_stop, fences] = outgoing;
   const bool to_itself = apid == supervisor_apid;
   // Its end could not be told when its addressee dies. What protects leaves all the same: then only its own report tells of it.
-  if (parts_.unanswered.full() && !essential && !to_itself)
-    return reject({.packet = packet, .origin = origin}, request, FailureNotice{FailureCode::QueueFull});
+  if (parts_.unanswered.full() && !essential && !to_itself) return FailureNotice{FailureCode::QueueFull};
   // The stop is lifted by exactly this telecommand, when it leaves.
   if (releases_stop && !to_itself && !craft_.guard.release(apid, fences)) {
     FailureNotice notice{FailureCode::NotPermittedNow};
-    return reject({.packet = packet, .origin = origin}, request,
-                  notice.because({ErrorCode::NotPermitted, 0, "stopped since this was asked for, or stopping"}));
+    return notice.because({ErrorCode::NotPermitted, 0, "stopped since this was asked for, or stopping"});
   }
   Member* addressee = craft_.member(apid);
   if (releases_stop && addressee != nullptr) addressee->fences_when_free = fences;
@@ -362,16 +364,17 @@ void Telecommands::forward(const Outgoing& outgoing) {
   if (!sent) {
     // The permission was for this one: an older one that stands unread must not find it (hazard SF4).
     if (releases_stop && !to_itself) craft_.guard.fence(apid);
-    return reject({.packet = packet, .origin = origin}, request,
-                  channel == nullptr ? is_down() : FailureNotice{FailureCode::QueueFull});
+    return channel == nullptr ? is_down() : FailureNotice{FailureCode::QueueFull};
   }
   if (const auto telecommand = pus::TelecommandView::parse(packet)) {
     parts_.unanswered.forwarded(apid, *telecommand, craft_.now);
-    if (to_itself) return log_forwarded(outgoing);
-    parts_.commanded.forwarded(apid, *telecommand, origin);
-    parts_.stored.forwarded(apid, *telecommand);
+    if (!to_itself) {
+      parts_.commanded.forwarded(apid, *telecommand, origin);
+      parts_.stored.forwarded(apid, *telecommand);
+    }
   }
   log_forwarded(outgoing);
+  return std::nullopt;
 }
 
 void Telecommands::log_forwarded(const Outgoing& outgoing) {

@@ -90,7 +90,6 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
     Origin origin;
     Octets packet;
     MemoryHandle memory;
-    pus::Request request;
     std::uint32_t mode_epoch{0};  ///< at permission; 0 = not bound to the mode
     bool essential{false};
     bool releases_stop{false};
@@ -109,7 +108,8 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
   void take_damaged(const Incoming& incoming, const pus::FailureNotice& notice);
   void refuse(const WaitingForDisk::Telecommand& waited, pus::FailureCode why);
   void reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice);
-  void forward(const Outgoing& outgoing);
+  /// Why it did not leave; whoever asked rejects it. Empty: it has left, and the log says so.
+  [[nodiscard]] std::optional<pus::FailureNotice> send(const Outgoing& outgoing);
   void log_forwarded(const Outgoing& outgoing);
   void start(const WaitingForDisk::Telecommand& waited);
 

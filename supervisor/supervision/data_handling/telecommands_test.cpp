@@ -44,6 +44,27 @@ struct TelecommandsTest : PartsTest {
       if (record.kind == LogKind::TelecommandRefused) found.emplace_back(record.note.view());
     return found;
   }
+  /// What the log says of a telecommand, in its order.
+  std::vector<LogKind> records_of(const std::vector<std::byte>& packet) {
+    std::vector<LogKind> found;
+    for (const LogRecord& record : all_of(*stored))
+      if (record.packet == packet) found.push_back(record.kind);
+    return found;
+  }
+  /// What the supervisor has said of telecommands, "SERVICE.SUBTYPE" in its order.
+  std::vector<std::string> said() {
+    static_cast<void>(parts.own.step(clock.now()));
+    std::vector<std::string> types;
+    MessageBuffer buffer;
+    for (;;) {
+      const auto next = parts.own.channel().receive(buffer);
+      if (!next || next->flow == Flow::None) return types;
+      if (next->message.kind != MessageKind::Packet) continue;
+      const auto report = pus::TelemetryView::parse(next->message.packet);
+      if (report && (report->service() == 1 || report->service() == pus::st129::service_type))
+        types.push_back(std::to_string(report->service()) + "." + std::to_string(report->subtype()));
+    }
+  }
   static std::string words(FailureCode code) { return std::string{to_text(code)}; }
 };
 
@@ -115,6 +136,27 @@ TEST_F(TelecommandsTest, OneWhoseAddresseeDoesNotReadIsRefused) {
   EXPECT_THAT(refusals(), IsEmpty());
   take(move);
   EXPECT_THAT(refusals(), ElementsAre(words(FailureCode::QueueFull)));
+}
+
+TEST_F(TelecommandsTest, OneTowardsSafetyThatDoesNotLeaveIsReceivedAndThenRefusedAndHasNoOtherEnd) {
+  const auto brake = telecommand(arm, 8, 1, call_data("BRAKE"));
+  take(brake);
+  EXPECT_THAT(records_of(brake), ElementsAre(LogKind::TelecommandForwarded, LogKind::TelecommandReceived))
+      << "one that leaves does so before it is logged";
+  for (std::size_t i = 1; i < ChannelPair::default_capacity; ++i) take(move);
+  const auto stop = telecommand(arm, 8, 1, call_data("SET_STATE", static_cast<int>(SafeOperational)));
+  take(stop);
+  EXPECT_THAT(records_of(stop), ElementsAre(LogKind::TelecommandReceived, LogKind::TelecommandRefused));
+  EXPECT_THAT(refusals(), ElementsAre(words(FailureCode::QueueFull)));
+}
+
+TEST_F(TelecommandsTest, OneTowardsSafetyThatNobodyIsThereToReadIsToldToGroundBeforeItsRefusal) {
+  static_cast<void>(said());
+  played[hand].channel.close_subsystem_end();
+  const auto brake = telecommand(hand, 8, 1, call_data("BRAKE"));
+  take(brake);
+  EXPECT_THAT(records_of(brake), ElementsAre(LogKind::TelecommandReceived, LogKind::TelecommandRefused));
+  EXPECT_THAT(said(), ElementsAre("129.3", "1.2"));
 }
 
 TEST_F(TelecommandsTest, OneWhoseEndCouldNotBeToldIsRefusedButWhatProtectsLeaves) {
