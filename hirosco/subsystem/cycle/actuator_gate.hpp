@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "hirosco/subsystem/cycle/control_state.hpp"
-#include "hirosco/subsystem/cycle/cycle_inputs.hpp"
 #include "hirosco/subsystem/cycle/cycle_plan.hpp"
+#include "hirosco/subsystem/cycle/lost_devices.hpp"
 #include "hirosco/subsystem/cycle/permit_watch.hpp"
 
 namespace hirosco {
@@ -22,7 +22,7 @@ class ActuatorGate {
     CyclePlan& plan;
     const ControlState& control;
     const PermitWatch& permit;
-    const CycleInputs& inputs;
+    const LostDevices& lost_devices;
   };
   explicit ActuatorGate(const Parts& parts);
 

@@ -12,8 +12,9 @@ CycleLoop::CycleLoop(const Parts& parts)
       reports_{parts_.descriptor.events, parts_.rings},
       permit_{parts_.permit, {control_, reports_, parts_.vital}},
       self_test_{reports_},
-      inputs_{{parts_.descriptor, plan_, control_, self_test_, reports_, parts_.vital}},
-      gate_{{parts_.descriptor, plan_, control_, permit_, inputs_}},
+      lost_devices_{{parts_.descriptor, plan_, control_, self_test_, reports_}},
+      inputs_{{plan_, control_, lost_devices_, reports_, parts_.vital}},
+      gate_{{parts_.descriptor, plan_, control_, permit_, lost_devices_}},
       takeover_{{parts_.author, parts_.descriptor, parts_.dictionary, plan_, control_, permit_, self_test_, reports_}},
       own_writes_{parts_.descriptor, parts_.dictionary},
       meter_{{parts_.clock, parts_.rings, parts_.vital, parts_.realtime, parts_.resources, parts_.loops, reports_}} {}

@@ -20,6 +20,7 @@
 #include "hirosco/subsystem/cycle/cycle_pace.hpp"
 #include "hirosco/subsystem/cycle/cycle_plan.hpp"
 #include "hirosco/subsystem/cycle/loop_rings.hpp"
+#include "hirosco/subsystem/cycle/lost_devices.hpp"
 #include "hirosco/subsystem/cycle/own_writes.hpp"
 #include "hirosco/subsystem/cycle/permit_watch.hpp"
 #include "hirosco/subsystem/cycle/reconfiguration.hpp"
@@ -67,7 +68,7 @@ class CycleLoop final : private pus::SampleSource {
   [[nodiscard]] const descriptor::Configuration& in_force() const noexcept {
     return *in_force_.load(std::memory_order_acquire);
   }
-  [[nodiscard]] const CycleInputs& inputs() const noexcept { return inputs_; }
+  [[nodiscard]] const LostDevices& lost_devices() const noexcept { return lost_devices_; }
   [[nodiscard]] PermitWatch& permit() noexcept { return permit_; }
   /// Whether the author's self test has passed in this configuration, and nothing has voided it.  Realtime: wait-free. Thread: any.
   [[nodiscard]] bool self_test_passed() const noexcept { return self_test_.passed(); }
@@ -121,6 +122,7 @@ class CycleLoop final : private pus::SampleSource {
   ReportWriter reports_;
   PermitWatch permit_;
   SelfTestRun self_test_;
+  LostDevices lost_devices_;
   CycleInputs inputs_;
   ActuatorGate gate_;
   Takeover takeover_;
