@@ -9,6 +9,7 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/log_watch.hpp"
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
 #include "supervisor/supervision/data_handling/reception.hpp"
 #include "supervisor/supervision/data_handling/replies.hpp"
 #include "supervisor/supervision/data_handling/retrieval.hpp"
@@ -27,7 +28,6 @@
 #include "supervisor/supervision/resource_management/power_handling.hpp"
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 #include "supervisor/supervision/status/housekeeping.hpp"
-#include "supervisor/supervision/stored_values.hpp"
 #include "supervisor/supervision/subsystem_handling/adoption.hpp"
 #include "supervisor/supervision/subsystem_handling/descriptors.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
@@ -91,7 +91,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
   LinkGraph graph{craft.mission};
   Unanswered unanswered;
   Restarts restarts;
-  CommandedStates commanded{craft, own};
+  CommandedMembers commanded{craft, own};
   StoredValues stored;
   Traffic traffic;
   GroundRoute ground_route;

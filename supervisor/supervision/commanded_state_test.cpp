@@ -11,7 +11,7 @@
 #include "hirosco/parameter/type.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 
-/// What commanded_states_test.cpp does not see through its telecommands and reports: notes, limits, structures.
+/// What commanded_members_test.cpp does not see through its telecommands and reports: notes, limits, structures.
 namespace hirosco::supervisor {
 namespace {
 

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
 #include "supervisor/supervision/data_handling/subscriptions.hpp"
 #include "supervisor/supervision/event_handling/ground_loss.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
-#include "supervisor/supervision/stored_values.hpp"
 
 namespace hirosco::supervisor {
 

@@ -9,10 +9,10 @@
 
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/subsystem/service_loop/requester.hpp"
-#include "supervisor/supervision/commanded_states.hpp"
+#include "supervisor/supervision/commanded_members.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
 #include "supervisor/supervision/data_handling/telecommand_copy.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
-#include "supervisor/supervision/stored_values.hpp"
 
 namespace hirosco::supervisor {
 namespace {

@@ -23,7 +23,7 @@
 
 namespace hirosco::supervisor {
 
-class CommandedStates;
+class CommandedMembers;
 class PowerHandling;
 class StoredValues;
 
@@ -51,7 +51,7 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
     Unanswered& unanswered;
     Traffic& traffic;
     GroundRoute& ground_route;
-    CommandedStates& commanded;
+    CommandedMembers& commanded;
     StoredValues& stored;
     SupervisionService& supervision;
   };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "supervisor/supervision/command_desk.hpp"
-#include "supervisor/supervision/commanded_states.hpp"
+#include "supervisor/supervision/commanded_members.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/procedures/waiting.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
@@ -25,7 +25,7 @@ struct Means {
   const LinkGraph& links;
   Restarts& restarts;
   Undertaking& under_way;
-  CommandedStates& commanded;
+  CommandedMembers& commanded;
   LossHandling& losses;
   Waiting& waiting;
 };

@@ -13,8 +13,8 @@
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/pus/st130_descriptor/descriptor_service.hpp"
 #include "hirosco/utilities/crc32.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
 #include "supervisor/supervision/modes/under_way.hpp"
-#include "supervisor/supervision/stored_values.hpp"
 
 namespace hirosco::supervisor {
 

@@ -9,6 +9,7 @@
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
 #include "supervisor/supervision/data_handling/reception.hpp"
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 #include "supervisor/supervision/event_handling/ground_loss.hpp"
@@ -16,7 +17,6 @@
 #include "supervisor/supervision/event_handling/safe_all.hpp"
 #include "supervisor/supervision/realtime_links/link_commands.hpp"
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
-#include "supervisor/supervision/stored_values.hpp"
 #include "supervisor/supervision/subsystem_handling/ground_link_care.hpp"
 #include "supervisor/supervision/subsystem_handling/replacement.hpp"
 #include "supervisor/supervision/subsystem_handling/restoration.hpp"

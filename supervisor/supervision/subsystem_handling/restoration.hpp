@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "supervisor/supervision/commanded_states.hpp"
+#include "supervisor/supervision/commanded_members.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/modes/under_way.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"

@@ -22,7 +22,7 @@ using enum descriptor::State;
 
 struct RestorationTest : PartsTest {
   PlayedDesk desk;
-  CommandedStates& commanded = parts.commanded;
+  CommandedMembers& commanded = parts.commanded;
   Restoration restoration{means_with(desk), parts.own, parts.under_way};
   std::uint16_t count{0};
 

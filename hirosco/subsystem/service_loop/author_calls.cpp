@@ -4,6 +4,7 @@
 
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
 
+/// What an author calls of `author/subsystem.hpp`: each goes to the part of the service loop or of the cycle that it is for.
 namespace hirosco {
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/commanded_states.hpp"
+#include "supervisor/supervision/commanded_members.hpp"
 
 #include <fmt/format.h>
 
@@ -26,8 +26,8 @@ std::vector<std::byte> octets(Values... values) {
 constexpr std::uint8_t one = 1;
 constexpr std::uint16_t declared = 100;
 
-struct CommandedStatesTest : PartsTest {
-  CommandedStates& commanded = parts.commanded;
+struct CommandedMembersTest : PartsTest {
+  CommandedMembers& commanded = parts.commanded;
   std::uint16_t count{0};
 
   void SetUp() override {
@@ -103,7 +103,7 @@ struct CommandedStatesTest : PartsTest {
   }
 };
 
-TEST_F(CommandedStatesTest, WhatWasCompletedCountsAndWhatWasNotDoesNot) {
+TEST_F(CommandedMembersTest, WhatWasCompletedCountsAndWhatWasNotDoesNot) {
   up();
   EXPECT_EQ(commanded.of(arm).state(), Operational);
   EXPECT_EQ(commanded.of(arm).configuration(), 2);
@@ -116,7 +116,7 @@ TEST_F(CommandedStatesTest, WhatWasCompletedCountsAndWhatWasNotDoesNot) {
   EXPECT_EQ(commanded.of(arm).state(), SafeOperational) << "nobody has said anything yet";
 }
 
-TEST_F(CommandedStatesTest, DownwardsCountsWhenItIsSentAndVoidsWhatWasOnItsWayUp) {
+TEST_F(CommandedMembersTest, DownwardsCountsWhenItIsSentAndVoidsWhatWasOnItsWayUp) {
   up();
   state(SafeOperational);
   const auto rising = leaves(8, 1, call_data("SET_STATE", static_cast<int>(Operational)));
@@ -127,7 +127,7 @@ TEST_F(CommandedStatesTest, DownwardsCountsWhenItIsSentAndVoidsWhatWasOnItsWayUp
   EXPECT_EQ(commanded.of(arm).state(), PreOperational);
 }
 
-TEST_F(CommandedStatesTest, APlanLowersAtOnceButForTheDeathThatItAnswers) {
+TEST_F(CommandedMembersTest, APlanLowersAtOnceButForTheDeathThatItAnswers) {
   up();
   commanded.lower(arm, SafeOperational, "PROCESS_DIED");
   EXPECT_EQ(commanded.of(arm).state(), Operational);
@@ -139,10 +139,10 @@ TEST_F(CommandedStatesTest, APlanLowersAtOnceButForTheDeathThatItAnswers) {
   EXPECT_EQ(commanded.of(arm).state(), PreOperational);
 }
 
-TEST_F(CommandedStatesTest, AStaleLinkIsTheBeginningOfItsPartnersDeathForASecond) {
+TEST_F(CommandedMembersTest, AStaleLinkIsTheBeginningOfItsPartnersDeathForASecond) {
   up();
   commanded.lower(arm, SafeOperational, "HAND_STATE_STALE");
-  wait(CommandedStates::loss_before_death);
+  wait(CommandedMembers::loss_before_death);
   commanded.lower(arm, SafeOperational, "OTHER_STALE");
   EXPECT_EQ(commanded.of_partner(arm).state(), Operational);
   EXPECT_EQ(commanded.of(arm).state(), SafeOperational);
@@ -150,7 +150,7 @@ TEST_F(CommandedStatesTest, AStaleLinkIsTheBeginningOfItsPartnersDeathForASecond
   EXPECT_EQ(commanded.of_partner(arm).state(), SafeOperational);
 }
 
-TEST_F(CommandedStatesTest, AValueIsSetAgainInTheFirstStateThatIsNotOperationalInWhichItMayBe) {
+TEST_F(CommandedMembersTest, AValueIsSetAgainInTheFirstStateThatIsNotOperationalInWhichItMayBe) {
   up();
   done(20, 3, octets(std::uint8_t{3}, id(1), std::uint16_t{7}, id(2), std::uint16_t{8}, id(3), std::uint16_t{9}));
   done(20, 3, octets(one, id(1), std::uint16_t{10}));
@@ -164,7 +164,7 @@ TEST_F(CommandedStatesTest, AValueIsSetAgainInTheFirstStateThatIsNotOperationalI
   EXPECT_THAT(settings(), IsEmpty());
 }
 
-TEST_F(CommandedStatesTest, WhatAConfigurationSetsItselfIsNotOurs) {
+TEST_F(CommandedMembersTest, WhatAConfigurationSetsItselfIsNotOurs) {
   auto& subsystem = craft.mission.subsystems.front().subsystem;
   subsystem.configurations.front().initial.push_back(
       {.parameter = *descriptor::find_parameter(subsystem, id(1)), .values = {}});
@@ -174,7 +174,7 @@ TEST_F(CommandedStatesTest, WhatAConfigurationSetsItselfIsNotOurs) {
   EXPECT_THAT(settings(), IsEmpty());
 }
 
-TEST_F(CommandedStatesTest, WhatAFunctionHasSetIsKnown) {
+TEST_F(CommandedMembersTest, WhatAFunctionHasSetIsKnown) {
   up();
   EXPECT_THAT(not_repeated(), IsEmpty());
   done(8, 1, call_data("SET_LIMIT"));
@@ -184,7 +184,7 @@ TEST_F(CommandedStatesTest, WhatAFunctionHasSetIsKnown) {
 }
 
 /// Safe is to take for set what may be: each end that such a telecommand has, and none.
-TEST_F(CommandedStatesTest, WhatAFunctionMayHaveSetCountsUnlessItWasRefused) {
+TEST_F(CommandedMembersTest, WhatAFunctionMayHaveSetCountsUnlessItWasRefused) {
   parts.own.start(craft.mode_epoch);
   own_step();
   up();
@@ -205,7 +205,7 @@ TEST_F(CommandedStatesTest, WhatAFunctionMayHaveSetCountsUnlessItWasRefused) {
   EXPECT_THAT(not_repeated(), ElementsAre("P4")) << "nobody will say whether it was done";
 }
 
-TEST_F(CommandedStatesTest, WhatWasSetSinceALinkWentStaleIsLostLikeWhatWasSetBefore) {
+TEST_F(CommandedMembersTest, WhatWasSetSinceALinkWentStaleIsLostLikeWhatWasSetBefore) {
   up();
   commanded.lower(arm, SafeOperational, "HAND_STATE_STALE");
   done(8, 1, call_data("SET_LIMIT"));
@@ -214,7 +214,7 @@ TEST_F(CommandedStatesTest, WhatWasSetSinceALinkWentStaleIsLostLikeWhatWasSetBef
   EXPECT_THAT(before.unrepeated_names(craft.member(arm)->descriptor()), ElementsAre("P4"));
 }
 
-TEST_F(CommandedStatesTest, StructuresComeBackAsTheyWereWithTheConfigurationThatTheyBelongTo) {
+TEST_F(CommandedMembersTest, StructuresComeBackAsTheyWereWithTheConfigurationThatTheyBelongTo) {
   up();
   done(3, 6, octets(one, declared));
   done(3, 31, octets(one, declared, std::uint32_t{20}));
@@ -235,7 +235,7 @@ TEST_F(CommandedStatesTest, StructuresComeBackAsTheyWereWithTheConfigurationThat
   EXPECT_THAT(names(), IsEmpty());
 }
 
-TEST_F(CommandedStatesTest, SwitchesOfEventsLastAsLongAsTheProcess) {
+TEST_F(CommandedMembersTest, SwitchesOfEventsLastAsLongAsTheProcess) {
   up();
   done(5, 6, octets(std::uint8_t{2}, std::uint16_t{4}, std::uint16_t{5}));
   done(5, 5, octets(one, std::uint16_t{4}));
@@ -246,7 +246,7 @@ TEST_F(CommandedStatesTest, SwitchesOfEventsLastAsLongAsTheProcess) {
   EXPECT_THAT(settings(), IsEmpty());
 }
 
-TEST_F(CommandedStatesTest, WhatHasNoRoomIsTold) {
+TEST_F(CommandedMembersTest, WhatHasNoRoomIsTold) {
   parts.own.start(craft.mode_epoch);
   own_step();
   up();
@@ -264,36 +264,36 @@ TEST_F(CommandedStatesTest, WhatHasNoRoomIsTold) {
   EXPECT_EQ(kept, CommandedState::most_definition_octets / 900 * 900);
 }
 
-TEST_F(CommandedStatesTest, WhatNobodyReportsOnIsTold) {
+TEST_F(CommandedMembersTest, WhatNobodyReportsOnIsTold) {
   parts.own.start(craft.mode_epoch);
   own_step();
   leaves(5, 6, octets(one, std::uint16_t{4}), 0);
   own_step();
   EXPECT_TRUE(was_told("COMMAND_NOT_KEPT APID=10 SERVICE=5 SUBTYPE=6"));
   story.clear();
-  for (std::size_t i = 0; i <= CommandedStates::most_open; ++i) leaves(5, 6, octets(one, std::uint16_t{4}));
+  for (std::size_t i = 0; i <= CommandedMembers::most_open; ++i) leaves(5, 6, octets(one, std::uint16_t{4}));
   own_step();
   EXPECT_TRUE(was_told("COMMAND_NOT_KEPT"));
 }
 
-TEST_F(CommandedStatesTest, WhatNobodyReportsOnFillsNoJournal) {
+TEST_F(CommandedMembersTest, WhatNobodyReportsOnFillsNoJournal) {
   parts.own.start(craft.mode_epoch);
   own_step();
   std::vector<std::byte> wide(3000);
   wide[2] = std::byte{one};
-  for (std::size_t i = 0; i < CommandedStates::most_open_octets / wide.size() - 1; ++i) leaves(3, 1, wide);
+  for (std::size_t i = 0; i < CommandedMembers::most_open_octets / wide.size() - 1; ++i) leaves(3, 1, wide);
   own_step();
   EXPECT_FALSE(was_told("COMMAND_NOT_KEPT"));
   for (int i = 0; i < 3; ++i) leaves(3, 1, wide);
   own_step();
   EXPECT_TRUE(was_told("COMMAND_NOT_KEPT APID=10 SERVICE=3 SUBTYPE=1"));
-  std::vector<std::byte> room(2 * CommandedStates::most_open_octets);
+  std::vector<std::byte> room(2 * CommandedMembers::most_open_octets);
   OctetWriter writer{room};
   commanded.note(writer);
-  EXPECT_LT(writer.size(), CommandedStates::most_open_octets + 8192);
+  EXPECT_LT(writer.size(), CommandedMembers::most_open_octets + 8192);
 }
 
-TEST_F(CommandedStatesTest, WhatIsDoneInPartEndsWithItsCompletionOnly) {
+TEST_F(CommandedMembersTest, WhatIsDoneInPartEndsWithItsCompletionOnly) {
   parts.own.start(craft.mode_epoch);
   own_step();
   const auto two = octets(std::uint8_t{2}, std::uint16_t{4}, std::uint16_t{5});
@@ -307,7 +307,7 @@ TEST_F(CommandedStatesTest, WhatIsDoneInPartEndsWithItsCompletionOnly) {
   EXPECT_THAT(settings(), IsEmpty());
 }
 
-TEST_F(CommandedStatesTest, AMissionThatBringsNobodyBackKeepsNothing) {
+TEST_F(CommandedMembersTest, AMissionThatBringsNobodyBackKeepsNothing) {
   craft.mission.plans.back().steps.front().values.back() = 0;
   EXPECT_FALSE(commanded.in_use());
   up();

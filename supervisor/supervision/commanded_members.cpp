@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/commanded_states.hpp"
+#include "supervisor/supervision/commanded_members.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -41,7 +41,7 @@ namespace {
 
 }  // namespace
 
-bool CommandedStates::in_use() const {
+bool CommandedMembers::in_use() const {
   const auto brings_back = [](const descriptor::PlanStep& step) {
     return step.kind == "restart" && step.values.at(descriptor::restart_to) != 0;
   };
@@ -49,7 +49,7 @@ bool CommandedStates::in_use() const {
       craft_.mission.plans, [&](const descriptor::Plan& plan) { return std::ranges::any_of(plan.steps, brings_back); });
 }
 
-void CommandedStates::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand, const Origin& origin) {
+void CommandedMembers::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand, const Origin& origin) {
   const auto* member = craft_.mission.find_subsystem(apid);
   if (member == nullptr || !CommandedState::concerns(telecommand, member->subsystem) || !in_use()) return;
   const auto call = called_function(telecommand);
@@ -63,12 +63,12 @@ void CommandedStates::forwarded(std::uint16_t apid, const pus::TelecommandView& 
   open_.push_back({apid, pus::request_of(telecommand), {telecommand.packet().begin(), telecommand.packet().end()}});
 }
 
-bool CommandedStates::has_room_for(std::size_t octets) const {
+bool CommandedMembers::has_room_for(std::size_t octets) const {
   for (const Open& each : open_) octets += each.packet.size();
   return open_.size() < most_open && octets <= most_open_octets;
 }
 
-void CommandedStates::hear(std::uint16_t from, const pus::TelemetryView& report) {
+void CommandedMembers::hear(std::uint16_t from, const pus::TelemetryView& report) {
   if (report.service() != 1 || open_.empty()) return;
   const auto id = OctetReader{report.source_data()}.get<std::uint32_t>();
   const bool failed = report.subtype() % 2 == 0 && report.subtype() != 6;
@@ -91,7 +91,7 @@ void CommandedStates::hear(std::uint16_t from, const pus::TelemetryView& report)
   }
 }
 
-void CommandedStates::lower(std::uint16_t apid, State most, std::string_view event) {
+void CommandedMembers::lower(std::uint16_t apid, State most, std::string_view event) {
   if (is_of_a_loss(event)) return;
   if (Member& member = members_[apid]; event.ends_with("_STALE") && !is_just_now(member)) {
     member.before_loss = member.commanded;
@@ -101,7 +101,7 @@ void CommandedStates::lower(std::uint16_t apid, State most, std::string_view eve
   if (const auto wanted = wanted_.find(apid); wanted != wanted_.end()) wanted->second.lower(most);
 }
 
-void CommandedStates::lower_record(std::uint16_t apid, State most) {
+void CommandedMembers::lower_record(std::uint16_t apid, State most) {
   members_[apid].commanded.lower(most);
   std::erase_if(open_, [&](const Open& each) {
     if (each.apid != apid) return false;
@@ -110,7 +110,7 @@ void CommandedStates::lower_record(std::uint16_t apid, State most) {
   });
 }
 
-void CommandedStates::all_stopped() {
+void CommandedMembers::all_stopped() {
   for (const supervisor::Member& member : craft_.members) {
     if (craft_.is_ground_link(member)) continue;
     lower_record(member.apid(), State::SafeOperational);
@@ -118,12 +118,12 @@ void CommandedStates::all_stopped() {
   }
 }
 
-void CommandedStates::ended(std::uint16_t apid) {
+void CommandedMembers::ended(std::uint16_t apid) {
   members_.erase(apid);
   std::erase_if(open_, [apid](const Open& each) { return each.apid == apid; });
 }
 
-void CommandedStates::note(OctetWriter& writer) const {
+void CommandedMembers::note(OctetWriter& writer) const {
   writer.put(static_cast<std::uint16_t>(members_.size()));
   for (const auto& [apid, member] : members_) {
     writer.put(apid);
@@ -138,7 +138,7 @@ void CommandedStates::note(OctetWriter& writer) const {
   }
 }
 
-void CommandedStates::recall(OctetReader& reader) {
+void CommandedMembers::recall(OctetReader& reader) {
   for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left)
     members_[reader.get<std::uint16_t>()].commanded.recall(reader);
   for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
@@ -154,7 +154,7 @@ void CommandedStates::recall(OctetReader& reader) {
   }
 }
 
-CommandedState CommandedStates::of(std::uint16_t apid) const {
+CommandedState CommandedMembers::of(std::uint16_t apid) const {
   const auto found = members_.find(apid);
   CommandedState state = found != members_.end() ? found->second.commanded : CommandedState{};
   // Who dies with it has perhaps done it, and nobody will say so any more.
@@ -165,7 +165,7 @@ CommandedState CommandedStates::of(std::uint16_t apid) const {
   return state;
 }
 
-CommandedState CommandedStates::of_partner(std::uint16_t apid) const {
+CommandedState CommandedMembers::of_partner(std::uint16_t apid) const {
   const auto found = members_.find(apid);
   if (found == members_.end() || !is_just_now(found->second)) return of(apid);
   CommandedState state = *found->second.before_loss;
@@ -173,16 +173,16 @@ CommandedState CommandedStates::of_partner(std::uint16_t apid) const {
   return state;
 }
 
-bool CommandedStates::is_just_now(const Member& member) const {
+bool CommandedMembers::is_just_now(const Member& member) const {
   return member.before_loss && craft_.now - member.loss_at <= loss_before_death;
 }
 
-const CommandedState* CommandedStates::wanted(std::uint16_t apid) const {
+const CommandedState* CommandedMembers::wanted(std::uint16_t apid) const {
   const auto found = wanted_.find(apid);
   return found != wanted_.end() ? &found->second : nullptr;
 }
 
-void CommandedStates::tell_not_kept(std::uint16_t apid, const pus::TelecommandView& telecommand) {
+void CommandedMembers::tell_not_kept(std::uint16_t apid, const pus::TelecommandView& telecommand) {
   own_.announce("COMMAND_NOT_KEPT", {static_cast<double>(apid), static_cast<double>(telecommand.service()),
                                      static_cast<double>(telecommand.subtype())});
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/stored_values.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
 
 #include <fmt/format.h>
 

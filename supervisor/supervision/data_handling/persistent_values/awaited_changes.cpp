@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/awaited_changes.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/awaited_changes.hpp"
 
 #include <algorithm>
 #include <utility>

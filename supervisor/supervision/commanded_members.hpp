@@ -22,7 +22,7 @@ namespace hirosco::supervisor {
 /// it is sent or a plan, or a stop, asks for it. Nothing is kept in a mission without a plan that brings anybody back.
 /// Bounded: `most_open` telecommands whose end is awaited, `most_open_octets` of them, and per member what CommandedState says; what has no room is told,
 /// COMMAND_NOT_KEPT. Thread: the supervisor's.
-class CommandedStates final : public Hearer, public Remembered {
+class CommandedMembers final : public Hearer, public Remembered {
  public:
   static constexpr std::size_t most_open = 256;
   /// Less than the journal has room for by far.
@@ -30,7 +30,7 @@ class CommandedStates final : public Hearer, public Remembered {
   /// The partner of a link may see its loss before the supervisor sees the death that it comes from.
   static constexpr Duration loss_before_death = std::chrono::seconds{1};
 
-  CommandedStates(Craft& craft, OwnSubsystem& own) : craft_{craft}, own_{own} {}
+  CommandedMembers(Craft& craft, OwnSubsystem& own) : craft_{craft}, own_{own} {}
 
   /// Some plan of the mission brings back who crashed.
   [[nodiscard]] bool in_use() const;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/value_set.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/value_set.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "supervisor/platform/storage/value_store.hpp"
-#include "supervisor/supervision/awaited_changes.hpp"
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/awaited_changes.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/value_set.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/succession/journal.hpp"
-#include "supervisor/supervision/value_set.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
