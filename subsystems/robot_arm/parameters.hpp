@@ -27,6 +27,7 @@ struct Parameters {
     publish("GRAVITY", gravity_m_s2);
     publish("ROTOR_INERTIA", rotor_inertia);
     publish("BANDWIDTH", bandwidth_rad_s);
+    publish("BANDWIDTH_IN_FORCE", bandwidth_in_force);
     publish("ACCELERATION", acceleration);
     publish("JERK", jerk);
     publish("GOAL_TOLERANCE", goal_tolerance);
@@ -59,7 +60,7 @@ struct Parameters {
   Parameter<ContactValues> contact;
   Parameter<LawValues> law;
   Parameter<std::array<double, 3>> gravity_m_s2;
-  Parameter<double> bandwidth_rad_s, acceleration, jerk, goal_tolerance;
+  Parameter<double> bandwidth_rad_s, bandwidth_in_force, acceleration, jerk, goal_tolerance;
   Parameter<double> torque_limit, torque_hard, speed_limit, following_limit;
   Parameter<double> clearance_limit_m, clearance_m;
   Parameter<double> float_damping, retract_distance;

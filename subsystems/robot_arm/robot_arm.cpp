@@ -57,7 +57,7 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   const double cycle_s = seconds(configuration.sampling);
   known_.limit_motions(parameters_.acceleration.load(), parameters_.jerk.load());
   model_.begin(cycle_s);
-  control_.begin(cycle_s);
+  HIROSCO_TRY(control_.begin(cycle_s));
   guidance_.begin(cycle_s);
   HIROSCO_TRY(lead_.begin(configuration, cycle_s));
   static_cast<void>(obstacles_.keep_out(parameters_.keep_out.load()));

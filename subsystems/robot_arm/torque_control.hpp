@@ -24,18 +24,22 @@ class TorqueControl {
     const LimitWatch& limits;
     OnBoardModel& model;
     const Guidance& guidance;
-    Parameters& parameters;  ///< DES_POSITION, DES_VELOCITY, LAW and JOINT_STIFFNESS tell what it does
+    Parameters&
+        parameters;  ///< DES_POSITION, DES_VELOCITY, LAW, JOINT_STIFFNESS and BANDWIDTH_IN_FORCE tell what it does
   };
   explicit TorqueControl(const Parts& parts) noexcept : parts_{parts} {}
 
-  /// In configure().  Realtime: allocates. Thread: the service loop.
-  void begin(double cycle_s);
+  /// In configure(). OutOfRange: the cycle is too long for any law, us at most.  Realtime: allocates. Thread: the service loop.
+  [[nodiscard]] Result<> begin(double cycle_s);
   [[nodiscard]] bool begun() const noexcept { return laws_.has_value(); }
   /// What hangs at the tool is known from now on and takes so much more, N m or N of each joint.
   void take_load(const JointVector& torque) noexcept { laws_->take_load(torque, settings()); }
 
   /// A cycle of the law: what it finds is put out and told.
   void control() noexcept;
+
+  /// What is in force of BANDWIDTH: no more than the cycle leaves (docs/adr/0193).
+  [[nodiscard]] double bandwidth_rad_s() const noexcept;
 
   [[nodiscard]] Laws& laws() noexcept { return *laws_; }
   [[nodiscard]] LawKind kind() const noexcept { return laws_->kind(); }
@@ -51,6 +55,7 @@ class TorqueControl {
 
   Parts parts_;
   std::optional<Laws> laws_;
+  double fastest_rad_s_{0};
   Joints rotor_;  ///< of this cycle
 };
 

@@ -122,8 +122,8 @@ void Yielding::react(const Doing& doing) noexcept {
 Outcome Yielding::soften(LawKind kind, const Impedance& impedance) noexcept {
   Compliance& compliance = parts_.control.laws().compliance();
   const Joints rotor = parts_.parameters.rotor_inertia.load();
-  if (const auto found = compliance.too_stiff(kind, impedance, parts_.model.dynamics(), rotor,
-                                              parts_.parameters.bandwidth_rad_s.load()))
+  if (const auto found =
+          compliance.too_stiff(kind, impedance, parts_.model.dynamics(), rotor, parts_.control.bandwidth_rad_s()))
     return refused(Trouble::too_stiff, kind == LawKind::JointImpedance ? "joint" : "of the tool, 1-3 about, 4-6 along",
                    static_cast<std::int64_t>(*found + 1));
   compliance.set(impedance);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robotics/motion/sampled_rates.hpp"
 #include "subsystems/robot_gripper/trouble.hpp"
 
 namespace hirosco::robot_gripper {
@@ -29,7 +30,7 @@ void Handling::take_values(double cycle_s) noexcept {
   cycle_s_ = cycle_s;
   opening_ = {values.acceleration.load(), values.jerk.load(), cycle_s_};
   grip_ = {parts_.fingers,
-           {.bandwidth_rad_s = values.bandwidth_rad_s.load(),
+           {.bandwidth_rad_s = std::min(values.bandwidth_rad_s.load(), robotics::fastest_rad_s(cycle_s_)),
             .width_force_n = std::min(values.move_force_n.load(), parts_.fingers.most_force_n()),
             .acceleration_m_s2 = values.acceleration.load(),
             .cycle_s = cycle_s_}};

@@ -8,6 +8,9 @@ import os
 import pathlib
 import re
 import shutil
+import socket
+import subprocess
+import sys
 import unittest
 import urllib.request
 
@@ -31,6 +34,23 @@ def tried():
         return KINDS
     print(f"robot: not tried, there is no {WORLD} (tools/fetch_mujoco)")
     return [kind for kind in KINDS if kind != "robot"]
+
+
+def real_arm():
+    """What your_robot.md has typed for the real arm, but for the flight itself."""
+    page = (flight.REPOSITORY / "docs/guide/your_robot.md").read_text()
+    section = re.search(r"^## The real arm\n(.*?)^## ", page, re.M | re.S)[1]
+    blocks = re.findall(r"^```\n(sed .*?)^```$", section, re.M | re.S)
+    assert len(blocks) == 2, "the mission of the real arm, and a slower cycle"
+    return [line for line in "".join(blocks).splitlines() if not line.startswith("hirosco run")]
+
+
+# What drives.py is: six joints that carry next to nothing, behind rotors of 0.5 kg m2, which is what is assumed of 150 N m.
+OF_THE_DRIVER = "<robot name='light'><link name='base'/>" + "".join(f"""
+<joint name='j{i}' type='revolute'><origin xyz='0 0 0.05'/><parent link='{'base' if i == 1 else f'l{i - 1}'}'/><child link='l{i}'/>
+<axis xyz='{('1 0 0', '0 1 0', '0 0 1')[i % 3]}'/><limit lower='-2' upper='2' velocity='2' effort='150'/></joint>
+<link name='l{i}'><inertial><mass value='0.05'/><inertia ixx='1e-4' ixy='0' ixz='0' iyy='1e-4' iyz='0' izz='1e-4'/></inertial></link>"""
+                                                                    for i in range(1, 7)) + "</robot>\n"
 
 
 @functools.cache
@@ -73,17 +93,16 @@ class New(outside.Installed, unittest.TestCase):
         """Its descriptor and mission as your_robot.md has them typed; its folder's tests pass with them, and without the simulated device."""
         if "robot" not in tried():
             return
-        page = (flight.REPOSITORY / "docs/guide/your_robot.md").read_text()
-        block = re.search(r"^## The real arm\n.*?^```\n(sed .*?)^```$", page, re.M | re.S)[1]
-        lines = [line for line in block.splitlines() if not line.startswith("hirosco run")]
+        lines = real_arm()
         folder, _ = made("robot")
         real = self.folder / "real" / folder.name
         shutil.copytree(folder, real, ignore=shutil.ignore_patterns("build"))
         path = f"{self.prefix}/bin:{os.environ['PATH']}"
         told = self.said("bash", "-euc", "\n".join(lines), environment={"PATH": path}, at=real)
-        self.assertIn("no problem", told)
+        self.assertEqual(told.count("no problem"), 2, "as the arm's own cycle is, and slower")
         descriptor = (real / "lab_arm_real.xml").read_text()
         self.assertEqual(re.findall(r'transfer="(\w+)" address="[^"]*:(\d+)"', descriptor), [("udp", "5002"), ("udp", "5001"), ("udp", "5001")])
+        self.assertEqual(re.findall(r'sampling_us="(\d+)"', descriptor), ["4000", "4000"])
         # Whoever takes the world out of the mission itself has tests that pass, too.
         (real / "mission.xml").write_text((real / "real.xml").read_text())
         told = self.said("bash", "-euc", f"cmake -B build -DCMAKE_PREFIX_PATH={self.prefix} && ctest --test-dir build", at=real)
@@ -146,7 +165,42 @@ class New(outside.Installed, unittest.TestCase):
         return self.hirosco(*words, at=folder)
 
 
+def free_ports(count):
+    held = [socket.socket(type=socket.SOCK_DGRAM) for _ in range(count)]
+    for each in held:
+        each.bind(("127.0.0.1", 0))
+    ports = [each.getsockname()[1] for each in held]
+    for each in held:
+        each.close()
+    return ports
+
+
 class NewFlown(outside.Installed, unittest.TestCase):
+    def test_a_driver_in_python_flies_as_the_guide_has_it(self):
+        """arm.py at both addresses, and not one number changed but those that are typed."""
+        place = self.folder / "by_python"
+        place.mkdir()
+        (place / "light.urdf").write_text(OF_THE_DRIVER)
+        self.hirosco("new", "robot", "LabArm", "--urdf", place / "light.urdf", "--to", place)
+        folder = place / "lab_arm"
+        frames, enable = (f"127.0.0.1:{port}" for port in free_ports(2))
+        lines = "\n".join(real_arm()).replace("192.0.2.7:5001", frames).replace("192.0.2.7:5002", enable)
+        # In this computer it is behind no network.
+        lines = re.sub(r" \\\n  -e 's\|[^|]*\|  <DeviceNetwork[^']*'|-e 's\|  <Modes\|  <DeviceNetwork[^']*' ?", "", lines)
+        self.assertNotIn("DeviceNetwork", lines)
+        self.said("bash", "-euc", lines, environment={"PATH": f"{self.prefix}/bin:{os.environ['PATH']}"}, at=folder)
+        driver = self.prefix / "share/doc/hirosco/examples/device/arm.py"
+        with subprocess.Popen([sys.executable, "-B", driver, frames, enable]) as arm:
+            self.addCleanup(arm.kill)
+            with flight.Flight(folder / "real.xml", binaries=self.prefix / "bin") as craft:
+                craft.wait_told("commissioned: mode operation", 30.0)
+                for goal in ("0.3,-0.3,0.3,0.3,-0.3,0.3", "0,0,0,0,0,0"):
+                    code, reports = craft.tc("LAB_ARM", "MOVE_J", goal, 0.5)
+                    self.assertEqual((code, reports[-1]), (0, "1,7"))
+                self.assertNotIn("_LIMIT_EXCEEDED", " ".join(line.told for line in craft.told()))
+                self.assertEqual(craft.end(), 0)
+            arm.kill()
+
     def test_each_flies_and_shows_in_the_page(self):
         for kind in tried():
             with self.subTest(kind=kind):

@@ -12,7 +12,7 @@ constexpr double wall = 0.1;
 constexpr double soft_edge = 0.02;
 /// A damper before a joint's velocity begins at this share of it; it takes the whole effort in the end.
 constexpr double brisk_share = 0.7;
-/// No damper is stronger against what it moves: with two cycles of delay at 1 kHz it would shake.
+/// No damper is stronger against what it moves, however short the cycle is.
 constexpr double most_damping_per_s = 100;
 /// Of the joints while springs are the tool's: what the tool does not feel comes to rest, and where there are more of them than the
 /// tool has directions, goes back to its posture by a share of the effort for each rad.
@@ -22,28 +22,33 @@ constexpr Eigen::Index directions = 6;
 /// What is felt in a direction that the joints cannot go is not more, kg or kg m2.
 constexpr double heaviest = 1e3;
 
-[[nodiscard]] double damper(double spring, double moved, double ratio) noexcept {
-  return std::min(2 * ratio * std::sqrt(spring * moved), most_damping_per_s * moved);
+/// Of what is moved: with so much delay as the cycle has, a stronger one would shake.
+[[nodiscard]] double strongest_damper(double moved, double fastest_rad_s) noexcept {
+  return std::min(most_damping_per_s, robotics::strongest_damper_per_s(fastest_rad_s)) * moved;
+}
+
+[[nodiscard]] double damper(double spring, double moved, double ratio, double fastest_rad_s) noexcept {
+  return std::min(2 * ratio * std::sqrt(spring * moved), strongest_damper(moved, fastest_rad_s));
 }
 
 /// A spring and a damper of a joint that begin before its range ends, or behind the setpoint where that is nearer to the end; and a
 /// damper before its velocity, or what is wanted of it. Torques against the motion, or of a potential: nothing that drives.
 [[nodiscard]] double walls(const Setpoint& wanted, const Measured& measured, Eigen::Index joint, double moved,
-                           const JointBounds& bounds) noexcept {
+                           const JointBounds& bounds, double fastest_rad_s) noexcept {
   const double position = measured.position[joint], speed = measured.velocity[joint], aim = wanted.position[joint];
   const double below = std::max(bounds.lowest, std::min(bounds.lowest + wall, aim)) - position;
   const double above = position - std::min(bounds.highest, std::max(bounds.highest - wall, aim));
-  const double spring = bounds.effort / wall;
+  const double spring = std::min(bounds.effort / wall, fastest_rad_s * fastest_rad_s * moved);
   double torque = 0;
   const double depth = std::max(below, above);
   if (depth > 0)
     torque = std::copysign(spring * depth, below - above) -
-             std::min(1.0, depth / soft_edge) * damper(spring, moved, 1) * speed;
+             std::min(1.0, depth / soft_edge) * damper(spring, moved, 1, fastest_rad_s) * speed;
   const double brisk = std::max(brisk_share * bounds.motion.velocity, std::abs(wanted.velocity[joint]));
   const double excess = std::abs(speed) - brisk;
   if (excess <= 0) return torque;
   const double most =
-      std::min(bounds.effort / ((1 - brisk_share) * bounds.motion.velocity), most_damping_per_s * moved);
+      std::min(bounds.effort / ((1 - brisk_share) * bounds.motion.velocity), strongest_damper(moved, fastest_rad_s));
   return torque - std::copysign(most * excess, speed);
 }
 
@@ -88,7 +93,7 @@ Vector6 Compliance::tool_inertia(const Jacobian& jacobian) noexcept {
 
 /// A spring to the place, and one to the orientation whose potential is k (1 - cos angle): it has no step anywhere.
 void Compliance::add_tool(const Setpoint& wanted, const Measured& measured, const robotics::Dynamics& dynamics,
-                          JointVector& torque) noexcept {
+                          double fastest_rad_s, JointVector& torque) noexcept {
   state_.q = wanted.position;
   state_.qd = wanted.velocity;
   goal_.update(state_);
@@ -107,7 +112,7 @@ void Compliance::add_tool(const Setpoint& wanted, const Measured& measured, cons
   wrench.tail<3>() = impedance_.tool_n_m * (goal * tool_m_ - is * tool_m_);
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
     const double spring = axis < 3 ? impedance_.tool_n_m_rad : impedance_.tool_n_m;
-    wrench[axis] += damper(spring, inertia[axis], impedance_.damping_ratio) * twist[axis];
+    wrench[axis] += damper(spring, inertia[axis], impedance_.damping_ratio, fastest_rad_s) * twist[axis];
   }
   torque.noalias() += jacobian.transpose().lazyProduct(wrench);
 }
@@ -138,24 +143,27 @@ JointVector Compliance::torque(const Setpoint& wanted, const Measured& measured,
       case LawKind::Position: break;
       case LawKind::JointImpedance: {
         const double spring = impedance_.joint_n_m_rad[i];
-        torque[i] += spring * behind + damper(spring, moved, impedance_.damping_ratio) * slower;
+        torque[i] += spring * behind + damper(spring, moved, impedance_.damping_ratio, settings.fastest_rad_s) * slower;
         break;
       }
       case LawKind::ToolImpedance:
         torque[i] += posture_damping_per_s * moved * slower;
         if (torque.size() > directions) torque[i] += posture_share_per_rad * its.effort * behind;
         break;
-      case LawKind::Float: torque[i] += settings.float_damping_per_s * moved * slower; break;
+      case LawKind::Float:
+        torque[i] +=
+            std::min(settings.float_damping_per_s * moved, strongest_damper(moved, settings.fastest_rad_s)) * slower;
+        break;
       case LawKind::Torque:
         torque[i] += driven_.torque[i] + driven_.brake[i];
         carrying_[i] += driven_.brake[i];
         break;
     }
-    const double kept_by_walls = walls(wanted, measured, i, moved, its);
+    const double kept_by_walls = walls(wanted, measured, i, moved, its, settings.fastest_rad_s);
     torque[i] += kept_by_walls;
     carrying_[i] += kept_by_walls;
   }
-  if (settings.kind == LawKind::ToolImpedance) add_tool(wanted, measured, dynamics, torque);
+  if (settings.kind == LawKind::ToolImpedance) add_tool(wanted, measured, dynamics, settings.fastest_rad_s, torque);
   return torque;
 }
 

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "robotics/motion/sampled_rates.hpp"
 #include "subsystems/robot_arm/control/law.hpp"
 #include "subsystems/robot_arm/control/torque_drive.hpp"
 
@@ -37,6 +38,8 @@ class Compliance {
     double float_damping_per_s{5};
     std::span<const double> rotor{};  ///< as in Law::Settings
     Vector3 gravity_m_s2{Vector3::Zero()};
+    /// What the cycle leaves (robotics::fastest_rad_s): springs of joints and dampers are no stronger.
+    double fastest_rad_s{robotics::fastest_rad_s(0.001)};
   };
   Compliance(const robotics::Model& model, robotics::FrameId tip);
 
@@ -65,7 +68,7 @@ class Compliance {
   [[nodiscard]] Jacobian tool_jacobian(const robotics::Dynamics& dynamics) const noexcept;
   [[nodiscard]] Vector6 tool_inertia(const Jacobian& jacobian) noexcept;
   void add_tool(const Setpoint& wanted, const Measured& measured, const robotics::Dynamics& dynamics,
-                JointVector& torque) noexcept;
+                double fastest_rad_s, JointVector& torque) noexcept;
 
   const robotics::Model* model_;
   robotics::FrameId tip_;

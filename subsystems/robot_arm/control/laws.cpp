@@ -74,7 +74,8 @@ JointVector Laws::torque(const Setpoint& wanted, const Measured& measured, robot
                                 {.kind = kind_,
                                  .float_damping_per_s = settings.float_damping_per_s,
                                  .rotor = settings.position.rotor,
-                                 .gravity_m_s2 = settings.position.gravity_m_s2}) +
+                                 .gravity_m_s2 = settings.position.gravity_m_s2,
+                                 .fastest_rad_s = robotics::fastest_rad_s(cycle_s_)}) +
              carried_;
     carrying = compliance_.carrying() + carried_;
   }

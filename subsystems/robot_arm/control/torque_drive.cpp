@@ -4,12 +4,13 @@
 
 #include <algorithm>
 
+#include "robotics/motion/sampled_rates.hpp"
 #include "subsystems/robot_arm/control/work_bounds.hpp"
 
 namespace hirosco::robot_arm {
 namespace {
 
-/// So steeply a torque is taken back before a speed, of what the joint moves: as a damper, with two cycles of delay at 1 kHz, may be at most.
+/// So steeply a torque is taken back before a speed, of what the joint moves, and no steeper than a damper may be with such a cycle.
 constexpr double taken_back_per_s = 100;
 constexpr double fast_share = 0.9, braking_acceleration_share = 0.8;
 /// Before the end of a range, rad or m: nobody is driven into it.
@@ -35,11 +36,13 @@ void TorqueDrive::begin(Eigen::Index joints) noexcept {
 const Driven& TorqueDrive::step(const Measured& measured, const Carried& carried, Bounds bounds, double torque_share,
                                 double cycle_s) noexcept {
   smooth_ += std::min(1.0, cycle_s / comes_in_s) * (wanted_ - smooth_);
+  const double steepest_per_s =
+      std::min(taken_back_per_s, robotics::strongest_damper_per_s(robotics::fastest_rad_s(cycle_s)));
   for (std::size_t joint = 0; joint < bounds.size(); ++joint) {
     const auto i = static_cast<Eigen::Index>(joint);
     const JointBounds& its = bounds[joint];
     const double speed = measured.velocity[i], position = measured.position[i];
-    const double damper = taken_back_per_s * std::max(carried.moved[i], least_moved);
+    const double damper = steepest_per_s * std::max(carried.moved[i], least_moved);
     if (!std::isfinite(reached_[i])) reached_[i] = 0;  // a sample was no number
     const double side = smooth_[i] < 0 ? -1.0 : 1.0, wanted = std::abs(smooth_[i]), along = side * speed;
     const double faster = std::max(side * reached_[i], along) + its.motion.acceleration * cycle_s;
