@@ -16,6 +16,7 @@
 #include "hirosco/descriptor/model/setting_files.hpp"
 #include "hirosco/pus/words/describe.hpp"
 #include "robotics/motion/inverse_kinematics.hpp"
+#include "robotics/shapes/swept.hpp"
 #include "robotics/urdf/named_robot.hpp"
 #include "simulation/spacecraft/observed_flight.hpp"
 #include "tools/new_folder/postures.hpp"
@@ -359,6 +360,8 @@ struct Asked {
   const auto judged = tools::judge_robot(arm->robot.file, source, arm->tip_name, arm->fixed);
   auto shapes = robotics::read_collision_shapes(arm->robot.file, arm->robot.text, source);
   if (!judged.robot || !shapes.value) return std::unexpected{std::string{"hirosco new robot refuses its file"}};
+  const auto whole = robotics::urdf::read("", arm->robot.text);
+  robotics::sweep(shapes.value->hulls, *whole.value, arm->robot.standing);
   Asked made{std::move(*arm), judged.robot->posture, {}, std::move(shapes.value->hulls)};
   RobotTask& task = made.task;
   task.subsystem = member->subsystem.name;

@@ -13,6 +13,8 @@ constexpr std::size_t postures = 200;
 /// Who is built no farther apart than this is no pair that can be told apart.
 constexpr double nothing_between_m = 1e-3;
 
+constexpr std::array carried_names{"the tool", "the payload"};
+
 /// From 0 to 1, evenly spread for each base (van der Corput): the same postures at each start.
 [[nodiscard]] double spread(std::size_t i, std::size_t base) noexcept {
   double number = 0, digit = 1;
@@ -22,22 +24,32 @@ constexpr double nothing_between_m = 1e-3;
 
 }  // namespace
 
-Clearance::Clearance(const Model& model, std::span<const LinkHull> hulls) : dynamics_{model, Base::Fixed} {
+Clearance::Clearance(const Model& model, std::span<const LinkHull> hulls, std::optional<FrameId> tip)
+    : dynamics_{model, Base::Fixed}, tip_{tip} {
   state_.qd = JointVector::Zero(model.joint_count());
   add_links(model, hulls);
+  add_carried(model);
   const auto joined = [&](std::size_t one, std::size_t other) {
     return one == other || model.bodies()[one].parent == other || model.bodies()[other].parent == one;
   };
-  for (std::size_t i = 0; i < links_; ++i)
-    for (std::size_t j = i + 1; j < links_; ++j)
-      if (!joined(bodies_[i].body, bodies_[j].body))
-        add_pair(i, j, model.frame(bodies_[i].frame).name + " and " + model.frame(bodies_[j].frame).name);
+  const auto name_of = [&](std::size_t i) -> std::string {
+    return i < links_ ? model.frame(bodies_[i].frame).name : carried_names[i - links_];
+  };
+  const auto add_pairs = [&](std::size_t from, std::size_t end) {
+    for (std::size_t i = 0; i < links_; ++i)
+      for (std::size_t j = std::max(i + 1, from); j < end; ++j)
+        if (!joined(bodies_[i].body, bodies_[j].body)) add_pair(i, j, name_of(i) + " and " + name_of(j));
+  };
+  add_pairs(0, links_);
   link_pairs_ = pairs_.size();
-  learn_construction(model);
-  for (std::size_t i = 0; i < links_; ++i)
-    for (std::size_t volume = links_; volume < bodies_.size(); ++volume)
-      if (bodies_[i].body != 0)
-        add_pair(i, volume, model.frame(bodies_[i].frame).name + " and a volume to keep out of");
+  add_pairs(links_, moved_);
+  moved_pairs_ = pairs_.size();
+  learn_construction(model, hulls);
+  bodies_.resize(moved_ + most_volumes);
+  for (std::size_t volume = moved_; volume < bodies_.size(); ++volume) bodies_[volume].solids.resize(1);
+  for (std::size_t i = 0; i < moved_; ++i)
+    for (std::size_t volume = moved_; volume < bodies_.size(); ++volume)
+      if (bodies_[i].body != 0) add_pair(i, volume, name_of(i) + " and a volume to keep out of");
   keep_out({});
 }
 
@@ -58,9 +70,49 @@ void Clearance::add_links(const Model& model, std::span<const LinkHull> hulls) {
     for (const Solid& solid : body.solids) all.push_back(solid.hull);
     body.ball = ball_around(all);
   }
-  links_ = bodies_.size();
-  bodies_.resize(links_ + most_volumes);
-  for (std::size_t volume = links_; volume < bodies_.size(); ++volume) bodies_[volume].solids.resize(1);
+  links_ = moved_ = bodies_.size();
+}
+
+/// As points where the tip is: how near that is built to a link is how near whatever begins there may come.
+void Clearance::add_carried(const Model& model) {
+  if (!tip_) return;
+  moved_ = links_ + most_carried;
+  bodies_.resize(moved_);
+  for (Body& body : std::span{bodies_}.subspan(links_)) {
+    body.frame = *tip_;
+    body.body = model.frame(*tip_).body;
+    body.solids.resize(1);
+    body.solids[0].hull = RoundedHull{std::array{Vector3{Vector3::Zero()}}, 0};
+  }
+}
+
+void Clearance::carry(Carried which, const Vector3& to, double radius_m) noexcept {
+  if (!tip_) return;
+  Body& body = bodies_[links_ + static_cast<std::size_t>(which)];
+  Solid& solid = body.solids[0];
+  const bool any = to.norm() > 0;
+  solid.hull = any ? RoundedHull{std::array{Vector3{Vector3::Zero()}, to}, radius_m}
+                   : RoundedHull{std::array{Vector3{Vector3::Zero()}}, 0};
+  body.ball = solid.ball = ball_around({&solid.hull, 1});
+  limit_pairs();
+}
+
+/// What is carried begins as a point, and such a point is nothing.
+bool Clearance::counts(std::size_t body) const noexcept {
+  return body < links_ || bodies_[body].solids[0].hull.corners() > 1;
+}
+
+void Clearance::limit_pairs() noexcept {
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    LookedAt& pair = pairs_[i];
+    const double built_m = pair.named.built_m;
+    if (i >= moved_pairs_) {
+      const bool is_there = counts(pair.one) && bodies_[pair.other].solids[0].hull.radius_m() > 0;
+      pair.named.limit_m = is_there ? limit_m_ : 0;
+    } else {
+      pair.named.limit_m = counts(pair.other) && built_m >= nothing_between_m ? std::min(limit_m_, built_m / 3) : 0;
+    }
+  }
 }
 
 void Clearance::add_pair(std::size_t one, std::size_t other, std::string names) {
@@ -85,7 +137,18 @@ bool Clearance::may_be_zero(const Model& model, std::size_t one, std::size_t oth
   return true;
 }
 
-void Clearance::learn_construction(const Model& model) {
+/// What somebody else moves is built as near as it stands: a finger that opens beside its own wrist is no neighbour by construction.
+void Clearance::built_distances(const Model& model, std::span<const LinkHull> hulls, std::span<double> of_pairs) {
+  const JointVector zeros = JointVector::Zero(model.joint_count());
+  if (std::ranges::none_of(hulls, [](const LinkHull& each) { return each.standing.has_value(); }))
+    return distances(zeros, of_pairs);
+  std::vector<LinkHull> built{hulls.begin(), hulls.end()};
+  for (LinkHull& each : built)
+    if (each.standing) each.hull = *each.standing, each.standing.reset();
+  Clearance{model, built, tip_}.distances(zeros, of_pairs);
+}
+
+void Clearance::learn_construction(const Model& model, std::span<const LinkHull> hulls) {
   std::vector<double> apart(pairs_.size());
   JointVector position = JointVector::Zero(model.joint_count());
   for (LookedAt& pair : pairs_) pair.named.built_m = 0;
@@ -100,8 +163,7 @@ void Clearance::learn_construction(const Model& model) {
     for (std::size_t k = 0; k < pairs_.size(); ++k)
       pairs_[k].named.built_m = std::max(pairs_[k].named.built_m, apart[k]);
   }
-  position.setZero();
-  distances(position, apart);
+  built_distances(model, hulls, apart);
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     LookedAt& pair = pairs_[k];
     if (may_be_zero(model, bodies_[pair.one].body, bodies_[pair.other].body))
@@ -111,30 +173,24 @@ void Clearance::learn_construction(const Model& model) {
 
 void Clearance::set_limit(double limit_m) noexcept {
   limit_m_ = limit_m;
-  for (LookedAt& pair : std::span{pairs_}.first(link_pairs_)) {
-    const double built_m = pair.named.built_m;
-    pair.named.limit_m = built_m < nothing_between_m ? 0 : std::min(limit_m, built_m / 3);
-  }
-  keep_out(kept_out_);
+  limit_pairs();
 }
 
 void Clearance::keep_out(std::span<const Capsule> volumes) noexcept {
   for (std::size_t i = 0; i < most_volumes; ++i) {
     const Capsule capsule = i < volumes.size() ? volumes[i] : Capsule{};
-    kept_out_[i] = capsule;
-    Body& body = bodies_[links_ + i];
+    Body& body = bodies_[moved_ + i];
     body.solids[0].hull = RoundedHull{std::array{capsule.from, capsule.to}, capsule.radius_m};
     body.ball = body.solids[0].ball = ball_around({&body.solids[0].hull, 1});
     body.centre = body.solids[0].centre = body.ball.centre;
   }
-  for (LookedAt& pair : std::span{pairs_}.subspan(link_pairs_))
-    pair.named.limit_m = bodies_[pair.other].solids[0].hull.radius_m() > 0 ? limit_m_ : 0;
+  limit_pairs();
 }
 
 void Clearance::place(const JointVector& position) noexcept {
   state_.q = position;
   dynamics_.update(state_);
-  for (Body& body : std::span{bodies_}.first(links_)) {
+  for (Body& body : std::span{bodies_}.first(moved_)) {
     body.pose = dynamics_.frame_pose(body.frame);
     body.centre = body.pose * body.ball.centre;
     for (Solid& solid : body.solids) solid.centre = body.pose * solid.ball.centre;

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,12 +23,12 @@ struct Capsule {
 };
 
 /// How near an arm comes to itself and to what it is to keep out of. Links that are joined to each other are not looked at. Two others have an own
-/// limit where they are built near each other: a third of how far apart they are with the joints between them at 0, where these may be there, or as far
-/// apart as they ever come. Where that is less than a millimetre they pass through each other.
+/// limit where they are built near each other: a third of how far apart they are with the joints between them at 0, where these may be there, and what somebody else moves (swept.hpp) as it
+/// stands, or as far apart as they ever come. Where that is less than a millimetre they pass through each other.
 class Clearance {
  public:
-  /// Realtime: allocates; some hundred postures are looked at.
-  Clearance(const Model& model, std::span<const LinkHull> hulls);
+  /// `tip`: of who may carry() something.  Realtime: allocates; some hundred postures are looked at.
+  Clearance(const Model& model, std::span<const LinkHull> hulls, std::optional<FrameId> tip = std::nullopt);
 
   /// How near any two may come.  Realtime: wait-free.
   void set_limit(double limit_m) noexcept;
@@ -34,6 +36,12 @@ class Clearance {
   /// In the axes of the base; those of no radius count for nothing.
   void keep_out(std::span<const Capsule> volumes) noexcept;
   static constexpr std::size_t most_volumes = 4;
+
+  /// What the tip carries and no file knows: all that is no farther than a radius from the line from the tip's origin to `to`, in its frame; at that origin: nothing. A part of
+  /// the tip's body, as near to others as that origin is built, and not looked at against what else is carried.  Realtime: wait-free.
+  enum class Carried : std::uint8_t { Tool, Payload };
+  void carry(Carried which, const Vector3& to, double radius_m) noexcept;
+  static constexpr std::size_t most_carried = 2;
 
   struct Nearest {
     double distance_m{HUGE_VAL};
@@ -68,7 +76,7 @@ class Clearance {
     Ball ball;  ///< in the link's frame
     Vector3 centre{Vector3::Zero()};  ///< of the ball, in the base's
   };
-  /// A link, or a volume, which stands.
+  /// A link, what the tip carries, or a volume, which stands.
   struct Body {
     FrameId frame;
     std::size_t body{0};
@@ -85,19 +93,25 @@ class Clearance {
     double then_m{0};
   };
   void add_links(const Model& model, std::span<const LinkHull> hulls);
+  void add_carried(const Model& model);
   void add_pair(std::size_t one, std::size_t other, std::string names);
-  void learn_construction(const Model& model);
+  void limit_pairs() noexcept;
+  [[nodiscard]] bool counts(std::size_t body) const noexcept;
+  void learn_construction(const Model& model, std::span<const LinkHull> hulls);
+  void built_distances(const Model& model, std::span<const LinkHull> hulls, std::span<double> of_pairs);
   [[nodiscard]] static bool may_be_zero(const Model& model, std::size_t one, std::size_t other);
   void place(const JointVector& position) noexcept;
   [[nodiscard]] double apart_m(LookedAt& pair, double enough_m) noexcept;
 
   Dynamics dynamics_;
   State state_;
-  std::vector<Body> bodies_;  ///< links, then volumes
-  std::vector<LookedAt> pairs_;  ///< of links, then of links and volumes
+  std::vector<Body> bodies_;  ///< links, then what is carried, then volumes
+  std::vector<LookedAt> pairs_;  ///< of links, then of links and what is carried, then of both and volumes
+  std::optional<FrameId> tip_;
   std::size_t links_{0};
+  std::size_t moved_{0};  ///< links, and what is carried
   std::size_t link_pairs_{0};
-  std::array<Capsule, most_volumes> kept_out_{};
+  std::size_t moved_pairs_{0};  ///< without volumes
   double limit_m_{0};
   std::size_t nearest_{0};  ///< of the last search: the next begins there
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,8 @@ namespace hirosco::robotics {
 struct LinkHull {
   std::string link;
   RoundedHull hull;
+  std::optional<RoundedHull>
+      standing{};  ///< of a link that somebody else moves (swept.hpp), whose hull is all along its way: it as it stands
 };
 
 /// What the file has as <collision> of its links.

@@ -25,6 +25,7 @@ struct NamedRobot {
   std::string text;  ///< of the file
   Robot robot;
   Model model;
+  std::vector<std::string> standing;  ///< what FIXED names
 };
 
 /// Why there is none. The words live as long as this, and an Error has literals alone: whoever fails with them keeps it.

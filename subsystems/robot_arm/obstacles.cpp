@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "robotics/shapes/collision.hpp"
+#include "robotics/shapes/swept.hpp"
 
 namespace hirosco::robot_arm {
 namespace {
@@ -27,7 +28,8 @@ constexpr double ahead_s = 0.1;
 
 }  // namespace
 
-Result<> Obstacles::read(const UrdfArm::Source& source, const robotics::Model& model) {
+Result<> Obstacles::read(const UrdfArm::Source& source, const robotics::Model& model,
+                         std::optional<robotics::FrameId> tip) {
   auto reading = robotics::read_collision_shapes(source.file, source.text, descriptor::file_system());
   const auto said = [](const descriptor::Diagnostic& its) {
     return fmt::format("{}:{}:{}: {}: {}", its.file.filename().string(), its.at.line, its.at.column, its.code,
@@ -39,7 +41,10 @@ Result<> Obstacles::read(const UrdfArm::Source& source, const robotics::Model& m
                  static_cast<std::int64_t>(reading.problems.size())};
     return not_read_.error();
   }
-  clearance_.emplace(model, reading.value->hulls);
+  // It was read before: what somebody else moves is wherever it may be.
+  if (const auto whole = robotics::urdf::read(source.file, source.text); whole.value)
+    robotics::sweep(reading.value->hulls, *whole.value, source.standing);
+  clearance_.emplace(model, reading.value->hulls, tip);
   return ok();
 }
 
@@ -53,6 +58,13 @@ Outcome Obstacles::keep_out(const KeepOut& numbers) noexcept {
   clearance_->keep_out(volumes);
   parts_.kept_out.store(numbers);
   return ok();
+}
+
+void Obstacles::carry(const Vector3& tool_m, const Vector3& payload_m, double radius_m) noexcept {
+  if (!clearance_) return;
+  using Carried = robotics::Clearance::Carried;
+  clearance_->carry(Carried::Tool, tool_m, radius_m);
+  clearance_->carry(Carried::Payload, payload_m, radius_m);
 }
 
 void Obstacles::tell(const JointVector& position) noexcept {

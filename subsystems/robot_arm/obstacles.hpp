@@ -39,13 +39,18 @@ class Obstacles {
   Obstacles(const Obstacles&) = delete;
   Obstacles& operator=(const Obstacles&) = delete;
 
-  /// The shapes of all links. Meshes beside the file, too. Of what is wrong in them the first is told; what is not seen, to whoever reads standard
+  /// The shapes of all links; of those that somebody else's joints move, all over their ranges. Meshes beside the file, too. Of what is wrong in them the first is told; what is not seen, to whoever reads standard
   /// error.  Realtime: allocates. Thread: the service loop.
-  [[nodiscard]] Result<> read(const UrdfArm::Source& source, const robotics::Model& model);
+  /// `tip`: of an arm that may carry() something.
+  [[nodiscard]] Result<> read(const UrdfArm::Source& source, const robotics::Model& model,
+                              std::optional<robotics::FrameId> tip = std::nullopt);
   /// As it was written last.
   void take_limit() noexcept { clearance_->set_limit(parts_.limit_m.load()); }
   /// These volumes from now on, in the base's axes.
   [[nodiscard]] Outcome keep_out(const KeepOut& numbers) noexcept;
+
+  /// A tool and a payload (docs/adr/0194) from now on, each from the tip's origin to there, in its frame, with all that is so near to that line; there itself: none.
+  void carry(const Vector3& tool_m, const Vector3& payload_m, double radius_m) noexcept;
 
   /// Tells how near they are with the joints there.
   void tell(const JointVector& position) noexcept;

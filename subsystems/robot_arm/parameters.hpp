@@ -21,6 +21,7 @@ struct Parameters {
     publish("EXTERNAL_TORQUE", external_torque);
     publish("TOOL", tool);
     publish("TOOL_PLACE", tool_place);
+    publish("TOOL_RADIUS", tool_radius_m);
     publish("MOTION", motion);
     publish("PAYLOAD", payload);
     publish("CONTACT_WATCH", contact);
@@ -62,7 +63,7 @@ struct Parameters {
   Parameter<std::array<double, 3>> gravity_m_s2;
   Parameter<double> bandwidth_rad_s, bandwidth_in_force, acceleration, jerk, goal_tolerance;
   Parameter<double> torque_limit, torque_hard, speed_limit, following_limit;
-  Parameter<double> clearance_limit_m, clearance_m;
+  Parameter<double> clearance_limit_m, clearance_m, tool_radius_m;
   Parameter<double> float_damping, retract_distance;
   Parameter<KeepOut> keep_out;
   Parameter<std::uint8_t> active;

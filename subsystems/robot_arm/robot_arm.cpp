@@ -43,7 +43,7 @@ Result<Step> RobotArm::software_init() {
                                          &too_near_, &force_exceeded_, &power_exceeded_, &tool_power_exceeded_})
     use_event(*event);
   HIROSCO_TRY_LET(const UrdfArm::Source source, known_.read(own_descriptor()));
-  HIROSCO_TRY(obstacles_.read(source, known_.model()));
+  HIROSCO_TRY(obstacles_.read(source, known_.model(), known_.tip()));
   HIROSCO_TRY(known_.take_bounds());
   bind_motions();
   bind_settings();
@@ -62,6 +62,7 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   HIROSCO_TRY(lead_.begin(configuration, cycle_s));
   static_cast<void>(obstacles_.keep_out(parameters_.keep_out.load()));
   place_tool(parameters_.tool_place.load());
+  shape_carried();
   torque_mode_.begin(cycle_s);
   limits_.begin(cycle_s);
   limits_.arm();
@@ -80,6 +81,7 @@ Result<> RobotArm::safe_operational(const Cycle& cycle) noexcept {
   if (cycle.first) {
     drop_calls(limits_.tripped());
     obstacles_.take_limit();  // it may have been written since CONFIGURE
+    shape_carried();
   }
   yielding_.engage();
   control_.control();
@@ -290,6 +292,7 @@ Outcome RobotArm::take_payload(double mass_kg, const std::array<double, 3>& plac
   if (const Outcome may = limits_.may_hold(held); may.kind == Outcome::Kind::Refused) return may;
   control_.take_load(held - model_.held(model_.payload()));
   parameters_.payload.store({mass_kg, place_m});
+  shape_carried();
   model_.forget_external();
   return ok();
 }
@@ -310,7 +313,16 @@ Outcome RobotArm::take_tool(const robot_arm::ToolValues& in_tip) noexcept {
   const robot_arm::ToolValues taken = robot_arm::values_of(robot_arm::pose_of(in_tip));
   parameters_.tool_place.store(taken);
   place_tool(taken);
+  shape_carried();
   return ok();
+}
+
+/// By what was said of tool and payload last, and TOOL_RADIUS as it was written last.
+void RobotArm::shape_carried() noexcept {
+  const robot_arm::Payload payload = model_.payload();
+  obstacles_.carry(robot_arm::pose_of(parameters_.tool_place.load()).position,
+                   payload.mass_kg > 0 ? payload.place_m : robot_arm::Vector3{robot_arm::Vector3::Zero()},
+                   parameters_.tool_radius_m.load());
 }
 
 void RobotArm::bind_motions() {

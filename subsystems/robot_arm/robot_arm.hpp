@@ -69,6 +69,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   [[nodiscard]] Outcome take_payload(double mass_kg, const std::array<double, 3>& place_m) noexcept;
   [[nodiscard]] Outcome take_tool(const robot_arm::ToolValues& in_tip) noexcept;
   void place_tool(const robot_arm::ToolValues& in_tip) noexcept;
+  void shape_carried() noexcept;
 
   robot_arm::Parameters parameters_;
   Event<> motion_done_{"MOTION_DONE"};

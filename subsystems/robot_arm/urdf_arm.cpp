@@ -15,7 +15,7 @@ Result<UrdfArm::Source> UrdfArm::read(const descriptor::SubsystemDescriptor& sub
   if (!tip) return (not_read_ = tip.error()).error();
   tip_ = *tip;
   model_ = std::move(named->model);
-  return Source{std::move(named->file), std::move(named->text)};
+  return Source{std::move(named->file), std::move(named->text), std::move(named->standing)};
 }
 
 Result<> UrdfArm::take_bounds() {

@@ -25,6 +25,7 @@ class UrdfArm {
   struct Source {
     std::filesystem::path file;
     std::string text;  ///< of the file
+    std::vector<std::string> standing;  ///< joints of it that are somebody else's
   };
 
   UrdfArm() = default;

@@ -4,7 +4,7 @@
 which pairs are asked for, and why, is said here:
 
 Two links of which one carries the other by one joint are no pair, nor are two that are one body. Two that are less than TOUCH apart with the joints
-between them at 0, where these may be there, or never farther apart in 300 random postures, were built touching. What is never 40 mm apart is
+between them at 0, where these may be there, and what is somebody else's at 0 as well, or never farther apart in 300 random postures, were built touching. What is never 40 mm apart is
 free where it is half as far as it ever is; everything else where it is 20 mm."""
 import itertools
 
@@ -26,17 +26,17 @@ class Pair:
 
 
 class Judge:
-    def __init__(self, urdf, joints, fixed, mimics):
-        """`joints`: (name, lower, upper) of the coordinates that are asked for, `fixed`: names of those that stand at 0, `mimics`: who follows whom."""
+    def __init__(self, urdf, joints, stands, mimics):
+        """`joints`: (name, lower, upper) of the coordinates that are asked for, `stands`: where those stand that are somebody else's, `mimics`: who follows whom."""
         self.model = pinocchio.buildModelFromUrdf(str(urdf))
         self.geometry = pinocchio.buildGeomFromUrdf(self.model, str(urdf), pinocchio.COLLISION, package_dirs=[str(urdf.parent)])
         self.data, self.places = self.model.createData(), pinocchio.GeometryData(self.geometry)
         self.names = [name for name, _, _ in joints]
         self.lower, self.upper = (numpy.array([joint[i] for joint in joints]) for i in (1, 2))
-        self.mimics = mimics
+        self.mimics, self.stands = mimics, stands
         self.body = [0] * self.model.njoints  # whose body the one of a joint is
         for joint in range(1, self.model.njoints):
-            self.body[joint] = self.body[self.model.parents[joint]] if self.model.names[joint] in fixed else joint
+            self.body[joint] = self.body[self.model.parents[joint]] if self.model.names[joint] in stands else joint
         self.find_pairs()
 
     def chain(self, joint):
@@ -71,8 +71,12 @@ class Judge:
             for shape in shapes:
                 found = self.geometry.geometryObjects[shape]
                 found.geometry.computeLocalAABB()
-                out = max(out, numpy.linalg.norm(found.placement.translation) + numpy.linalg.norm(found.geometry.aabb_center)
-                          + found.geometry.aabb_radius)
+                far = numpy.linalg.norm(found.placement.translation) + numpy.linalg.norm(found.geometry.aabb_center) + found.geometry.aabb_radius
+                stood = found.parentJoint
+                while self.body[stood] != stood:
+                    far += numpy.linalg.norm(self.model.jointPlacements[stood].translation) + abs(self.stands[self.model.names[stood]])
+                    stood = self.model.parents[stood]
+                out = max(out, far)
             for joint in reversed(chain):
                 name = self.model.names[joint]
                 coordinate = self.names.index(self.mimics.get(name, name)) if self.mimics.get(name, name) in self.names else None
@@ -81,12 +85,13 @@ class Judge:
                     reach[coordinate] += 1 if slides else out
                 if slides and coordinate is not None:
                     out += self.upper[coordinate] - self.lower[coordinate]
+                out += abs(self.stands.get(self.mimics.get(name, name), 0)) if slides else 0
                 out += numpy.linalg.norm(self.model.jointPlacements[joint].translation)
         return reach
 
-    def place(self, q):
+    def place(self, q, stands=None):
         full = pinocchio.neutral(self.model)
-        values = dict(zip(self.names, q))
+        values = {**(self.stands if stands is None else stands), **dict(zip(self.names, q))}
         values.update({follower: values[leader] for follower, leader in self.mimics.items()})
         for name, value in values.items():
             joint = self.model.joints[self.model.getJointId(name)]
@@ -116,7 +121,7 @@ class Judge:
             for i, pair in enumerate(self.pairs):
                 if farthest[i] < 2 * FREE_M:
                     farthest[i] = max(farthest[i], self.apart(pair))
-        self.place(numpy.zeros(len(self.names)))
+        self.place(numpy.zeros(len(self.names)), dict.fromkeys(self.stands, 0.0))
         kept, said = [], []
         for pair, far in zip(self.pairs, farthest):
             leaders = [self.mimics.get(self.model.names[joint], self.model.names[joint]) for joint in pair.between]

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "robotics/shapes/collision.hpp"
+#include "robotics/shapes/swept.hpp"
 #include "robotics/urdf/named_robot.hpp"
 #include "subsystems/robot_arm/testing/flown.hpp"
 
@@ -107,14 +108,17 @@ int main(int argc, char** argv) {
   if (!text) return 1;
   auto reading = robotics::urdf::read(file, *text);
   const auto names = robotics::urdf::listed_names(fixed);
-  if (!reading.value || robotics::urdf::fix(*reading.value, names)) return 1;
+  if (!reading.value) return 1;
+  const robotics::urdf::Robot whole = *reading.value;
+  if (robotics::urdf::fix(*reading.value, names)) return 1;
   const auto model = robotics::Model::make(robotics::urdf::describe(*reading.value)).value();
-  const auto shapes = robotics::read_collision_shapes(file, *text, descriptor::file_system());
+  auto shapes = robotics::read_collision_shapes(file, *text, descriptor::file_system());
   for (const auto& warning : shapes.warnings) fmt::print(stderr, "{}: {}\n", warning.code, warning.message);
   if (!shapes.value) {
     for (const auto& problem : shapes.problems) fmt::print(stderr, "{}: {}\n", problem.code, problem.message);
     return 1;
   }
+  robotics::sweep(shapes.value->hulls, whole, names);
   robotics::Clearance clearance{model, shapes.value->hulls};
   for (const auto& joint : model.joints())
     fmt::print("joint {} {} {}\n", joint.name, joint.limits.lower.value_or(-4), joint.limits.upper.value_or(4));

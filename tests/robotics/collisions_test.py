@@ -21,10 +21,13 @@ import numpy
 import collision_judge
 import robots
 
-# Where its tool is, what of it is somebody else's, who follows whom.
-ROBOTS = {"ur5_robot": ("tool0", [], {}), "panda": ("panda_hand_tcp", [], {"panda_finger_joint2": "panda_finger_joint1"}), "xarm7": ("link_eef", [], {}),
-          "kinova": ("j2s6s200_end_effector", [], {}),
-          "tiago_no_hand": ("wrist_ft_tool_link", ["wheel_left_joint", "wheel_right_joint"], {})}
+# Which file, where its tool is, what of it is somebody else's and where that is in flight, who follows whom. The second Panda is as `hirosco new robot
+# --gripper` makes it: its fingers are the gripper's, and a flight begins with them open.
+FOLLOWS = {"panda_finger_joint2": "panda_finger_joint1"}
+ROBOTS = {"ur5_robot": ("ur5_robot", "tool0", {}, {}), "panda": ("panda", "panda_hand_tcp", {}, FOLLOWS),
+          "panda_and_gripper": ("panda", "panda_hand_tcp", {"panda_finger_joint1": 0.04}, FOLLOWS), "xarm7": ("xarm7", "link_eef", {}, {}),
+          "kinova": ("kinova", "j2s6s200_end_effector", {}, {}),
+          "tiago_no_hand": ("tiago_no_hand", "wrist_ft_tool_link", {"wheel_left_joint": 0, "wheel_right_joint": 0}, {})}
 LEAST_REACHED = 0.95
 TOO_NEAR = "800a"
 
@@ -34,13 +37,13 @@ class Arm:
 
     def __init__(self, probe, name, folder):
         self.name = name
-        self.tip, self.fixed, mimics = ROBOTS[name]
-        source = next(path for path in robots.files() if path.stem == name)
+        stem, self.tip, stands, mimics = ROBOTS[name]
+        source = next(path for path in robots.files() if path.stem == stem)
         self.urdf = folder / f"{name}.urdf"
         shutil.copy(source, self.urdf)
         if not (beside := folder / "example-robot-data").exists():
             beside.symlink_to(robots.folder().parent)
-        self.process = subprocess.Popen([probe, self.urdf, self.tip, ",".join(self.fixed)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen([probe, self.urdf, self.tip, ",".join(stands)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         joints = []
         for words in (line.split() for line in self.process.stdout):
             if words[0] == "joint":
@@ -49,7 +52,7 @@ class Arm:
                 break
         else:
             sys.exit(f"{name}: the probe does not read it")
-        self.judge = collision_judge.Judge(self.urdf, joints, self.fixed, mimics)
+        self.judge = collision_judge.Judge(self.urdf, joints, stands, mimics)
 
     def move(self, start, goal):
         """What became of it, and where it was."""

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "hirosco/xml/reader.hpp"
+#include "robotics/shapes/swept.hpp"
 #include "robotics/urdf/named_robot.hpp"
 #include "tools/new_folder/chain.hpp"
 #include "tools/new_folder/meshes.hpp"
@@ -78,6 +79,7 @@ class Judge {
           });
       if (!gripper) return;
       if (wanted_tip.empty()) wanted_tip = gripper->carrier;
+      robotics::sweep(hulls_, robot_, fingers);
       // Each is known: nothing is left to be told.
       static_cast<void>(robotics::urdf::fix(robot_, fingers));
       model = robotics::Model::make(robotics::urdf::describe(robot_));
