@@ -35,7 +35,7 @@ hirosco_headers_of(HIROSCO_AUTHOR_HEADERS ${hirosco_author_folder_headers}
   simulation/devices/device_shell.hpp simulation/devices/module.hpp simulation/devices/simulated_device.hpp)
 
 # What a module and who loads it have to agree on: the module's copy of the libraries works on the object of the framework that stands behind
-# its author's class (service_loop/subsystem.cpp), whose headers nobody includes outside. interface_version is a sum over these (docs/adr/0050).
+# its author's class (service_loop/author_calls.cpp), whose headers nobody includes outside. interface_version is a sum over these (docs/adr/0050).
 hirosco_headers_of(HIROSCO_INTERFACE_HEADERS ${HIROSCO_AUTHOR_HEADERS} hirosco/subsystem/service_loop/generic_subsystem.hpp)
 
 # hirosco_install_libraries(targets...): hirosco_NAME becomes hirosco::NAME of the package.
