@@ -59,7 +59,7 @@ struct SlowlyFlown : Flown {
   }
   /// As TM[20,2] tells it.
   double told_number(std::string_view name) {
-    const descriptor::SubsystemDescriptor& its = rig.subsystem.descriptor();
+    const descriptor::SubsystemDescriptor& its = rig.descriptor();
     const auto found = std::ranges::find(its.parameters, name, [](const auto& each) { return each.field.name; });
     std::vector<std::byte> data(1 + 4);
     OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{its.id, found->field.type, found->id}.wire());
