@@ -18,7 +18,42 @@ void stand_at(Joint& joint, double position) {
   joint.mimic.reset();
 }
 
+[[nodiscard]] bool among(std::span<const std::size_t> joints, std::size_t joint) {
+  return std::ranges::find(joints, joint) != joints.end();
+}
+
 }  // namespace
+
+std::vector<std::size_t> led_by(const Robot& robot, std::span<const std::string> names) {
+  std::vector<std::size_t> led;
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const Joint& joint = robot.joints[i];
+    const std::string& leader = joint.mimic ? robot.joints[joint.mimic->joint].name : joint.name;
+    if (std::ranges::find(names, leader) != names.end()) led.push_back(i);
+  }
+  return led;
+}
+
+std::optional<Carried> carried_by(const Robot& robot, std::span<const std::size_t> standing, std::string_view link) {
+  std::vector<std::size_t> above(robot.links.size(), robot.joints.size());
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) above[robot.joints[i].child] = i;
+  // The robot is a tree: each way up ends at its root.
+  const auto carrier_of = [&](std::size_t from) -> std::optional<std::size_t> {
+    for (std::size_t joint = above[from]; joint < robot.joints.size(); joint = above[robot.joints[joint].parent])
+      if (among(standing, joint)) return joint;
+    return std::nullopt;
+  };
+  const auto named = std::ranges::find(robot.links, link, &Link::name);
+  if (named != robot.links.end())
+    if (const auto by = carrier_of(static_cast<std::size_t>(named - robot.links.begin())))
+      return Carried{*by, "link '" + named->name + "'"};
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const Joint& joint = robot.joints[i];
+    if (joint.type == JointType::Fixed || among(standing, i)) continue;
+    if (const auto by = carrier_of(joint.parent)) return Carried{*by, "joint '" + joint.name + "'"};
+  }
+  return std::nullopt;
+}
 
 std::optional<std::string> fix(Robot& robot, std::span<const std::string> names) {
   for (const std::string& name : names) {

@@ -45,5 +45,29 @@ TEST(Fix, NamesWhatIsNoJointThatMovesByItselfAndChangesNothing) {
   EXPECT_EQ(describe(*reading.value).joints.size(), 3u);
 }
 
+TEST(Fix, IsAskedBeforeAndAfterWhatHangsOnWhatStands) {
+  auto reading = read("f.urdf", fingers);
+  ASSERT_TRUE(reading.value);
+  const auto led = [&](const char* name) { return led_by(*reading.value, std::array<std::string, 1>{name}); };
+  EXPECT_EQ(led("one"), (std::vector<std::size_t>{1, 2})) << "with what follows it";
+  EXPECT_EQ(led("two"), std::vector<std::size_t>{}) << "it does not move by itself";
+  const auto turn = led("turn"), one = led("one");
+  for (int times = 0; times < 2; ++times) {
+    EXPECT_EQ(carried_by(*reading.value, one, "arm"), std::nullopt) << "fingers hang on it";
+    EXPECT_EQ(carried_by(*reading.value, {}, "right"), std::nullopt);
+    const auto right = carried_by(*reading.value, one, "right");
+    ASSERT_TRUE(right) << "it slides with a finger";
+    EXPECT_EQ(right->by, 2u);
+    EXPECT_EQ(right->what, "link 'right'");
+    if (times == 0) {
+      const auto finger = carried_by(*reading.value, turn, "base");
+      ASSERT_TRUE(finger);
+      EXPECT_EQ(finger->by, 0u);
+      EXPECT_EQ(finger->what, "joint 'one'");
+      ASSERT_EQ(fix(*reading.value, std::array<std::string, 1>{"one"}), std::nullopt);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hirosco::robotics::urdf

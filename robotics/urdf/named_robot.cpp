@@ -52,12 +52,13 @@ std::expected<NamedRobot, NotRead> read_named(const descriptor::SubsystemDescrip
                     static_cast<std::int64_t>(reading.problems.size()));
   }
   auto standing = listed_names(*fixed);
+  auto led = led_by(*reading.value, standing);
   if (const auto unknown = fix(*reading.value, standing))
     return not_read(ErrorCode::NotFound, fmt::format("{} of {}: the robot has no joint '{}' that moves by itself",
                                                      fixed_setting, device, *unknown));
   auto model = Model::make(describe(*reading.value));
   if (!model) return not_read(model.error());
-  return NamedRobot{file, std::move(*text), std::move(*reading.value), std::move(*model), std::move(standing)};
+  return NamedRobot{file, std::move(*text), std::move(*reading.value), std::move(led), std::move(*model), std::move(standing)};
 }
 
 std::expected<FrameId, NotRead> named_tip(const descriptor::SubsystemDescriptor& subsystem, std::string_view device,

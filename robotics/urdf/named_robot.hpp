@@ -24,6 +24,7 @@ struct NamedRobot {
   std::filesystem::path file;
   std::string text;  ///< of the file
   Robot robot;
+  std::vector<std::size_t> led;  ///< joints of it that FIXED names, and what mimics them
   Model model;
   std::vector<std::string> standing;  ///< what FIXED names
 };

@@ -53,6 +53,7 @@ TEST_F(NamedRobotTest, IsTheOneOfTheFileWithoutWhatIsSomebodyElses) {
   EXPECT_EQ(named->text, forked());
   EXPECT_EQ(named->model.joint_count(), 1);
   EXPECT_THAT(named->standing, ElementsAre("slide"));
+  EXPECT_THAT(named->led, ElementsAre(1u)) << "'slide'";
   const auto tip = named_tip(settings, "ARM", *named);
   ASSERT_TRUE(tip);
   EXPECT_EQ(tip->index, named->model.find_frame("thumb")->index);

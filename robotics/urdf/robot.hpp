@@ -61,6 +61,19 @@ struct Robot {
 /// first name that is no joint that moves by itself; nothing was done.  Realtime: allocates.
 [[nodiscard]] std::optional<std::string> fix(Robot& robot, std::span<const std::string> names);
 
+/// Which joints fix() makes stand with these names, those that mimic them among them, in file order; asked before it does.  Realtime: allocates.
+[[nodiscard]] std::vector<std::size_t> led_by(const Robot& robot, std::span<const std::string> names);
+
+/// Something hangs on a joint.
+struct Carried {
+  std::size_t by{0};  ///< joint
+  std::string what;  ///< "link 'tool'", "joint 'elbow'"
+};
+/// The first of the joints `standing` that carries the link, or a joint that moves and is none of them: what is modelled with them at 0 would be
+/// somewhere else. Before and after fix().  Realtime: allocates.
+[[nodiscard]] std::optional<Carried> carried_by(const Robot& robot, std::span<const std::size_t> standing,
+                                                std::string_view link);
+
 /// What moves by itself, in file order: the names of the model's coordinates.
 /// Links that are fixed to each other become one body. Every link is a frame; the base's frame is that of the root link.
 /// Model::make() takes the description of every robot that was read.  Realtime: allocates.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "subsystems/robot_arm/control/bounds.hpp"
@@ -13,6 +15,14 @@ Result<UrdfArm::Source> UrdfArm::read(const descriptor::SubsystemDescriptor& sub
   if (!named) return (not_read_ = std::move(named.error())).error();
   const auto tip = robotics::urdf::named_tip(subsystem, device, *named);
   if (!tip) return (not_read_ = tip.error()).error();
+  // What is somebody else's stands at 0 in the model: whatever it carried would be controlled for a place where it is not.
+  if (const auto carried = robotics::urdf::carried_by(named->robot, named->led, named->model.frame(*tip).name)) {
+    not_read_ = {
+        ErrorCode::InvalidArgument,
+        fmt::format("{} of {}: joint '{}' carries {}, which is the arm's: name joints behind the tip alone",
+                    robotics::urdf::fixed_setting, device, named->robot.joints[carried->by].name, carried->what)};
+    return not_read_.error();
+  }
   tip_ = *tip;
   model_ = std::move(named->model);
   return Source{std::move(named->file), std::move(named->text), std::move(named->standing)};

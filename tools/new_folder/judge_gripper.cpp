@@ -41,10 +41,40 @@ constexpr std::size_t most_fingers = 4;
   return spread;
 }
 
+/// Which link carries a joint, on the way up past joints that are fingers, too.
+class Hand {
+ public:
+  Hand(const robotics::urdf::Robot& robot, const std::vector<std::string>& fingers)
+      : robot_{robot}, own_{robotics::urdf::led_by(robot, fingers)}, above_(robot.links.size(), robot.joints.size()) {
+    for (std::size_t i = 0; i < robot.joints.size(); ++i) above_[robot.joints[i].child] = i;
+  }
+  /// Fingers, and what mimics them.
+  [[nodiscard]] const std::vector<std::size_t>& joints() const { return own_; }
+  [[nodiscard]] std::size_t carrier_of(std::size_t joint) const {
+    std::size_t carrier = robot_.joints[joint].parent;
+    for (std::size_t at = above_[carrier]; at < robot_.joints.size(); at = above_[robot_.joints[at].parent])
+      if (std::ranges::find(own_, at) != own_.end()) carrier = robot_.joints[at].parent;
+    return carrier;
+  }
+  /// The joint that moves it; as many as there are: the base has it.
+  [[nodiscard]] std::size_t mover_of(std::size_t link) const {
+    std::size_t at = above_[link];
+    while (at < robot_.joints.size() && robot_.joints[at].type == robotics::urdf::JointType::Fixed)
+      at = above_[robot_.joints[at].parent];
+    return at;
+  }
+
+ private:
+  const robotics::urdf::Robot& robot_;
+  std::vector<std::size_t> own_;
+  std::vector<std::size_t> above_;
+};
+
 }  // namespace
 
 std::optional<NewGripper> judge_gripper(
     const robotics::urdf::Robot& robot, const robotics::Model& whole, const std::vector<std::string>& fingers,
+    const std::string& tip,
     const std::function<void(std::string_view joint, std::string message, std::string hint)>& problem) {
   bool good = true;
   for (const std::string& name : fingers) {
@@ -68,8 +98,28 @@ std::optional<NewGripper> judge_gripper(
     good = false;
   }
   if (!good) return std::nullopt;
-  const auto first = std::ranges::find(robot.joints, made.joints.front().name, &robotics::urdf::Joint::name);
-  made.carrier = robot.links[first->parent].name;
+  const Hand hand{robot, fingers};
+  const auto first = static_cast<std::size_t>(
+      std::ranges::find(robot.joints, made.joints.front().name, &robotics::urdf::Joint::name) - robot.joints.begin());
+  const std::size_t carrier = hand.carrier_of(first);
+  made.carrier = robot.links[carrier].name;
+  // In the arm's model they stand at 0 for good, and its gripper moves them without asking it.
+  if (const auto carried = robotics::urdf::carried_by(robot, hand.joints(), tip.empty() ? made.carrier : tip)) {
+    problem(robot.joints[carried->by].name,
+            fmt::format("--gripper: joint '{}' carries {}", robot.joints[carried->by].name, carried->what),
+            "a finger carries neither the tool of the arm nor joints that are not named as fingers, or its gripper "
+            "would move the arm: name the joints that slide behind the tool, and with --tip a link that carries them");
+    return std::nullopt;
+  }
+  for (const std::size_t joint : hand.joints()) {
+    const std::size_t other = hand.carrier_of(joint);
+    if (hand.mover_of(other) == hand.mover_of(carrier)) continue;
+    problem(robot.joints[joint].name,
+            fmt::format("--gripper: joint '{}' slides at link '{}', and '{}' at '{}', which moves otherwise",
+                        robot.joints[joint].name, robot.links[other].name, robot.joints[first].name, made.carrier),
+            "fingers of one gripper hang on one link, or on links that are fixed to it: name those of one hand");
+    return std::nullopt;
+  }
   for (std::size_t i = 0; i < whole.joints().size(); ++i) {
     const auto& joint = whole.joints()[i];
     if (!drives(fingers, joint)) continue;

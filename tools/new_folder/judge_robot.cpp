@@ -73,10 +73,10 @@ class Judge {
     std::optional<NewGripper> gripper;
     if (!fingers.empty()) {
       if (!judged_.problems.empty()) return;
-      gripper =
-          judge_gripper(robot_, *model, fingers, [&](std::string_view joint, std::string message, std::string hint) {
-            problem(place_of("joint", joint, "name"), "U0608", std::move(message), std::move(hint));
-          });
+      gripper = judge_gripper(robot_, *model, fingers, wanted_tip,
+                              [&](std::string_view joint, std::string message, std::string hint) {
+                                problem(place_of("joint", joint, "name"), "U0608", std::move(message), std::move(hint));
+                              });
       if (!gripper) return;
       if (wanted_tip.empty()) wanted_tip = gripper->carrier;
       robotics::sweep(hulls_, robot_, fingers);

@@ -45,9 +45,11 @@ struct NewRobot {
   double tip_z_m{0};  ///< in the posture to begin with
 };
 
-/// What is a gripper's of all `fingers`, joints of `whole` by their names. Nothing: `problem` was told why, of which joint, and what to do.
+/// What is a gripper's of all `fingers`, joints of `whole` by their names, at an arm whose tool is the link `tip`, or whatever carries them where it
+/// is empty. Nothing: `problem` was told why, of which joint, and what to do.
 [[nodiscard]] std::optional<NewGripper> judge_gripper(
     const robotics::urdf::Robot& robot, const robotics::Model& whole, const std::vector<std::string>& fingers,
+    const std::string& tip,
     const std::function<void(std::string_view joint, std::string message, std::string hint)>& problem);
 
 struct JudgedRobot {

@@ -267,6 +267,43 @@ TEST(NewRobot, SaysWhatIsNoGripper) {
   EXPECT_EQ(why("swing").at.line, 5);
 }
 
+/// A lift that slides up and carries the rod, as a torso does.
+[[nodiscard]] std::string on_a_lift(const std::string& more = "") {
+  std::string text = with_fingers();
+  const std::string base = "<link name=\"base\"/>";
+  text.replace(text.find(base), base.size(),
+               R"(<link name="floor"/><link name="base"><inertial><mass value="1"/>
+<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
+<joint name="lift" type="prismatic"><parent link="floor"/><child link="base"/><axis xyz="0 0 1"/>
+<limit lower="0" upper="0.3" velocity="0.1" effort="900"/></joint>)");
+  text.insert(text.rfind("</robot>"), more);
+  return text;
+}
+
+TEST(NewRobot, TakesNoJointForAFingerThatCarriesTheArm) {
+  const auto why = [](const char* tip, const char* gripper, const std::string& more = "") {
+    const auto found = judged(on_a_lift(more), tip, gripper);
+    EXPECT_FALSE(found.robot) << tip << " " << gripper;
+    return found.problems.empty() ? descriptor::Diagnostic{} : found.problems.front();
+  };
+  EXPECT_EQ(why("tool", "lift").code, "U0608");
+  EXPECT_EQ(why("tool", "lift").message, "--gripper: joint 'lift' carries link 'tool'");
+  EXPECT_EQ(why("tool", "lift").at.line, 4) << "its place in the file";
+  EXPECT_THAT(why("tool", "lift").hint, HasSubstr("behind the tool"));
+  EXPECT_THAT(why("tool", "lift,left_slide").message, HasSubstr("'lift' carries link 'tool'")) << "not beside a finger";
+  EXPECT_THAT(why("", "lift").message, HasSubstr("'lift' carries joint 'swing'")) << "where no tool is named";
+  EXPECT_THAT(why("left", "left_slide").message, HasSubstr("'left_slide' carries link 'left'"));
+  EXPECT_THAT(why("right", "left_slide").message, HasSubstr("'right_slide' carries link 'right'")) << "it follows it";
+  const std::string second =
+      R"(<joint name="far" type="prismatic"><parent link="floor"/><child link="cart"/><axis xyz="1 0 0"/>
+<limit lower="0" upper="0.2" velocity="1" effort="30"/></joint><link name="cart"><inertial><mass value="1"/>
+<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>)";
+  EXPECT_THAT(why("tool", "left_slide,far", second).message,
+              HasSubstr("joint 'far' slides at link 'floor', and 'left_slide' at 'tool', which moves otherwise"))
+      << "fingers of two hands are no gripper";
+  EXPECT_TRUE(judged(on_a_lift(), "tool", "left_slide").robot) << "behind the tool it may slide";
+}
+
 TEST(NewRobot, WithoutAGripperItsLinesAndItsFileAreLeftOut) {
   const auto parts = parts_of(*judged(text_of()).robot, new_name("rod").value());
   EXPECT_EQ(named_text("a\n@hand@b\nc\n", new_name("rod").value(), parts), "a\nc\n");
