@@ -108,9 +108,10 @@ TEST_F(MujocoDeviceTest, GivesNoMoreThanEachJointsEffort) {
 
 TEST_F(MujocoDeviceTest, SaysWhatItDoesNotTake) {
   for (const char* line :
-       {"posture 1", "posture 1,x", "rotors 1,-1", "mass 0", "payload -1", "friction", "gravity 1 2", "dance",
-        "obstacle_ sphere 1 9,9,9", "obstacle_a", "obstacle_a none", "obstacle_a sphere 1 9,9", "softness 0"})
+       {"posture 1", "posture 1,x", "rotors 1,-1", "rotors 1,1001", "mass 0", "payload -1", "friction", "gravity 1 2",
+        "dance", "obstacle_ sphere 1 9,9,9", "obstacle_a", "obstacle_a none", "obstacle_a sphere 1 9,9", "softness 0"})
     EXPECT_FALSE(device.fault(line)) << line;
+  EXPECT_TRUE(device.fault("rotors 0,1000")) << "the heaviest that `hirosco new robot` guesses";
 }
 
 TEST_F(MujocoDeviceTest, SaysWhatIsWrongWithAnObstacle) {

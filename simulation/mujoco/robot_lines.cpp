@@ -47,7 +47,7 @@ Result<> RobotLines::place(const Words& words, MujocoRobot& robot, std::size_t n
     return placed ? ok() : refuse(ErrorCode::InvalidArgument, std::move(placed.error()));
   }
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (!(numbers[i] >= 0 && numbers[i] < 1e3)) return fail(ErrorCode::OutOfRange, "an inertia is from 0 to 1000");
+    if (!(numbers[i] >= 0 && numbers[i] <= 1e3)) return fail(ErrorCode::OutOfRange, "an inertia is from 0 to 1000");
     if (numbers[i] == 0 && robot.gives_way(robot.first_joint(number) + i))
       return fail(ErrorCode::OutOfRange, "a joint that gives way has a rotor above 0", static_cast<std::int64_t>(i));
   }

@@ -98,7 +98,10 @@ class Judge {
                   .tip = tip,
                   .posture = {},
                   .goal = {}};
-    if (find_postures(made, *frame)) judged_.robot = std::move(made);
+    if (!find_postures(made, *frame)) return;
+    warn_of_placeholders(made.model.joints(), most_rotor);
+    if (made.hand) warn_of_placeholders(made.hand->joints, most_finger_rotor);
+    judged_.robot = std::move(made);
   }
 
  private:
@@ -246,6 +249,19 @@ class Judge {
               fmt::format("in {} of {} postures joint '{}' needs more than {} of its effort {:.3g} to hold the robot",
                           too_heavy[i], postures_looked_at, joint.name, most_load, *joint.limits.effort),
               "there its arm is stopped by TORQUE_LIMIT");
+    }
+  }
+
+  /// An effort beyond every drive is no reason to refuse a robot, but what is guessed by it is none that a world takes.
+  void warn_of_placeholders(std::span<const robotics::Model::Joint> joints, double most) {
+    for (const auto& joint : joints) {
+      const double effort = *joint.limits.effort, guessed = effort / effort_per_rotor;
+      if (guessed <= most) continue;
+      warning(place_of("joint", joint.name, "limit"), "U0610",
+              fmt::format("by its effort {:.3g} the drive of joint '{}' would have a rotor of {:.3g}: {} is written",
+                          effort, joint.name, guessed, most),
+              "TORQUE_LIMIT and the contact watch are shares of this effort, and guard nothing: write the drive's from "
+              "its data sheet, or at least ROTOR_INERTIA and rotors of what was made");
     }
   }
 

@@ -19,6 +19,11 @@
 /// `hirosco new robot`: whether a URDF file can be flown as an arm, and what of its folder follows from it (docs/adr/0115).
 namespace hirosco::tools {
 
+/// What a drive moves besides its link, behind its gear, is guessed by its effort (subsystem's README), kg m2 or kg. The world of a simulated flight
+/// takes no heavier rotor, ROTOR_INERTIA of a gripper no heavier one of a finger: efforts beyond are placeholders.
+inline constexpr double effort_per_rotor = 300;
+inline constexpr double most_rotor = 1000, most_finger_rotor = 100;
+
 /// What is at the end of an arm: fingers that slide, a subsystem of their own.
 struct NewGripper {
   std::vector<robotics::Model::Joint> joints;  ///< that drive them, in the order of the file

@@ -16,8 +16,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// What a drive moves besides its link, where nobody knows better (subsystem's README): of the effort.
-constexpr double rotor_share = 1.0 / 300;
 constexpr double rotor_step = 0.1, usual_rotor_most = 10;
 /// With six of them a cycle takes 100 us on a slow computer, with twelve less than three times as long; what a period has room for.
 constexpr double budget_of_six_us = 200, most_budget_us = 600;
@@ -39,8 +37,8 @@ constexpr std::size_t most_joint_plots = 3, most_curves = 6;
 }
 
 /// In tenths, but for light drives: nobody knows it better.
-[[nodiscard]] double rotor(double effort) {
-  const double inertia = effort * rotor_share;
+[[nodiscard]] double rotor(double effort, double most = most_rotor) {
+  const double inertia = std::min(effort / effort_per_rotor, most);
   return inertia >= rotor_step / 2 ? std::round(inertia / rotor_step) * rotor_step : inertia;
 }
 [[nodiscard]] std::string brief(double value) { return fmt::format("{:.4g}", value); }
@@ -174,7 +172,7 @@ struct Timing {
 
 /// Of one that opens to 100 mm and presses with 40 N: 3, 10, 1 and 32 N.
 constexpr double felt_share = 0.075, move_share = 0.25, least_grip_share = 0.025, most_grip_share = 0.8;
-constexpr double least_force_n = 0.5;
+constexpr double least_force_n = 0.5, most_force_n = 1000;
 
 /// Of all joints of the world in the order of the file.
 struct Begins {
@@ -194,7 +192,7 @@ struct Begins {
       // Nearly all open.
       const double lower = *joint.limits.lower, upper = *joint.limits.upper, in = 0.05 * (upper - lower);
       begins.posture.push_back(brief(robot.hand->closed_is_upper ? lower + in : upper - in));
-      begins.rotors.push_back(brief(rotor(*joint.limits.effort)));
+      begins.rotors.push_back(brief(rotor(*joint.limits.effort, most_finger_rotor)));
     }
   }
   return begins;
@@ -208,11 +206,13 @@ void add_hand(const NewGripper& hand, std::map<std::string, std::string>& words)
   for (const auto& joint : hand.joints) {
     joints.push_back(xml::escaped(joint.name));
     names += fmt::format("    <Text value=\"{}\">{}</Text>\n", joints.size(), joints.back());
-    rotors.push_back(brief(rotor(*joint.limits.effort)));
+    rotors.push_back(brief(rotor(*joint.limits.effort, most_finger_rotor)));
     safe.emplace_back("0");
     strongest = std::max(strongest, *joint.limits.effort);
   }
-  const auto force = [&](double share) { return brief(std::max(least_force_n, share * hand.most_force_n)); };
+  const auto force = [&](double share) {
+    return brief(std::clamp(share * hand.most_force_n, least_force_n, most_force_n));
+  };
   const std::map<std::string, std::string> more{{"@hand@", ""},
                                                 {"@hand_joints@", fmt::format("{}", fmt::join(joints, ","))},
                                                 {"@hand_force@", brief(hand.most_force_n)},

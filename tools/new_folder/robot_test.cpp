@@ -170,7 +170,7 @@ TEST(NewRobot, TakesALinkThatIsNoBodyWhereItIsOneWithWhatItIsFixedTo) {
 TEST(NewRobot, EveryCodeIsExplained) {
   const std::string page = in_repository("docs/urdf-errors.md");
   for (const char* code :
-       {"U0601", "U0602", "U0603", "U0604", "U0605", "U0606", "U0607", "U0608", "U0609", "U0706", "U0707"})
+       {"U0601", "U0602", "U0603", "U0604", "U0605", "U0606", "U0607", "U0608", "U0609", "U0610", "U0706", "U0707"})
     EXPECT_THAT(page, HasSubstr(std::string{"| "} + code + " |"));
 }
 
@@ -252,6 +252,41 @@ TEST(NewRobot, TakesFingersForASubsystemOfTheirOwnInTheArmsWorld) {
   const auto shown = nlohmann::json::parse(parts.files[1].second).at("robots").at(0);
   EXPECT_EQ(shown.at("joints").at("left_slide"), "ROD_GRIPPER.CUR_VALUES.POSITION[0]");
   EXPECT_FALSE(shown.at("goal").at("joints").contains("left_slide"));
+}
+
+TEST(NewRobot, OfAPlaceholderForAnEffortGuessesNoRotorThatItsWorldRefuses) {
+  const auto with = [](const char* effort) {
+    return judged(text_of({.limit = fmt::format(R"(<limit lower="-1" upper="2" velocity="3" effort="{}"/>)", effort)}));
+  };
+  const auto name = new_name("rod").value();
+  for (const char* effort : {"300001", "1e9", "1e20"}) {
+    const auto found = with(effort);
+    ASSERT_TRUE(found.robot) << "it is taken: " << effort;
+    ASSERT_EQ(found.warnings.size(), 1u) << effort;
+    EXPECT_EQ(found.warnings[0].code, "U0610");
+    EXPECT_EQ(found.warnings[0].at.line, 6);
+    EXPECT_THAT(found.warnings[0].message, HasSubstr("joint 'swing'"));
+    EXPECT_THAT(found.warnings[0].message, HasSubstr(": 1000 is written"));
+    const auto words = parts_of(*found.robot, name).words;
+    EXPECT_EQ(words.at("@rotors@"), "1000") << "as robot_lines.cpp takes it";
+    EXPECT_EQ(words.at("@rotors_of_world@"), "1000");
+    EXPECT_EQ(words.at("@rotors_most@"), "2000");
+  }
+  const auto strong = with("300000");
+  EXPECT_THAT(strong.warnings, testing::IsEmpty());
+  EXPECT_EQ(parts_of(*strong.robot, name).words.at("@rotors@"), "1000");
+  std::string fingers = with_fingers();
+  for (const std::string effort = "effort=\"40\""; fingers.find(effort) != std::string::npos;)
+    fingers.replace(fingers.find(effort), effort.size(), "effort=\"1e20\"");
+  const auto hand = judged(fingers, "", "left_slide");
+  ASSERT_TRUE(hand.robot);
+  ASSERT_EQ(hand.warnings.size(), 1u);
+  EXPECT_THAT(hand.warnings[0].message, HasSubstr("joint 'left_slide' would have a rotor of 3.33e+17: 100 is written"));
+  const auto words = parts_of(*hand.robot, name).words;
+  EXPECT_EQ(words.at("@finger_rotors@"), "100") << "as newpart_gripper.xml has room for";
+  EXPECT_EQ(words.at("@rotors_of_world@"), "0.2,100");
+  EXPECT_EQ(words.at("@move_force@"), "1000");
+  EXPECT_EQ(words.at("@felt_force@"), "1000");
 }
 
 TEST(NewRobot, SeesAtWhichEndFingersAreClosed) {
