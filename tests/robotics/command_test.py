@@ -6,6 +6,7 @@ wrong is told.
 
     command_test.py HIROSCO"""
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -188,6 +189,24 @@ def tells_what_is_wrong(hirosco, name, tip):
     expect(helped.returncode == 0 and "friction is ignored" in helped.stdout and "straight lines" in helped.stdout, "--help says the conventions")
 
 
+def reads_no_more_than_it_says(hirosco, name, tip):
+    path = path_of(name)
+    good = json.dumps(question(compare_test.any_state(numpy.random.default_rng(2), len(robots.Described(path).own), False), False)).encode() + b"\n"
+    command = [hirosco, "dynamics", str(path), "--tip", tip]
+    asked = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    for _ in range(257):
+        asked.stdin.write(b"1" * 2**20)
+    told, _ = asked.communicate(b"\n" + good)
+    told = [json.loads(line) for line in told.splitlines()]
+    expect(asked.returncode == 1 and told[:1] == [{"error": "the line is longer than 256 MiB", "line": 1}], "a line that is too long is refused for that")
+    expect(len(told) == 2 and "q" in told[1], "and the line behind it is answered")
+    with tempfile.TemporaryDirectory() as folder:
+        unreadable = os.open(folder, os.O_RDONLY)
+        done = subprocess.run(command, stdin=unreadable, capture_output=True, text=True, check=False)
+        os.close(unreadable)
+    expect(done.returncode == 3 and "standard input cannot be read: Is a directory" in done.stderr and done.stdout == "", "what cannot be read is told, exit code 3")
+
+
 def main():
     hirosco = sys.argv[1]
     for name, wanted in ROBOTS.items():
@@ -199,6 +218,7 @@ def main():
     for name in ("ur5_robot", "ur3_robot", "panda", "kinova"):
         keeps_momentum(hirosco, name, tip_of(path_of(name), ROBOTS[name]))
     tells_what_is_wrong(hirosco, "xarm7", tip_of(path_of("xarm7"), ROBOTS["xarm7"]))
+    reads_no_more_than_it_says(hirosco, "xarm7", tip_of(path_of("xarm7"), ROBOTS["xarm7"]))
     print(f"{len(failures)} failed")
     return 1 if failures else 0
 

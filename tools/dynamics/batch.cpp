@@ -251,7 +251,9 @@ const char* const batch_help =
     "<dynamics damping> of the URDF file is applied. Its friction is ignored.\n\n"
     "A bad line is answered with {\"error\", \"line\"}, the rest is gone on with, and the exit code is 1; so is a line "
     "whose motion\n"
-    "becomes no number, after what could be told. Empty lines are passed over.";
+    "becomes no number, after what could be told. Empty lines are passed over, one of more than 256 MiB is a bad one. "
+    "Where standard\n"
+    "input cannot be read the exit code is 3.";
 
 std::expected<Motion, std::string> read_motion(std::string_view line, int joints) {
   std::string problem;
@@ -289,7 +291,10 @@ bool Batch::answer(std::string_view line, std::size_t number, const Sink& sink) 
   if (line.find_first_not_of(" \t\r") == std::string_view::npos) return true;
   const auto motion = read_motion(line, model_->joint_count());
   const std::string problem = motion ? run(*motion, sink) : motion.error();
-  if (problem.empty()) return true;
+  return problem.empty() || refuse(problem, number, sink);
+}
+
+bool Batch::refuse(const std::string& problem, std::size_t number, const Sink& sink) {
   sink(Json{{"error", problem}, {"line", number}}.dump(-1, ' ', false, Json::error_handler_t::replace));
   return false;
 }

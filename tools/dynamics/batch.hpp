@@ -50,6 +50,8 @@ class Batch {
   /// Answers line `number` (from 1) with a line for each output time, or what is wrong with it; false: the latter. An empty line
   /// has no answer.
   bool answer(std::string_view line, std::size_t number, const Sink& sink);
+  /// What is wrong with a line that cannot be answered; false.
+  static bool refuse(const std::string& problem, std::size_t number, const Sink& sink);
 
  private:
   [[nodiscard]] std::string run(const Motion& motion, const Sink& sink);

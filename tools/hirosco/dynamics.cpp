@@ -4,19 +4,23 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <iostream>
 #include <string>
 
 #include "robotics/urdf/robot.hpp"
 #include "tools/dynamics/batch.hpp"
+#include "tools/dynamics/lines.hpp"
 #include "tools/hirosco/commands.hpp"
 
 namespace hirosco::tools {
 namespace {
 
 /// Longer lines are refused: a table of torques with a million rows is shorter.
-constexpr std::size_t max_line_octets = 256U * 1024 * 1024;
+constexpr std::size_t octets_of_mib = 1024U * 1024, max_line_mib = 256;
 
 /// Nothing: told why.
 [[nodiscard]] std::optional<robotics::urdf::Robot> load(const std::string& file) {
@@ -61,11 +65,17 @@ int dynamics(const DynamicsOptions& options) {
   Batch batch{*model, *model->find_frame(tip)};
   const auto print = [](const std::string& line) { std::cout << line << '\n'; };
   bool good = true;
-  std::string line;
-  for (std::size_t number = 1; std::getline(std::cin, line); ++number) {
-    if (line.size() > max_line_octets) line = "too long";
-    good = batch.answer(line, number, print) && good;
+  BoundedLines lines{stdin, max_line_mib * octets_of_mib};
+  auto next = lines.next();
+  for (std::size_t number = 1; next == BoundedLines::Next::Line || next == BoundedLines::Next::TooLong; ++number) {
+    if (next == BoundedLines::Next::Line) good = batch.answer(lines.line(), number, print) && good;
+    else good = Batch::refuse(fmt::format("the line is longer than {} MiB", max_line_mib), number, print);
     std::cout.flush();
+    next = lines.next();
+  }
+  if (next == BoundedLines::Next::Failed) {
+    fmt::print(stderr, "hirosco dynamics: standard input cannot be read: {}\n", std::strerror(errno));
+    return exit_environment;
   }
   return good ? exit_ok : exit_finding;
 }
