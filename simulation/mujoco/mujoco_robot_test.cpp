@@ -144,6 +144,24 @@ TEST(MujocoRobot, CarriesAPayloadAtTheLinkThatIsItsTip) {
   EXPECT_NEAR(std::abs(robot.torque(0)), weight_n_m + 0.5 * 9.81, 1e-2);
 }
 
+TEST(MujocoRobot, TakesNamesThatHaveMarkupInThem) {
+  for (const std::string name : {"c&quot;d", "a&amp;b", "a&lt;b", "a&amp;lt;b", "c'd", "c&#9;d", "two words"}) {
+    std::string text = pendulum();
+    for (const std::string wanted : {"\"rod\"", "\"swing\""})
+      for (auto at = text.find(wanted); at != std::string::npos; at = text.find(wanted))
+        text.replace(at, wanted.size(), "\"" + wanted.substr(1, 1) + name + "\"");
+    auto robot = MujocoRobot::make(text);
+    ASSERT_TRUE(robot) << name << ": " << robot.error();
+    EXPECT_EQ(robot->joints(), 1u) << name;
+  }
+  std::string text = pendulum();
+  for (auto at = text.find("\"rod\""); at != std::string::npos; at = text.find("\"rod\""))
+    text.replace(at, 5, "\"r&quot;&lt;&amp;lt;\"");
+  auto robot = MujocoRobot::make(text);
+  ASSERT_TRUE(robot) << robot.error();
+  EXPECT_TRUE(robot->set_tip("r\"<&lt;")) << "by its name as the file means it";
+}
+
 TEST(MujocoRobot, RefusesInWordsWhatItCannotMove) {
   EXPECT_FALSE(MujocoRobot::make("no file"));
   std::string text = pendulum();

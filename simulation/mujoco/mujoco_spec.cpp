@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "hirosco/xml/escaped.hpp"
 #include "simulation/mujoco/mujoco_files.hpp"
 #include "simulation/mujoco/rigid_links.hpp"
 
@@ -45,8 +46,8 @@ void write(const Element& element, std::string& text) {
   if (std::ranges::find(known, element.name) == known.end()) return;
   text += "<" + element.name;
   for (const auto& [name, value, at, value_at] : element.attributes) {
-    if (name.find(':') != std::string::npos || value.find('"') != std::string::npos) continue;
-    text += " " + name + "=\"" + body_name(value) + "\"";
+    if (name.find(':') != std::string::npos) continue;
+    text += " " + name + "=\"" + xml::escaped(body_name(value)) + "\"";
   }
   text += ">";
   if (element.name == "robot")

@@ -86,6 +86,8 @@ class Judge {
       if (!model) return problem(place(root_), "U0310", model.error().text, "");
     }
     const std::string tip = judge_tip(wanted_tip);
+    judge_word("link", tip);
+    for (const std::string& finger : fingers) judge_word("joint", finger);
     if (!judged_.problems.empty()) return;
     const auto frame = model->find_frame(tip);
     if (!frame) return;
@@ -198,6 +200,13 @@ class Judge {
       problem(place_of("link", wanted, "name"), "U0603", fmt::format("--tip: no joint moves link '{}'", wanted), all);
     else return wanted;
     return {};
+  }
+
+  /// Lines of a simulated device are words, and these names stand in them; all others may have whatever XML takes.
+  void judge_word(const char* kind, const std::string& name) {
+    if (name.find_first_of(" \t\r\n") != std::string::npos)
+      problem(place_of(kind, name, "name"), "U0611", fmt::format("the name of {} '{}' has white space", kind, name),
+              "the simulated device is told it as one word: rename it in the file, where others name it too");
   }
 
   void judge_drives(const robotics::Model& model) {

@@ -129,6 +129,10 @@ TEST(NewRobot, IsRefusedWithPlaceReasonAndWhatToDo) {
       {"U0605", 6, 1, "takes 9.", text_of({.limit = R"(<limit lower="-0.2" upper="0.2" velocity="3" effort="10"/>)"})},
       {"U0605", 6, 1, "of the effort 5 of joint 'swing'",
        text_of({.limit = R"(<limit lower="-1.5" upper="2" velocity="3" effort="5"/><dynamics friction="4"/>)"})},
+      {"U0611", 9, 1, "the name of link 'left hand' has white space",
+       text_of({.more = R"(<joint name="side" type="fixed"><parent link="rod"/><child link="left hand"/></joint>
+<link name="left hand"/>)"}),
+       "left hand"},
       // Of the reader, as it says it.
       {"U0303", 5, 1, "joint 'swing' has no <limit>", text_of({.limit = ""})},
       {"U0102", 8, 1, "lnik", text_of({.more = "<lnik/>"})},
@@ -169,8 +173,8 @@ TEST(NewRobot, TakesALinkThatIsNoBodyWhereItIsOneWithWhatItIsFixedTo) {
 
 TEST(NewRobot, EveryCodeIsExplained) {
   const std::string page = in_repository("docs/urdf-errors.md");
-  for (const char* code :
-       {"U0601", "U0602", "U0603", "U0604", "U0605", "U0606", "U0607", "U0608", "U0609", "U0610", "U0706", "U0707"})
+  for (const char* code : {"U0601", "U0602", "U0603", "U0604", "U0605", "U0606", "U0607", "U0608", "U0609", "U0610",
+                           "U0611", "U0706", "U0707"})
     EXPECT_THAT(page, HasSubstr(std::string{"| "} + code + " |"));
 }
 
@@ -353,6 +357,9 @@ TEST(NewRobot, NamesOfAFileAreNoMarkup) {
   const auto parts = parts_of(*judged(text).robot, name);
   EXPECT_THAT(parts.words.at("@joint_names@"), HasSubstr(">a&lt;b &amp; &quot;c&quot;<"));
   EXPECT_EQ(nlohmann::json::parse(parts.files[1].second).at("robots").at(0).at("joints").count("a<b & \"c\""), 1u);
+  text = text_of();
+  for (std::size_t at = 0; (at = text.find("\"tool\"", at)) != std::string::npos;) text.replace(at, 6, "\"a&quot;b\"");
+  EXPECT_EQ(parts_of(*judged(text).robot, name).words.at("@tip@"), "a&quot;b");
 }
 
 }  // namespace
