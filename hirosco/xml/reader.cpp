@@ -59,17 +59,26 @@ std::optional<Problem> refuse_octets(std::string_view document) {
   return std::nullopt;
 }
 
-bool is_utf8_name(std::string_view encoding) noexcept {
-  const auto same = [&](std::string_view name) {
-    if (encoding.size() != name.size()) return false;
-    for (std::size_t i = 0; i < name.size(); ++i) {
-      const char c =
-          encoding[i] >= 'a' && encoding[i] <= 'z' ? static_cast<char>(encoding[i] - 'a' + 'A') : encoding[i];
-      if (c != name[i]) return false;
-    }
-    return true;
-  };
-  return same("UTF-8") || same("US-ASCII");
+bool begins_with(std::string_view encoding, std::string_view name) noexcept {
+  if (encoding.size() < name.size()) return false;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const char c = encoding[i] >= 'a' && encoding[i] <= 'z' ? static_cast<char>(encoding[i] - 'a' + 'A') : encoding[i];
+    if (c != name[i]) return false;
+  }
+  return true;
+}
+
+bool is_ascii(std::string_view document) noexcept {
+  return std::ranges::all_of(document, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+}
+
+/// Whether the octets of the document are by this encoding what they are as UTF-8. Old programs declare what they might have written.
+bool means_utf8(std::string_view encoding, std::string_view document) noexcept {
+  for (const std::string_view name : {"UTF-8", "US-ASCII"})
+    if (encoding.size() == name.size() && begins_with(encoding, name)) return true;
+  for (const std::string_view family : {"ISO-8859-", "WINDOWS-125"})
+    if (begins_with(encoding, family)) return is_ascii(document);
+  return false;
 }
 
 }  // namespace
@@ -119,8 +128,8 @@ class Reader::Parser {
     parser.refuse(Refusal::NotAllowed, "document type declarations and entities are not allowed", begin);
   }
   static void declaration(void* data, const XML_Char* /*version*/, const XML_Char* encoding, int) {
-    if (encoding != nullptr && !is_utf8_name(encoding))
-      self(data).refuse(Refusal::NotAllowed, "the encoding must be UTF-8");
+    if (encoding != nullptr && !means_utf8(encoding, self(data).document_))
+      self(data).refuse(Refusal::NotAllowed, "the encoding must be UTF-8, or another one of which only ASCII is used");
   }
 
   [[nodiscard]] std::size_t offset() const noexcept {

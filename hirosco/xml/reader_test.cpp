@@ -102,8 +102,24 @@ TEST(Reader, RefusesDocumentTypesBeforeAnyEntityGrows) {
 }
 
 TEST(Reader, RefusesOtherEncodings) {
-  EXPECT_EQ(problem_of("<?xml version='1.0' encoding='ISO-8859-1'?><a/>").refusal, Refusal::NotAllowed);
+  for (const char* encoding : {"UTF-16", "UTF-7", "IBM037", "ISO-2022-JP", "ISO-8859", "UTF-8x", "latin"})
+    EXPECT_EQ(problem_of(std::string{"<?xml version='1.0' encoding='"} + encoding + "'?><a/>").refusal,
+              Refusal::NotAllowed)
+        << encoding;
   EXPECT_TRUE(read_tree("<?xml version='1.0' encoding='utf-8'?><a/>").has_value());
+}
+
+TEST(Reader, TakesAnEncodingThatIsDeclaredAndOfWhichOnlyAsciiIsUsed) {
+  for (const std::string encoding : {"ISO-8859-1", "iso-8859-15", "windows-1252"}) {
+    const std::string begin = "<?xml version='1.0' encoding='" + encoding + "'?>";
+    const auto taken = read_tree(begin + "<a b='c'>~</a>");
+    ASSERT_TRUE(taken.has_value()) << encoding;
+    EXPECT_EQ(taken->find("b")->value, "c");
+    const Problem other = problem_of(begin + "<a>\xC3\xA9</a>");
+    EXPECT_EQ(other.refusal, Refusal::NotAllowed) << "one letter as UTF-8, two by what is declared";
+    EXPECT_NE(other.reason.find("only ASCII"), std::string::npos);
+    EXPECT_EQ(problem_of(begin + "<a>\xE9</a>").reason, "invalid UTF-8");
+  }
 }
 
 TEST(Reader, RefusesInvalidUtf8AndNul) {

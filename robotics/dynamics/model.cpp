@@ -33,7 +33,7 @@ Result<> check(const JointDescription& joint, const ModelDescription& all, std::
   if (!(joint.damping >= 0) || !std::isfinite(joint.damping)) return wrong("the damping is negative or no number");
   if (!(joint.friction >= 0) || !std::isfinite(joint.friction)) return wrong("the friction is negative or no number");
   if (!is_limit(joint.limits.lower) || !is_limit(joint.limits.upper) || !is_limit(joint.limits.velocity) ||
-      !is_limit(joint.limits.effort))
+      !is_limit(joint.limits.effort) || !is_limit(joint.limits.acceleration) || !is_limit(joint.limits.jerk))
     return wrong("a limit is no number");
   if (!joint.mimic) return ok();
   const Mimic& mimic = *joint.mimic;
@@ -83,7 +83,10 @@ void narrow(JointLimits& limits, const JointLimits& other, const Mimic& mimic) {
     const bool from_above = is_upper == (mimic.multiplier > 0);
     tighter(from_above ? limits.upper : limits.lower, value, from_above);
   }
-  if (other.velocity) tighter(limits.velocity, *other.velocity / std::abs(mimic.multiplier), true);
+  for (const auto& [limit, its] : {std::pair{&limits.velocity, other.velocity},
+                                   {&limits.acceleration, other.acceleration},
+                                   {&limits.jerk, other.jerk}})
+    if (its) tighter(*limit, *its / std::abs(mimic.multiplier), true);
 }
 
 }  // namespace

@@ -37,6 +37,8 @@ struct JointLimits {
   std::optional<double> upper;
   std::optional<double> velocity;            ///< rad/s or m/s
   std::optional<double> effort;              ///< N m or N
+  std::optional<double> acceleration{};      ///< rad/s2 or m/s2, above 0; few files have it
+  std::optional<double> jerk{};              ///< rad/s3 or m/s3, likewise
 };
 
 /// A joint and the body that it moves. Its frame is fixed in that body.

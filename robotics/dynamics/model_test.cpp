@@ -84,9 +84,9 @@ TEST(Model, HasRoomForSixteenJointsAndAsManyThatMimicThem) {
 
 TEST(Model, KeepsMimicJointsWithinTheirLimitsByTheJointThatTheyFollow) {
   auto description = two_sliders();
-  description.joints[0].limits = {-1, 1, 2, 5};
+  description.joints[0].limits = {-1, 1, 2, 5, 3, {}};
   description.joints[1].mimic = Mimic{0, -2, 0.5};
-  description.joints[1].limits = {-0.5, 3, 1, 5};
+  description.joints[1].limits = {-0.5, 3, 1, 5, 8, 30};
   const auto model = testing::make(description);
   const JointLimits& limits = model.joints()[0].limits;
   // -0.5 <= 0.5 - 2 q <= 3 is -1.25 <= q <= 0.5, and |2 qd| <= 1.
@@ -94,6 +94,8 @@ TEST(Model, KeepsMimicJointsWithinTheirLimitsByTheJointThatTheyFollow) {
   EXPECT_DOUBLE_EQ(limits.upper.value(), 0.5);
   EXPECT_DOUBLE_EQ(limits.velocity.value(), 0.5);
   EXPECT_DOUBLE_EQ(limits.effort.value(), 5);
+  EXPECT_DOUBLE_EQ(limits.acceleration.value(), 3) << "8 / 2 is more";
+  EXPECT_DOUBLE_EQ(limits.jerk.value(), 15);
 }
 
 TEST(Model, FindsFramesByName) {

@@ -92,6 +92,11 @@ struct Case {
       {"U0303", 3, {.rest = ""}},
       {"U0304", 4, {.rest = R"(<limit lower="1" upper="-1" velocity="1" effort="1"/>)"}},
       {"U0304", 4, {.rest = R"(<limit lower="-1" upper="1" velocity="-1" effort="1"/>)"}},
+      {"U0304", 4, {.rest = R"(<limit lower="-1" upper="1" velocity="1" effort="1" acceleration="0"/>)"}},
+      {"U0304", 4, {.rest = R"(<limit lower="-1" upper="1" velocity="1" effort="1" deceleration="-2"/>)"}},
+      {"U0304", 4, {.rest = R"(<limit lower="-1" upper="1" velocity="1" effort="1" jerk="-1"/>)"}},
+      {"U0106", 4, {.rest = R"(<limit lower="-1" upper="1" velocity="1" effort="1" jerk="inf"/>)"}},
+      {"U0103", 4, {.rest = R"(<limit lower="-1" upper="1" velocity="1" effort="1" snap="1"/>)"}},
       {"U0305",
        2,
        {.inside =

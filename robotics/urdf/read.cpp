@@ -63,7 +63,11 @@ const std::vector<Rows>& rows() {
       {"parent", {"link"}, {}, {}, {}},
       {"child", {"link"}, {}, {}, {}},
       {"axis", {"xyz"}, {}, {}, {}},
-      {"limit", {"lower", "upper", "velocity", "effort"}, {}, {"command_effort", "current", "gear_velocity"}, {}},
+      {"limit",
+       {"lower", "upper", "velocity", "effort", "acceleration", "deceleration", "jerk"},
+       {},
+       {"command_effort", "current", "gear_velocity"},
+       {}},
       {"dynamics", {"damping", "friction"}, {}, {"D", "K", "mu_coulomb", "mu_viscous"}, {}},
       {"mimic", {"joint", "multiplier", "offset"}, {}, {}, {}},
   };
@@ -398,6 +402,16 @@ class RobotReader : private ElementReader {
         findings_.error(place(found->at), "U0304",
                         std::string{"the limit of "} + name + " of joint " + in_quotes(joint.name) + " is negative",
                         "it is at least 0, and holds both ways");
+    for (const auto& [name, limit] : {std::pair{"acceleration", &limits.acceleration},
+                                      {"deceleration", &limits.acceleration},
+                                      {"jerk", &limits.jerk}}) {
+      const auto told = value(*found, name, Need::May);
+      if (told && !(*told > 0))
+        findings_.error(place(found->at), "U0304",
+                        std::string{"the limit of "} + name + " of joint " + in_quotes(joint.name) + " is not above 0",
+                        "it holds both ways; leave it out where nobody knows it");
+      else if (told) *limit = std::min(limit->value_or(*told), *told);
+    }
     const auto lower = value(*found, "lower", Need::May), upper = value(*found, "upper", Need::May);
     if (turns_on) {
       if (lower || upper)
@@ -449,8 +463,10 @@ descriptor::Reading<Robot> read(const std::filesystem::path& file, std::string_v
   Findings findings{file};
   const auto tree = xml::read_tree(text);
   if (!tree) {
-    findings.error(place(tree.error().at), code_of(tree.error().refusal), tree.error().reason,
-                   "only plain XML in UTF-8 of at most 4 MiB is read");
+    findings.error(
+        place(tree.error().at), code_of(tree.error().refusal), tree.error().reason,
+        "only plain XML in UTF-8 of at most 4 MiB is read; a file of another encoding is converted first, for "
+        "example by iconv -f ISO-8859-1 -t UTF-8");
     return std::move(findings).with({});
   }
   Robot robot = RobotReader{findings}.read(*tree);

@@ -96,6 +96,43 @@ TEST(UrdfReader, FollowsChainsOfMimicJointsToTheOneThatMovesByItself) {
   EXPECT_EQ(joints[3].mimic->offset, 0.5);
 }
 
+TEST(UrdfReader, TakesHowFastAJointMaySpeedUpWhereTheFileSaysIt) {
+  std::string text{gripper};
+  const std::string velocity = "velocity=\"0.2\"";
+  text.insert(text.find(velocity), R"(acceleration="3" deceleration="2" jerk="4" )");
+  const auto reading = read("gripper.urdf", text);
+  ASSERT_TRUE(reading.value) << reading.problems.front().message;
+  EXPECT_TRUE(reading.warnings.empty());
+  const auto& limits = reading.value->joints[0].limits;
+  EXPECT_EQ(limits.acceleration, 2) << "holds both ways";
+  EXPECT_EQ(limits.jerk, 4);
+  EXPECT_FALSE(reading.value->joints[2].limits.acceleration);
+}
+
+TEST(UrdfReader, TakesAsciiWhateverEncodingIsDeclaredAndSaysWhatToDoWithOthers) {
+  const auto declared = [](const std::string& text) {
+    return read("a.urdf", "<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>\n" + text);
+  };
+  std::string text{gripper};
+  EXPECT_TRUE(declared(text).value);
+  const std::string palm = "\"palm\"";
+  const auto replaced = [&](const std::string& name) {
+    std::string other = text;
+    for (auto at = other.find(palm); at != std::string::npos; at = other.find(palm))
+      other.replace(at, palm.size(), name);
+    return declared(other);
+  };
+  const auto latin = replaced("\"pa\xEC\"");
+  ASSERT_EQ(latin.problems.size(), 1U);
+  EXPECT_EQ(latin.problems[0].code, "U0002") << "an octet that is no UTF-8";
+  EXPECT_THAT(latin.problems[0].hint, HasSubstr("iconv -f ISO-8859-1 -t UTF-8"));
+  const auto both = replaced("\"pa\xC3\xAC\"");
+  ASSERT_EQ(both.problems.size(), 1U);
+  EXPECT_EQ(both.problems[0].code, "U0003") << "octets that mean one thing by the declaration, and another as UTF-8";
+  EXPECT_EQ(both.problems[0].at.line, 1);
+  EXPECT_THAT(both.problems[0].hint, HasSubstr("iconv"));
+}
+
 TEST(UrdfReader, NamesWhatItPassesOverOnceForEachKindAndHowOften) {
   std::string text{gripper};
   text.insert(text.find("  <link name=\"palm\""), R"(<gazebo reference="palm"/><gazebo/>

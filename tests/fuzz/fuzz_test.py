@@ -88,6 +88,8 @@ TARGETS = {"arguments": (
          (URDF, "if (*limits.lower > *limits.upper)", "if (*limits.lower > *limits.upper + 1)"),
      "damping may drive a joint":
          (URDF, "if (*to < 0)", "if (*to < -1)"),
+     "a joint may never speed up":
+         (URDF, "if (told && !(*told > 0))", "if (told && *told < 0)"),
      "an inertia may be that of no body":
          (URDF_TREE, "if (is_body(body)) return;", "if (body.mass >= 0) return;"),
      "a mimic joint follows the first joint, whomever it names":

@@ -53,7 +53,10 @@ void expect(bool holds, const char* what) {
                                                "\">",
                                                "</joint>",
                                                "<visual/>",
-                                               "\" friction=\""};
+                                               "\" friction=\"",
+                                               "\" acceleration=\"",
+                                               "\" deceleration=\"",
+                                               "\" jerk=\""};
   std::string text = "<robot name=\"r\">";
   for (const char c : octets) {
     const auto octet = static_cast<unsigned char>(c);
@@ -79,6 +82,8 @@ void check_taken(const urdf::Robot& robot) {
   for (const auto& joint : robot.joints) {
     expect(joint.parent < robot.links.size() && children.insert(joint.child).second, "a link has one joint above it");
     expect(!joint.limits.lower || *joint.limits.lower <= *joint.limits.upper, "limits are in order");
+    for (const auto& limit : {joint.limits.acceleration, joint.limits.jerk})
+      expect(!limit || *limit > 0, "a joint can speed up");
     expect(joint.damping >= 0 && joint.friction >= 0, "nothing drives a joint");
     expect(!joint.mimic || (joint.mimic->joint < robot.joints.size() && !robot.joints[joint.mimic->joint].mimic),
            "who is mimicked moves by itself");

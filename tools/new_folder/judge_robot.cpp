@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <iterator>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "hirosco/xml/reader.hpp"
@@ -85,6 +86,7 @@ class Judge {
       model = robotics::Model::make(robotics::urdf::describe(robot_));
       if (!model) return problem(place(root_), "U0310", model.error().text, "");
     }
+    judge_haste(*model);
     const std::string tip = judge_tip(wanted_tip);
     judge_word("link", tip);
     for (const std::string& finger : fingers) judge_word("joint", finger);
@@ -202,6 +204,20 @@ class Judge {
     return {};
   }
 
+  /// Few files say it. Who does is kept to it: ACCELERATION and JERK of what is made are no larger.
+  void judge_haste(const robotics::Model& model) {
+    for (const auto& joint : model.joints())
+      for (const auto& [limit, name, least] :
+           {std::tuple{joint.limits.acceleration, "acceleration", least_acceleration},
+            {joint.limits.jerk, "jerk", least_jerk}})
+        if (limit && *limit < least)
+          problem(place_of("joint", joint.name, "limit"), "U0612",
+                  fmt::format("the {} of joint '{}' is limited to {}: that of an arm is {} at least", name, joint.name,
+                              *limit, least),
+                  "it holds for all joints of the arm: check the unit (rad/s2 and rad/s3, or m/s2 and m/s3), or leave "
+                  "it out, and what the drives can give is taken");
+  }
+
   /// Lines of a simulated device are words, and these names stand in them; all others may have whatever XML takes.
   void judge_word(const char* kind, const std::string& name) {
     if (name.find_first_of(" \t\r\n") != std::string::npos)
@@ -245,6 +261,7 @@ class Judge {
     made.posture = found.posture;
     made.goal = found.goal;
     made.acceleration = found.acceleration;
+    made.jerk = found.jerk;
     made.reach_m = found.reach_m;
     made.tip_z_m = found.tip_z_m;
     return true;

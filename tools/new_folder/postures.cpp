@@ -19,8 +19,8 @@ using robotics::JointVector;
 constexpr double gravity_m_s2 = 9.81;
 /// Of a joint's effort at rest: what is lighter is as good.
 constexpr double light_enough = 0.5;
-/// What motions may take besides, and the most that they need.
-constexpr double share_for_motion = 0.75, most_acceleration = 4, least_acceleration = 0.1;
+/// What motions may take besides, and the most that they need where the file says nothing.
+constexpr double share_for_motion = 0.75, usual_acceleration = 4, jerk_per_acceleration = 10;
 /// From the ends of a range, so that measured is within it.
 constexpr double inset_share = 0.05;
 constexpr double goal_share = 0.2, goal_farthest = 0.3;
@@ -32,6 +32,22 @@ constexpr double turn_rad = 3.14;
 constexpr double clear_m = 0.025;
 /// Between two looks at a way, rad or m of the joint that goes farthest.
 constexpr double look_each = 0.03;
+
+/// As the file limits it; of joints of which it does not, as much as motions need.
+[[nodiscard]] double allowed_acceleration(const robotics::Model& model) {
+  double least = largest_acceleration;
+  for (const auto& joint : model.joints())
+    least = std::min(least, joint.limits.acceleration.value_or(usual_acceleration));
+  return least;
+}
+[[nodiscard]] double allowed_jerk(const robotics::Model& model, double acceleration) {
+  const double usual = acceleration * jerk_per_acceleration;
+  double least = largest_jerk;
+  for (const auto& joint : model.joints()) least = std::min(least, joint.limits.jerk.value_or(usual));
+  return least;
+}
+/// In tenths, and not above it.
+[[nodiscard]] double in_tenths(double value) { return std::floor(value * 10) / 10; }
 
 /// What gravity and dry friction take of drives at rest.
 class Statics {
@@ -59,7 +75,7 @@ class Statics {
   /// Of all joints at once, in the posture of the last load(): whichever way each goes.
   [[nodiscard]] double acceleration() {
     dynamics_.mass_matrix(matrix_);
-    double least = most_acceleration;
+    double least = largest_acceleration;
     for (std::size_t i = 0; i < model_.joints().size(); ++i) {
       const auto& joint = model_.joints()[i];
       const auto row = static_cast<Eigen::Index>(i);
@@ -101,7 +117,7 @@ class Finder {
       return load;
     };
     static_cast<void>(consider(middle()));
-    double acceleration = most_acceleration;
+    double acceleration = allowed_acceleration(model_);
     found.too_heavy.assign(model_.joints().size(), 0);
     for (int i = 0; i < postures_looked_at; ++i) {
       const auto load = consider(random_posture());
@@ -112,7 +128,10 @@ class Finder {
     if (least.share > most_load) return found;
     if (!itself_.is_clear(best)) best = lightest_clear(best);
     found.posture = numbers(best);
-    found.acceleration = std::max(least_acceleration, std::floor(acceleration * 10) / 10);
+    found.acceleration = std::max(least_acceleration, in_tenths(acceleration));
+    found.jerk = allowed_jerk(model_, found.acceleration);
+    if (found.jerk < found.acceleration * jerk_per_acceleration)
+      found.jerk = std::max(least_jerk, in_tenths(found.jerk));
     found.goal = numbers(find_goal(best));
     static_cast<void>(statics_.load(best));
     found.tip_z_m = statics_.tip().z();

@@ -43,11 +43,14 @@ struct RestLoad {
   double needed{0};
 };
 
+/// Of ACCELERATION and JERK, which hold for all joints of an arm, as its descriptor has them.
+inline constexpr double least_acceleration = 0.1, largest_acceleration = 20, least_jerk = 1, largest_jerk = 1000;
+
 struct FoundPostures {
   RestLoad least_loaded;  ///< above `most_load`: it holds itself nowhere, and nothing else was looked for
   std::vector<int> too_heavy;  ///< for how many postures each joint is the one that does not hold
   std::vector<double> posture, goal;  ///< as NewRobot has them
-  double acceleration{0};
+  double acceleration{0}, jerk{0};
   double reach_m{0}, tip_z_m{0};
 };
 /// The same at each call.

@@ -45,7 +45,9 @@ struct NewRobot {
   std::string tip;  ///< link
   std::vector<double> posture;  ///< to begin with: within all ranges, held by the drives, clear of itself
   std::vector<double> goal;  ///< not far from it, likewise, as all between them
-  double acceleration{0};  ///< of every joint at once, wherever the robot can hold itself; rad/s2 or m/s2
+  double acceleration{
+      0};  ///< of every joint at once, wherever the robot can hold itself, within what its file says; rad/s2 or m/s2
+  double jerk{0};  ///< likewise; rad/s3 or m/s3
   double reach_m{0};  ///< of the tip, from the origin of the base
   double tip_z_m{0};  ///< in the posture to begin with
 };

@@ -24,7 +24,6 @@ constexpr double beyond_all = 0.05;
 /// Of a joint that turns on and on.
 constexpr double turns_rad = 6.28;
 constexpr double usual_reach_m = 2;
-constexpr double jerk_per_acceleration = 10;
 /// Plots beside each other, and curves of one that can be told apart.
 constexpr std::size_t most_joint_plots = 3, most_curves = 6;
 
@@ -265,7 +264,7 @@ NewParts parts_of(const NewRobot& robot, const NewName& name) {
                            {"@budget@", std::to_string(timing.budget)},
                            {"@sampling@", std::to_string(timing.sampling)},
                            {"@acceleration@", brief(robot.acceleration)},
-                           {"@jerk@", brief(robot.acceleration * jerk_per_acceleration)},
+                           {"@jerk@", brief(robot.jerk)},
                            {"@reach@", brief(std::max(usual_reach_m, std::ceil(robot.reach_m)))},
                            {"@posture@", fmt::format("{}", fmt::join(begins.posture, ","))},
                            {"@goal@", fmt::format("{}", fmt::join(robot.goal, ","))},

@@ -84,6 +84,33 @@ TEST(NewRobot, SpeedsUpAsSlowlyAsItsDrivesAreWeak) {
   EXPECT_NEAR(weak.robot->acceleration, 2.1, 1e-9);
 }
 
+TEST(NewRobot, SpeedsUpNoFasterThanItsFileSays) {
+  const auto with = [](const std::string& limits, const char* effort = "60") {
+    return judged(text_of(
+        {.limit = fmt::format(R"(<limit lower="-1" upper="2" velocity="3" effort="{}" {}/>)", effort, limits)}));
+  };
+  const auto made = [&](const std::string& limits, const char* effort = "60") {
+    const auto found = with(limits, effort);
+    EXPECT_TRUE(found.robot) << limits;
+    if (!found.robot) return std::pair{0.0, 0.0};
+    const auto words = parts_of(*found.robot, new_name("rod").value()).words;
+    return std::pair{std::stod(words.at("@acceleration@")), std::stod(words.at("@jerk@"))};
+  };
+  EXPECT_EQ(made(""), (std::pair{4.0, 40.0}));
+  EXPECT_EQ(made(R"(acceleration="3" jerk="4")"), (std::pair{3.0, 4.0}));
+  EXPECT_EQ(made(R"(acceleration="3" deceleration="2.55")"), (std::pair{2.5, 25.0}));
+  EXPECT_EQ(made(R"(jerk="1000000")"), (std::pair{4.0, 1000.0})) << "as much as its descriptor has room for";
+  EXPECT_EQ(made(R"(acceleration="50")", "6000"), (std::pair{20.0, 200.0}));
+  EXPECT_EQ(made(R"(acceleration="50")", "15").first, 2.1) << "its drive can give no more";
+  EXPECT_EQ(made(R"(acceleration="0.1" jerk="1")"), (std::pair{0.1, 1.0}));
+  for (const char* slow : {R"(acceleration="0.09")", R"(jerk="0.9")"}) {
+    const auto found = with(slow);
+    ASSERT_EQ(found.problems.size(), 1u) << slow;
+    EXPECT_EQ(found.problems[0].code, "U0612");
+    EXPECT_EQ(found.problems[0].at.line, 6);
+  }
+}
+
 TEST(NewRobot, LooksForAPostureThatItsDrivesHoldWhereZeroIsTooHeavy) {
   const auto heavy = judged(text_of({.limit = R"(<limit lower="-1.5" upper="2" velocity="3" effort="12"/>)"}));
   ASSERT_TRUE(heavy.robot);
@@ -174,7 +201,7 @@ TEST(NewRobot, TakesALinkThatIsNoBodyWhereItIsOneWithWhatItIsFixedTo) {
 TEST(NewRobot, EveryCodeIsExplained) {
   const std::string page = in_repository("docs/urdf-errors.md");
   for (const char* code : {"U0601", "U0602", "U0603", "U0604", "U0605", "U0606", "U0607", "U0608", "U0609", "U0610",
-                           "U0611", "U0706", "U0707"})
+                           "U0611", "U0612", "U0706", "U0707"})
     EXPECT_THAT(page, HasSubstr(std::string{"| "} + code + " |"));
 }
 
