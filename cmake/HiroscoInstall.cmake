@@ -76,7 +76,7 @@ function(hirosco_install)
   install(FILES docs/installed/README.md docs/descriptor-errors.md docs/urdf-errors.md docs/failure-codes.md docs/interfaces.md CHANGELOG.md DESTINATION ${doc})
   # What the guide says to copy: each folder is whole.
   install(DIRECTORY tests/author/lamp tests/author/pair DESTINATION ${doc}/examples)
-  install(FILES simulation/devices/reference/device.c simulation/devices/reference/device.py simulation/devices/reference/arm.py simulation/devices/reference/drives.py tests/devices/duties_test.py tests/devices/own_device.py
+  install(FILES simulation/devices/reference/device.c simulation/devices/reference/device.py simulation/devices/reference/arm.py simulation/devices/reference/drives.py tests/devices/duties_test.py tests/devices/own_device.py tests/devices/local_wires.py
     tests/devices/reference.py tests/devices/line_protocol.hpp tests/devices/line_protocol.cpp DESTINATION ${doc}/examples/device)
   install(DIRECTORY LICENSES DESTINATION ${doc})
 endfunction()

@@ -264,7 +264,7 @@ class WithFolder(unittest.TestCase):
         end = time.monotonic() + PATIENCE
         while True:
             try:
-                return own_device.tried(lambda: own_device.Wire(kind, address), **about)
+                return own_device.tried(lambda: own_device.wire_to(kind, address), **about)
             except (AssertionError, ConnectionRefusedError):  # it does not listen yet
                 if time.monotonic() > end:
                     raise
@@ -312,18 +312,47 @@ class Kept(WithFolder):
                     again.lets_go_who_begins()
                 again.wire.close()
 
-    @unittest.skipUnless("HIROSCO_BIN" in os.environ, "HIROSCO_BIN names the folder of a simulated arm")
-    def test_as_a_device_with_a_second_inhibit(self):
-        frames, enable = f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}", str(self.folder / "enable")
-        with subprocess.Popen([pathlib.Path(os.environ["HIROSCO_BIN"]) / "hirosco-sim-robot", "--transfer", "udp", "--address", frames, "--actuator",
-                               "--enable-transfer", "unix", "--enable-address", enable, "--stop", "controlled", "--stop-within-ms", "200"], stdin=subprocess.PIPE) as arm:
+    def tried_arm(self, kind, frames, enable_kind, enable):
+        with subprocess.Popen([pathlib.Path(os.environ["HIROSCO_BIN"]) / "hirosco-sim-robot", "--transfer", kind, "--address", frames, "--actuator",
+                               "--enable-transfer", enable_kind, "--enable-address", enable, "--stop", "controlled", "--stop-within-ms", "200"], stdin=subprocess.PIPE) as arm:
             self.addCleanup(arm.kill)
             end = time.monotonic() + PATIENCE
-            while not pathlib.Path(enable).exists():
+            while enable_kind == "unix" and not pathlib.Path(enable).exists():
                 self.assertLess(time.monotonic(), end, "it has no second inhibit")
-            second = own_device.Enable("unix", enable)
-            self.assertEqual(self.tried_own("udp", frames, takes=17, gives=89, enable=second, just_begun=True), [])
-            arm.kill()
+            second = own_device.Enable(enable_kind, enable)
+            broken = self.tried_own(kind, frames, takes=17, gives=89, enable=second, just_begun=True)
+            second.end()
+            arm.stdin.close()  # it goes last, and takes away what was between them
+            arm.wait(PATIENCE)
+            return broken
+
+    @unittest.skipUnless("HIROSCO_BIN" in os.environ, "HIROSCO_BIN names the folder of a simulated arm")
+    def test_as_a_device_with_a_second_inhibit(self):
+        self.assertEqual(self.tried_arm("udp", f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}", "unix", str(self.folder / "enable")), [])
+
+    @unittest.skipUnless("HIROSCO_BIN" in os.environ, "HIROSCO_BIN names the folder of a simulated arm")
+    def test_as_a_driver_in_this_computer(self):
+        name = f"duties-{os.getpid()}"
+        for kind, left in (("shared_memory", (f"/dev/shm/hirosco/{name}/frames", f"/dev/shm/hirosco.{name}-enable")),
+                           ("message_queue", (f"/dev/mqueue/hirosco.{name}.to_device", f"/dev/mqueue/hirosco.{name}-enable.to_device"))):
+            with self.subTest(kind=kind):
+                self.assertEqual(self.tried_arm(kind, name, kind, f"{name}-enable"), [])
+                self.assertEqual([file for file in left if os.path.exists(file)], [], "nothing is left of them")
+        os.rmdir(f"/dev/shm/hirosco/{name}")
+
+    def test_a_side_that_somebody_has_is_not_taken(self):
+        for kind in ("shared_memory", "message_queue"):
+            name = f"duties-{kind}-{os.getpid()}"
+            with self.subTest(kind=kind):
+                first = own_device.wire_to(kind, name)
+                with self.assertRaisesRegex(OSError, "this side of it is open"):
+                    own_device.wire_to(kind, name)
+                first.close()
+                again = own_device.wire_to(kind, name)
+                again.send(bytes(22))  # nobody is there
+                self.assertIsNone(again.receive(0))
+                again.close()
+        os.rmdir(f"/dev/shm/hirosco/duties-shared_memory-{os.getpid()}")
 
     def test_an_arm_in_python_with_a_second_inhibit(self):
         frames, enable = (f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}" for _ in range(2))
@@ -374,6 +403,6 @@ class Broken(WithFolder):
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] and sys.argv[1] in ("udp", "tcp", "serial", "unix", "--help"):
+    if sys.argv[1:] and sys.argv[1] in (*own_device.KINDS, "--help"):
         sys.exit(own_device.main(sys.argv[1:]))
     unittest.main(verbosity=2)

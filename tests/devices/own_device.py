@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tries a device of your own, which runs already, by its wire alone; nothing but Python's standard library:
 
-  duties_test.py udp|tcp HOST:PORT --takes OCTETS --gives OCTETS [--enable udp|tcp|unix HOST:PORT|FILE] [--values V,V,...] [--rest SECONDS] [--just-begun]
+  duties_test.py udp|tcp HOST:PORT --takes OCTETS --gives OCTETS [--enable KIND ADDRESS] [--values V,V,...] [--rest SECONDS] [--just-begun]
   duties_test.py serial FILE@BAUD  ...
+  duties_test.py unix FILE  ...
+  duties_test.py shared_memory|message_queue NAME  ...   a driver in this computer, by the name that its endnode has
 
 --takes and --gives: sizes of the payloads, as <Output> and <Input> of the descriptor have them; a DOUBLE has 8 octets. --enable: of its second
-inhibit; what it does is seen there alone, without it by its flags only. --values: DOUBLEs that it is told while it is active, 0 where not said.
+inhibit, by any of these kinds; what it does is seen there alone, without it by its flags only. --values: DOUBLEs that it is told while it is active,
+0 where not said.
 --rest: within so long its stop has to be at rest. --just-begun: it was switched on or started just now and nobody has spoken with it
 since; then its first command of all is to be active, which it may not obey (4: who begins is let go). It cannot be tried otherwise.
 It IS told to be active: see to it that nothing falls when these values are done."""
@@ -22,10 +25,12 @@ import threading
 import time
 import tty
 
+from local_wires import MessageQueues, SharedMemory
 from reference import ACTIVE, OFF, OLD_EPOCH, STOP, TRIPPED, crc, streamed
 
 PATIENCE = 1.0
 WATCHDOG_S = 0.05
+KINDS = ("udp", "tcp", "serial", "unix", "shared_memory", "message_queue")
 OUTPUTS = ("off", "active", "stopping", "holding")
 
 
@@ -73,6 +78,20 @@ class Wire:
         while octets:
             octets = octets[os.write(self.descriptor, octets):]
 
+    def flood(self, made, seconds):
+        """Sends, and reads nothing of what comes."""
+        os.set_blocking(self.descriptor, False)
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            try:
+                frame = made()
+                os.write(self.descriptor, streamed(frame) if self.stream else frame)
+            except (BlockingIOError, ConnectionRefusedError):
+                time.sleep(0.0001)
+            except ConnectionError:
+                break  # it may leave who does not read
+        os.set_blocking(self.descriptor, True)
+
     def send(self, frame):
         try:
             self.put(streamed(frame) if self.stream else frame)
@@ -99,17 +118,30 @@ class Wire:
             self.octets += octets
 
 
+def wire_to(kind, address, of_supervisor=False):
+    """Shared memory of who holds a second inhibit lies elsewhere than that of frames."""
+    if kind == "shared_memory":
+        return SharedMemory(address, of_supervisor)
+    return MessageQueues(address) if kind == "message_queue" else Wire(kind, address)
+
+
 class Enable(threading.Thread):
     """The supervisor's side of its second inhibit: a command each 5 ms, and what its newest answer says."""
 
     def __init__(self, kind, address):
         super().__init__(daemon=True)
-        self.wire, self.epoch, self.on, self.output, self.answers = Wire(kind, address), 0, 0, None, 0
+        self.wire, self.epoch, self.on, self.output, self.answers = wire_to(kind, address, of_supervisor=True), 0, 0, None, 0
+        self.over = threading.Event()
         self.start()
+
+    def end(self):
+        self.over.set()
+        self.join()
+        self.wire.close()
 
     def run(self):
         sequence = 0
-        while True:
+        while not self.over.is_set():
             sequence += 1
             frame = struct.pack("<HBBHII", 0x4845, 0x33, self.on, 0, self.epoch, sequence)
             self.wire.send(frame + crc(frame))
@@ -255,17 +287,7 @@ class Own:
     def waits_for_nobody(self):
         "6: whoever floods it and does not read holds up nobody"
         self.next_epoch()
-        os.set_blocking(self.wire.descriptor, False)
-        end = time.monotonic() + 0.5
-        while time.monotonic() < end:
-            frame = self.command(self.epoch, OFF)
-            try:
-                os.write(self.wire.descriptor, streamed(frame) if self.wire.stream else frame)
-            except (BlockingIOError, ConnectionRefusedError):
-                time.sleep(0.0001)
-            except ConnectionError:
-                break  # it may leave who does not read
-        os.set_blocking(self.wire.descriptor, True)
+        self.wire.flood(lambda: self.command(self.epoch, OFF), 0.5)
         return "again"
 
     def takes_whole_frames(self):
@@ -274,6 +296,7 @@ class Own:
         good = self.command(self.epoch, OFF)
         for wrong in (good[:-1], good[:-1] + bytes([good[-1] ^ 1]), b"\0\0" + good[2:], good[:2] + b"\2" + good[3:], good[:-2] + b"\0" + good[-2:]):
             self.wire.send(wrong)
+            time.sleep(0.01)  # of several that have come it may look at the newest alone
         end = time.monotonic() + 0.2
         while (frame := self.wire.receive(max(0, end - time.monotonic()))) is not None:
             assert self.status(frame)["sequence"] != self.sequence, "what is no command is answered"
@@ -328,7 +351,7 @@ def tried(connect, **about):
 
 def main(words):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=("udp", "tcp", "serial", "unix"))
+    parser.add_argument("kind", choices=KINDS)
     parser.add_argument("address")
     parser.add_argument("--takes", type=int, required=True)
     parser.add_argument("--gives", type=int, required=True)
@@ -338,8 +361,11 @@ def main(words):
     parser.add_argument("--just-begun", action="store_true")
     asked = parser.parse_args(words)
     try:
-        broken = tried(lambda: Wire(asked.kind, asked.address), takes=asked.takes, gives=asked.gives, values=asked.values,
-                       enable=Enable(*asked.enable) if asked.enable else None, rest=asked.rest, just_begun=asked.just_begun)
+        enable = Enable(*asked.enable) if asked.enable else None
+        broken = tried(lambda: wire_to(asked.kind, asked.address), takes=asked.takes, gives=asked.gives, values=asked.values, enable=enable,
+                       rest=asked.rest, just_begun=asked.just_begun)
+        if enable:
+            enable.end()
     except (AssertionError, OSError) as error:
         sys.exit(f"duties_test: {asked.kind} {asked.address}: {error}")
     return 1 if broken else 0
