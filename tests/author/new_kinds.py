@@ -160,6 +160,23 @@ class New(outside.Installed, unittest.TestCase):
         self.assertIn("are of a robot", self.hirosco("new", "mission", "weaker", "--urdf", model, code=2))
         self.assertIn("no problem", self.hirosco("check", self.folder / "weak/mission.xml"))
 
+    def test_a_robot_of_somebody_elses_file_has_its_meshes_and_its_fingers(self):
+        """As tools/packages/installed_and_gone flies it with nothing but packages."""
+        self.said("python3", "-B", flight.REPOSITORY / "tools/packages/foreign_robot.py", self.folder / "foreign")
+        model = self.folder / "foreign/arm_description/urdf/arm.urdf"
+        told = self.hirosco("new", "robot", "Strange", "--urdf", model, "--gripper", "left_slide")
+        self.assertNotIn("U0706", told)
+        folder = self.folder / "strange"
+        self.assertEqual(sorted(path.name for path in (folder / "page/meshes").iterdir()), ["arm.stl", "base.stl", "finger.stl", "hand.stl"])
+        descriptor = (folder / "strange.xml").read_text()
+        self.assertRegex(descriptor, r'name="ACCELERATION"[^>]* init="3"')
+        self.assertIn("no problem", self.hirosco("check", folder / "mission.xml"))
+        if "robot" in tried():
+            self.assertIn("commissioned: mode operation", self.here(folder, "simulate", "mission.xml", "--for", "5s"))
+        refused = self.hirosco("new", "robot", "Stranger", "--urdf", model, "--tip", "hand", "--gripper", "left_slide,elbow", code=1)
+        self.assertIn("U0608", refused)
+        self.assertFalse((self.folder / "stranger").exists())
+
     def here(self, folder, *words):
         self.environment = {"PATH": f"{folder}/build:{os.environ['PATH']}"}
         return self.hirosco(*words, at=folder)
