@@ -64,8 +64,9 @@ void Laws::carry(const JointVector& answer, Bounds bounds) noexcept {
 
 JointVector Laws::torque(const Setpoint& wanted, const Measured& measured, robotics::Dynamics& dynamics,
                          const Payload& payload, Bounds bounds, const Settings& settings) noexcept {
-  JointVector torque, carrying, answer;
+  JointVector torque, carrying, answer, learnt;
   if (kind_ == LawKind::Position) {
+    learnt.setZero(carried_.size());  // the integral's is an answer
     torque = law_.torque(wanted, measured, dynamics, payload, bounds, settings.position);
     answer = law_.answer(settings.position);
     carrying = law_.unbounded() - answer;
@@ -77,7 +78,8 @@ JointVector Laws::torque(const Setpoint& wanted, const Measured& measured, robot
                                  .gravity_m_s2 = settings.position.gravity_m_s2,
                                  .fastest_rad_s = robotics::fastest_rad_s(cycle_s_)}) +
              carried_;
-    carrying = compliance_.carrying() + carried_;
+    carrying = compliance_.carrying();
+    learnt = carried_;
   }
   if (changed_) {
     changed_ = false;
@@ -90,7 +92,8 @@ JointVector Laws::torque(const Setpoint& wanted, const Measured& measured, robot
   if (fading_s_ > 0)
     for (Eigen::Index i = 0; i < torque.size(); ++i) torque[i] += fading_s_ / fade_s_ * kept_[i];
   if (settings.lever != nullptr) {
-    const JointVector within = within_work(torque, carrying, measured.velocity, *settings.lever, settings.work);
+    const JointVector within =
+        within_work(torque, {carrying, learnt}, measured.velocity, *settings.lever, settings.work);
     if (within != torque) {
       law_.hold_back();
       answer = within - carrying;  // what was held back was no answer to a load

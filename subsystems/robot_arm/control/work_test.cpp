@@ -92,7 +92,7 @@ TEST_F(WorkTest, NoLawPressesHarderThanTheCommandedShareOfTheLimit) {
 }
 
 /// Something is in its way for seconds, and it presses with all that its limit leaves. A law that gives way behind that carries what was learnt for the load that it is not: that
-/// is what it pressed with, and not what it would have pressed with.
+/// is what it pressed with, and not what it would have pressed with. Its own springs, or who drives it, press no harder together with that.
 TEST_F(WorkTest, WhatALimitOfForceHeldBackIsNotPressedWithByWhoGivesWayBehindIt) {
   constexpr double limit_n = 10;
   const Impedance impedance{vector_of(std::array{200.0, 200.0, 100.0, 20.0, 20.0, 20.0}), 400, 20, 0.7};
@@ -117,20 +117,84 @@ TEST_F(WorkTest, WhatALimitOfForceHeldBackIsNotPressedWithByWhoGivesWayBehindIt)
       ASSERT_LE(last_n, commanded_share * limit_n + 1e-6) << static_cast<int>(kind) << " " << i;
     }
     EXPECT_GT(last_n, 0.5 * limit_n) << static_cast<int>(kind) << ": what it did press with is learnt as ever";
+    laws.drive({vector_of(std::array{20.0, 0.0, 0.0, 0.0, 0.0, 0.0}), zeros});
+    for (int i = 0; i < 600; ++i)
+      ASSERT_LE(pressed_n(beside), commanded_share * limit_n + 1e-6) << static_cast<int>(kind) << " " << i;
   }
+}
+
+/// From each law to each, wherever the arm is to be then, whoever drives it, and with a limit that is lowered and raised meanwhile: what was learnt, what fades of the law before and what
+/// the new one presses with are together no more than the commanded share.
+TEST_F(WorkTest, NoHandOverBetweenLawsPressesHarderThanTheCommandedShareOfTheLimit) {
+  constexpr std::array all{LawKind::Position, LawKind::JointImpedance, LawKind::ToolImpedance, LawKind::Float,
+                           LawKind::Torque};
+  const Impedance impedance{vector_of(std::array{200.0, 200.0, 100.0, 20.0, 20.0, 20.0}), 400, 20, 0.7};
+  robotics::Coordinates gravity;
+  dynamics.bias(gravity);
+  const JointVector carried = gravity;
+  Laws laws{model, tip, cycle_s};
+  double limit_n = 10;
+  const auto press = [&](const JointVector& wanted, int cycles) {
+    double most_n = 0;
+    for (int i = 0; i < cycles; ++i) {
+      const Laws::Settings settings{
+          .position = {.gravity_m_s2 = {0, 0, -9.81}}, .lever = &lever, .work = {.force_n = limit_n}};
+      const JointVector torque =
+          laws.torque({wanted, zeros, zeros}, {start, zeros, zeros}, dynamics, {}, bounds, settings);
+      most_n = std::max(most_n, lever.force(torque - carried).norm());
+    }
+    return most_n;
+  };
+  ASSERT_LE(press(start + JointVector::Constant(6, 0.05), 2000), commanded_share * limit_n + 1e-6);
+  for (const LawKind from : all)
+    for (const LawKind to : all)
+      for (const LawKind kind : {from, to}) {
+        laws.set(kind, impedance);
+        laws.drive({some(20), zeros});
+        limit_n = 8 + 4 * any(random);
+        ASSERT_LE(press(start + some(0.05), 310), commanded_share * limit_n + 1e-6)
+            << static_cast<int>(from) << " to " << static_cast<int>(to);
+      }
+}
+
+/// What was learnt stays wherever it keeps the limit alone, and what presses besides is as much as that leaves.
+TEST_F(WorkTest, WhatWasLearntStaysAndWhatPressesIsTakenBackToWhatItLeaves) {
+  constexpr double limit_n = 40, most_n = commanded_share * limit_n;
+  int taken_back = 0, beyond = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const JointVector known = some(50), learnt = some(20), pressing = some(50);
+    const JointVector kept =
+        within_work(known + learnt + pressing, {known, learnt}, zeros, lever, {.force_n = limit_n});
+    const double force_n = lever.force(kept - known).norm();
+    ASSERT_LE(force_n, most_n + 1e-6);
+    if (lever.force(learnt).norm() > most_n) {
+      ++beyond;
+      continue;
+    }
+    const JointVector left = kept - known - learnt;
+    const double share = left.dot(pressing) / pressing.squaredNorm();
+    ASSERT_LT((left - share * pressing).norm(), 1e-9);
+    ASSERT_GE(share, -1e-9);
+    ASSERT_LE(share, 1 + 1e-9);
+    if (share > 1 - 1e-9) continue;
+    ++taken_back;
+    ASSERT_NEAR(force_n, most_n, 1e-6);
+  }
+  EXPECT_GT(taken_back, 100);
+  EXPECT_GT(beyond, 0);
 }
 
 TEST_F(WorkTest, WhatKeepsItsLimitsIsPutOutToTheLastDigit) {
   for (int i = 0; i < 100; ++i) {
     const JointVector torque = some(100), carried = some(100);
-    EXPECT_EQ(within_work(torque, carried, some(2), lever, {}), torque);
+    EXPECT_EQ(within_work(torque, {carried, some(20)}, some(2), lever, {}), torque);
   }
 }
 
 TEST_F(WorkTest, ForceAndPowerOfTheToolAreBoundedAsAWhole) {
   for (int i = 0; i < 1000; ++i) {
     const JointVector torque = some(100), carried = some(50), speed = some(2);
-    const JointVector kept = within_work(torque, carried, speed, lever, {.force_n = 40, .tool_power_w = 20});
+    const JointVector kept = within_work(torque, {carried, zeros}, speed, lever, {.force_n = 40, .tool_power_w = 20});
     const Vector3 force = lever.force(kept - carried);
     EXPECT_LE(force.norm(), commanded_share * 40 + 1e-9);
     EXPECT_LE(force.dot(lever.velocity(speed)), commanded_share * 20 + 1e-9);
@@ -142,7 +206,7 @@ TEST_F(WorkTest, PowerOfTheJointsIsTakenFromWhatDrivesAndNeverFromWhatCarriesOrB
   constexpr double limit_w = 60;
   for (int i = 0; i < 1000; ++i) {
     const JointVector torque = some(100), carried = some(50), speed = some(2);
-    const JointVector kept = within_work(torque, carried, speed, lever, {.power_w = limit_w});
+    const JointVector kept = within_work(torque, {carried, zeros}, speed, lever, {.power_w = limit_w});
     const double power_w = kept.cwiseProduct(speed).cwiseMax(0.0).sum();
     for (Eigen::Index j = 0; j < 6; ++j) {
       if (torque[j] * speed[j] <= 0) {
@@ -164,9 +228,9 @@ TEST_F(WorkTest, AJointThatBrakesTakesNothingFromWhatAnotherMayGive) {
   const JointVector speed = vector_of(std::array{1.0, -1.0, 0.0, 0.0, 0.0, 0.0});
   for (const double braking : {0.0, 50.0, 140.0}) {
     const JointVector within = vector_of(std::array{-braking, -30.0, 0.0, 0.0, 0.0, 0.0});
-    EXPECT_EQ(within_work(within, zeros, speed, lever, {.power_w = 40}), within) << braking;
+    EXPECT_EQ(within_work(within, {zeros, zeros}, speed, lever, {.power_w = 40}), within) << braking;
     const JointVector beyond = vector_of(std::array{-braking, -60.0, 0.0, 0.0, 0.0, 0.0});
-    const JointVector kept = within_work(beyond, zeros, speed, lever, {.power_w = 40});
+    const JointVector kept = within_work(beyond, {zeros, zeros}, speed, lever, {.power_w = 40});
     EXPECT_EQ(kept[0], -braking) << "who brakes goes on braking";
     EXPECT_NEAR(kept[1], -commanded_share * 40, 1e-9) << braking;
   }
