@@ -271,7 +271,8 @@ void Setpoints::keep_pace(const JointVector& onward, const JointVector& back) no
     pace_ = std::min({most, power, pace_ + line_.change_per_s(path_s_) * cycle_s_});
     return;
   }
-  double least = std::max(braking_ ? 0.0 : power, pace_ - cycle_s_ / Line::ramp_s);
+  // Who brakes has his time for it; who is to give less power gives less at once.
+  double least = braking_ ? std::min(power, std::max(0.0, pace_ - cycle_s_ / Line::ramp_s)) : power;
   for (std::size_t joint = 0; joint < bounds_.size(); ++joint) {
     const auto i = static_cast<Eigen::Index>(joint);
     if (std::abs(onward[i]) < no_way) continue;
