@@ -73,6 +73,7 @@ Flight::Flight(Plan plan) : files_{std::move(plan.files)} {
                                                           .log = log_,
                                                           .observer = story_,
                                                           .seed = plan.seed,
+                                                          .make_log = plan.make_log,
                                                           .wrap_channel = plan.wrap_channel,
                                                           .values = plan.values,
                                                           .files = source,

@@ -61,6 +61,8 @@ struct Plan {
   /// Another supervisor goes on so long after one that dies; empty: its death ends the flight.
   std::optional<Duration> revives_after{};
   std::size_t journal_octets{std::size_t{256} << 10};  ///< in which the one that died has noted what it knew, twice
+  /// In place of a log that stores at once: Flight::records() knows nothing of it then.
+  std::function<std::unique_ptr<supervisor::PacketLog>(const Clock&)> make_log{};
 };
 
 /// Edit of a mission with a simulated hand: it rests until the test moves it.

@@ -20,6 +20,7 @@ SimulatedKeeper::SimulatedKeeper(const Parts& parts) : revives_after_{parts.revi
 void SimulatedKeeper::count_start() {
   page_->starts.fetch_add(1);
   stops_.emplace(*page_);
+  if (journal_) journal_.emplace(journal_memory_);  // in each process one
 }
 
 std::optional<TimePoint> SimulatedKeeper::lose_supervisor(TimePoint now, std::optional<Duration> pause) {

@@ -17,7 +17,7 @@ using simulation::hand_rests;
 using simulation::Plan;
 using simulation::Story;
 
-/// Plan::mission is the name of a mission of the repository; empty: rokviss.
+/// Plan::mission is the name of a mission of the repository, or its file from the repository's root on; empty: rokviss.
 class Flight final : public simulation::Flight {
  public:
   explicit Flight(Plan plan) : simulation::Flight{with_file(std::move(plan))} {}
@@ -25,7 +25,9 @@ class Flight final : public simulation::Flight {
  private:
   static Plan with_file(Plan plan) {
     if (plan.mission.empty()) plan.mission = "rokviss";
-    plan.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "missions" / plan.mission / "mission.xml";
+    const std::filesystem::path root{HIROSCO_SOURCE_DIR};
+    plan.mission =
+        plan.mission.extension() == ".xml" ? root / plan.mission : root / "missions" / plan.mission / "mission.xml";
     return plan;
   }
 };

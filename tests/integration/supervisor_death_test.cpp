@@ -1,106 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
-#include <functional>
 #include <map>
 #include <string>
-#include <vector>
 
-#include "hirosco/utilities/testing/slice.hpp"
-#include "simulation/spacecraft/observed_flight.hpp"
-#include "tests/integration/flight.hpp"
-#include "tests/integration/mortal_channel.hpp"
+#include "tests/integration/mortal_flight.hpp"
 
 /// The supervisor dies, before or after each single message that it sends or takes, and another one goes on (docs/adr/0093): rokviss,
 /// with its links and its devices.
 namespace hirosco::testing {
 namespace {
 
-using simulation::CommandOutcome;
-
-/// How each telecommand of the ground ended, by its request id. Those of the supervisor itself are its own concern.
-struct Verdicts {
-  struct Verdict {
-    int accepted{0};
-    int final{0};
-    int unknown{0};  ///< of these, "outcome unknown"
-  };
-  std::map<std::uint32_t, Verdict> of;
-  void hear(const pus::TelemetryView& report) {
-    if (report.service() != 1 || report.destination() != 0) return;
-    OctetReader reader{report.source_data()};
-    Verdict& verdict = of[reader.get<std::uint32_t>()];
-    if (report.subtype() == 1) ++verdict.accepted;
-    if (report.subtype() == 2 || report.subtype() == 4 || report.subtype() == 7 || report.subtype() == 8 ||
-        report.subtype() == 10)
-      ++verdict.final;
-    if (report.subtype() == 8 &&
-        reader.get<std::uint16_t>() == static_cast<std::uint16_t>(pus::FailureCode::OutcomeUnknown))
-      ++verdict.unknown;
-  }
-};
-
-struct MortalFlight {
-  explicit MortalFlight(int dies_at)
-      : flight{{.edit = simulation::hand_rests,
-                .wrap_channel = [this](std::string_view, std::unique_ptr<Channel> channel) -> std::unique_ptr<Channel> {
-                  return std::make_unique<MortalChannel>(std::move(channel), deaths);
-                },
-                .revives_after = 300ms}} {
-    deaths.at = dies_at;
-    deaths.dies = [this] { flight.craft().supervisor_dies_here(); };
-    deaths.dying = [this] { return flight.craft().supervisor_is_dying(); };
-  }
-  [[nodiscard]] bool may_move(const char* name) {
-    const auto* page = flight.craft().permit(name);
-    return page != nullptr && page->permits(page->epoch.load());
-  }
-  /// A telecommand without arguments, or with one of one octet.
-  void send(std::uint16_t count, std::string_view function, std::optional<std::uint8_t> argument = {}) {
-    auto asked = call_data(function, {});
-    if (argument) {
-      asked.back() = std::byte{1};
-      asked.insert(asked.end(), {std::byte{1}, std::byte{*argument}});
-    }
-    flight.craft().ground().send(function_packet(1, count, asked));
-  }
-  [[nodiscard]] std::string text() { return "dies at " + std::to_string(deaths.at) + "\n" + flight.story().text(); }
-
-  Deaths deaths;
-  Verdicts verdicts;
-  Flight flight;
-};
-
 const std::array<const char*, 2> movers{"MANIPULATOR", "JOYSTICK"};
-
-/// From a death until all has come to rest or goes on: 300 ms until another one is there, then the longest way down.
-constexpr Duration settles = 1500ms;
-
-/// Flies `what` again and again, with a death one moment later each time, until none comes any more; the number of flights.
-int at_every_moment(const std::function<void(MortalFlight&)>& begin, const std::function<void(MortalFlight&)>& judge,
-                    int every = one_in(3)) {
-  int flights = 0;
-  for (int at = 1;; at += every) {
-    MortalFlight mortal{at};
-    Flight& flight = mortal.flight;
-    flight.story().on_telemetry = [&](const pus::TelemetryView& report) { mortal.verdicts.hear(report); };
-    if (!flight.commission()) {
-      ADD_FAILURE() << "not commissioned\n" << mortal.text();
-      return flights;
-    }
-    flight.craft().run(100ms);
-    mortal.deaths.armed = true;
-    begin(mortal);
-    flight.craft().run(1s);
-    mortal.deaths.armed = false;
-    const bool died = flight.craft().supervisor_deaths() > 0;
-    flight.craft().run(settles);
-    ++flights;
-    judge(mortal);
-    if (::testing::Test::HasFailure()) return flights;
-    if (!died) return flights;
-  }
-}
 
 /// And again: the mode that holds is brought up whole.
 void flies_again(MortalFlight& mortal) {

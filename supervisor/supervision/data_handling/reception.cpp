@@ -103,6 +103,7 @@ void Reception::take(Member& member, const Message& message) {
   } else {
     parts_.telecommands.take(
         {.packet = message.packet, .origin = Origin::subsystem(from), .known_stop = message.epoch});
+    craft_.remember();  // or its answer would be taken for one to nobody under the next supervisor
     read_own();
   }
 }

@@ -245,8 +245,19 @@ void Telecommands::answer_permission(const pus::Request& request, Octets asked) 
   verification.completed(request);
 }
 
+/// Before the first of them is sent, and once for all: whoever goes on must not refuse what its addressee carries out (docs/adr/0190).
+bool Telecommands::note_leaving(std::uint64_t up_to) {
+  leaving_ = up_to;
+  const auto told_of = [&](const auto& each) { return each.number <= up_to && each.request.source != supervisor_apid; };
+  const bool any = std::ranges::any_of(waiting_.all(), told_of);
+  if (any) craft_.remember();
+  return any;
+}
+
 void Telecommands::forward_durable() {
-  while (const auto next = waiting_.take_durable(craft_.log.durable())) {
+  const std::uint64_t durable = craft_.log.durable();
+  const bool somebodys = note_leaving(durable);
+  while (const auto next = waiting_.take_durable(durable)) {
     // What was permitted before a fence is void after it: it was permitted for another situation (hazard SF4).
     if (craft_.guard.fences(next->apid) != next->fences) {
       refuse(*next, FailureCode::NotPermittedNow);
@@ -271,6 +282,7 @@ void Telecommands::forward_durable() {
         {next->apid, next->origin, next->packet, next->memory, next->mode_epoch, false, releases_stop, next->fences});
     if (unsent) reject({.packet = next->packet, .origin = next->origin}, next->request, *unsent);
   }
+  if (somebodys) craft_.remember();  // that they have left, and what they set and command
 }
 
 void Telecommands::watch(TimePoint now) {
@@ -290,29 +302,44 @@ void Telecommands::outcome_unknown(std::uint16_t apid) {
 
 void Telecommands::note(OctetWriter& writer) const {
   parts_.unanswered.note(writer);
-  const auto& waiting = waiting_.all();
-  writer.put(static_cast<std::uint16_t>(waiting.size() + never_left_.size()));
-  for (const auto& [apid, request] : never_left_) writer.put(apid).put(request.id).put(request.source).put(request.ack);
-  for (const WaitingForDisk::Telecommand& each : waiting)
-    writer.put(each.apid).put(each.request.id).put(each.request.source).put(each.request.ack);
+  const auto put = [&](std::uint16_t apid, const pus::Request& request) {
+    writer.put(apid).put(request.id).put(request.source).put(request.ack);
+  };
+  for (const bool leaving : {false, true}) {
+    // Of its own nobody waits for an end.
+    const auto is_kind = [&](const WaitingForDisk::Telecommand& each) {
+      return (each.number <= leaving_) == leaving && each.request.source != supervisor_apid;
+    };
+    const auto own = static_cast<std::size_t>(std::ranges::count_if(waiting_.all(), is_kind));
+    writer.put(static_cast<std::uint16_t>(own + (leaving ? 0 : waited_before_.size())));
+    if (!leaving)
+      for (const auto& [apid, request] : waited_before_) put(apid, request);
+    for (const WaitingForDisk::Telecommand& each : waiting_.all())
+      if (is_kind(each)) put(each.apid, each.request);
+  }
 }
 
 void Telecommands::recall(OctetReader& reader) {
   parts_.unanswered.recall(reader);
-  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
-    const auto apid = reader.get<std::uint16_t>();
-    const auto id = reader.get<std::uint32_t>();
-    const auto source = reader.get<std::uint16_t>();
-    never_left_.push_back({apid, {id, source, reader.get<std::uint8_t>()}});
-  }
+  for (const bool leaving : {false, true})
+    for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+      const auto apid = reader.get<std::uint16_t>();
+      const auto id = reader.get<std::uint32_t>();
+      const auto source = reader.get<std::uint16_t>();
+      const pus::Request request{id, source, reader.get<std::uint8_t>()};
+      if (leaving) parts_.unanswered.was_leaving(apid, request);
+      else waited_before_.push_back({apid, request});
+    }
 }
 
-/// What had not left is void: it was permitted by somebody else, in a situation that has passed.
+/// What had not left is void: it was permitted by somebody else, in a situation that has passed. Of what was leaving its addressee says
+/// whether it had.
 void Telecommands::end_what_was_begun() {
   pus::Verification& verification = parts_.own.verification();
-  for (const auto& [apid, request] : never_left_)
-    if (request.source != supervisor_apid) verification.rejected(request, FailureNotice{FailureCode::NotPermittedNow});
-  never_left_.clear();
+  for (const auto& [apid, request] : waited_before_)
+    verification.rejected(request, FailureNotice{FailureCode::NotPermittedNow});
+  waited_before_.clear();
+  parts_.unanswered.hears_from(craft_.now);
   for (const pus::Request& request : parts_.unanswered.take_settled())
     verification.completion_failed(request, FailureNotice{FailureCode::OutcomeUnknown});
   outcome_unknown(supervisor_apid);
@@ -327,6 +354,9 @@ void Telecommands::refuse(const WaitingForDisk::Telecommand& waited, FailureCode
 /// The supervisor ends it, as who is addressed cannot hear it; a plan that was quicker has done what it asks for.
 void Telecommands::start(const WaitingForDisk::Telecommand& waited) {
   if (waited.mode_epoch != craft_.mode_epoch) return refuse(waited, FailureCode::NotPermittedNow);
+  // Its end is known to be owed until it has left for the ground.
+  if (const auto telecommand = pus::TelecommandView::parse(waited.packet))
+    parts_.unanswered.forwarded(supervisor_apid, *telecommand, craft_.now);
   pus::Verification& verification = parts_.own.verification();
   verification.accepted(waited.request);
   verification.started(waited.request);

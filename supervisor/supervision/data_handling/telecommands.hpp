@@ -67,7 +67,7 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
   /// Since when the oldest waits for the disk; empty when none does.
   [[nodiscard]] std::optional<TimePoint> waiting_since() const { return waiting_.since(); }
 
-  /// What waits for the disk and what is not answered yet.
+  /// What waits for the disk, what is about to leave and what is not answered yet.
   void note(OctetWriter& writer) const override;
   void recall(OctetReader& reader) override;
   /// Of a supervisor that goes on for another: what that had begun and nobody ends any more is reported.
@@ -112,13 +112,17 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
   [[nodiscard]] std::optional<pus::FailureNotice> send(const Outgoing& outgoing);
   void log_forwarded(const Outgoing& outgoing);
   void start(const WaitingForDisk::Telecommand& waited);
+  /// False: of what leaves nobody but this supervisor would miss an end.
+  [[nodiscard]] bool note_leaving(std::uint64_t up_to);
 
   Parts parts_;
   Craft& craft_;
   std::map<std::string, std::function<void(const pus::Request&)>, std::less<>> at_once_;
   std::function<Result<>(std::uint16_t)> start_;
   WaitingForDisk waiting_;
-  std::vector<std::pair<std::uint16_t, pus::Request>> never_left_;  ///< from the supervisor before
+  std::uint64_t leaving_{0};  ///< what waits up to this number of its record is about to leave
+  std::vector<std::pair<std::uint16_t, pus::Request>>
+      waited_before_;  ///< when the supervisor before died: none of them had left
   TimePoint report_window_{};
   int reports_in_window_{0};
   struct Window {

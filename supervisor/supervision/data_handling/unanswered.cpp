@@ -3,6 +3,7 @@
 #include "supervisor/supervision/data_handling/unanswered.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <utility>
 
 #include "hirosco/utilities/octets.hpp"
@@ -12,8 +13,6 @@ namespace hirosco::supervisor {
 namespace {
 /// Of the supervisor's own telecommands.
 constexpr std::uint16_t own_source = pus::supervisor_apid;
-/// In the place of a number of reports: its end was heard by a supervisor that died before it could be told.
-constexpr std::uint16_t unsaid = 0xFFFF;
 
 [[nodiscard]] constexpr bool is_end(std::uint8_t subtype) noexcept {
   const bool failed_progress = subtype == 6;  // the execution may go on
@@ -40,7 +39,7 @@ bool Unanswered::answers(const pus::TelemetryView& report) {
 
 std::size_t Unanswered::count_of(std::uint16_t source, TimePoint now) const {
   return static_cast<std::size_t>(std::ranges::count_if(entries_, [&](const Entry& entry) {
-    return entry.request.source == source && entry.apid != own_source && !entry.recalled &&
+    return entry.request.source == source && entry.apid != own_source && entry.before == Before::Nothing &&
            now - entry.since < patience;
   }));
 }
@@ -52,40 +51,41 @@ void Unanswered::reported(const pus::TelemetryView& report) {
   if (!reader.good()) return;
   const bool final = is_end(report.subtype());
   const bool accepted = report.subtype() == 1;
-  if (!final && !accepted) return;
   const auto found = std::ranges::find_if(entries_, [&](const Entry& entry) {
     return entry.apid == report.apid() && entry.request.id == id && entry.request.source == report.destination();
   });
   if (found == entries_.end()) return;
+  if (found->before == Before::Leaving) found->before = Before::Left;  // its addressee has it
+  if (!final && !accepted) return;
   if (!final && (found->request.ack & pus::ack_completion) != 0) return;
   settled_.push_back(*found);
   entries_.erase(found);
 }
 
 void Unanswered::note(OctetWriter& writer) const {
-  const auto waits = [](const Entry& entry) { return entry.request.source != own_source && entry.reports != unsaid; };
-  const auto ended = [](const Entry& entry) { return entry.request.source != own_source && entry.reports == unsaid; };
-  const auto heard = [](const Entry& entry) { return entry.request.source != own_source; };
-  const auto put = [&](const auto& entries, const auto& which) {
-    for (const Entry& entry : entries)
-      if (which(entry)) writer.put(entry.apid).put(entry.request.id).put(entry.request.source).put(entry.request.ack);
+  const auto others = [](const Entry& entry) { return entry.request.source != own_source; };
+  const auto put = [&](const Entry& entry) {
+    writer.put(entry.apid).put(entry.request.id).put(entry.request.source).put(entry.request.ack);
   };
-  writer.put(static_cast<std::uint16_t>(std::ranges::count_if(entries_, waits)));
-  put(entries_, waits);
-  writer.put(
-      static_cast<std::uint16_t>(std::ranges::count_if(entries_, ended) + std::ranges::count_if(settled_, heard)));
-  put(entries_, ended);
-  put(settled_, heard);
+  for (const Before kind : noted) {
+    const auto is_kind = [&](const Entry& entry) {
+      return others(entry) && (entry.before == Before::Nothing ? Before::Left : entry.before) == kind;
+    };
+    auto count = std::ranges::count_if(entries_, is_kind);
+    if (kind == Before::Ended) count += std::ranges::count_if(settled_, others);
+    writer.put(static_cast<std::uint16_t>(count));
+    std::ranges::for_each(entries_ | std::views::filter(is_kind), put);
+    if (kind == Before::Ended) std::ranges::for_each(settled_ | std::views::filter(others), put);
+  }
   writer.put(static_cast<std::uint16_t>(senders_.size()));
   for (const auto& [apid, sender] : senders_) writer.put(apid).put(sender.count);
 }
 
 void Unanswered::recall(OctetReader& reader) {
-  for (const std::uint16_t reports : {std::uint16_t{0}, unsaid})
+  for (const Before kind : noted)
     for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
       Entry entry;
-      entry.recalled = true;
-      entry.reports = reports;
+      entry.before = kind;
       entry.apid = reader.get<std::uint16_t>();
       entry.request.id = reader.get<std::uint32_t>();
       entry.request.source = reader.get<std::uint16_t>();
@@ -101,7 +101,7 @@ void Unanswered::recall(OctetReader& reader) {
 std::vector<pus::Request> Unanswered::take_settled() {
   std::vector<pus::Request> taken;
   std::erase_if(entries_, [&](const Entry& entry) {
-    if (entry.reports != unsaid) return false;
+    if (entry.before != Before::Ended) return false;
     taken.push_back(entry.request);
     return true;
   });
@@ -115,18 +115,31 @@ void Unanswered::counted(std::uint16_t apid, std::uint16_t count, TimePoint now)
   sender.count = count;
 }
 
+void Unanswered::was_leaving(std::uint16_t apid, const pus::Request& request) {
+  entries_.push_back({.apid = apid, .request = request, .before = Before::Leaving});
+}
+
+template <class Which>
+void Unanswered::take_as_unknown(const Which& which, std::vector<pus::Request>& taken) {
+  std::erase_if(entries_, [&](const Entry& entry) {
+    if (!which(entry)) return false;
+    taken.push_back(entry.request);
+    if (told_.size() == most_told) told_.pop_front();
+    told_.push_back(entry);
+    return true;
+  });
+}
+
 std::vector<pus::Request> Unanswered::take_doubtful(TimePoint now) {
   std::vector<pus::Request> taken;
   for (auto& [apid, sender] : senders_) {
     if (!sender.lost_at || now - *sender.lost_at < doubt) continue;
     sender.lost_at.reset();
-    std::erase_if(entries_, [&](const Entry& entry) {
-      if (entry.apid != apid || !entry.recalled) return false;
-      taken.push_back(entry.request);
-      if (told_.size() == most_told) told_.pop_front();
-      told_.push_back(entry);
-      return true;
-    });
+    take_as_unknown([&](const Entry& entry) { return entry.apid == apid && entry.before != Before::Nothing; }, taken);
+  }
+  if (hears_from_ && now - *hears_from_ >= doubt) {
+    hears_from_.reset();
+    take_as_unknown([](const Entry& entry) { return entry.before == Before::Leaving; }, taken);
   }
   return taken;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -39,17 +40,21 @@ class Unanswered {
   /// What was told of those that have ended so far has left for the ground.
   void delivered() noexcept { settled_.clear(); }
 
-  // --- beyond this supervisor (docs/adr/0093) -----------------------------------------------------------------------
-  /// All that wait, those whose end was heard and has not left yet, and the newest count of each sender's packets. Not the
-  /// supervisor's own requests: nobody waits for them any more.
+  // --- beyond this supervisor (docs/adr/0093, 0190) -----------------------------------------------------------------
+  /// All that wait, those that may have left, those whose end was heard and has not left yet, and the newest count of each sender's
+  /// packets. Not the supervisor's own requests: nobody waits for them any more.
   void note(OctetWriter& writer) const;
   void recall(OctetReader& reader);
+  /// The supervisor before was about to send it, or had: until its addressee says anything of it nobody knows.
+  void was_leaving(std::uint16_t apid, const pus::Request& request);
+  /// What members say is read from now on.
+  void hears_from(TimePoint now) noexcept { hears_from_ = now; }
   /// Of those recalled: whose end was heard by a supervisor that died before it could be told. They are forgotten.
   [[nodiscard]] std::vector<pus::Request> take_settled();
   /// Packet `count` of this sender came by. Where some before it have not, its ends may be among them.
   void counted(std::uint16_t apid, std::uint16_t count, TimePoint now);
-  /// Those recalled whose end may have been lost, when it has not come in `doubt`: they are forgotten, and what their addressee says of
-  /// their end later is a contradiction.
+  /// Those recalled whose end may have been lost, when it has not come in `doubt`, and those of which nothing is heard in that time that
+  /// may have left: they are forgotten, and what their addressee says of their end later is a contradiction.
   static constexpr Duration doubt = std::chrono::seconds{1};
   [[nodiscard]] std::vector<pus::Request> take_doubtful(TimePoint now);
   /// A report of the end of a telecommand whose end was told already.
@@ -59,19 +64,31 @@ class Unanswered {
   [[nodiscard]] std::size_t size() const noexcept { return entries_.size(); }
 
  private:
+  /// What the supervisor before knew of it.
+  enum class Before : std::uint8_t {
+    Nothing,  ///< it is this one's
+    Left,
+    Leaving,  ///< or not yet
+    Ended,  ///< its end was heard and could not be told
+  };
+  static constexpr std::array noted{Before::Left, Before::Leaving, Before::Ended};
   struct Entry {
     std::uint16_t apid{0};
     pus::Request request;
     TimePoint since{};
     std::uint16_t reports{0};  ///< that answered it
-    bool recalled{false};  ///< it left from the supervisor before
+    Before before{Before::Nothing};
   };
+  /// As unknown. They are forgotten.
+  template <class Which>
+  void take_as_unknown(const Which& which, std::vector<pus::Request>& taken);
   struct Sender {
     std::uint16_t count{0};  ///< of its newest packet
     bool recalled{false};  ///< by the supervisor before
     std::optional<TimePoint> lost_at{};
   };
   static constexpr std::size_t most_told = 256;
+  std::optional<TimePoint> hears_from_;  ///< while there may be some that were leaving
   std::vector<Entry> settled_;
   std::map<std::uint16_t, Sender> senders_;
   std::deque<Entry> told_;  ///< as unknown, though their addressee lives

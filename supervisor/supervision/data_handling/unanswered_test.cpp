@@ -151,6 +151,22 @@ TEST_F(UnansweredBeyond, CountsWrapAndALaterGapIsNoMatterOfThoseBefore) {
   EXPECT_TRUE(later.take_doubtful(TimePoint{60s}).empty());
 }
 
+TEST_F(UnansweredBeyond, OneThatMayNotHaveLeftIsUnknownAfterItsTimeUnlessItsAddresseeSaysAnything) {
+  constexpr std::uint32_t silent = 1;
+  const std::array<std::uint8_t, 6> words{1, 2, 3, 5, 6, 7};
+  for (const std::uint8_t subtype : words) unanswered.was_leaving(arm, {100U + subtype, 7, pus::ack_all});
+  unanswered.was_leaving(arm, {silent, 7, 0});
+  unanswered = next();
+  EXPECT_TRUE(unanswered.take_doubtful(TimePoint{1h}).empty()) << "nobody could have been heard yet";
+  unanswered.hears_from(TimePoint{1h});
+  for (const std::uint8_t subtype : words) report(arm, subtype, 100U + subtype);
+  EXPECT_TRUE(unanswered.take_doubtful(TimePoint{1h} + Unanswered::doubt - 1ms).empty());
+  const auto taken = unanswered.take_doubtful(TimePoint{1h} + Unanswered::doubt);
+  ASSERT_EQ(taken.size(), 1u);
+  EXPECT_EQ(taken[0].id, silent);
+  EXPECT_EQ(unanswered.size(), words.size() - 2) << "but for those that have ended";
+}
+
 TEST_F(UnansweredBeyond, TheSupervisorsOwnRequestsAreNotKnownAnyMore) {
   const auto packet = pus::write_telecommand(
       buffer, {.apid = arm, .sequence_count = 1, .ack = pus::ack_all, .service = 17, .subtype = 1, .source = 1}, {});

@@ -13,6 +13,8 @@ namespace hirosco::supervisor {
 namespace {
 
 using namespace testing;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 using enum descriptor::State;
 
 /// A supervisor dies, as often as the test wants; the members live on, but for those that have gone with it.
@@ -72,6 +74,44 @@ struct AdoptionTest : PartsTest {
     next.adoption.begin(false);
     next.own.enter_mode(next.craft.mode_epoch);
     return next;
+  }
+  /// It is as far as it will get by itself: it ends what was begun, and hears what members say.
+  void begins_to_hear(SupervisorParts& next) {
+    for (const auto& [apid, member] : played) next.adoption.confirmed(apid);
+    wait(Adoption::longest_start + 1ms);
+    next.craft.now = clock.now();
+    next.adoption.watch(clock.now());
+    ASSERT_FALSE(next.adoption.waits());
+  }
+  /// TM[1,subtype] of a member, heard by this supervisor.
+  void says(SupervisorParts& next, std::uint16_t apid, const Received& asked, std::uint8_t subtype) {
+    std::array<std::byte, pus::max_telemetry_octets> buffer;
+    std::array<std::byte, 4> data;
+    OctetWriter{data}.put(asked.request);
+    const auto packet = pus::write_telemetry(buffer,
+                                             {.apid = apid,
+                                              .sequence_count = played[apid].reports++,
+                                              .service = 1,
+                                              .subtype = subtype,
+                                              .destination = asked.source},
+                                             data);
+    ASSERT_TRUE(played[apid].channel.subsystem_end().send({.kind = MessageKind::Packet, .packet = *packet}));
+    next.reception.read(*next.craft.member(apid));
+  }
+  /// TM[1,x] that this supervisor has said itself to anybody but itself since it was asked last: each x with its code, 0 for none.
+  std::vector<std::pair<int, int>> told_by(SupervisorParts& next) {
+    static_cast<void>(next.own.step(clock.now()));
+    std::vector<std::pair<int, int>> found;
+    MessageBuffer buffer;
+    for (;;) {
+      const auto message = next.own.channel().receive(buffer);
+      if (!message || message->flow == Flow::None) return found;
+      const auto report = pus::TelemetryView::parse(message->message.packet);
+      if (!report || report->service() != 1 || report->destination() == supervisor_apid) continue;
+      OctetReader reader{report->source_data()};
+      static_cast<void>(reader.get<std::uint32_t>());
+      found.emplace_back(report->subtype(), report->subtype() % 2 == 0 ? reader.get<std::uint16_t>() : 0);
+    }
   }
   /// A stop of everything, to its end; what had acted is safe then.
   void stop_everything() {
@@ -290,6 +330,135 @@ TEST_F(AdoptionTest, WhoWasNeverStartedIsNotHeld) {
   ASSERT_TRUE(notes.note());
   go_on();
   EXPECT_FALSE(nexts.back()->guard.holds(hand));
+}
+
+/// Telecommands of the ground wait for the disk, and leave (docs/adr/0190).
+struct WhatLeavesMeanwhile : AdoptionTest {
+  std::shared_ptr<HeldDatabase::Hold> hold = std::make_shared<HeldDatabase::Hold>();
+  int lives_for{1000};  ///< so many notes; then it has died
+  const int refused = 2, failed = 8;
+  const std::pair<int, int> refused_now{refused, static_cast<int>(pus::FailureCode::NotPermittedNow)};
+  const std::pair<int, int> unknown{failed, static_cast<int>(pus::FailureCode::OutcomeUnknown)};
+
+  void SetUp() override {
+    AdoptionTest::SetUp();
+    start_all(Operational);
+    log.switch_to(std::make_unique<HeldDatabase>(hold, std::make_shared<MemoryDatabase>()));
+    craft.remembers = [this] {
+      if (lives_for-- <= 0) return;
+      EXPECT_TRUE(notes.note());
+    };
+    hold->tries = 1'000'000;
+  }
+  void ground_says(int times = 1) {
+    const auto move = telecommand(arm, 8, 1, call_data("MOVE_TO"));
+    for (int time = 0; time < times; ++time) parts.telecommands.take({.packet = move, .origin = Origin::ground()});
+    craft.remember();
+  }
+  /// All that waits is on the disk, and leaves; the supervisor dies behind the last of them.
+  std::vector<Received> leaves() {
+    hold->tries = 0;
+    craft.tell("the disk works");
+    lives_for = 1;
+    parts.telecommands.forward_durable();
+    return received(arm);
+  }
+};
+
+TEST_F(WhatLeavesMeanwhile, IsRefusedWhereItStillWaited) {
+  ground_says();
+  hold->tries = 0;
+  SupervisorParts& next = go_on();
+  begins_to_hear(next);
+  EXPECT_THAT(told_by(next), ElementsAre(refused_now));
+  EXPECT_THAT(texts(arm), ::testing::Not(::testing::Contains("MOVE_TO")));
+}
+
+TEST_F(WhatLeavesMeanwhile, IsNotRefusedWhereItsAddresseeCarriesItOut) {
+  ground_says();
+  const auto left = leaves();
+  ASSERT_EQ(left.size(), 1u);
+  SupervisorParts& next = go_on();
+  begins_to_hear(next);
+  says(next, arm, left[0], 1);
+  wait(1h);
+  next.telecommands.watch(clock.now());
+  EXPECT_THAT(told_by(next), IsEmpty()) << "it takes its time";
+  const auto under_way = next.unanswered.size();
+  says(next, arm, left[0], 7);
+  EXPECT_EQ(next.unanswered.size(), under_way - 1);
+  EXPECT_THAT(told_by(next), IsEmpty());
+}
+
+TEST_F(WhatLeavesMeanwhile, IsToldAsUnknownOnceWhereNobodyTellsOfItHoweverManySupervisorsDie) {
+  ground_says();
+  const auto left = leaves();
+  for (int death = 0; death < 3; ++death) ASSERT_TRUE(go_on().memory.note());
+  SupervisorParts& next = go_on();
+  begins_to_hear(next);
+  for (const Duration after : {Duration{Unanswered::doubt - 1ms}, Duration{1ms}, Duration{1h}}) {
+    wait(after);
+    next.telecommands.watch(clock.now());
+    if (after == 1ms) EXPECT_THAT(told_by(next), ElementsAre(unknown));
+    else EXPECT_THAT(told_by(next), IsEmpty()) << after / 1ms;
+  }
+  says(next, arm, left[0], 7);
+  EXPECT_TRUE(was_told("ARM tells the end of a telecommand that was told as unknown"));
+}
+
+TEST_F(WhatLeavesMeanwhile, IsNotedBeforeTheFirstOfManyHasLeftAndBehindTheLast) {
+  ground_says(20);
+  std::vector<std::size_t> left_at_notes;
+  craft.remembers = [&] { left_at_notes.push_back(received(arm).size()); };
+  static_cast<void>(leaves());
+  EXPECT_THAT(left_at_notes, ElementsAre(0u, 20u));
+  parts.telecommands.forward_durable();
+  EXPECT_EQ(left_at_notes.size(), 2u) << "nothing waits";
+}
+
+TEST_F(WhatLeavesMeanwhile, WasGivenToSomebodyWhoIsGone) {
+  ground_says();
+  EXPECT_EQ(leaves().size(), 1u);
+  gone = {arm};
+  SupervisorParts& next = go_on();
+  begins_to_hear(next);
+  EXPECT_THAT(told_by(next), ElementsAre(unknown)) << "at once";
+}
+
+TEST_F(AdoptionTest, WhatASubsystemHasAskedForIsAnsweredToItUnderTheNextSupervisor) {
+  for (descriptor::Mission* flown : {&craft.mission, &next_mission})
+    for (auto& member : flown->subsystems)
+      if (member.subsystem.id == hand)
+        member.subsystem.commands = {{.subsystem = "ARM", .functions = {"MOVE_TO", "BRAKE"}, .at = {}, .apid = arm}};
+  start_all(Operational);
+  craft.remembers = [this] { EXPECT_TRUE(notes.note()); };
+  std::vector<Received> asked;
+  for (const char* name : {"MOVE_TO", "BRAKE"}) {
+    std::array<std::byte, pus::max_telecommand_octets> buffer;
+    const auto packet = pus::write_telecommand(buffer,
+                                               {.apid = arm,
+                                                .sequence_count = static_cast<std::uint16_t>(asked.size()),
+                                                .ack = pus::ack_all,
+                                                .service = 8,
+                                                .subtype = 1,
+                                                .source = hand},
+                                               call_data(name));
+    ASSERT_TRUE(played[hand].channel.subsystem_end().send({.kind = MessageKind::Packet, .packet = *packet}));
+    parts.reception.read(*craft.member(hand));
+    for (const Received& each : received(arm)) asked.push_back(each);
+  }
+  ASSERT_EQ(asked.size(), 2u);
+  SupervisorParts& next = go_on();
+  begins_to_hear(next);
+  for (const Received& each : asked) says(next, arm, each, 7);
+  std::vector<int> heard;
+  MessageBuffer buffer;
+  for (;;) {
+    const auto found = played[hand].channel.subsystem_end().receive(buffer);
+    if (!found || found->flow == Flow::None) break;
+    if (const auto report = pus::TelemetryView::parse(found->message.packet)) heard.push_back(report->subtype());
+  }
+  EXPECT_THAT(heard, ElementsAre(7, 7));
 }
 
 }  // namespace

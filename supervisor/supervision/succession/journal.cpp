@@ -62,10 +62,13 @@ Octets Journal::newest() const noexcept {
 
 bool Journal::write(Octets content) noexcept {
   if (content.size() > most_octets() || most_octets() == 0) return false;
-  const std::uint64_t first = sequence_of(0), second = sequence_of(1);
-  const MutableOctets into = copy(first > second ? 1 : 0);
-  Head head{
-      .magic = journal_magic, .version = version, .sequence = std::max(first, second) + 1, .octets = content.size()};
+  if (!known_) {
+    const std::uint64_t first = sequence_of(0), second = sequence_of(1);
+    known_ = first > second ? Newest{0, first} : Newest{1, second};
+  }
+  known_ = {1 - known_->which, known_->sequence + 1};
+  const MutableOctets into = copy(known_->which);
+  Head head{.magic = journal_magic, .version = version, .sequence = known_->sequence, .octets = content.size()};
   head.checksum = checksum(content, checksum(std::as_bytes(std::span{&head, 1}).first(offsetof(Head, checksum))));
   // What was there counts no more from the first octet on that changes.
   std::memset(into.data(), 0, sizeof head);

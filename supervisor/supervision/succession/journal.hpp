@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "hirosco/utilities/octets.hpp"
@@ -17,14 +18,15 @@ namespace hirosco::supervisor {
 class Journal {
  public:
   /// Of what the parts note: another build's is not read.
-  static constexpr std::uint32_t version = 3;
+  static constexpr std::uint32_t version = 4;
 
   /// The memory outlives this; half of it is the most that one copy holds, with its head.
   explicit Journal(MutableOctets memory) noexcept : memory_{memory} {}
 
   /// The newest whole copy. Empty: there is none.
   [[nodiscard]] Octets newest() const noexcept;
-  /// False: it is longer than a copy may be, and nothing was written.  Realtime: bounded, no allocation.
+  /// False: it is longer than a copy may be, and nothing was written. What was there is looked at before the first time only: nobody else
+  /// writes here while this does.  Realtime: bounded, no allocation.
   bool write(Octets content) noexcept;
   /// Neither copy is one any more.  Realtime: bounded, no allocation.
   void clear() noexcept;
@@ -37,6 +39,12 @@ class Journal {
   [[nodiscard]] std::uint64_t sequence_of(std::size_t which) const noexcept;
 
   MutableOctets memory_;
+  /// Of the newest copy, once this has written or is about to.
+  struct Newest {
+    std::size_t which{0};
+    std::uint64_t sequence{0};
+  };
+  std::optional<Newest> known_;
 };
 
 /// A part that notes what it knows, and is told it again in the next supervisor, before anything else is asked of it.

@@ -88,6 +88,33 @@ TEST_F(Journals, MemoryThatIsTooSmallHoldsNothingAndHarmsNobody) {
   }
 }
 
+/// Each octet of both copies, in a loop that commands: what a supervisor notes before it acts must cost little.
+TEST_F(Journals, WhoWritesOnDoesNotReadWhatItHasWritten) {
+  ASSERT_TRUE(journal.write(octets_of("first")));
+  ASSERT_TRUE(journal.write(octets_of("second")));
+  const std::size_t second = memory.size() / 2;
+  memory[second + 33] ^= std::byte{1};
+  const std::vector<std::byte> damaged(memory.begin() + static_cast<std::ptrdiff_t>(second), memory.end());
+  ASSERT_TRUE(journal.write(octets_of("third")));
+  EXPECT_TRUE(std::equal(damaged.begin(), damaged.end(), memory.begin() + static_cast<std::ptrdiff_t>(second)));
+  EXPECT_EQ(text_of(journal.newest()), "third");
+}
+
+TEST_F(Journals, WhoComesNextGoesOnFromTheNewestWholeCopyWhicheverThatIs) {
+  for (const bool newest_is_torn : {false, true}) {
+    ASSERT_TRUE(journal.write(octets_of("older")));
+    ASSERT_TRUE(journal.write(octets_of("newest")));
+    const bool in_second = memory[memory.size() / 2 + 32] == std::byte{'n'};
+    if (newest_is_torn) memory[(in_second ? memory.size() / 2 : 0) + 32] ^= std::byte{1};
+    Journal next{memory};
+    ASSERT_TRUE(next.write(octets_of("of the next")));
+    EXPECT_EQ(text_of(Journal{memory}.newest()), "of the next");
+    memory[(in_second == newest_is_torn ? memory.size() / 2 : 0) + 32] ^= std::byte{1};
+    EXPECT_EQ(text_of(Journal{memory}.newest()), newest_is_torn ? "older" : "newest") << "the whole one was spared";
+    journal = Journal{memory};
+  }
+}
+
 struct RememberedNumber final : Remembered {
   void note(OctetWriter& writer) const override { writer.put(value); }
   void recall(OctetReader& reader) override { recalled = reader.get<std::uint32_t>(); }
