@@ -138,7 +138,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
   // what outlives this supervisor
   Adoption adoption{{craft, own, processes, own_telecommands, telecommands, links, modes, commissioning, reactions,
-                     safe_all, shutdown, memory}};
+                     safe_all, shutdown, losses, memory}};
   Memory memory;
   std::array<Watch*, 20> watches{&adoption,    &stored,      &processes,     &replacement,  &descriptors,
                                  &ground_link, &ground_loss, &restoration,   &losses,       &housekeeping,

@@ -13,6 +13,7 @@
 #include "supervisor/supervision/modes/modes.hpp"
 #include "supervisor/supervision/modes/shutdown.hpp"
 #include "supervisor/supervision/realtime_links/link_commands.hpp"
+#include "supervisor/supervision/subsystem_handling/link_losses.hpp"
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
 
 namespace hirosco::supervisor {
@@ -113,8 +114,11 @@ void Adoption::take_over(Member& member) {
   // Of whom nothing is known it is not known either that it was free.
   member.was_started = known.started || (!remembered_ && member.described().starts);
   if (known.stopped || !remembered_) member.fences_when_free.reset();
-  const auto adopted = parts_.processes.adopt(member, against(member));
+  const std::string_view why_not = against(member);
+  const auto adopted = parts_.processes.adopt(member, why_not);
   if (!adopted) return;
+  // Who was permitted and did not act yet is let go by another telecommand; nobody has stopped it for that.
+  if (why_not.empty() && member.fences_when_free) member.fences_when_free = craft_.guard.fences(member.apid());
   asked_devices_at_ = craft_.now + devices_answer;
   Page& page = pages_[member.apid()];
   page = {*adopted, craft_.now, craft_.now, false};
@@ -131,9 +135,10 @@ void Adoption::finish_what_was_begun() {
   parts_.telecommands.end_what_was_begun();
   parts_.links.end_what_was_begun();
   if (shutting_down_) return parts_.shutdown.request("the supervisor before this one");
-  for (Member& member : craft_.members) {
-    if (!member.alive() && before(member).alive) parts_.processes.found_dead(member);
-  }
+  // Of whoever was dead already and is being recovered from that the plan begins anew: nobody else knows how far it was.
+  for (Member& member : craft_.members)
+    if (const Before known = before(member); !member.alive() && (known.alive || known.recovering))
+      parts_.processes.found_dead(member);
   if (commissioning_) {
     craft_.tell("commissioning stopped: the supervisor died", supervisor_apid);
     craft_.fail();
@@ -141,10 +146,11 @@ void Adoption::finish_what_was_begun() {
   parts_.modes.end_change("the supervisor died");
   for (Member& member : craft_.members)
     if (member.alive() && before(member).recovering) parts_.reactions.react(member, "RECOVERY_FAILED", Severity::High);
+  parts_.losses.end_what_was_begun();
   if (stop_asked_) return parts_.safe_all.again();
   for (Member& member : craft_.members)
     if (member.alive() && !craft_.is_ground_link(member) && member.state() == State::Operational &&
-        craft_.guard.fenced(member.apid()) && !member.recovery.running())
+        craft_.guard.fenced(member.apid()) && !member.recovery.running() && !parts_.losses.leads(member.apid()))
       parts_.desk.command(member.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
 }
 

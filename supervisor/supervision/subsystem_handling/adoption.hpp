@@ -19,6 +19,7 @@ namespace hirosco::supervisor {
 
 class Commissioning;
 class LinkCommands;
+class LinkLosses;
 class Modes;
 class OwnTelecommands;
 class Processes;
@@ -43,6 +44,7 @@ class Adoption final : public Watch, public Remembered, public Succession {
     Reactions& reactions;
     SafeAll& safe_all;
     Shutdown& shutdown;
+    LinkLosses& losses;
     Memory& memory;
   };
   /// What a member may take to look at its new permit page: less than it goes on without a supervisor.

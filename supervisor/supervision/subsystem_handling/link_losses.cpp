@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "supervisor/supervision/modes/mode_plan.hpp"
@@ -23,8 +24,7 @@ void LinkLosses::lost(std::uint8_t id) {
   Member& consumer = consumer_of(link);
   // Who goes down anyway needs no word, nor who is told already.
   if (link.on_loss == OnLoss::Down || craft_.shutting_down || !consumer.alive() || consumer.recovery.running()) return;
-  const auto before = fallbacks_.find(consumer.apid());
-  if (holds_.contains(id) || (before != fallbacks_.end() && before->second.runner.running())) return;
+  if (holds_.contains(id) || leads(consumer.apid())) return;
   // A change of mode has its members in hand: what is missed after it still is found then (watch()). The cycle inhibits meanwhile.
   if (link.on_loss == OnLoss::Fallback && craft_.changing_to != nullptr) return;
   own_.announce("LINK_LOST", {static_cast<double>(id), static_cast<double>(consumer.apid())});
@@ -60,31 +60,41 @@ void LinkLosses::fall_back(const descriptor::MissionLink& link, Member& consumer
   const std::uint64_t own_fence = craft_.guard.fence(apid);
   // Who was stopped before stays so: its way ends where it lets nobody move.
   const bool stopped = own_fence - 1 != consumer.fences_when_free;
+  lead_there(link, own_fence, stopped ? State::SafeOperational : *state, Begun::Now);
+}
+
+void LinkLosses::lead_there(const descriptor::MissionLink& link, std::uint64_t own_fence, State to, Begun begun) {
+  const Member& consumer = consumer_of(link);
+  const std::uint16_t apid = consumer.apid();
   WayThere way;
-  way.add(consumer.descriptor(), *configuration, {state, consumer.configuration()},
-          stopped ? State::SafeOperational : *state);
+  way.add(consumer.descriptor(), *consumer.descriptor().find_configuration(link.fallback),
+          {consumer.state(), consumer.configuration()}, to);
   Fallback& fallback = fallbacks_.try_emplace(apid, means_).first->second;
   fallback.fences = own_fence;
-  fallback.runner.start({.stages = way.stages(),
-                         .finished =
-                             [this, &link, apid, own_fence](const ProcedureEnd& end) {
-                               if (!craft_.member(apid)->alive() || craft_.shutting_down) return;
-                               if (!end.success) return bring_down(link, end.text());
-                               const bool stopped_since = craft_.guard.fences(apid) != own_fence;
-                               craft_.tell(fmt::format("{} {} configuration {}", link.to,
-                                                       stopped_since ? "was stopped in" : "goes on in", link.fallback),
-                                           apid);
-                             },
-                         .begins =
-                             [this, apid](std::size_t) {
-                               const auto found = fallbacks_.find(apid);
-                               const bool stopped_since =
-                                   found != fallbacks_.end() && craft_.guard.fences(apid) != found->second.fences;
-                               const bool other =
-                                   craft_.changing_to != nullptr || craft_.member(apid)->recovery.running();
-                               if (found != fallbacks_.end() && (stopped_since || other)) found->second.runner.cancel();
-                             },
-                         .knows_of_no_stop = true});
+  fallback.link = link.id;
+  fallback.begins = true;
+  // Between the two configurations nobody would bring it any further, or tell of it.
+  craft_.remember();
+  fallback.begins = false;
+  fallback.runner.start(
+      {.stages = way.stages(),
+       .finished =
+           [this, &link, apid, own_fence, begun](const ProcedureEnd& end) {
+             if (!craft_.member(apid)->alive() || craft_.shutting_down) return;
+             if (!end.success) return bring_down(link, end.text());
+             const bool rests = begun == Begun::Before || craft_.guard.fences(apid) != own_fence;
+             craft_.tell(
+                 fmt::format("{} {} configuration {}", link.to, rests ? "was stopped in" : "goes on in", link.fallback),
+                 apid);
+           },
+       .begins =
+           [this, apid](std::size_t) {
+             const auto found = fallbacks_.find(apid);
+             const bool stopped_since = found != fallbacks_.end() && craft_.guard.fences(apid) != found->second.fences;
+             const bool other = craft_.changing_to != nullptr || craft_.member(apid)->recovery.running();
+             if (found != fallbacks_.end() && (stopped_since || other)) found->second.runner.cancel();
+           },
+       .knows_of_no_stop = true});
 }
 
 std::uint32_t LinkLosses::judgement_of(const descriptor::MissionLink& link) {
@@ -121,6 +131,7 @@ bool LinkLosses::is_needed(const descriptor::MissionLink& link) {
 
 void LinkLosses::watch(TimePoint now) {
   std::erase_if(fallbacks_, [](const auto& entry) { return !entry.second.runner.running(); });
+  if (ends_what_was_begun_) end_what_was_begun();
   for (const descriptor::MissionLink& link : craft_.mission.links)
     if (link.on_loss != OnLoss::Down && is_missed(link)) lost(link.id);
   std::vector<std::uint8_t> over;
@@ -147,9 +158,48 @@ void LinkLosses::bring_down(const descriptor::MissionLink& link, const std::stri
   ProcedureRunner{means_}.start({.stages = {{down}}});
 }
 
+void LinkLosses::end_what_was_begun() {
+  ends_what_was_begun_ = true;
+  std::erase_if(begun_before_, [this](std::uint8_t id) { return goes_to_rest(*craft_.mission.find_link(id)); });
+}
+
+/// Nobody knows whether its consumer was stopped meanwhile by somebody else: it goes where it was led, and lets nobody move there.
+bool LinkLosses::goes_to_rest(const descriptor::MissionLink& link) {
+  const Member& consumer = consumer_of(link);
+  const auto state = consumer.state();
+  if (!consumer.alive() || consumer.recovery.running() || leads(consumer.apid()) || state == State::Offline)
+    return true;
+  using enum State;
+  const bool between = state != PreOperational && state != SafeOperational && state != Operational &&
+                       state != ErrorOperational && state != PostOperational;
+  if (between) return false;
+  const auto* configuration = consumer.descriptor().find_configuration(link.fallback);
+  const bool there = configuration == nullptr || consumer.configuration() == configuration->id;
+  if (there && state == Operational) return true;
+  const bool rests = there && state == SafeOperational;
+  const std::string why = fmt::format("was on its way to configuration {} when the supervisor died", link.fallback);
+  if (state == ErrorOperational) {
+    bring_down(link, why);
+    return true;
+  }
+  craft_.tell(fmt::format("{} {}: it {} there", link.to, why, rests ? "rests" : "comes to rest"), consumer.apid());
+  if (!rests) lead_there(link, craft_.guard.fence(consumer.apid()), SafeOperational, Begun::Before);
+  return true;
+}
+
+bool LinkLosses::leads(std::uint16_t apid) const {
+  const auto found = fallbacks_.find(apid);
+  return found != fallbacks_.end() && found->second.runner.running();
+}
+
 void LinkLosses::note(OctetWriter& writer) const {
   writer.put(static_cast<std::uint16_t>(holds_.size()));
   for (const auto& [link, until] : holds_) writer.put(link).put(until.time_since_epoch().count());
+  std::set<std::uint8_t> led = begun_before_;
+  for (const auto& [apid, fallback] : fallbacks_)
+    if (fallback.begins || fallback.runner.running()) led.insert(fallback.link);
+  writer.put(static_cast<std::uint16_t>(led.size()));
+  for (const std::uint8_t link : led) writer.put(link);
 }
 
 void LinkLosses::recall(OctetReader& reader) {
@@ -158,16 +208,25 @@ void LinkLosses::recall(OctetReader& reader) {
     const TimePoint until{Duration{reader.get<std::int64_t>()}};
     if (craft_.mission.find_link(id) != nullptr) holds_[id] = until;
   }
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    const auto id = reader.get<std::uint8_t>();
+    if (craft_.mission.find_link(id) != nullptr) begun_before_.insert(id);
+  }
 }
 
 bool LinkLosses::cancel(std::string_view why) {
   std::erase_if(fallbacks_, [](const auto& entry) { return !entry.second.runner.running(); });
-  const bool running = !fallbacks_.empty();
+  std::set<std::uint16_t> ended;
   for (auto& [apid, fallback] : fallbacks_) {
     fallback.runner.cancel();
-    craft_.tell(fmt::format("{} does not go on in another configuration: {}", craft_.name_of(apid), why), apid);
+    ended.insert(apid);
   }
+  for (const std::uint8_t id : begun_before_) ended.insert(consumer_of(*craft_.mission.find_link(id)).apid());
+  const bool running = !ended.empty();
+  for (const std::uint16_t apid : ended)
+    craft_.tell(fmt::format("{} does not go on in another configuration: {}", craft_.name_of(apid), why), apid);
   fallbacks_.clear();
+  begun_before_.clear();
   return running;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -28,7 +29,11 @@ class LinkLosses final : public Watch, public Undertaking, public LossHandling, 
   void watch(TimePoint now) override;
   bool cancel(std::string_view why) override;
   void all_stopped(std::string_view why) override { static_cast<void>(cancel(why)); }
-  /// What is held over, and until when: its time goes on while no supervisor is there.
+  /// Whoever the supervisor before this one led to another configuration goes there and rests, or goes down; told either way.
+  void end_what_was_begun();
+  /// Somebody is on its way to another configuration.
+  [[nodiscard]] bool leads(std::uint16_t apid) const;
+  /// What is held over, and until when: its time goes on while no supervisor is there. And whoever is led to another configuration.
   void note(OctetWriter& writer) const override;
   void recall(OctetReader& reader) override;
 
@@ -37,9 +42,16 @@ class LinkLosses final : public Watch, public Undertaking, public LossHandling, 
     explicit Fallback(const Means& means) : runner{means} {}
     ProcedureRunner runner;
     std::uint64_t fences{0};  ///< when it began
+    std::uint8_t link{0};  ///< that was lost
+    bool begins{false};  ///< it is about to be run
   };
+  enum class Begun : std::uint8_t { Now, Before };
   [[nodiscard]] Member& consumer_of(const descriptor::MissionLink& link);
   void fall_back(const descriptor::MissionLink& link, Member& consumer);
+  /// Its consumer to the configuration for its loss and this state, unless it is fenced once more meanwhile.
+  void lead_there(const descriptor::MissionLink& link, std::uint64_t own_fence, State to, Begun begun);
+  /// False: its consumer is between two states, and cannot be led yet.
+  bool goes_to_rest(const descriptor::MissionLink& link);
   /// What the consumer makes of the set, by whichever link it comes, as its own page says: whatever samples travel by, and whoever
   /// made the link. Of a set without a link that is up: not judged.
   [[nodiscard]] std::uint32_t judgement_of(const descriptor::MissionLink& link);
@@ -55,6 +67,8 @@ class LinkLosses final : public Watch, public Undertaking, public LossHandling, 
   OwnSubsystem& own_;
   std::map<std::uint8_t, TimePoint> holds_;  ///< until when, by link; of what is ignored without an end
   std::map<std::uint16_t, Fallback> fallbacks_;  ///< that run, by consumer
+  std::set<std::uint8_t> begun_before_;  ///< links whose consumer the supervisor before was leading
+  bool ends_what_was_begun_{false};  ///< by that one: this one can command
 };
 
 }  // namespace hirosco::supervisor

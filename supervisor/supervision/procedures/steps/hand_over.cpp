@@ -57,7 +57,8 @@ struct HandOver : std::enable_shared_from_this<HandOver> {
     const Member& receiver = *means.craft.member(receiver_of(step));
     const auto& configuration = *receiver.descriptor().find_configuration(
         static_cast<std::uint8_t>(step.values[descriptor::hand_over_configuration]));
-    if (receiver.state() == State::Operational && receiver.configuration() == configuration.id) return end(true, {});
+    const bool has_it = receiver.state() == State::Operational && receiver.configuration() == configuration.id;
+    if (has_it && !means.craft.guard.fenced(receiver.apid())) return end(true, {});
     WayThere way;
     way.add(receiver.descriptor(), configuration, {receiver.state(), receiver.configuration()}, State::Operational);
     add_links(receiver, configuration, means, way);
