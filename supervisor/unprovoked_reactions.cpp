@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <span>
+#include <utility>
 
 namespace hirosco::supervisor {
 namespace {
+
+/// As much of one as is noted; those of descriptors are shorter.
+constexpr std::size_t longest_name = 255;
 
 [[nodiscard]] bool makes_well(std::string_view line) { return line == "heal" || line == "plug"; }
 
@@ -56,6 +61,36 @@ std::vector<ToldReaction> unprovoked(std::vector<ToldReaction> reactions,
            });
   });
   return reactions;
+}
+
+void UnprovokedReactions::note(OctetWriter& writer) const {
+  const auto put_text = [&](std::string_view text) {
+    const auto whole = text.substr(0, longest_name);
+    writer.put(static_cast<std::uint8_t>(whole.size())).put(std::as_bytes(std::span{whole}));
+  };
+  // The clock of its node, which is the next one's too.
+  writer.put(commanded_.time_since_epoch().count()).put(static_cast<std::uint8_t>(uncommanded_.size()));
+  for (const ToldReaction& each : uncommanded_) {
+    writer.put(each.at.time_since_epoch().count());
+    put_text(each.subsystem);
+    put_text(each.event);
+  }
+}
+
+void UnprovokedReactions::recall(OctetReader& reader) {
+  const auto time = [&] { return TimePoint{Duration{reader.get<std::int64_t>()}}; };
+  const auto text = [&] {
+    const Octets octets = reader.get(reader.get<std::uint8_t>());
+    return std::string{reinterpret_cast<const char*>(octets.data()), octets.size()};
+  };
+  commanded_ = time();
+  for (auto left = reader.get<std::uint8_t>(); left > 0 && reader.good(); --left) {
+    ToldReaction each;
+    each.at = time();
+    each.subsystem = text();
+    each.event = text();
+    if (reader.good()) uncommanded_.push_back(std::move(each));
+  }
 }
 
 }  // namespace hirosco::supervisor

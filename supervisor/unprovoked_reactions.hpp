@@ -33,7 +33,8 @@ struct DeviceInjection {
                                                    const descriptor::Mission& mission);
 
 /// Hears what is told and routed, keeps the moments of reactions of high severity before which no telecommand had come from
-/// ground for some time, and passes everything on. What was injected into simulated devices is asked for by the shell.
+/// ground for some time, and passes everything on. What was injected into simulated devices is asked for by the shell. All of it is of the
+/// flight, whichever of its supervisors heard it.
 /// Thread: the supervisor's.
 class UnprovokedReactions final : public Observer {
  public:
@@ -54,6 +55,8 @@ class UnprovokedReactions final : public Observer {
     constexpr std::uint8_t ping = 17;  // causes nothing
     if (telecommand && telecommand->service() != ping) commanded_ = clock_.now();
   }
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
 
  private:
   static constexpr std::size_t most_kept = 100;

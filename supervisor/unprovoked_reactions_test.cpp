@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <string>
+#include <vector>
+
 namespace hirosco::supervisor {
 namespace {
 
@@ -55,6 +59,52 @@ TEST_F(ReactionCauses, NameTheEventThatTheReactionAnswers) {
   EXPECT_EQ(causes.uncommanded()[0].event, "ARM_LOST");
   EXPECT_EQ(causes.uncommanded()[1].event, "PROCESS_DIED");
   EXPECT_EQ(causes.uncommanded()[2].event, "HANG");
+}
+
+/// A supervisor dies at every step of this flight, and whoever goes on knows what was missed, and what may still be an effect.
+TEST_F(ReactionCauses, AreKnownOfTheWholeFlightHoweverManySupervisorsDie) {
+  for (int dies_before = 0; dies_before <= 4; ++dies_before) {
+    std::vector<std::byte> memory(1 << 16);
+    const auto flight = std::make_unique<UnprovokedReactions>(clock, nobody);
+    UnprovokedReactions next{clock, nobody};
+    int step = 0;
+    const auto hearing = [&]() -> Observer& {
+      if (step++ == dies_before) {
+        Journal before{memory};
+        EXPECT_TRUE((Memory{&before, {flight.get()}}.note()));
+        Journal after{memory};
+        EXPECT_TRUE((Memory{&after, {&next}}.recall()));
+      }
+      if (step > dies_before) return next;
+      return *flight;
+    };
+    const TimePoint begin = clock.now();
+    hearing().told(clock.onboard(), "HAND died: signal 9");
+    hearing().told(clock.onboard(), "plan died: network {HAND}");
+    clock.advance(std::chrono::hours{1});
+    hearing().told(clock.onboard(), "stop by signal or local socket: every actuator inhibited");
+    clock.advance(UnprovokedReactions::limit);
+    hearing().told(clock.onboard(), "plan died: network {ARM}");
+    static_cast<void>(hearing());
+    ASSERT_EQ(next.uncommanded().size(), 1U) << dies_before;
+    EXPECT_EQ(next.uncommanded()[0].at, begin);
+    if (dies_before == 1) continue;  // between the two lines of one step, which a note does not part
+    EXPECT_EQ(next.uncommanded()[0].subsystem, "HAND");
+    EXPECT_EQ(next.uncommanded()[0].event, "PROCESS_DIED");
+  }
+}
+
+TEST_F(ReactionCauses, HaveRoomInTheNotesWithTheLongestOfNames) {
+  for (int time = 0; time < 200; ++time) {
+    tell(std::string(300, 'A') + " high " + std::string(300, 'B'));
+    tell("plan down: network {ARM}");
+  }
+  std::vector<std::byte> memory(1 << 18);
+  Journal journal{memory};
+  ASSERT_TRUE((Memory{&journal, {&causes}}.note()));
+  UnprovokedReactions next{clock, nobody};
+  ASSERT_TRUE((Memory{&journal, {&next}}.recall()));
+  EXPECT_EQ(next.uncommanded().size(), causes.uncommanded().size());
 }
 
 class InjectionAsCause : public ::testing::Test {

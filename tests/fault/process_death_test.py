@@ -42,6 +42,16 @@ class ProcessDeath(unittest.TestCase):
             self.assertEqual(rokviss.end(), 5, "nobody of this flight had caused it")
             self.assertIn("1 reaction of high severity", " ".join(rokviss.errors))
 
+    def test_that_nobody_had_caused_it_is_known_to_the_supervisor_that_ends_the_flight(self):
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            rokviss.kill("hirosco-joystick")
+            rokviss.wait_told("MANIPULATOR is Offline")
+            begin = rokviss.count()
+            rokviss.kill("hirosco-supervisor")
+            rokviss.wait_told("goes on for one that died", 5.0, begin)
+            self.assertEqual(rokviss.end(), 5, rokviss.errors)
+
     def test_a_killed_device_leaves_neither_socket_nor_shared_memory_behind_its_flight(self):
         memory = pathlib.Path("/dev/shm")
         before = set(memory.rglob("*")) | {memory / "hirosco"}

@@ -263,5 +263,24 @@ TEST_F(WhoIsLedElsewhereMeanwhile, IsLedNowhereBehindAStop) {
   EXPECT_FALSE(was_told(told));
 }
 
+/// Whoever looks on and judges the flight as a whole.
+struct WhoLooksOn : AdoptionTest {
+  void note(OctetWriter& writer) const override { writer.put(knows); }
+  void recall(OctetReader& reader) override { recalled = reader.get<std::uint32_t>(); }
+  std::uint32_t knows{0}, recalled{0};
+};
+
+TEST_F(WhoLooksOn, IsToldUnderTheNextSupervisorWhatItHadNoted) {
+  start_all(SafeOperational);
+  knows = 7;
+  ASSERT_TRUE(notes.note());
+  SupervisorParts& next = go_on();
+  EXPECT_EQ(recalled, 7u);
+  knows = 8;
+  ASSERT_TRUE(next.memory.note());
+  static_cast<void>(go_on());
+  EXPECT_EQ(recalled, 8u);
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor
