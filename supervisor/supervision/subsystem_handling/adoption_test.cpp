@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/subsystem_handling/adoption.hpp"
 
+#include "supervisor/platform/storage/testing/test_databases.hpp"
 #include "supervisor/supervision/testing/adoption_rig.hpp"
 
 /// What a supervisor that goes on for one that died knows of the stops before it, and of those that died with it.
@@ -174,6 +175,34 @@ TEST_F(AdoptionTest, WhoWasPermittedAndDidNotActYetWasStoppedByNobody) {
   SupervisorParts& next = go_on();
   EXPECT_EQ(against(next, hand), "");
   EXPECT_TRUE(next.craft.guard.fenced(hand)) << "that permission is void";
+}
+
+/// A disk that takes nothing, from now on.
+struct OverAFullDisk : AdoptionTest {
+  std::shared_ptr<HeldDatabase::Hold> hold = std::make_shared<HeldDatabase::Hold>();
+  void SetUp() override {
+    AdoptionTest::SetUp();
+    start_all(SafeOperational);
+    ASSERT_TRUE(notes.note());
+    hold->tries = 1'000'000;
+    log.switch_to(std::make_unique<HeldDatabase>(hold, std::make_shared<MemoryDatabase>()));
+  }
+};
+
+TEST_F(OverAFullDisk, ASupervisorThatGoesOnIsOperationalAndReadsWhatIsSaid) {
+  SupervisorParts& next = go_on();
+  ASSERT_TRUE(next.adoption.waits());
+  for (int step = 0; step < 200 && next.adoption.waits(); ++step) {
+    wait(1ms);
+    next.craft.now = clock.now();
+    next.telecommands.forward_durable();
+    static_cast<void>(next.own.step(clock.now()));
+    next.reception.read_own();
+  }
+  EXPECT_FALSE(next.adoption.waits()) << next.commissioning.waiting_for();
+  EXPECT_EQ(next.own.state(), Operational);
+  EXPECT_FALSE(next.craft.failed());
+  EXPECT_FALSE(next.craft.taking_over) << "what it says of itself from now on waits for the disk as ever";
 }
 
 TEST_F(AdoptionTest, WhoWasNeverStartedIsNotHeld) {
