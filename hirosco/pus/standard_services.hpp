@@ -11,10 +11,12 @@ namespace hirosco::pus {
 /// The services of the framework, one row each, in the order of their types. A subsystem's own are in its
 /// descriptor, and an author writes one over `subsystem/author/custom_service.hpp`.
 /// A new one: its folder `stNN_name/` (copy `st17_test/`, which every subsystem makes by its row alone), its row in
-/// `standard_services.cpp`, its file in this library's CMakeLists.txt, its line in `docs/services.md`, its place in
-/// `descriptor/model/service_list.hpp` (may it be left out, may it have a loop of its own) and in the table of `permission_test.cpp`, and a mode's <Permit> unless it
-/// is essential; one that has an element of its own in descriptors: `descriptor/read/read_services.cpp`. One that needs cycle or states has no `make`: GenericSubsystem (`subsystem/service_loop/generic_subsystem.cpp`) or a part of it makes it, beside those that they have. Its rows are
-/// tried against what it takes when `standard_services_test.cpp` has an object of it.
+/// `standard_services.cpp`, its file in this library's CMakeLists.txt, its line in `docs/services.md`, and a mode's <Permit>
+/// unless it is essential. Besides, where it is so: one that a descriptor may leave out has a row in
+/// `descriptor/model/service_list.hpp`, one with an element of its own in descriptors is read in
+/// `descriptor/read/read_services.cpp`. One that needs cycle or states has no `make`: GenericSubsystem
+/// (`subsystem/service_loop/generic_subsystem.cpp`) or a part of it makes it, beside those that they have, and
+/// `standard_services_test.cpp` has an object of it, by which its rows are tried against what it takes.
 [[nodiscard]] std::span<const ServiceKind* const> standard_services() noexcept;
 
 /// Null: the framework has none of this type.

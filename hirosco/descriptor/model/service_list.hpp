@@ -37,17 +37,20 @@ struct ServiceUse {
   Location at{};
 };
 
-/// A service of the framework, as a descriptor names it and what a descriptor may say of it.
+/// A service of the framework that a descriptor may leave out, by the name that it has there. The others are every
+/// subsystem's, in its service loop: they need no row here (docs/adr/0196).
 struct StandardService {
   std::string_view name;
   std::uint8_t type;
-  bool may_be_left_out;  ///< the others carry states, links or the test that everybody may ask for
   bool may_have_loop;  ///< the others speak with the cycle
 };
 inline constexpr std::array standard_services_by_name{
-    StandardService{"ST03", 3, true, true},     StandardService{"ST05", 5, true, false},
-    StandardService{"ST08", 8, false, false},   StandardService{"ST17", 17, false, false},
-    StandardService{"ST20", 20, true, false},   StandardService{"ST128", 128, false, false},
-    StandardService{"ST130", 130, false, false}};
+    StandardService{"ST03", 3, true}, StandardService{"ST05", 5, false}, StandardService{"ST20", 20, false}};
+
+/// "ST08": whether it has the form of such a name.
+[[nodiscard]] constexpr bool is_standard_service_name(std::string_view name) noexcept {
+  return name.starts_with("ST") && name.size() >= 4 && name.size() <= 5 &&
+         name.find_first_not_of("0123456789", 2) == std::string_view::npos && (name.size() == 4 || name[2] != '0');
+}
 
 }  // namespace hirosco::descriptor

@@ -50,7 +50,15 @@ void ServiceListReader::read_service(const xml::Element& element, std::vector<Se
   if (!names.add(name, use.at, problems_, element.name.size() + 1)) return;
   const auto* const own = subsystem_.find_service(name);
   const auto standard = std::ranges::find(standard_services_by_name, name, &StandardService::name);
-  if (own == nullptr && standard == standard_services_by_name.end()) {
+  const bool listed = own != nullptr || standard != standard_services_by_name.end();
+  if (!listed && is_standard_service_name(name)) {
+    const xml::Attribute* const offered = element.find("offered");
+    const xml::Attribute& said = offered != nullptr ? *offered : loop != nullptr ? *loop : *element.find("name");
+    return problems_.add(
+        said, "E0243", fmt::format("{} is offered by every subsystem or by none, and has no loop of its own", name),
+        "states, links and the test of it rest on it; ST03, ST05, ST20 and services of its own may be left out");
+  }
+  if (!listed) {
     std::vector<std::string_view> known;
     for (const StandardService& each : standard_services_by_name) known.push_back(each.name);
     for (const CustomService& each : subsystem_.services) known.push_back(each.name);
@@ -58,10 +66,6 @@ void ServiceListReader::read_service(const xml::Element& element, std::vector<Se
                          did_you_mean(name, known));
   }
   use.type = own != nullptr ? own->type : standard->type;
-  if (!use.offered && own == nullptr && !standard->may_be_left_out)
-    problems_.add(
-        *element.find("offered"), "E0243", fmt::format("{} is offered by every subsystem, always", name),
-        "states, links and the test of it rest on it; ST03, ST05, ST20 and services of its own may be left out");
   if (loop != nullptr) {
     const auto found = std::ranges::find(subsystem_.service_loops, loop->value, &ServiceLoop::name);
     if (own == nullptr && !standard->may_have_loop)

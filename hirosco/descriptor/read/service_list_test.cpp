@@ -81,6 +81,9 @@ TEST(ServiceList, RefusesWhatCannotBeSo) {
                      "ST08 is offered by every subsystem");
   expect_one_in_list(library_with("", R"(<Service name="ST17" offered="@no"/>)"), "E0243",
                      "ST17 is offered by every subsystem");
+  expect_one_in_list(library_with(R"(<Service name="@ST17"/>)"), "E0243", "ST17 is offered by every subsystem");
+  expect_one_in_list(library_with(R"(<Service name="ST128" loop="@SLOW"/>)"), "E0243", "has no loop of its own");
+  expect_one_in_list(library_with(R"(<Service name="@ST3"/>)"), "E0242", "the subsystem has no service 'ST3'");
   expect_one_in_list(library_with(R"(<Service name="ST20" loop="@SLOW"/>)"), "E0243", "it speaks with the cycle");
   expect_one_in_list(library_with(R"(<Service name="ST03" loop="@SLOWER"/>)"), "E0244",
                      "no <ServiceLoop> has the name 'SLOWER'");
@@ -96,6 +99,16 @@ TEST(ServiceList, RefusesWhatCannotBeSo) {
       library_with(
           R"(<ServiceLoop name="LONG" period_us="1000" budget_us="@1001"/><Service name="ST03" loop="LONG"/>)"),
       "E0227", "does not end before the next");
+}
+
+/// So a service that comes to the framework needs no row beside its folder's.
+TEST(ServiceList, OfWhichServicesOfTheFrameworkADescriptorHasNothingToSayTheReaderNeedNotKnow) {
+  for (const char* name : {"ST08", "ST17", "ST30", "ST128", "ST130"})
+    EXPECT_TRUE(is_standard_service_name(name)) << name;
+  for (const char* name : {"ST", "ST3", "ST003", "ST1280", "ST0X", "BOOK"})
+    EXPECT_FALSE(is_standard_service_name(name)) << name;
+  expect_one_in_list(library_with(R"(<Service name="ST30" offered="@no"/>)"), "E0243",
+                     "ST30 is offered by every subsystem or by none");
 }
 
 TEST(ServiceList, IsNoMatterOfTheSupervisorsLoop) {
