@@ -5,9 +5,10 @@
 the schemas, and what a row names is there; so are the folders and tests of docs/paper_map.md, and the readers
 take nothing else. Prints what breaks that, and breaks it itself, to be caught.
 
-`declared`: PARENT/ELEMENT, with @ATTRIBUTE, with =WORD; the words of a named type as TYPE=WORD; a group is a parent, too.
-`honoured_by`: STRUCT::MEMBER or ENUMERATION::WORD of the model, and `in` the file outside hirosco/descriptor that reads it; an error
-that hirosco/descriptor makes of it, where a refusal is all that it is for; or a name of the code that does it in any case. Of one that does it for
+`declared`: PARENT/ELEMENT, with @ATTRIBUTE, with =WORD; the words of a named type as TYPE=WORD, or all of them as TYPE=*; a group is a parent, too.
+`honoured_by`: STRUCT::MEMBER or ENUMERATION::WORD of the model, and `in` the file that reads it, neither of hirosco/descriptor nor one that says what there is; an error
+that hirosco/descriptor makes of it, where a refusal is all that it is for; or a name of the code that does it in any case. ENUMERATION::* is each word in its turn, `in` a file or the folder of
+those that have one each. A member whose name other structures of the model bear, too, is read by one object of the file alone, or the row says by which: STRUCT::MEMBER of OBJECT. Of one that does it for
 several attributes each row says its own part: FUNCTION>NAME, what that function of hirosco/descriptor, which the file calls, has to do with; TABLE[PLACE] of a
 table that is read as a whole. Else the file names each of them: one that somebody stops reading is missed although the others are read."""
 import csv, pathlib, re, sys
@@ -15,7 +16,9 @@ import xml.etree.ElementTree as xml
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "hirosco/descriptor"
-MODEL = [FOLDER / "model/subsystem.hpp", FOLDER / "model/parameters.hpp", FOLDER / "model/resources.hpp", FOLDER / "model/service_list.hpp", FOLDER / "model/bumpless.hpp", FOLDER / "model/mission.hpp", ROOT / "hirosco/parameter/type.hpp", ROOT / "hirosco/data_transfer/device/device_network.hpp"]
+MODEL = [FOLDER / "model" / f"{part}.hpp" for part in ("subsystem", "parameters", "resources", "service_list", "bumpless", "mission")]
+MODEL += [ROOT / "hirosco/parameter/type.hpp", *(ROOT / "hirosco/data_transfer" / part for part in ("device/device_network.hpp", "device/data_flow.hpp", "link/link.hpp"))]
+DECLARING = {str(path.relative_to(ROOT)) for path in MODEL}
 COLUMNS = ["schema", "declared", "honoured_by", "in"]
 XS = "{http://www.w3.org/2001/XMLSchema}"
 PLAIN = {"YesNo"}  # its words are those of every language
@@ -130,6 +133,28 @@ def reached(function, functions, depth=3):
     return "".join(functions.get(name, "") for name in names)
 
 
+def readers_of(member, code):
+    """What stands before a member where a text reads it, calls and indices left out: names of objects, "" where it is not said."""
+    found = set()
+    for access in re.finditer(r"(?:\.|->|::)" + member + r"\b", code):
+        left = code[:access.start()].rstrip()
+        while left.endswith((")", "]")):
+            depth, at = 0, len(left)
+            while at and (depth or at == len(left)):
+                at -= 1
+                depth += {")": 1, "]": 1, "(": -1, "[": -1}.get(left[at], 0)
+            left = left[:at].rstrip()
+        name = re.search(r"\w+$", left)
+        found.add(name.group() if name else "")
+    return found
+
+
+def read_by(whose, code):
+    """Whether an object, as the code writes it, is asked for a member: (object, member)."""
+    within = r"(?:\[[^\]]*\]|\([^()]*\))*"
+    return re.search(r"(?<!\w)" + re.escape(whose[0]) + within + r"(?:\.|->|::)" + whose[1] + r"\b", code) is not None
+
+
 def shared(rows, source):
     """Attributes that have a consumer in common, which does not name them: [(row, the others)]."""
     groups = {}
@@ -149,7 +174,8 @@ def wrong(row, model, source, tests, functions):
     """What is not true of a row; `source` gives the text of a file, nothing when there is none."""
     if missing := [column for column in COLUMNS if not (row.get(column) or "").strip()]:
         return "says nothing in " + ", ".join(missing)
-    by, file = row["honoured_by"], row["in"]
+    by, _, owner = row["honoured_by"].partition(" of ")
+    file = row["in"]
     text = source(file)
     if text is None or "_test." in file or "/testing/" in file or file.startswith("tests/"):
         return f"{file} is no file of the product"
@@ -157,6 +183,8 @@ def wrong(row, model, source, tests, functions):
         if not file.startswith("hirosco/descriptor/") or f'"{by}"' not in text:
             return f"{file} makes no {by}"
         return None if f'"{by}"' in tests else f"no test of hirosco/descriptor sees {by}"
+    if file in DECLARING or file.endswith("/") and not by.endswith("::*"):
+        return f"{file} says what there is and honours nothing"
     code = bare(text)
     if part := re.fullmatch(r"(\w+)>([\w:]+)", by):
         function, name = part.group(1), part.group(2).split("::")[-1]
@@ -171,21 +199,47 @@ def wrong(row, model, source, tests, functions):
         if place.group(2) not in model:
             return f"the model has no {place.group(2)}"
     last = by.split("::")[-1]
-    kind = model.get("::".join(by.split("::")[-2:]))
+    if last == "*":
+        return None if by.removesuffix("*") in {name.removesuffix(name.split("::")[1]) for name in model} else f"the model has no {by}"
+    structure = "::".join(by.split("::")[-2:])
+    kind = model.get(structure)
+    if owner and kind != "struct":
+        return f"{by} is no member of the model"
     if "::" in by and kind is not None:
         if file.startswith("hirosco/descriptor/"):
             return f"{by} is to be read outside hirosco/descriptor"
-        before = r"(?:\.|->|::)" if kind == "struct" else r"(?<![\w.])"
-        return None if re.search(before + last + r"\b", code) else f"{file} does not read {by}"
+        if owner:
+            return None if read_by((owner, last), code) else f"{file} does not read {by} of {owner}"
+        others = [name for name, what in model.items() if what == "struct" and name.endswith(f"::{last}") and name != structure]
+        if kind == "struct" and others and len(objects := readers_of(last, code)) > 1:
+            return f"{file} reads {last} of {', '.join(sorted(objects))}, and {', '.join(others[:3])} has one, too: say '{by} of' which"
+        if kind == "struct":
+            return None if re.search(r"(?:\.|->|::)" + last + r"\b", code) else f"{file} does not read {by}"
+        within = r"(?<![\w.])" if f"using enum {by.rpartition('::')[0].split('::')[-1]}" in code else rf"\b{by.split('::')[-2]}::"
+        return None if re.search(within + last + r"\b", code) else f"{file} does not read {by}"
     if by[0].isupper() and "::" in by and by.split("::")[0] in {name.split("::")[0] for name in model}:
         return f"the model has no {by}"
     return None if re.search(r"(?<!\w)" + re.escape(by) + r"\b", code) else f"{file} has no {by}"
 
 
+def unread_words(row, words, source):
+    """Of a row that stands for all words of an enumeration those that nobody reads."""
+    if words and (row["honoured_by"] or "").endswith("::*"):
+        code = bare(source(row["in"]) or "")
+        for word in (place.partition("=")[2] for place in words):
+            name = row["honoured_by"][:-1] + "".join(part.capitalize() for part in word.split("_"))
+            if not re.search(r"(?<![\w.])" + name + r"\b", code):
+                yield f"{row['schema']}: {row['declared'][:-1]}{word}: {row['in']} does not read {name}"
+
+
 def problems(schemas, rows, model, source, tests, functions):
     for name, schema in schemas.items():
         wanted = declared(schema)
-        listed = [row["declared"] for row in rows if row["schema"] == name]
+        listed = []
+        for row in (row for row in rows if row["schema"] == name):
+            words = [place for place in wanted if row["declared"].endswith("=*") and place.startswith(row["declared"][:-1])]
+            listed += words or [row["declared"]]
+            yield from unread_words(row, words, source)
         yield from (f"{name}.xsd: {place} has no row" for place in wanted if place not in listed)
         yield from (f"{name}: {place} is in no schema" for place in listed if place not in wanted)
         yield from (f"{name}: {place} has several rows" for place in set(listed) if listed.count(place) > 1)
@@ -210,6 +264,10 @@ def lost(promises):
 
 def main():
     def source(file):
+        """Of a folder those of its files that do not say what words there are."""
+        if file.endswith("/") and (ROOT / file).is_dir():
+            parts = [part.read_text() for part in sorted((ROOT / file).glob("*.[ch]pp")) if not part.name.endswith("_test.cpp")]
+            return "\n".join(part for part in parts if "struct EnumTexts<" not in part)
         return (ROOT / file).read_text() if (ROOT / file).is_file() else None
 
     schemas = {name: whole(FOLDER / f"{name}.xsd", set()) for name in ("subsystem", "mission")}
@@ -229,8 +287,8 @@ def main():
     planted = [
         ("Event@colour has no row", dict(schemas=dict(schemas, subsystem=schemas["subsystem"].replace(
             attribute, '<xs:attribute name="colour" type="xs:string"/>' + attribute))), rows),
-        ("Transfer=can has no row", dict(schemas=dict(schemas, subsystem=schemas["subsystem"].replace(
-            '<xs:enumeration value="udp"/>', '<xs:enumeration value="udp"/><xs:enumeration value="can"/>'))), rows),
+        ("Framing=cobs has no row", dict(schemas=dict(schemas, subsystem=schemas["subsystem"].replace(
+            '<xs:enumeration value="raw"/>', '<xs:enumeration value="raw"/><xs:enumeration value="cobs"/>'))), rows),
         ("colour is in no schema", {}, [*rows, dict(rows[0], declared="Event@colour")]),
         ("has several rows", {}, [*rows, rows[0]]),
         ("says nothing", {}, changed("Subsystem/Hang", honoured_by=" ")),
@@ -245,6 +303,13 @@ def main():
         ("does not call", {}, changed("Subsystem/Set@value", honoured_by="nobody>begin_with")),
         ("has nothing to do with", {}, changed("Subsystem/Set@value", honoured_by="apply_change>Device::stop")),
         ("the model has no Resource::Colour", {}, changed("Mission/Resources@ports", honoured_by="Mission::budget[Resource::Colour]")),
+        ("does not read Transfer::Ethercat", dict(schemas=dict(schemas, subsystem=schemas["subsystem"].replace(
+            '<xs:enumeration value="udp"/><xs:enumeration value="tcp"/>', '<xs:enumeration value="udp"/><xs:enumeration value="ethercat"/><xs:enumeration value="tcp"/>'))), rows),
+        ("honours nothing", {}, changed("Type=UINT8", **{"in": "hirosco/parameter/type.hpp"})),
+        ("does not read Type::Uint8", {}, changed("Type=UINT8", **{"in": "hirosco/xml/reader.cpp"})),
+        ("say 'Plan::name of' which", {}, changed("Recovery/Plan@name", honoured_by="Plan::name", **{"in": "supervisor/supervision/event_handling/reactions.cpp"})),
+        ("does not read Plan::name of best", {}, changed("Recovery/Plan@name", **{"in": "supervisor/supervision/event_handling/reactions.cpp"})),
+        ("the model has no Colour::*", {}, changed("Transfer=*", honoured_by="Colour::*")),
         ("makes no E0999", {}, changed("Subsystem/Hang", honoured_by="E0999", **{"in": "hirosco/descriptor/read/read_modes.cpp"})),
     ]
     for wanted, other, table in planted:

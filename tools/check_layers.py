@@ -6,14 +6,13 @@ import pathlib, re, sys
 libraries = ["utilities", "resource", "xml", "parameter", "data_transfer", "descriptor", "pus", "subsystem"]  # lowest first
 may = {"hirosco": ["hirosco"], "robotics": ["hirosco", "robotics"], "subsystems": ["hirosco", "robotics"], "supervisor": ["hirosco", "supervisor"],
        "simulation": ["hirosco", "simulation"], "ground": ["hirosco", "ground"]}  # the other folders: everything; nobody but missions and tests a mission
-shells = ("hirosco/utilities/os/", "hirosco/data_transfer/device/datagram_flow", "hirosco/data_transfer/device/shared_memory_flow",
-          "hirosco/data_transfer/device/device_socket", "hirosco/data_transfer/device/framed_stream", "hirosco/data_transfer/device/message_queue_flow", "hirosco/data_transfer/device/private_folder", "hirosco/data_transfer/device/private_memory_folder", "hirosco/data_transfer/device/side_lock",
-          "hirosco/data_transfer/device/serial_flow", "hirosco/data_transfer/device/tcp_flow",
+shells = ("hirosco/utilities/os/", "hirosco/data_transfer/device/device_socket", "hirosco/data_transfer/device/framed_stream", "hirosco/data_transfer/device/private_folder", "hirosco/data_transfer/device/private_memory_folder", "hirosco/data_transfer/device/side_lock",
           "hirosco/data_transfer/channel/socket_channel", "hirosco/data_transfer/channel/stream_channel", "hirosco/data_transfer/link/internet_address", "hirosco/data_transfer/socket_address",
           "hirosco/data_transfer/link/udp_link",
           "hirosco/data_transfer/memory/sealed_memory", "supervisor/guard/guard_shell", "supervisor/flight_shell.cpp", "supervisor/keeper/", "supervisor/platform/", "tools/",
           "tests/", "bench/", "simulation/devices/")
-# These, and tests, their rigs, main.cpp, run.cpp and a TCP server anywhere, may ask the operating system.
+means = re.compile(r"hirosco/data_transfer/device/\w+_flow\.[ch]pp$")  # one each
+# These, means of transfer, and tests, their rigs, main.cpp, run.cpp and a TCP server anywhere, may ask the operating system.
 system = re.compile(r"(sys|net|netinet|arpa|linux)/|(unistd|fcntl|pthread|poll|sched|spawn|signal|semaphore|mqueue|"
                     r"termios|dirent|netdb|dlfcn|ifaddrs)\.h$|csignal$")
 include = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.M)
@@ -30,7 +29,7 @@ def level(path):
 def wrong(path, to):
     top, target = path.split("/")[0], to.split("/")[0]
     if system.match(to):
-        asks = path.startswith(shells) or path.endswith(("_test.cpp", "main.cpp", "run.cpp")) or "/testing/" in path or "/tcp_server." in path
+        asks = path.startswith(shells) or means.match(path) or path.endswith(("_test.cpp", "main.cpp", "run.cpp")) or "/testing/" in path or "/tcp_server." in path
         return not asks and "the operating system"
     if to.startswith("boost/"): return not path.startswith("ground/shell/") and "Boost, which ground/shell/ alone knows"
     if top == target == "ground" and not path.endswith("_test.cpp"):

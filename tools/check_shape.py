@@ -18,7 +18,7 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"([^">]+)"', re.M)
 def files():
     for part in PARTS:
         for path in sorted((ROOT / part).rglob("*")):
-            if path.suffix in CODE and not {"node_modules", "__pycache__", "build"} & set(path.parts):
+            if path.suffix in CODE and not {"node_modules", "__pycache__", "build"} & set(path.relative_to(ROOT).parts):
                 yield path.relative_to(ROOT).as_posix(), path.read_text()
 
 

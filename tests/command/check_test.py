@@ -119,7 +119,7 @@ class Check(unittest.TestCase):
                 (robot, 'sampling_us="500"', 'sampling_us="1"', "sampling_us 1 is out of range"),
                 (robot, '<ParamRef name="TIP_FORCE"', '<ParamRef name="Tip_Force"', "refers to 'TIP_FORCE'"),
                 (hand, 'name="PASSIVITY" id="3"', 'name="force_scale" id="3"', "in case only"),
-                (hand, 'transfer="shared_memory"', 'transfer="can"', "'can' is not built in"),
+                (hand, 'transfer="shared_memory"', 'transfer="ethercat"', "'ethercat' is not built in"),
                 (hand, 'methods="shared_memory"', 'methods="tcp"', "'tcp' is not built in"),
                 (hand, 'kind="latest"', 'kind="queued"', "no common kind"),
                 (hand, 'watchdog_ms="10"', 'watchdog_ms="0.4"', "trips between cycles"),

@@ -5,13 +5,14 @@ and not how samples travel. It passes the conformance of all mechanisms and a de
 subsystem/ is touched."""
 WHO = "a link mechanism"
 BEFORE = "3 + 7 in 4 rooms"
-GOAL = "own files + 1 row (and its file in CMake)"
+GOAL = "own files + 1 row; its word in the schema"
 MOST_FILES, MOST_EDITED = 2, 1
+MOST_ASKED = 1
 ASKED = [
-    ("hirosco/descriptor/types.xsd", "RefusesWhatTheReaderRefuses"),
-    ("hirosco/descriptor/mission.xsd", "RefusesWhatTheReaderRefuses"),
-    ("hirosco/descriptor/consumers.csv", "check_declared"),
+    ("hirosco/descriptor/link_methods.xsd", '<xs:enumeration value="udp"/>', '<xs:enumeration value="udp"/><xs:enumeration value="unix"/>',
+     "descriptor_test Schema.HasTheWordsOfEachEnumerationThatTheReaderTakesAndNoOthers"),
 ]
+MADE = [("docs/interfaces/schema.md", "tools/check_schema.py")]
 FILES = {"hirosco/data_transfer/link/unix_queue.hpp": """\
 #pragma once
 

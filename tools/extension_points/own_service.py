@@ -5,7 +5,7 @@ WHO = "a PUS service of an author's own"
 BEFORE = "not to be commanded"
 GOAL = "own folder"
 MOST_FILES, MOST_EDITED = 2, 0
-FILES = {"subsystems/diary/diary.hpp": """\
+FILES = {"outside/diary/diary.hpp": """\
 #pragma once
 
 #include "hirosco/subsystem/author/custom_service.hpp"
@@ -20,7 +20,7 @@ class Diary final : public hirosco::Subsystem {
   }
   hirosco::CustomService pages_{"PAGES"};
 };
-""", "subsystems/diary/diary.xml": """\
+""", "outside/diary/diary.xml": """\
 <Subsystem name="DIARY" id="10">
   <CustomService name="PAGES" type="201">
     <Request name="OPEN" subtype="1"><Argument name="NUMBER" type="UINT16" minimum="1" maximum="9"/></Request>
@@ -39,11 +39,11 @@ TRY = """\
 
 #include "hirosco/pus/requests.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
-#include "subsystems/diary/diary.hpp"
+#include "outside/diary/diary.hpp"
 
 TEST(OwnService, IsAnsweredAndKnownByName) {
   Diary author;
-  std::ifstream file{HIROSCO_SOURCE_DIR "/subsystems/diary/diary.xml"};
+  std::ifstream file{HIROSCO_SOURCE_DIR "/outside/diary/diary.xml"};
   hirosco::testing::Rig rig{author, std::string{std::istreambuf_iterator<char>{file}, {}}};
   rig.set_state_now(hirosco::State::PreOperational);
   const std::array data{std::byte{0}, std::byte{7}};

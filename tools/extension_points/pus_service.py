@@ -3,14 +3,14 @@
 """A service of the framework that adds two numbers: every subsystem has it, permission and words know it."""
 WHO = "a PUS service of the framework"
 BEFORE = "3 to 4 + 25"
-GOAL = "own folder + 1 row (and its file in CMake)"
+GOAL = "own folder + 1 row; its line in services.md"
 MOST_FILES, MOST_EDITED = 2, 1
+MOST_ASKED = 1
 ASKED = [
-    ("docs/services.md", "AreTheTableInTheDocuments"),
-    ("hirosco/descriptor/model/service_list.hpp", "AreThoseThatADescriptorNames"),
-    ("hirosco/pus/standard_services_test.cpp", "HasAnObjectToBeTriedForEachServiceThatASubsystemHas"),
-    ("supervisor/supervision/data_handling/permission_test.cpp", "EverySubtypeOfEveryServiceIsKnownOrNot"),
+    ("docs/services.md", "| ST[128] real-time links |", "| ST[30] sum | 1 ADD | 2 SUM | as mode and state permit |\n| ST[128] real-time links |",
+     "pus_test StandardServices.AreTheTableInTheDocuments"),
 ]
+HELD = ["pus_test Table.*"]
 FILES = {"hirosco/pus/st30_sum/sum_service.hpp": """\
 #pragma once
 
@@ -35,6 +35,8 @@ class SumService final : public Service {
 
 #include <array>
 
+#include "hirosco/pus/st01_verification/instructions.hpp"
+
 namespace hirosco::pus {
 namespace {
 constexpr Part two[]{number("ONE", Type::Uint16), number("OTHER", Type::Uint16)};
@@ -48,6 +50,8 @@ const ServiceKind SumService::service_kind{
     .make = [](ServiceHome& home) -> std::unique_ptr<Service> { return std::make_unique<SumService>(home); }};
 
 void SumService::handle(const TelecommandView& telecommand, const Request& request) {
+  if (service_kind.request(telecommand.subtype()) == nullptr)
+    return home_.verification().rejected(request, unknown_subtype(telecommand));
   OctetReader reader{telecommand.application_data()};
   const std::uint32_t one = reader.get<std::uint16_t>(), other = reader.get<std::uint16_t>();
   if (!reader.exhausted()) return home_.verification().rejected(request, FailureNotice{FailureCode::DataLength});

@@ -4,8 +4,13 @@
 second is the word that plans of missions write."""
 WHO = "a recovery / mode action"
 BEFORE = "0 + 8"
-GOAL = "1 file + 1 row; + 1 row where missions may write it"
-MOST_FILES, MOST_EDITED = 1, 2
+GOAL = "1 file + 1 row; where missions may write it + 1 row, its word in the schema"
+MOST_FILES, MOST_EDITED, MOST_ASKED = 1, 2, 1
+ASKED = [
+    ("hirosco/descriptor/mission.xsd", '<xs:enumeration value="run"/>', '<xs:enumeration value="run"/><xs:enumeration value="dismiss"/>',
+     "descriptor_test Schema.HasTheWordsOfEachEnumerationThatTheReaderTakesAndNoOthers"),
+]
+MADE = [("docs/interfaces/schema.md", "tools/check_schema.py")]
 FILES = {"supervisor/supervision/procedures/steps/dismiss.hpp": """\
 #pragma once
 

@@ -8,6 +8,7 @@
 #include <regex>
 #include <set>
 
+#include "hirosco/descriptor/model/plan_steps.hpp"
 #include "hirosco/descriptor/testing.hpp"
 
 namespace hirosco::descriptor {
@@ -52,7 +53,7 @@ TEST(Schema, RefusesWhatTheReaderRefuses) {
         "<ParamRef name=\"X\" id=\"1\" type=\"DOUBLE\"/><RealTimeLinkService><Provides name=\"P\" "
         "methods=\"tipc\"><ParamRef name=\"X\"/></Provides></RealTimeLinkService>",
         "<Device name=\"D\" actuator=\"yes\"><Output><Field name=\"F\" type=\"INT8\" safe=\"0\"/></Output>"
-        "<Enable transfer=\"can\" address=\"x\"/></Device>",
+        "<Enable transfer=\"ethercat\" address=\"x\"/></Device>",
         "<Device name=\"D\"><Input><Field name=\"F\" type=\"INT8\" enumeration=\"E\"/></Input></Device>"}) {
     const std::string text = std::string{"<Subsystem name=\"S\" id=\"10\">"} + body + "</Subsystem>";
     std::ofstream{file} << text;
@@ -117,6 +118,10 @@ TEST(Schema, HasTheWordsOfEachEnumerationThatTheReaderTakesAndNoOthers) {
   EXPECT_TRUE(subsystem.contains(words_of<Framing>()));
   EXPECT_TRUE(mission.contains(words_of<OnLoss>()));
   for (const auto* schema : {&subsystem, &mission}) EXPECT_TRUE(schema->contains(words_of<Severity>()));
+  // What a plan may do; that each of them is a kind of step which the supervisor has does not compile otherwise.
+  std::set<std::string> actions;
+  for (const StepWord& step : plan_steps) actions.emplace(step.name);
+  EXPECT_TRUE(mission.contains(actions)) << ::testing::PrintToString(actions);
   auto orders = words_of<ByteOrder>();
   orders.insert("native");
   EXPECT_TRUE(subsystem.contains(orders));
