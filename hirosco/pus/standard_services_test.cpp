@@ -172,6 +172,60 @@ TEST_F(Table, DescribesTheHandshakeThatIsRead) {
   EXPECT_TRUE(st128::read_refusal(reported(st128::refusal)));
 }
 
+bool has_no_end(Shape shape) {
+  return !shape.empty() && (shape.back().form == Form::Rest || shape.back().form == Form::Value ||
+                            (shape.back().form == Form::List && has_no_end(shape.back().repeated())));
+}
+
+/// What holds every report of every test to its shape (testing/report_shape.hpp) sees an octet too few or too many.
+TEST(StandardServices, HaveReportsOfWhichNoOctetMayLackOrBeTooMany) {
+  std::size_t held = 0;
+  for (const ServiceKind* service : standard_services())
+    for (const ReportKind& report : service->reports) {
+      SCOPED_TRACE(report.name);
+      const auto unlike = [&](const Bytes& data) {
+        return testing::unlike_its_shape(service->type, report.subtype, Octets{data});
+      };
+      Bytes data = example_of(report.data);
+      EXPECT_EQ(unlike(data), "");
+      data.push_back(std::byte{});
+      EXPECT_EQ(unlike(data).empty(), has_no_end(report.data));
+      data.pop_back();
+      if (data.empty()) continue;
+      data.pop_back();
+      EXPECT_NE(unlike(data), "");
+      ++held;
+    }
+  EXPECT_GE(held, 25U);
+  EXPECT_NE(testing::unlike_its_shape(20, 9, {}), "");
+  EXPECT_EQ(testing::unlike_its_shape(first_custom_service, 9, {}), "");
+}
+
+TEST(StandardServices, HaveValuesAsLongAsTheirParametersSay) {
+  const Bytes data = testing::from_hex(
+      "02"
+      "00010001"
+      "aabb"
+      "00010002"
+      "cc");
+  const auto unlike = [&](std::size_t second) {
+    return testing::unlike_its_shape(20, 2, Octets{data}, [&](std::uint32_t id) {
+      return std::optional{id == 0x00010001 ? std::size_t{2} : second};
+    });
+  };
+  EXPECT_EQ(unlike(1), "");
+  EXPECT_NE(unlike(2), "");
+  EXPECT_NE(unlike(0), "");
+}
+
+TEST(StandardServices, HaveAWordForEachValueThatHasWords) {
+  Bytes data = example_of(standard_service(17)->report(129)->data);
+  EXPECT_EQ(testing::unlike_its_shape(17, 129, Octets{data}), "");
+  data[0] = std::byte{5};
+  EXPECT_EQ(testing::unlike_its_shape(17, 129, Octets{data}),
+            "TM[17,129] is not of its shape: OUTCOME has no word for 5");
+}
+
 /// As docs/services.md shows them.
 std::string table_of_services() {
   std::string table = "| service | requests | reports | who may ask |\n|---|---|---|---|\n";

@@ -73,7 +73,13 @@ void structures(Questions& questions) {
   questions.ask(manipulator, 20, 1, Questions::octets(U8{2}, id(Type::Double, 3), id(Type::Float, 7)));
   questions.ask(manipulator, 20, 3, Questions::octets(U8{1}, id(Type::Double, 3), 1.0));
   questions.ask(manipulator, 20, 1, Questions::octets(U8{1}, U32{7}));
-  // The previews of modes and plans, of services that nobody has, of an APID that is nobody's.
+  // Whether two would be permitted, and the answers; the previews of modes and plans, of services that nobody has, of an APID that is nobody's.
+  for (const std::uint8_t service : {U8{17}, U8{99}}) {
+    std::array<std::byte, pus::max_telecommand_octets> buffer;
+    const auto asked = pus::write_telecommand(
+        buffer, {.apid = manipulator, .ack = pus::ack_all, .service = service, .subtype = 1, .source = 0x1000}, {});
+    questions.ask(supervisor, 129, 1, {asked->begin(), asked->end()});
+  }
   questions.ask(supervisor, 129, 4, Questions::octets(U8{2}));
   questions.ask(supervisor, 129, 6, Questions::octets(U16{manipulator}, U16{1021}));
   questions.ask(manipulator, 99, 1, {});

@@ -8,6 +8,7 @@ tells, to its last bit, as the exported Python client does.
 import collections
 import importlib
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
@@ -26,7 +27,7 @@ ROKVISS = REPOSITORY / "missions/rokviss/mission.xml"
 MISSIONS = ["missions/rokviss", "missions/hello", "tests/typed", "tests/imager", "tests/loops", "tests/author/lamp"]
 # What the flight has to tell, or it proves little: services with subtypes.
 KINDS = {(1, 1), (1, 2), (1, 3), (1, 4), (1, 5), (1, 7), (1, 8), (1, 10), (3, 10), (3, 25), (3, 35), (5, 1), (5, 2), (5, 4), (5, 8),
-         (17, 2), (17, 129), (20, 2), (129, 5), (129, 7)}
+         (17, 2), (17, 129), (20, 2), (129, 2), (129, 5), (129, 7)}
 HIROSCO, PROBE = [*sys.argv[1:3], "", ""][:2]
 
 
@@ -131,11 +132,13 @@ class EveryPacket(unittest.TestCase):
                 self.self_test(about, told, values)
             elif (told.service, told.subtype) == (20, 2):
                 self.parameters(about, told, values)
+            elif (told.service, told.subtype) == (129, 2):
+                self.permission(told, values)
             else:
                 continue
             compared[(told.service, told.subtype)] += 1
         print(f"{len(self.packets)} packets, {sum(compared.values())} of them value by value: {dict(compared)}")
-        self.assertLessEqual({(1, 2), (1, 7), (3, 25), (5, 1), (17, 129), (20, 2)}, set(compared))
+        self.assertLessEqual({(1, 2), (1, 7), (3, 25), (5, 1), (17, 129), (20, 2), (129, 2)}, set(compared))
 
     def test_a_database_of_another_layout_is_noticed(self):
         report = next(packet for packet in self.packets if packet[7:9] == b"\x03\x19" and packet[20:22] == b"\x12\x69")
@@ -222,6 +225,10 @@ class EveryPacket(unittest.TestCase):
             if isinstance(theirs, bytes):
                 theirs = theirs.decode()
             self.assertEqual(ours, field.text_of(theirs) or theirs)
+
+    def permission(self, told, values):
+        for name, value in zip(("REQUEST", "PERMITTED", "CODE"), struct.unpack(">IBH", told.data), strict=True):
+            self.assertEqual(values[f"/ROKVISS/ST129/PERMISSION/{name}"], value)
 
     def parameters(self, about, told, values):
         offset = 1

@@ -4,10 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <vector>
+
+#include "hirosco/pus/testing/report_shape.hpp"
 
 namespace hirosco::pus::st129 {
 namespace {
+
+constexpr std::array small_packet{std::byte{1}, std::byte{2}};
 
 ModePreview small() { return {.mode = 3, .against = {"ARM is down"}, .steps = {{1, 10, "Pre"}, {2, 258, ""}}}; }
 
@@ -96,6 +101,24 @@ TEST(RetrievalEnd, IsWholeOnlyIfNothingIsMissing) {
     EXPECT_EQ(read_retrieval_end(data), end);
     EXPECT_FALSE(read_retrieval_end(Octets{data}.first(data.size() - 1)));
   }
+}
+
+TEST(Supervision, WritesEveryReportAndReadsEveryRequestInItsShape) {
+  std::array<std::byte, max_telemetry_octets> buffer;
+  const auto unlike = [](std::uint8_t subtype, Octets data) {
+    return testing::unlike_its_shape(service_type, subtype, data);
+  };
+  EXPECT_EQ(unlike(mode_preview, write_mode_preview(buffer, small())), "");
+  EXPECT_EQ(unlike(plan_preview, write_plan_preview(buffer, {10, 3, 2, 1, "p", {"why"}, {{1, 10, "Pre"}}})), "");
+  EXPECT_EQ(unlike(descriptor_problem, write_descriptor_problem({10, 1, "a.xml", 2, 3, "E0104", "what", "hint"})), "");
+  EXPECT_EQ(unlike(retrieved, write_retrieved(buffer, {7, small_packet})), "");
+  EXPECT_EQ(unlike(retrieval_end, write_retrieval_end({5, 1, 2, 3, 4, "x"})), "");
+  const auto differs = [](std::uint8_t subtype, Octets data) {
+    return testing::ShapeWalk{data, {}}.differs_from(service_kind.request(subtype)->data);
+  };
+  EXPECT_EQ(differs(subscribe, write_subscribed({10, Subscribed::What::Event, 3})), "");
+  EXPECT_EQ(differs(unsubscribe, write_subscribed({10, Subscribed::What::Structure, 3})), "");
+  EXPECT_EQ(differs(retrieve, write_retrieve({})), "");
 }
 
 }  // namespace

@@ -47,6 +47,9 @@ struct Values final : ParameterAccess {
 };
 
 struct ParameterRequests : ::testing::Test {
+  void SetUp() override {
+    sink.value_octets = [this](std::uint32_t id) { return std::optional{values.size_of(id)}; };
+  }
   RecordingSink sink;
   Verification verification{sink};
   Values values;

@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <string>
 #include <vector>
 
 #include "hirosco/pus/service/service.hpp"
+#include "hirosco/pus/testing/report_shape.hpp"
 #include "hirosco/pus/testing/vectors.hpp"
 
-/// A sink that keeps what it is given, and telecommands for services, for tests here and above.
+/// A sink that keeps what it is given, which is to be of its shape, and telecommands for services, for tests here and above.
 namespace hirosco::pus::testing {
 
 struct Report {
@@ -26,6 +29,7 @@ struct Report {
 class RecordingSink final : public TelemetrySink {
  public:
   void report(std::uint8_t service, std::uint8_t subtype, std::uint16_t destination, Octets data) override {
+    EXPECT_EQ(unlike_its_shape(service, subtype, data, value_octets), "");
     reports.push_back({service, subtype, destination, Bytes(data.begin(), data.end())});
   }
   /// Texts of all reports since the last call.
@@ -36,10 +40,11 @@ class RecordingSink final : public TelemetrySink {
     return texts;
   }
   std::vector<Report> reports;
+  ValueOctets value_octets;  ///< of those who have parameters
 };
 
 inline constexpr std::uint16_t test_source = 7;
-inline constexpr const char* test_request_id = "180ac001";   ///< of every telecommand that send() makes
+inline constexpr const char* test_request_id = "180ac001";  ///< of every telecommand that send() makes
 
 /// Lets the service handle a whole telecommand packet.
 inline void handle(Service& service, const Bytes& packet) {

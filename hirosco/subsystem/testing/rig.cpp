@@ -6,11 +6,24 @@
 #include <stdexcept>
 
 #include "hirosco/descriptor/read/read.hpp"
+#include "hirosco/pus/testing/report_shape.hpp"
 #include "hirosco/subsystem/testing/inside.hpp"
 
 namespace hirosco::testing {
 
 namespace st128 = pus::st128;
+
+namespace {
+
+std::optional<std::size_t> value_octets(const descriptor::SubsystemDescriptor& subsystem, std::uint32_t parameter) {
+  const auto found = descriptor::find_parameter(subsystem, parameter);
+  if (!found) return std::nullopt;
+  std::size_t octets = 0;
+  for (const descriptor::Field& field : descriptor::fields_of(subsystem, *found)) octets += field.octets();
+  return octets;
+}
+
+}  // namespace
 
 std::string hex(Octets octets) {
   constexpr std::string_view digits = "0123456789abcdef";
@@ -126,6 +139,11 @@ void Rig::service() {
     const auto view = pus::TelemetryView::parse(found->message.packet);
     if (!view) throw std::runtime_error{"the subsystem sent something that is not telemetry"};
     const Octets data = view->source_data();
+    if (const std::string why = pus::testing::unlike_its_shape(
+            view->service(), view->subtype(), data,
+            [this](std::uint32_t parameter) { return value_octets(subsystem.descriptor(), parameter); });
+        !why.empty())
+      throw std::runtime_error{"the subsystem sent " + why};
     telemetry.push_back({view->service(), view->subtype(), view->destination(), {data.begin(), data.end()}});
   }
 }

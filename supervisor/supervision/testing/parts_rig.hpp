@@ -17,11 +17,12 @@
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
+#include "hirosco/pus/testing/report_shape.hpp"
 #include "supervisor/composition.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 
 /// All parts of a supervisor on virtual time, in a small mission whose members the test plays: each has a channel, pages and a
-/// process that does what the test says. CAMERA is the ground link.
+/// process that does what the test says. What the supervisor itself reports is to be of its shape. CAMERA is the ground link.
 namespace hirosco::supervisor::testing {
 
 using descriptor::Severity;
@@ -129,6 +130,9 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
   // Observer
   void told(OnboardTime, std::string_view line) override { story.emplace_back(line); }
   void routed(const pus::TelemetryView& packet) override {
+    if (packet.apid() == supervisor_apid) {
+      EXPECT_EQ(pus::testing::unlike_its_shape(packet.service(), packet.subtype(), packet.source_data()), "");
+    }
     routed_services.push_back(packet.service());
     last_routed[packet.service()].assign(packet.source_data().begin(), packet.source_data().end());
   }
