@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""with_browser.py NAME_test.mjs | PROGRAM.mjs [WORD...]: runs a browser test, or another program beside them, with its packages (by the
-lock file, into the build folder). Exits 77 (skipped), with the reason, where something is missing that a machine without a ground
+"""with_browser.py [NAME_test.mjs | PROGRAM.mjs [WORD...]]: runs a browser test, or another program beside them, with its packages (by the
+lock file, into the build folder); without one only sees whether all is there. Exits 77 (skipped), with the reason, where something is missing that a machine without a ground
 station need not have."""
 import hashlib
 import os
@@ -45,6 +45,8 @@ def main():
         skip("no-package-index-of-node")
     WORK.mkdir(parents=True, exist_ok=True)
     install()
+    if not sys.argv[1:]:
+        return
     # The development server stays beside the page's packages, ws among them.
     development = PAGE_WORK / "development"
     shutil.copytree(HERE.parents[1] / "ground/web/development", development, dirs_exist_ok=True)
