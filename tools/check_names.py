@@ -4,12 +4,12 @@
 """The framework knows no mission, no subsystem and no simulated device by name (adr 0054). Prints where it does, and says it of
 itself once for each kind of place, to be caught.
 
-Names are those of the folders in missions/, subsystems/ and simulation/devices/. One is found wherever it is a word of a path, an
+Names are those of the folders in missions/, subsystems/ and simulation/devices/, and of the programs that a folder further within makes of its module.cpp. One is found wherever it is a word of a path, an
 identifier, a text or a comment, however written: for a folder `lamp` these are lamp, LAMP_LOST, LampData and hirosco-lamp.
 A name that docs/glossary.md has under "Names that are words, too" may be said in prose and be part of an identifier. It is found
 where only the name can be meant: in capitals, as a program (hirosco-NAME, hirosco-sim-NAME), as a path (subsystems/NAME).
 The code of a subsystem or a simulated device names no mission, and no other of them either (its tests and descriptors may: who is flown with whom is theirs). Its descriptors,
-models and scripts, and what files of its folder are called, name no mission: who flies it says where its devices are. What the
+models and scripts, and what files of its folder are called, name no mission: who flies it says where its devices are. Nor does the folder of a mission name another one. What the
 descriptors of its folder call its own devices, links and parameters are words of its own, whoever else is called so.
 Documentation (.md) may show the demonstrator, and so may what stands in tests/, bench/ or a folder of its own; tests beside the
 framework's code use names of nobody (ARM, LAMP, PROBE)."""
@@ -23,10 +23,20 @@ OUTSIDE = {"node_modules", "__pycache__", "build", "dist"}
 PART = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 
 
-def names():
-    """Of folders that are built or flown."""
-    return sorted({path.name for home in HOMES for path in (ROOT / home).iterdir()
-                   if (path / "CMakeLists.txt").exists() or (path / "mission.xml").exists()})
+PROGRAM = re.compile(r"\bhirosco_(?:subsystem|device)\(hirosco-(?:sim-)?([\w-]+) SOURCES \w+/module\.cpp")
+
+
+def within(folder):
+    """The programs of modules in folders of this one."""
+    lists = folder / "CMakeLists.txt"
+    return [name.replace("-", "_") for name in PROGRAM.findall(lists.read_text())] if lists.exists() else []
+
+
+def names(root=ROOT):
+    """Of folders that are built or flown, and of the programs within."""
+    folders = [path for home in HOMES if (root / home).is_dir() for path in (root / home).iterdir()
+               if (path / "CMakeLists.txt").exists() or (path / "mission.xml").exists()]
+    return sorted({path.name for path in folders} | {name for path in folders for name in within(path)})
 
 
 def words_too():
@@ -83,7 +93,7 @@ def homes(root=ROOT):
             own = {word for path in folder.rglob("*.xml") for word in OWN_WORD.findall(path.read_text())}
             hidden = re.compile("|".join([rf"\b{re.escape(word)}\b" for word in sorted(own, key=len, reverse=True)] + [rf"\b(?:{home}|simulation|hirosco-sim-{folder.name}|hirosco-{folder.name.replace('_', '-')})\b"]))
             # A folder may have the name of one in another home: the robot's device and what a subsystem calls it.
-            names_here = re.compile("[-_ ]?".join(folder.name.split("_")), re.I)
+            names_here = re.compile("|".join("[-_ ]?".join(name.split("_")) for name in [*within(folder), folder.name]), re.I)
             for path in sorted(folder.rglob("*")):
                 if path.suffix in CODE and path.is_file() and "_test." not in path.name and "testing" not in path.parts and not OUTSIDE & set(path.parts):
                     yield path.relative_to(root).as_posix(), names_here.sub("", hidden.sub("", path.read_text()))
@@ -107,6 +117,15 @@ def naming_missions(root=ROOT):
                 continue
             text = path.read_text() if path.suffix in MISSIONLESS else ""
             yield from found({path.relative_to(root).as_posix(): text}, every, set())
+
+
+def among_missions(root=ROOT):
+    """What the folder of a mission says of another one."""
+    every = missions(root)
+    for name in every:
+        for path in sorted((root / HOMES[0] / name).rglob("*")):
+            if path.is_file() and path.suffix in (*TEXTS, *MISSIONLESS, ".csv") and not OUTSIDE & set(path.relative_to(root).parts):
+                yield from found({path.relative_to(root).as_posix(): path.read_text()}, [other for other in every if other != name], set())
 
 
 # `lamp` is a name, `beam` a word, too. The first must be found in each of these, the second in none.
@@ -133,7 +152,16 @@ if __name__ == "__main__":
         said = {line.partition(":")[0] for line in naming_missions(pathlib.Path(made))}
         if said != {"subsystems/beam/shed.urdf", "subsystems/beam/more.xml"}:
             wrong.append(f"missions planted in folders of their own, and seen in {sorted(said)}")
+        for path, text in {"missions/hut/mission.xml": "<Mission/>", "missions/hut/flown.cpp": "as in the shed", "missions/hut/README.md": "as in the shed",
+                           "subsystems/beam/CMakeLists.txt": "hirosco_subsystem(hirosco-wide-beam SOURCES wide/module.cpp DEPENDS a)\nhirosco_subsystem(hirosco-beam SOURCES module.cpp)"
+                           }.items():
+            (pathlib.Path(made) / path).parent.mkdir(parents=True, exist_ok=True)
+            (pathlib.Path(made) / path).write_text(text)
+        if (others := {line.partition(":")[0] for line in among_missions(pathlib.Path(made))}) != {"missions/hut/flown.cpp"}:
+            wrong.append(f"a mission planted in another one's folder, and seen in {sorted(others)}")
+        if (planted_names := names(pathlib.Path(made))) != ["beam", "hut", "shed", "wide_beam"]:
+            wrong.append(f"a module planted within a folder, and the names are {planted_names}")
         if caught != {"subsystems/beam/lit.cpp", "simulation/devices/lamp/lamp.cpp"}:
             wrong.append(f"planted in folders of their own, and seen in {sorted(caught)}")
     wrong += [f"the glossary has a word that is no name: {word}" for word in words - set(every) - {"word", "---"}]
-    sys.exit("\n".join([*found(ours, every, words), *in_homes(theirs, every, words), *naming_missions(), *wrong]) or ("no files" if not ours or not every else None))
+    sys.exit("\n".join([*found(ours, every, words), *in_homes(theirs, every, words), *naming_missions(), *among_missions(), *wrong]) or ("no files" if not ours or not every else None))
