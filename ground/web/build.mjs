@@ -45,7 +45,7 @@ const with_needs = (name) => [name, ...outputs.find((one) => one.name === name).
 const entry = (source) => outputs.find((one) => one.entry === source).name;
 // What the page begins with is asked for at once, and not when the file that needs it has come. The 3D part comes while the rest starts: most visits
 // begin with the robot, and its code is most of the octets.
-const of_page = new Set(with_needs(entry('page/main.js'))), drawing = outputs.find(({name}) => /^robot_drawing-.*\.js$/.test(name)).name;
+const of_page = new Set(with_needs(entry('page/main.js'))), drawing = outputs.find(({name}) => /^view-.*\.js$/.test(name)).name;
 const of_robot = [...new Set(with_needs(drawing))].filter((name) => !of_page.has(name));
 // What is the robot's alone says so by its name.
 const said = (name) => of_robot.includes(name) ? name.replace('chunk-', 'robot_space-') : name;

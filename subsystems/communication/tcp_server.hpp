@@ -12,7 +12,7 @@
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
-#include "subsystems/communication/ground_link.hpp"
+#include "subsystems/communication/ground_clients.hpp"
 
 namespace hirosco::communication {
 

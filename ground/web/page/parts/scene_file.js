@@ -21,7 +21,7 @@ export const plot_names = (plot) => Array.isArray(plot) ? plot : (plot?.curves ?
 let code = null;
 /// Asked for once: a promise that was kept is not waited for again.
 export function drawing_code() {
-  code ??= import('./robot_drawing.js').catch((error) => {
+  code ??= import('../scene/view.js').catch((error) => {
     code = null;
     throw error;
   });

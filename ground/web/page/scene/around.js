@@ -11,7 +11,7 @@ import {surface_x_m} from '../parts/hand.js';
 import {colours} from './instruments.js';
 import {Kit, merged} from './kit.js';
 import {hider_of} from './plain.js';
-import {lights, mirrored_cube, sky} from './space.js';
+import {lights, mirrored_cube, sky} from './sky.js';
 import {module_of, module_places, usual_surroundings} from './usual.js';
 
 /// The steps in which it is made, one for each moment that is free.

@@ -4,7 +4,7 @@
 // What draws by a graphics card, and what stands still where there is none: half of three.js, which the first pictures of a robot do without
 // there. A chunk of its own; the one file for which the build takes three.js with its renderer.
 import {ACESFilmicToneMapping, PCFShadowMap, PMREMGenerator, WebGLRenderer} from 'three';
-import {environment} from './space.js';
+import {environment} from './sky.js';
 
 function set_up(renderer, points) {
   renderer.toneMapping = ACESFilmicToneMapping;

@@ -5,7 +5,7 @@
 // moving parts are made of: lit at their corners, flat, a picture on a plane; a ghost, a halo, a shadow (what `userData.raster` says).
 import {BackSide, DoubleSide, Matrix4, Vector3} from 'three';
 import {Raster, Texture} from './raster.js';
-import {sun_from} from './space.js';
+import {sun_from} from './sky.js';
 
 const numbers = 9, shades = 16384, step_px = 64, usual_gloss = 0.2, depth_step = 1.2e-7, lead_colour = [255, 255, 255], lead_opacity = 0.5, black = {r: 0, g: 0, b: 0};
 /// What `userData.raster` of a material says; of three.js' own ones those that light falls on are lit.

@@ -5,13 +5,13 @@
 // much as a thousand corners.
 import {BufferGeometry, Color, Float32BufferAttribute, Mesh, MeshBasicMaterial, MeshLambertMaterial, ShaderMaterial, Vector3} from 'three';
 import {mergeGeometries} from 'three/addons/utils/BufferGeometryUtils.js';
-import {sun_from} from './space.js';
+import {sun_from} from './sky.js';
 
 /// A metal that mirrors nothing would be dark.
 const colour_of = ({color, metalness = 0}) => color.clone().lerp(new Color(0xffffff), metalness * 0.12);
 const gloss_of = ({roughness = 0.5}) => (1 - roughness) * 0.55;
 
-/// Lit by the sun and the sky of space.js, and toned there. `tinted`: colour and gloss come with each corner.
+/// Lit by the sun and the sky of sky.js, and toned there. `tinted`: colour and gloss come with each corner.
 function lit_at_corners(uniforms, tinted = false) {
   const skin = new ShaderMaterial({
     uniforms: {...uniforms, sun: {value: sun_from.clone().normalize()}},

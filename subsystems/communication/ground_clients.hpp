@@ -13,7 +13,7 @@
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
 
-/// The rules of the ground link, without any socket (decisions 25 and 28).
+/// The clients of the ground link and what they send, without any socket (decisions 25 and 28).
 namespace hirosco::communication {
 
 // Words of what the rules stand between.

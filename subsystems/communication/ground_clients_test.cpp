@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "subsystems/communication/ground_link.hpp"
+#include "subsystems/communication/ground_clients.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,28 +10,28 @@ import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {clock_text, iso_text} from '../format.js';
 import {mission_code, mission_text} from '../mission_files.js';
 import {columns, commands, mission, now_s, replay, values, with_picture} from '../store.js';
-import {surroundings_in_steps} from '../scene/around.js';
-import {Contact} from '../scene/contact.js';
-import {Goal, goal_of} from '../scene/goal.js';
-import {Grips} from '../scene/grips.js';
-import {Arrow, colours} from '../scene/instruments.js';
-import {Kit, merged} from '../scene/kit.js';
-import {LivePicture} from '../scene/live.js';
-import {Pace} from '../scene/pace.js';
-import {Picker} from '../scene/pick.js';
-import {Readout} from '../scene/readout.js';
-import {RobotModel} from '../scene/robot_model.js';
-import {cast_on_plane} from '../scene/skins.js';
-import {snapshot_of} from '../scene/snapshot.js';
-import {lights, sun_from} from '../scene/space.js';
-import {StillPicture} from '../scene/still.js';
-import {watch_taken} from '../scene/taken.js';
-import {ViewCube} from '../scene/view_cube.js';
-import {surface_x_m} from './hand.js';
-import {plots_address, plots_of_link} from './joint_plots.js';
-import {open} from './opening.js';
-import {save} from './save.js';
-import {goal_says, typed} from './typed.js';
+import {surroundings_in_steps} from './around.js';
+import {Contact} from './contact.js';
+import {Goal, goal_of} from './goal.js';
+import {Grips} from './grips.js';
+import {Arrow, colours} from './instruments.js';
+import {Kit, merged} from './kit.js';
+import {LivePicture} from './live.js';
+import {Pace} from './pace.js';
+import {Picker} from './pick.js';
+import {Readout} from './readout.js';
+import {RobotModel} from './robot_model.js';
+import {cast_on_plane} from './skins.js';
+import {snapshot_of} from './snapshot.js';
+import {lights, sun_from} from './sky.js';
+import {StillPicture} from './still.js';
+import {watch_taken} from './taken.js';
+import {ViewCube} from './view_cube.js';
+import {surface_x_m} from '../parts/hand.js';
+import {plots_address, plots_of_link} from '../parts/joint_plots.js';
+import {open} from '../parts/opening.js';
+import {save} from '../parts/save.js';
+import {goal_says, typed} from '../parts/typed.js';
 
 const still_after_ms = 250, resized_after_ms = 200;
 /// What is around the robot waits until it was seen to move, or for as long.
@@ -45,7 +45,7 @@ function probe() {
   const about = context?.getExtension('WEBGL_debug_renderer_info'), name = about ? String(context.getParameter(about.UNMASKED_RENDERER_WEBGL)) : '';
   return [context, !context || /swiftshader|llvmpipe|software/i.test(name)];
 }
-const card_code = () => import('../scene/card.js');
+const card_code = () => import('./card.js');
 
 function live_canvas(stage) {
   const canvas = document.createElement('canvas');
