@@ -32,12 +32,15 @@ constexpr const char* joints = R"(
   for (const auto& problem : reading.problems) ADD_FAILURE() << problem.message;
   return reading.value.value();
 }
-[[nodiscard]] RoundedHull swept_ball(double radius_m = 0.01) { return {std::array{Vector3{Vector3::Zero()}}, radius_m}; }
+[[nodiscard]] RoundedHull swept_ball(double radius_m = 0.01) {
+  return {std::array{Vector3{Vector3::Zero()}}, radius_m};
+}
 [[nodiscard]] double outside(const RoundedHull& hull, const Vector3& point) {
   const RoundedHull alone{std::span{&point, 1}, 0};
   return distance_m({hull, Pose{}}, {alone, Pose{}});
 }
-[[nodiscard]] RoundedHull swept(const char* link, std::vector<std::string> standing, const RoundedHull& hull = swept_ball()) {
+[[nodiscard]] RoundedHull swept(const char* link, std::vector<std::string> standing,
+                                const RoundedHull& hull = swept_ball()) {
   std::vector<LinkHull> hulls{{link, hull}};
   sweep(hulls, robot(), standing);
   return hulls[0].hull;

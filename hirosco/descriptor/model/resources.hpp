@@ -70,7 +70,8 @@ inline constexpr std::uint32_t default_waiting = 1024;
   return octets;
 }
 
-/// The queues between the loops of a subsystem, as they lie in memory (docs/adr/0188). Rings of octets are powers of two.
+/// The queues between the loops of a subsystem, as they lie in memory (docs/adr/0188). Rings of octets are powers of two. Larger than
+/// this where nobody says how large, and the descriptor itself puts more into them.
 struct Queues {
   std::uint32_t commands{64};  ///< from the service loop to the cycle
   std::uint32_t answers_octets{32U << 10};  ///< from the cycle to the service loop, like the next two
@@ -79,6 +80,7 @@ struct Queues {
   std::uint32_t loop_reports_octets{64U << 10};  ///< from each loop of services of its own to the service loop
   bool operator==(const Queues&) const = default;
 };
+inline constexpr std::uint32_t most_commands = 1024, most_ring_kb = 4096;
 /// What a command and a record take at most: who makes them says so where it is compiled.
 inline constexpr std::uint32_t command_octets = 288, report_head_octets = 24, reason_octets = 80;
 /// Of a record in a ring: its length, its octets, and what fills them up to eight.

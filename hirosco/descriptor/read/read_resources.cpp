@@ -21,8 +21,8 @@ constexpr std::int64_t least_descriptors = 24;
 /// Messages of one kind: enough for the answers to a few telecommands, and few enough to fit into the memory of a process.
 constexpr std::int64_t least_waiting = 128, most_waiting = 65'536;
 /// To the cycle: enough to bring it up. A ring of octets takes the longest packet by half of itself (utilities/record_ring.hpp).
-constexpr std::int64_t least_commands = 16, most_commands = 1024;
-constexpr std::int64_t least_ring_kb = 16, most_ring_kb = 4096;
+constexpr std::int64_t least_commands = 16;
+constexpr std::int64_t least_ring_kb = 16;
 /// What the framework itself starts: service loop and cycle.
 constexpr std::int64_t least_threads = 2;
 

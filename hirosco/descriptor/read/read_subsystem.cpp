@@ -76,7 +76,7 @@ SubsystemDescriptor SubsystemReader::read(const xml::Element& root) {
   events_.imply_framework_events();
   fields_.check_enumerations();
   check_addresses(subsystem_, problems_);
-  check_queues(root, subsystem_, problems_);
+  fit_queues(root, subsystem_, problems_);
   return std::move(subsystem_);
 }
 

@@ -21,8 +21,8 @@ namespace hirosco::descriptor::detail {
 [[nodiscard]] Amounts read_amounts(Attributes& attributes);
 /// <Resources>.
 void read_resources(const xml::Element& element, Resources& resources, Problems& problems);
-/// Whether its queues hold what it declares besides, and its memory its queues.
-void check_queues(const xml::Element& root, const SubsystemDescriptor& subsystem, Problems& problems);
+/// Makes those queues of whose size nothing is said hold what it declares besides. Whether the others do, and its memory all of them.
+void fit_queues(const xml::Element& root, SubsystemDescriptor& subsystem, Problems& problems);
 
 /// One <Commands>, and one <Subscribes>: no subsystem in two of either.
 void read_commands(const xml::Element& element, Problems& problems, Unique& commanded, std::vector<Commands>& all);

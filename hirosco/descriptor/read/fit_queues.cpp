@@ -8,7 +8,7 @@
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
 
-/// Whether the queues of a subsystem hold what its descriptor itself puts into them at one time (docs/adr/0188).
+/// That the queues of a subsystem hold what its descriptor itself puts into them at one time (docs/adr/0188).
 namespace hirosco::descriptor::detail {
 namespace {
 
@@ -95,20 +95,32 @@ struct RingNeed {
 
 }  // namespace
 
-void check_queues(const xml::Element& root, const SubsystemDescriptor& subsystem, Problems& problems) {
+void fit_queues(const xml::Element& root, SubsystemDescriptor& subsystem, Problems& problems) {
   const auto found = std::ranges::find(root.children, "Resources", &xml::Element::name);
   const xml::Element& element = found != root.children.end() ? *found : root;
-  const Queues& queues = subsystem.resources.queues;
-  if (const std::uint64_t needed = commands_needed(subsystem); needed > queues.commands)
-    problems.add(element, "E0369",
-                 fmt::format("its queue of commands to the cycle holds {}, and its links and changes of state need {}",
-                             queues.commands, needed),
-                 fmt::format("cycle_commands=\"{}\" or more in <Resources>", needed));
-  const auto ring = [&](std::uint64_t needed, std::uint32_t octets, const char* attribute, const char* what) {
+  // What nobody has said is as much as is needed; what somebody has said is not taken for more.
+  const auto said = [&](std::string_view attribute) {
+    return found != root.children.end() &&
+           std::ranges::find(element.attributes, attribute, &xml::Attribute::name) != element.attributes.end();
+  };
+  Queues& queues = subsystem.resources.queues;
+  if (const std::uint64_t needed = commands_needed(subsystem); needed > queues.commands) {
+    if (!said("cycle_commands") && needed <= most_commands) queues.commands = static_cast<std::uint32_t>(needed);
+    else
+      problems.add(
+          element, "E0369",
+          fmt::format("its queue of commands to the cycle holds {}, and its links and changes of state need {}",
+                      queues.commands, needed),
+          fmt::format("cycle_commands=\"{}\" or more in <Resources>", needed));
+  }
+  const auto ring = [&](std::uint64_t needed, std::uint32_t& octets, const char* attribute, const char* what) {
     constexpr std::uint64_t kb = 1024;
-    if (needed > octets)
+    if (needed <= octets) return;
+    const std::uint64_t suffices = std::bit_ceil((needed + kb - 1) / kb);
+    if (!said(attribute) && suffices <= most_ring_kb) octets = static_cast<std::uint32_t>(suffices * kb);
+    else
       problems.add(element, "E0369", fmt::format("{} take {} octets, and their ring has {}", what, needed, octets),
-                   fmt::format("{}=\"{}\" or more in <Resources>", attribute, std::bit_ceil((needed + kb - 1) / kb)));
+                   fmt::format("{}=\"{}\" or more in <Resources>", attribute, suffices));
   };
   ring(answers_needed(subsystem), queues.answers_octets, "cycle_answers_kB",
        "twice the answers to as many commands as may wait and each event of the framework");
@@ -116,12 +128,12 @@ void check_queues(const xml::Element& root, const SubsystemDescriptor& subsystem
        "the events of one cycle, each once, or twice those below medium,");
   ring(housekeeping_needed(subsystem), queues.housekeeping_octets, "cycle_housekeeping_kB",
        "the housekeeping reports that one cycle may make");
-  std::uint64_t octets = octets_of(queues) + octets_of(subsystem.resources.waiting), pools = 0;
-  for (const ServiceLoop& loop : subsystem.service_loops) {
+  for (const ServiceLoop& loop : subsystem.service_loops)
     ring(loop_reports_needed(loop.queue), queues.loop_reports_octets, "loop_reports_kB",
          "twice the longest report of a service loop and the answers to as many requests as may wait");
+  std::uint64_t octets = octets_of(queues) + octets_of(subsystem.resources.waiting), pools = 0;
+  for (const ServiceLoop& loop : subsystem.service_loops)
     octets += std::bit_ceil(loop_requests_octets(loop.queue)) + queues.loop_reports_octets;
-  }
   for (const Pool& pool : subsystem.resources.pools) pools += std::uint64_t{pool.block_octets} * pool.blocks;
   const auto memory_kb = amount_of(subsystem.resources.most, Resource::Memory);
   if (!memory_kb) return;

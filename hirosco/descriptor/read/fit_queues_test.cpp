@@ -30,6 +30,13 @@ TEST(Queues, AreAsLargeAsEverWhereNothingIsSaidAndPowersOfTwoWhereSomethingIs) {
             (Queues{100, 65'536, 16'384, 131'072, 4'194'304}));
 }
 
+TEST(Queues, OfWhichNothingIsSaidHoldWhatTheirDescriptorPutsIntoThem) {
+  const auto queues = [](const std::string& body) {
+    return read_text(of_subsystem(body)).value.value().resources.queues;
+  };
+  EXPECT_EQ(queues("<Resources cycle_commands=\"1024\"/>").answers_octets, 512U << 10);
+}
+
 /// Structures of `octets` octets each, below one id after the other, with the 24 and 8 that a record has beside them.
 std::string blocks_of(int how_many, int octets) {
   std::string text = "<ParamRef name=\"BLOCK\" id=\"1\" type=\"UINT8\" count=\"" + std::to_string(octets) + "\"/>";
@@ -41,8 +48,10 @@ std::string blocks_of(int how_many, int octets) {
 
 TEST(Queues, HoldAllHousekeepingThatIsDueInOneCycle) {
   // Record: 8 + 24 + 2 + 4054 = 4088; with the end of the ring one more.
-  EXPECT_EQ(problems_with(blocks_of(15, 4054)), "");
-  EXPECT_EQ(problems_with(blocks_of(16, 4054)), "E0369 cycle_housekeeping_kB=\"128\" or more in <Resources>\n");
+  const std::string as_ever = "<Resources cycle_housekeeping_kB=\"64\"/>";
+  EXPECT_EQ(problems_with(as_ever + blocks_of(15, 4054)), "");
+  EXPECT_EQ(problems_with(as_ever + blocks_of(16, 4054)),
+            "E0369 cycle_housekeeping_kB=\"128\" or more in <Resources>\n");
   EXPECT_EQ(problems_with("<Resources cycle_housekeeping_kB=\"65\"/>" + blocks_of(16, 4054)), "");
 }
 
@@ -56,7 +65,9 @@ TEST(Queues, OfOneConfigurationAreThoseThatCount) {
               "\" interval=\"5\"><SampledOnce><ParamRef name=\"BLOCK\"/></SampledOnce></HKService>";
     return text + "</Configuration>";
   };
-  EXPECT_EQ(problems_with(eight + configuration("A", 1, 20) + configuration("B", 2, 30)), "")
+  EXPECT_EQ(problems_with("<Resources cycle_housekeeping_kB=\"64\"/>" + eight + configuration("A", 1, 20) +
+                          configuration("B", 2, 30)),
+            "")
       << "15 of one configuration, never 22";
 }
 
@@ -80,7 +91,7 @@ TEST(Queues, HoldEachEventOfTheAuthorOnceInOneCycleAndRemarksInHalf) {
 
 TEST(Queues, HoldTheAnswersToAsManyCommandsAsMayWait) {
   EXPECT_EQ(problems_with("<Resources cycle_commands=\"64\"/>"), "");
-  EXPECT_EQ(problems_with("<Resources cycle_commands=\"1024\"/>"),
+  EXPECT_EQ(problems_with("<Resources cycle_commands=\"1024\" cycle_answers_kB=\"256\"/>"),
             "E0369 cycle_answers_kB=\"512\" or more in <Resources>\n");
   EXPECT_EQ(problems_with("<Resources cycle_commands=\"1024\" cycle_answers_kB=\"512\"/>"), "");
 }
