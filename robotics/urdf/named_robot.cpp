@@ -58,7 +58,8 @@ std::expected<NamedRobot, NotRead> read_named(const descriptor::SubsystemDescrip
                                                      fixed_setting, device, *unknown));
   auto model = Model::make(describe(*reading.value));
   if (!model) return not_read(model.error());
-  return NamedRobot{file, std::move(*text), std::move(*reading.value), std::move(led), std::move(*model), std::move(standing)};
+  return NamedRobot{file,           std::move(*text),  std::move(*reading.value),
+                    std::move(led), std::move(*model), std::move(standing)};
 }
 
 std::expected<FrameId, NotRead> named_tip(const descriptor::SubsystemDescriptor& subsystem, std::string_view device,
