@@ -17,20 +17,21 @@ using enum descriptor::State;
 
 /// A kind that the table does not know: what is seen by the runner of any kind, without a word of it in the runner.
 /// Values: what it tells when it begins.
-constexpr StepKind note{.name = "note",
-                        .values = 1,
-                        .text = [](const ProcedureStep& step,
-                                   const descriptor::Mission&) { return "note " + std::to_string(step.values[0]); },
-                        .run =
-                            [](const ProcedureStep& step, const Means& means, CommandDone done) {
-                              means.craft.tell("begun " + std::to_string(step.values[0]));
-                              done(step.values[0] != 0, "nothing to note");
-                            },
-                        .fences =
-                            [](const ProcedureStep& step, const Means& means) {
-                              means.craft.tell("first " + std::to_string(step.values[0]));
-                              return std::vector<std::uint16_t>{};
-                            }};
+constexpr StepKind note_kind{
+    .name = "note",
+    .values = 1,
+    .text = [](const ProcedureStep& step,
+               const descriptor::Mission&) { return "note " + std::to_string(step.values[0]); },
+    .run =
+        [](const ProcedureStep& step, const Means& means, CommandDone done) {
+          means.craft.tell("begun " + std::to_string(step.values[0]));
+          done(step.values[0] != 0, "nothing to note");
+        },
+    .fences =
+        [](const ProcedureStep& step, const Means& means) {
+          means.craft.tell("first " + std::to_string(step.values[0]));
+          return std::vector<std::uint16_t>{};
+        }};
 
 struct EngineTest : PartsTest {
   PlayedDesk desk;
@@ -139,13 +140,14 @@ TEST_F(EngineTest, TheNextMayBeStartedFromTheEndOfThis) {
 }
 
 TEST_F(EngineTest, WhatMayNotWaitIsDoneForAllStepsBeforeTheFirstBegins) {
-  start({{ProcedureStep{&note, arm, {1}}}, {to_state(arm, PreOperational)}, {ProcedureStep{&note, arm, {2}}}});
+  start(
+      {{ProcedureStep{&note_kind, arm, {1}}}, {to_state(arm, PreOperational)}, {ProcedureStep{&note_kind, arm, {2}}}});
   EXPECT_THAT(story, ElementsAre("first 1", "first 2", "begun 1"));
   EXPECT_THAT(desk.sent, ElementsAre("10 SET_STATE 3"));
 }
 
 TEST_F(EngineTest, AStepOfAnyKindFailsWithItsOwnText) {
-  start({{ProcedureStep{&note, hand, {0}}}, {to_state(arm, PreOperational)}});
+  start({{ProcedureStep{&note_kind, hand, {0}}}, {to_state(arm, PreOperational)}});
   EXPECT_THAT(ends, ElementsAre("HAND note 0: nothing to note"));
   EXPECT_THAT(desk.sent, IsEmpty());
 }
