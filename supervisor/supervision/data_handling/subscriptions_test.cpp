@@ -232,7 +232,7 @@ TEST_F(SubscriptionsTest, ItIsNotedBeforeWhoAskedIsTold) {
     told_at_note.push_back(std::to_string(writer.size()) + (last_routed.contains(1) ? " told" : " untold"));
   };
   EXPECT_EQ(hear_structure(hand), "done");
-  EXPECT_THAT(told_at_note, ElementsAre("11 untold"));
+  EXPECT_THAT(told_at_note, AllOf(Not(IsEmpty()), Each("11 untold")));
 }
 
 TEST_F(SubscriptionsTest, MoreThanTheJournalHasRoomForIsRefused) {
