@@ -90,9 +90,11 @@ void Clearance::carry(Carried which, const Vector3& to, double radius_m) noexcep
   if (!tip_) return;
   Body& body = bodies_[links_ + static_cast<std::size_t>(which)];
   Solid& solid = body.solids[0];
-  const bool any = to.norm() > 0;
-  solid.hull = any ? RoundedHull{std::array{Vector3{Vector3::Zero()}, to}, radius_m}
-                   : RoundedHull{std::array{Vector3{Vector3::Zero()}}, 0};
+  const double length_m = to.norm();
+  // Its rear cap ends at the tip's origin: behind that is the arm's own wrist, and nothing that the tip carries.
+  const Vector3 from = to * (length_m > radius_m ? radius_m / length_m : 1);
+  solid.hull =
+      length_m > 0 ? RoundedHull{std::array{from, to}, radius_m} : RoundedHull{std::array{Vector3{Vector3::Zero()}}, 0};
   body.ball = solid.ball = ball_around({&solid.hull, 1});
   limit_pairs();
 }
@@ -102,14 +104,21 @@ bool Clearance::counts(std::size_t body) const noexcept {
   return body < links_ || bodies_[body].solids[0].hull.corners() > 1;
 }
 
+/// How far behind the tip's origin it reaches, who is rounder than long.
+double Clearance::behind_m(std::size_t body) const noexcept {
+  if (body < links_) return 0;
+  const RoundedHull& hull = bodies_[body].solids[0].hull;
+  return hull.radius_m() - hull.corner(0).norm();
+}
+
 void Clearance::limit_pairs() noexcept {
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     LookedAt& pair = pairs_[i];
-    const double built_m = pair.named.built_m;
     if (i >= moved_pairs_) {
       const bool is_there = counts(pair.one) && bodies_[pair.other].solids[0].hull.radius_m() > 0;
       pair.named.limit_m = is_there ? limit_m_ : 0;
     } else {
+      const double built_m = pair.named.built_m - behind_m(pair.other);
       pair.named.limit_m = counts(pair.other) && built_m >= nothing_between_m ? std::min(limit_m_, built_m / 3) : 0;
     }
   }

@@ -37,8 +37,8 @@ class Clearance {
   void keep_out(std::span<const Capsule> volumes) noexcept;
   static constexpr std::size_t most_volumes = 4;
 
-  /// What the tip carries and no file knows: all that is no farther than a radius from the line from the tip's origin to `to`, in its frame; at that origin: nothing. A part of
-  /// the tip's body, as near to others as that origin is built, and not looked at against what else is carried.  Realtime: wait-free.
+  /// What the tip carries and no file knows: a capsule from the tip's origin, where its rear cap ends, to a radius beyond `to`, in its frame; at that origin: nothing. A part of
+  /// the tip's body, as near to others as that origin is built, less what reaches behind it of who is rounder than long, and not looked at against what else is carried.  Realtime: wait-free.
   enum class Carried : std::uint8_t { Tool, Payload };
   void carry(Carried which, const Vector3& to, double radius_m) noexcept;
   static constexpr std::size_t most_carried = 2;
@@ -97,6 +97,7 @@ class Clearance {
   void add_pair(std::size_t one, std::size_t other, std::string names);
   void limit_pairs() noexcept;
   [[nodiscard]] bool counts(std::size_t body) const noexcept;
+  [[nodiscard]] double behind_m(std::size_t body) const noexcept;
   void learn_construction(const Model& model, std::span<const LinkHull> hulls);
   void built_distances(const Model& model, std::span<const LinkHull> hulls, std::span<double> of_pairs);
   [[nodiscard]] static bool may_be_zero(const Model& model, std::size_t one, std::size_t other);

@@ -108,6 +108,23 @@ TEST(RobotArmThatCarries, LeadsNoPayloadIntoAVolumeNorWhatIsNearItsLine) {
   }
 }
 
+/// The tip is built 56 mm before its own wrist where that rolls to 0: a tool that is wider than that is not in it.
+TEST(RobotArmThatCarries, RollsItsWristThroughZeroWithAToolAsWideAsTheTipIsFarFromTheWrist) {
+  for (const auto& [radius_m, length_m] : {std::pair{0.05, 0.3}, {0.1, 0.3}, {0.05, 0.02}}) {
+    const std::string which = std::to_string(radius_m) + " m, " + std::to_string(length_m) + " m";
+    Carrying arm;
+    arm.flown.write("TOOL_RADIUS", radius_m);
+    ASSERT_EQ(arm.asked("SET_TOOL", {0, length_m, 0, 0, 0, 0, 0}), "1 3 7") << which;
+    for (const double roll : {-0.7, 0.0}) {
+      JointVector goal = arm.start;
+      goal[4] = roll;
+      const auto request = arm.flown.move_j(goal);
+      arm.flown.finish(request);
+      EXPECT_EQ(arm.flown.rig.outcome(request), "1 3 5:0001 7") << which << ", to " << roll;
+    }
+  }
+}
+
 /// A finger of the file that slides by 0.3 m and is somebody else's: where it is nobody tells the arm.
 TEST(RobotArmThatCarries, LeadsNoFingerOfSomebodyElseIntoAVolumeThatItMayReach) {
   std::string text = descriptor::file_system()(std::string{folder} + "robot_arm.urdf").value();

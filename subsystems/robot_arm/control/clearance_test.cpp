@@ -94,6 +94,23 @@ TEST_F(ClearanceTest, SeesWhatTheTipCarriesAndForgetsIt) {
   EXPECT_THAT(carrying.nearest(clear).names, HasSubstr("the tool and a volume"));
 }
 
+TEST_F(ClearanceTest, HasNothingOfWhatTheTipCarriesBehindTheTip) {
+  using Carried = robotics::Clearance::Carried;
+  robotics::Clearance carrying{model,
+                               shapes_of(testing::six_axes, descriptor::file_system()(testing::six_axes).value()).hulls,
+                               model.find_frame("tool").value()};
+  carrying.set_limit(0.02);
+  for (const double radius_m : {0.05, 0.066, 0.1})
+    for (const double length_m : {0.02, 0.3}) {
+      carrying.carry(Carried::Tool, {0, length_m, 0}, radius_m);
+      for (int roll = -6; roll <= 6; ++roll) {
+        JointVector rolled = clear;
+        rolled[4] = 0.1 * roll;
+        EXPECT_TRUE(carrying.keeps_limits(rolled)) << radius_m << " m, " << length_m << " m, " << rolled[4];
+      }
+    }
+}
+
 /// Three links in a row, of which the first and the last are `gap` apart with all joints at 0; the middle one is in nobody's way.
 [[nodiscard]] std::string row(double gap, const char* range) {
   const auto link = [](const std::string& name, const std::string& x) {
