@@ -47,7 +47,7 @@ struct SlowlyFlown : Flown {
     if (mode == DeviceMode::Active) under_way.push_back(commanded);
     else under_way.clear();
     if (under_way.size() > static_cast<std::size_t>(robotics::delay_cycles)) {
-      plant.step(under_way.front(), cycle_s);
+      plant.step(under_way.front(), cycle_s, &outside);
       under_way.pop_front();
     } else {
       plant.place(plant.measured().position);  // its brakes hold it until the first torque has come
@@ -98,7 +98,7 @@ TEST(RobotArmThatIsSlow, GoesWhereItIsToldToWithNothingChangedButItsCycleThoughI
 }
 
 TEST(RobotArmThatIsSlow, TellsWhatOfItsBandwidthIsInForce) {
-  for (const auto& [sampling_us, in_force] : {std::pair{1000, 40.0}, {2000, 40.0}, {4000, 20.0}, {8000, 10.0}}) {
+  for (const auto& [sampling_us, in_force] : {std::pair{1000, 40.0}, {2000, 40.0}, {4000, 20.0}}) {
     SlowlyFlown flown{sampling_us, 1};
     flown.rig.bring_to(State::PreOperational, 1);
     flown.cycle(5);
@@ -111,11 +111,30 @@ TEST(RobotArmThatIsSlow, TellsWhatOfItsBandwidthIsInForce) {
   }
 }
 
+/// 1 kg at 0.2 m, on the joint that moves the least: of poles of 10 rad/s it would be 59 mrad off for ever.
+TEST(RobotArmThatIsSlow, LearnsALoadThatNobodyDeclaredWithTheLongestCycleThatIsTaken) {
+  const JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
+  const JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
+  SlowlyFlown flown{static_cast<int>(1e6 * robotics::longest_cycle_s + 0.5), 1};
+  flown.plant.place(start);
+  flown.outside[5] = 2;
+  flown.operate();
+  flown.cycle(static_cast<int>(4 / robotics::longest_cycle_s));
+  EXPECT_LT(flown.off(start), 1e-3);
+  const auto request = flown.move_j(goal);
+  flown.finish(request);
+  EXPECT_EQ(flown.rig.outcome(request), "1 3 5:0001 7");
+  EXPECT_LE(flown.off(goal), 1e-3);
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+}
+
 TEST(RobotArmThatIsSlow, IsNotConfiguredWithACycleThatLeavesNoLaw) {
-  SlowlyFlown flown{10'000, 1};
-  ASSERT_EQ(flown.rig.set_state_now(State::PreOperational), "1 3 7");
-  EXPECT_THAT(flown.rig.configure_now(1), StartsWith("1 3 8:"));
-  EXPECT_THAT(flown.rig.explanations, Contains(HasSubstr("sampling_us is too long")));
+  for (const int sampling_us : {5000, 8000, 10'000}) {
+    SlowlyFlown flown{sampling_us, 1};
+    ASSERT_EQ(flown.rig.set_state_now(State::PreOperational), "1 3 7");
+    EXPECT_THAT(flown.rig.configure_now(1), StartsWith("1 3 8:")) << sampling_us;
+    EXPECT_THAT(flown.rig.explanations, Contains(HasSubstr("sampling_us is too long"))) << sampling_us;
+  }
 }
 
 }  // namespace

@@ -11,9 +11,7 @@
 namespace hirosco::robot_arm {
 
 Result<> TorqueControl::begin(double cycle_s) {
-  if (cycle_s > robotics::longest_cycle_s)
-    return fail(ErrorCode::OutOfRange, "sampling_us is too long for any law of this arm: at most, us",
-                static_cast<std::int64_t>(1e6 * robotics::longest_cycle_s));
+  HIROSCO_TRY(robotics::check_cycle(cycle_s));
   laws_.emplace(parts_.known.model(), parts_.known.tip(), cycle_s);
   fastest_rad_s_ = robotics::fastest_rad_s(cycle_s);
   const double wanted = parts_.parameters.bandwidth_rad_s.load();

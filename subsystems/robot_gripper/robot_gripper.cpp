@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "robotics/motion/sampled_rates.hpp"
 namespace hirosco {
 
 using robot_gripper::Excess;
@@ -49,6 +50,7 @@ void RobotGripper::bind_functions() {
 Result<> RobotGripper::configure(const descriptor::Configuration& configuration) {
   HIROSCO_TRY(drives_.check_lengths(known_.joints()));
   cycle_s_ = seconds(configuration.sampling);
+  HIROSCO_TRY(robotics::check_cycle(cycle_s_));
   HIROSCO_TRY(known_.reckon(parameters_.rotor_inertia.load(), parameters_.full_width_m.load()));
   HIROSCO_TRY(take_values());
   handling_.forget();

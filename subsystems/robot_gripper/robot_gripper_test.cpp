@@ -321,16 +321,16 @@ TEST_P(RobotGripperRefuses, WhatDoesNotFitTogether) {
   EXPECT_THAT(rig.explanations, Contains(HasSubstr(told)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Descriptors, RobotGripperRefuses,
-                         ::testing::Values(Wrong{"robot_gripper.urdf\"/>", "nowhere.urdf\"/>", "nowhere.urdf"},
-                                           Wrong{"name=\"CLOSED\" value=\"lower\"", "name=\"CLOSED\" value=\"left\"",
-                                                 "CLOSED of GRIPPER is 'left'"},
-                                           Wrong{"name=\"CLOSED\" value=\"lower\"", "name=\"FINGERS\" value=\"thumb\"",
-                                                 "has no joint 'thumb'"},
-                                           Wrong{
-                                               R"(name="POSITION" id="100" type="DOUBLE" count="1")",
-                                               R"(name="POSITION" id="100" type="DOUBLE" count="2")",
-                                               "CUR_VALUES.POSITION has another length than there are finger joints"}));
+INSTANTIATE_TEST_SUITE_P(
+    Descriptors, RobotGripperRefuses,
+    ::testing::Values(
+        Wrong{"sampling_us=\"1000\"", "sampling_us=\"5000\"", "sampling_us is too long"},
+        Wrong{"robot_gripper.urdf\"/>", "nowhere.urdf\"/>", "nowhere.urdf"},
+        Wrong{"name=\"CLOSED\" value=\"lower\"", "name=\"CLOSED\" value=\"left\"", "CLOSED of GRIPPER is 'left'"},
+        Wrong{"name=\"CLOSED\" value=\"lower\"", "name=\"FINGERS\" value=\"thumb\"", "has no joint 'thumb'"},
+        Wrong{R"(name="POSITION" id="100" type="DOUBLE" count="1")",
+              R"(name="POSITION" id="100" type="DOUBLE" count="2")",
+              "CUR_VALUES.POSITION has another length than there are finger joints"}));
 
 }  // namespace
 }  // namespace hirosco

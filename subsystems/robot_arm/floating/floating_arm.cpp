@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "robotics/motion/sampled_rates.hpp"
 #include "subsystems/robot_arm/floating/floating_trouble.hpp"
 
 namespace hirosco {
@@ -45,6 +46,7 @@ Result<Step> FloatingArm::software_init() {
 Result<> FloatingArm::configure(const descriptor::Configuration& configuration) {
   HIROSCO_TRY(check_lengths());
   const double cycle_s = seconds(configuration.sampling);
+  HIROSCO_TRY(robotics::check_cycle(cycle_s));
   craft_.begin(configuration.requires_.empty()            ? ToolLaw::FixedBase
                : configuration.name == hold_configuration ? ToolLaw::AttitudeHold
                                                           : ToolLaw::InertialTrack,

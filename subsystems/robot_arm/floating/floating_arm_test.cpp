@@ -146,5 +146,16 @@ TEST_F(FloatingArmWay, IsGoneByNobodyWhoIsToldToHoldWhileItIsJudged) {
   EXPECT_LT(flown.fastest, 1e-6);
 }
 
+TEST(FloatingArmThatIsSlow, IsNotConfiguredWithACycleThatLeavesNoLaw) {
+  std::string text = floating_descriptor();
+  constexpr std::string_view cycle = "sampling_us=\"1000\"";
+  text.replace(text.find(cycle), cycle.size(), "sampling_us=\"5000\"");
+  const auto author = make_floating_arm();
+  hirosco::testing::Rig rig{*author, text};
+  ASSERT_EQ(rig.set_state_now(State::PreOperational), "1 3 7");
+  EXPECT_THAT(rig.configure_now(1), StartsWith("1 3 8:"));
+  EXPECT_THAT(rig.explanations, ::testing::Contains(HasSubstr("sampling_us is too long")));
+}
+
 }  // namespace
 }  // namespace hirosco

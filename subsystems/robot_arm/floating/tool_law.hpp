@@ -18,7 +18,7 @@ enum class ToolLaw : std::uint8_t {
 /// Below it AttitudeHold is refused: joints would have to run.
 inline constexpr double least_conditioning = 0.05;
 
-/// Joints follow the velocities that are asked of them with it, 1/s.
+/// Joints follow the velocities that are asked of them with it, 1/s: of the longest cycle that is taken (docs/adr/0193) a quarter of what leaves it stable.
 inline constexpr double followed_per_s = 40;
 
 /// Where the tool is to be, and how fast, in inertial axes.
