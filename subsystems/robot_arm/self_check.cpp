@@ -8,7 +8,9 @@ namespace hirosco::robot_arm {
 namespace {
 
 constexpr double rest_rad_s = 0.02;
-constexpr double past_end = 0.05;
+constexpr double rest_m_s = 0.002;
+/// rad or m, and of a joint's range.
+constexpr double most_past_end = 0.05;
 constexpr double displacement = 0.01;
 
 }  // namespace
@@ -32,10 +34,11 @@ Result<> SelfCheck::check_sensors() const noexcept {
     const auto i = static_cast<Eigen::Index>(joint);
     const auto number = static_cast<std::int64_t>(joint + 1);
     // Written so that what is no number fails.
-    if (!(std::abs(measured.velocity[i]) < rest_rad_s))
+    const bool slides = parts_.known.model().joints()[joint].kind == robotics::JointKind::Prismatic;
+    if (!(std::abs(measured.velocity[i]) < (slides ? rest_m_s : rest_rad_s)))
       return fail(ErrorCode::Internal, "it moves though nothing drives it, joint", number);
-    if (!(measured.position[i] > bounds[joint].lowest - past_end &&
-          measured.position[i] < bounds[joint].highest + past_end))
+    const double past = past_end(bounds[joint], most_past_end);
+    if (!(measured.position[i] > bounds[joint].lowest - past && measured.position[i] < bounds[joint].highest + past))
       return fail(ErrorCode::Internal, "measured outside of its range, joint", number);
     if (!(std::abs(measured.torque[i]) < parts_.parameters.torque_limit.load() * bounds[joint].effort))
       return fail(ErrorCode::Internal, "its load at rest is above its limit, joint", number);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -42,6 +43,11 @@ struct JointBounds {
   robotics::MotionLimits motion{};
 };
 using Bounds = std::span<const JointBounds>;
+
+/// rad or m beyond its range, which may be that of a short slider: no more than this, nor than this share of the range.
+[[nodiscard]] inline double past_end(const JointBounds& bounds, double most) noexcept {
+  return most * std::min(1.0, bounds.highest - bounds.lowest);
+}
 
 /// Where the arm is to be, how fast, and what that takes.
 struct Setpoint {

@@ -24,7 +24,8 @@ std::optional<Finding> Watch::update(const Measured& measured, const JointVector
     const auto i = static_cast<Eigen::Index>(joint);
     const JointBounds& its = bounds[joint];
     const double position = measured.position[i], speed = measured.velocity[i], torque = measured.torque[i];
-    const double lowest = its.lowest - limits.past_end, highest = its.highest + limits.past_end;
+    const double past = past_end(its, limits.past_end);
+    const double lowest = its.lowest - past, highest = its.highest + past;
     look(Excess::Position, joint, position, position < lowest ? its.lowest : its.highest,
          position >= lowest && position <= highest);
     const double fastest = limits.speed_share * its.motion.velocity;

@@ -30,7 +30,7 @@ struct Finding {
 class Watch {
  public:
   struct Limits {
-    double past_end{0.02};  ///< rad or m beyond the joint's range
+    double past_end{0.02};  ///< rad or m beyond the joint's range, and no more than this share of it
     double speed_share{1.1};  ///< of its velocity
     double torque_share{0.8};  ///< of its effort, that is told softly
     double torque_hard_share{0.95};

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <tuple>
 
 #include "subsystems/robot_arm/control/watch.hpp"
 
@@ -59,6 +60,18 @@ TEST_P(WatchTest, TellsTheSecondOfThreeSamplesBeyondALimitOnceAndByName) {
 INSTANTIATE_TEST_SUITE_P(Each, WatchTest,
                          ::testing::Values(Case{Excess::Position, 2.019, 2.021}, Case{Excess::Speed, 3.29, 3.31},
                                            Case{Excess::Torque, 7.99, 8.01}, Case{Excess::Following, 0.099, 0.101}));
+
+TEST(Watch, TellsAShortSliderByItsOwnRange) {
+  const std::array<JointBounds, 2> sliders{JointBounds{0, 0.1, 100, {2, 4, 40}}, JointBounds{0, 1, 100, {2, 4, 40}}};
+  for (const auto& [joint, position, permitted] :
+       {std::tuple{0, 0.1019, true}, {0, 0.1021, false}, {0, -0.0021, false}, {1, 1.019, true}, {1, 1.021, false}}) {
+    Watch watch;
+    Measured measured = rest();
+    measured.position[joint] = position;
+    for (int i = 0; i < 2; ++i) static_cast<void>(watch.update(measured, nullptr, sliders, {}));
+    EXPECT_EQ(watch.tripped().has_value(), !permitted) << joint << " at " << position;
+  }
+}
 
 TEST(Watch, TakesATorqueThatIsNoNumberForBeyondTheHardLimit) {
   Watch watch;
