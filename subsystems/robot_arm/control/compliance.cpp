@@ -7,8 +7,10 @@
 namespace hirosco::robot_arm {
 namespace {
 
-/// A joint's spring before the end of its range: it takes the whole effort at the end.
+/// A joint's spring before the end of its range: it takes the whole effort at the end. As far as a short cycle has it begin before that, rad or m; one that a longer cycle
+/// softens begins farther away, up to such a share of the range, and beyond that takes less than the effort.
 constexpr double wall = 0.1;
+constexpr double widest_wall_share = 0.25;
 constexpr double soft_edge = 0.02;
 /// A damper before a joint's velocity begins at this share of it; it takes the whole effort in the end.
 constexpr double brisk_share = 0.7;
@@ -36,9 +38,11 @@ constexpr double heaviest = 1e3;
 [[nodiscard]] double walls(const Setpoint& wanted, const Measured& measured, Eigen::Index joint, double moved,
                            const JointBounds& bounds, double fastest_rad_s) noexcept {
   const double position = measured.position[joint], speed = measured.velocity[joint], aim = wanted.position[joint];
-  const double below = std::max(bounds.lowest, std::min(bounds.lowest + wall, aim)) - position;
-  const double above = position - std::min(bounds.highest, std::max(bounds.highest - wall, aim));
   const double spring = std::min(bounds.effort / wall, fastest_rad_s * fastest_rad_s * moved);
+  const double widest = std::max(wall, widest_wall_share * (bounds.highest - bounds.lowest));
+  const double width = std::clamp(bounds.effort / spring, wall, widest);
+  const double below = std::max(bounds.lowest, std::min(bounds.lowest + width, aim)) - position;
+  const double above = position - std::min(bounds.highest, std::max(bounds.highest - width, aim));
   double torque = 0;
   const double depth = std::max(below, above);
   if (depth > 0)

@@ -122,6 +122,26 @@ TEST(SlowCycles, LeaveAnArmThatIsPushedTowardsTheEndOfARangeAtRest) {
   }
 }
 
+/// Whose spring a cycle softens begins it farther from the end: nine tenths of the effort are stopped before that all the same.
+TEST(SlowCycles, LeaveNobodyBeyondTheEndOfARangeWhoPushesWithLessThanTheEffort) {
+  for (const double cycle_s : {0.001, 0.002, 0.004}) {
+    Late arm{cycle_s, 1, std::min(widest_rad_s, robotics::fastest_rad_s(cycle_s))};
+    arm.laws.set(LawKind::Float);
+    const JointBounds& its = arm.bounds[5];
+    const double fastest = robotics::fastest_rad_s(cycle_s);
+    JointVector there = arm.start;
+    there[5] = its.highest - std::max(0.1, its.effort / (fastest * fastest * rotor)) - 0.01;
+    arm.plant.place(there);
+    JointVector push = JointVector::Zero(6);
+    constexpr double grows_s = 5;
+    for (double t = 0; t < grows_s + 1; t += cycle_s) {
+      push[5] = 0.9 * its.effort * std::min(1.0, t / grows_s);
+      arm.cycle(&push);
+      ASSERT_LT(arm.plant.measured().position[5], its.highest) << cycle_s << " s, after " << t;
+    }
+  }
+}
+
 TEST(SlowCycles, LeaveRatesThatShrinkAsTheyBecomeLonger) {
   EXPECT_DOUBLE_EQ(robotics::fastest_rad_s(0.001), 80);
   EXPECT_DOUBLE_EQ(robotics::fastest_rad_s(0.004), 20);
