@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/limit_watch.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "subsystems/robot_arm/trouble.hpp"
@@ -11,6 +12,10 @@ namespace {
 
 /// Until then drives may not yet give what they are told, and what brakes held would be taken for something from outside.
 constexpr double felt_after_s = 0.05;
+/// Brakes that take longer to open leave drives without torque, which those then tell: so long at most.
+constexpr double opened_after_s = 0.5;
+/// Of the largest torque that is commanded: who gives less does not give it yet.
+constexpr double gives_share = 0.1;
 
 }  // namespace
 
@@ -36,8 +41,18 @@ WorkWatch::Is LimitWatch::work() const noexcept {
 
 bool LimitWatch::feels() const noexcept { return free_s_ > felt_after_s; }
 
+/// What is no number counts as given: it is beyond every limit, and is not to be waited for.
+bool LimitWatch::gives() const noexcept {
+  double wanted = 0;
+  for (const double torque : parts_.drives.puts_out()) wanted = std::max(wanted, std::abs(torque));
+  return !(parts_.drives.measured().torque.cwiseAbs().maxCoeff() < gives_share * wanted);
+}
+
 std::optional<WorkFinding> LimitWatch::update_work(bool free) noexcept {
-  free_s_ = free ? free_s_ + cycle_s_ : 0;
+  waited_s_ = free ? waited_s_ + cycle_s_ : 0;
+  const bool opening = waited_s_ > felt_after_s && !feels() && waited_s_ <= opened_after_s && !gives();
+  if (!free) free_s_ = 0;
+  else if (!opening) free_s_ += cycle_s_;
   return work_.update(work(), work_limits(), feels());
 }
 

@@ -26,7 +26,7 @@ class LimitWatch {
 
   /// In configure().
   void begin(double cycle_s) noexcept { cycle_s_ = cycle_s; }
-  void arm() noexcept { watch_.arm(), work_.arm(), free_s_ = 0; }
+  void arm() noexcept { watch_.arm(), work_.arm(), free_s_ = waited_s_ = 0; }
   /// Something was told since it was armed.
   [[nodiscard]] bool tripped() const noexcept { return watch_.tripped().has_value() || work_.tripped(); }
   /// Each cycle: what is to be told now; nothing mostly. `setpoint` null: nobody is to follow it.
@@ -50,13 +50,15 @@ class LimitWatch {
  private:
   [[nodiscard]] WorkWatch::Is work() const noexcept;
   [[nodiscard]] bool feels() const noexcept;
+  [[nodiscard]] bool gives() const noexcept;
   [[nodiscard]] Outcome below(double share, const JointVector& torque) const noexcept;
 
   Parts parts_;
   Watch watch_;
   WorkWatch work_;
   double cycle_s_{0.001};
-  double free_s_{0};  ///< since brakes have let it go
+  double free_s_{0};  ///< since brakes have let it go, as far as drives tell
+  double waited_s_{0};  ///< since they were told to
 };
 
 }  // namespace hirosco::robot_arm
