@@ -19,7 +19,7 @@ class LimitWatch {
  public:
   struct Parts {
     const UrdfArm& known;
-    const Drives& drives;
+    Drives& drives;
     Parameters& parameters;
   };
   explicit LimitWatch(const Parts& parts) noexcept : parts_{parts} {}

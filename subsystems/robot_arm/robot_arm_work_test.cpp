@@ -277,5 +277,36 @@ INSTANTIATE_TEST_SUITE_P(
                       About{"BrakesForStop", [](RobotArmWork& arm) { RobotArmWorkWhile::brake(arm, "STOP"); }}),
     [](const ::testing::TestParamInfo<About>& about) { return about.param.what; });
 
+/// Brakes that open in 0.2 s, and drives that tell no torque until then.
+struct SlowlyLetGo : robot_arm::testing::Flown {
+  using Flown::Flown;
+  int active{0};
+  std::vector<double> play(std::span<const double> torques) override {
+    active = mode == DeviceMode::Active ? active + 1 : 0;
+    std::vector<double> numbers = Flown::play(torques);
+    if (active > 200 || active == 0) return numbers;
+    plant.place(held);
+    for (std::size_t i = 0; i < n; ++i)
+      numbers[i] = held[static_cast<Eigen::Index>(i)], numbers[n + i] = numbers[2 * n + i] = 0;
+    return numbers;
+  }
+  robot_arm::JointVector held;
+};
+
+TEST(RobotArmWhoseBrakesOpenSlowly, FeelsNoForceOfThem) {
+  SlowlyLetGo flown{6, std::string{robot_arm::testing::folder} + "robot_arm.urdf"};
+  flown.held = robot_arm::vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
+  flown.plant.place(flown.held);
+  flown.rig.bring_to(State::PreOperational, 1);
+  flown.cycle(5);
+  const auto limit = flown.ask("SET_FORCE_LIMIT", {60});
+  flown.cycle(3);
+  ASSERT_EQ(flown.rig.outcome(limit), "1 3 7");
+  flown.command(State::SafeOperational);
+  flown.command(State::Operational);
+  flown.cycle(1000);
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+}
+
 }  // namespace
 }  // namespace hirosco
