@@ -308,5 +308,28 @@ TEST(RobotArmWhoseBrakesOpenSlowly, FeelsNoForceOfThem) {
   EXPECT_EQ(flown.rig.inhibited(), 0u);
 }
 
+/// 5 mm/s are no rest, where 5 mrad/s are.
+TEST(RobotArmThatSlides, PassesItsSelfTestAtRestAlone) {
+  const std::string file = robot_arm::testing::file_with(
+      "slider.urdf",
+      "<robot name='slider'><link name='base'/><joint name='a' type='prismatic'><parent link='base'/><child "
+      "link='tool'/>"
+      "<axis xyz='1 0 0'/><limit lower='0' upper='0.1' velocity='1' effort='50'/></joint><link name='tool'><inertial>"
+      "<mass value='1'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial></link></robot>");
+  for (const auto& [speed_m_s, passes] : {std::pair{0.001, true}, {0.005, false}}) {
+    robot_arm::testing::Flown slider{1, file};
+    slider.plant.place(robot_arm::vector_of(std::array{0.05}));
+    slider.told = slider.plant.measured();
+    slider.told->velocity[0] = speed_m_s;
+    slider.rig.bring_to(State::PreOperational, 1);
+    slider.cycle(5);
+    slider.command(State::SafeOperational);
+    const auto request = slider.rig.send(17, 128, {});
+    slider.cycle(40);
+    const std::string outcome = slider.rig.outcome(request);
+    EXPECT_EQ(outcome.find('7') != std::string::npos, passes) << outcome;
+  }
+}
+
 }  // namespace
 }  // namespace hirosco
