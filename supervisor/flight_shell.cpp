@@ -271,12 +271,13 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   if (realtime) keep_code_in_memory();
   static_cast<void>(realtime ? set_fifo_priority(supervisor_priority) : ask_for_short_slices());
   EpochFile epochs{std::filesystem::path{log_path}.replace_extension(".epoch")};
-  const auto first_epoch = goes_on ? epochs.next(clock.onboard()) : epochs.first(clock.onboard());
+  const auto first_epoch = goes_on ? epochs.next(clock.onboard(), page.epoch_in_use.load()) : epochs.first(clock.onboard());
   if (!first_epoch) {
     if (goes_on || !log_refused())
       errors.say(fmt::format("hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text));
     return exit_environment;
   }
+  page.epoch_in_use.store(*first_epoch);  // before anybody is told it: the file may never have it
   Guard guard{
       {.clock = clock, .flows = flows, .first_epoch = *first_epoch, .notes = keeper.notes(mission), .on_finding = [&] {
          guard_found->notify();
@@ -387,7 +388,9 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
         console.told(clock.onboard(), *why);
         supervisor.request_shutdown("the supervisor: " + std::string{*why});
       }
-      epochs.keep_above(guard.highest_epoch());
+      const std::uint32_t epoch_in_use = guard.highest_epoch();
+      page.epoch_in_use.store(epoch_in_use);
+      epochs.keep_above(epoch_in_use);
       if (clock.now() < next_status) continue;
       next_status += console.period();
       console.show(overview_of(mission, supervisor), clock.now() - started);

@@ -74,7 +74,7 @@ inline constexpr std::size_t most_ends = 64;
 struct KeeperPage {
   /// Of this layout. Keeper and supervisor of one flight are of one build; whoever finds another number knows nothing of what is there, not
   /// even whether a craft flies already.
-  static constexpr std::uint64_t layout_now = 0x484B'5047'0000'0002;  // "HKPG"
+  static constexpr std::uint64_t layout_now = 0x484B'5047'0000'0003;  // "HKPG"
   std::atomic<std::uint64_t> layout{layout_now};
   std::atomic<std::uint64_t> keeper{0};
   std::atomic<std::uint64_t> supervisor{0};
@@ -90,6 +90,8 @@ struct KeeperPage {
   std::atomic<std::int64_t> log_run{0};  ///< of the records of this flight's log, as on-board time in ns; 0: none yet
   std::atomic<std::uint64_t> log_number{0};  ///< of the newest record
   std::atomic<std::uint64_t> log_durable{0};  ///< up to here they are on the disk
+  /// Of devices, the highest that a supervisor has noted as in use. Its file may be behind: whoever goes on begins above both.
+  std::atomic<std::uint32_t> epoch_in_use{0};
   std::atomic<std::uint32_t> end_asked{0};  ///< number of the signal that asked for an end; 0: none did
   std::atomic<std::uint32_t> database{
       0};  ///< of the log since SET_DATABASE: 1 and a DatabaseStrategy; 0: the mission's

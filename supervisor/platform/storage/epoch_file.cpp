@@ -24,6 +24,8 @@ namespace {
 constexpr std::uint32_t block = 65'536;
 /// After a write that failed: so many more are used before the next.
 constexpr std::uint32_t pause = 64;
+/// A supervisor notes once in each step what is in use: its guard has used fewer than so many since.
+constexpr std::uint64_t most_unnoted = 4096;
 /// A number too close to the end is refused while somebody can still do something about it.
 constexpr std::uint32_t last_first = std::numeric_limits<std::uint32_t>::max() - 1'000'000;
 /// 2020-01-01 after 1958-01-01, the epoch of on-board time (TAI, without leap seconds).
@@ -61,11 +63,11 @@ EpochFile::EpochFile(std::filesystem::path path) : file_{std::make_shared<File>(
 const std::filesystem::path& EpochFile::path() const noexcept { return file_->path; }
 std::uint32_t EpochFile::kept() const noexcept { return file_->kept.load(std::memory_order_acquire); }
 
-Result<std::uint32_t> EpochFile::above_kept(OnboardTime now) const {
+Result<std::uint32_t> EpochFile::above_kept(OnboardTime now, std::uint64_t used) const {
   std::uint64_t kept = 0;
   std::ifstream{path()} >> kept;
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now.time_since_epoch()).count() - year_2020_s;
-  const std::uint64_t first = std::max({kept + 1, static_cast<std::uint64_t>(std::max<std::int64_t>(seconds, 1))});
+  const std::uint64_t first = std::max({kept + 1, used + 1, static_cast<std::uint64_t>(std::max<std::int64_t>(seconds, 1))});
   if (first > last_first)
     return fail(ErrorCode::OutOfRange, "the epochs of devices have run out: reset the devices, then remove this file",
                 static_cast<std::int64_t>(kept));
@@ -79,8 +81,8 @@ Result<std::uint32_t> EpochFile::first(OnboardTime now) {
   return number;
 }
 
-Result<std::uint32_t> EpochFile::next(OnboardTime now) {
-  HIROSCO_TRY_LET(const std::uint32_t number, above_kept(now));
+Result<std::uint32_t> EpochFile::next(OnboardTime now, std::uint32_t noted) {
+  HIROSCO_TRY_LET(const std::uint32_t number, above_kept(now, noted != 0 ? noted + most_unnoted : 0));
   next_try_ = number + pause;
   keep_in_a_thread(number + block);
   return number;

@@ -76,21 +76,42 @@ TEST_F(EpochFileTest, WhoGoesOnIsHeldUpByNoDiskAndIsAboveWhatWasKept) {
   beside += ".new";
   ASSERT_EQ(::mkfifo(beside.c_str(), 0600), 0);
   EpochFile file{path};
-  const auto next = file.next(seconds_after_2020(11));
+  const auto next = file.next(seconds_after_2020(11), first);
   ASSERT_TRUE(next);
   EXPECT_GT(*next, first + 60'000);
   std::string text;
   std::ifstream{beside} >> text;  // its thread is still at it
   EXPECT_GT(std::stoul(text), *next) << text;
   std::filesystem::remove(beside);
-  EXPECT_EQ(EpochFile{path}.next(seconds_after_2020(10)).value(), *next) << "nobody has kept it by then";
+}
+
+TEST_F(EpochFileTest, SupervisorsThatFollowEachOtherWhileNothingCanBeKeptNeverUseAnEpochTwice) {
+  const auto first = EpochFile{path}.first(seconds_after_2020(10)).value();
+  // Nobody can make the file beside it any more.
+  auto beside = path;
+  beside += ".new";
+  std::filesystem::create_directory(beside);
+  std::uint32_t in_use = first;
+  for (int death = 0; death < 5; ++death) {
+    const auto next = EpochFile{path}.next(seconds_after_2020(11), in_use);
+    ASSERT_TRUE(next);
+    EXPECT_GT(*next, in_use + 4'000) << "what its guard has used since that was noted, too";
+    in_use = *next + 100;
+  }
+}
+
+TEST_F(EpochFileTest, WhoGoesOnAfterOneThatHadNotedNothingIsAboveTheFile) {
+  const auto first = EpochFile{path}.first(seconds_after_2020(10)).value();
+  EXPECT_EQ(EpochFile{path}.next(seconds_after_2020(10), 0).value(), first + 65'536 + 1);
 }
 
 TEST_F(EpochFileTest, NumbersThatHaveRunOutAreRefused) {
   std::filesystem::create_directories(path.parent_path());
   std::ofstream{path} << 0xFFFF'FFFFu;
   EXPECT_EQ(EpochFile{path}.first(seconds_after_2020(10)).error().code, ErrorCode::OutOfRange);
-  EXPECT_EQ(EpochFile{path}.next(seconds_after_2020(10)).error().code, ErrorCode::OutOfRange);
+  EXPECT_EQ(EpochFile{path}.next(seconds_after_2020(10), 0).error().code, ErrorCode::OutOfRange);
+  std::filesystem::remove(path);
+  EXPECT_EQ(EpochFile{path}.next(seconds_after_2020(10), 0xFFFF'FFFFu).error().code, ErrorCode::OutOfRange);
 }
 
 }  // namespace
