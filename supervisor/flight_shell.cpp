@@ -55,8 +55,6 @@ constexpr int supervisor_priority = 30;
 constexpr Duration last_wait = 2s;
 static_assert(ending_patience > 3 * last_wait, "the keeper ends nobody who waits for a disk at its end");
 constexpr Duration log_start_limit = 3s;
-/// Members fly on under a permission of two seconds: what a disk has not said by then is not waited for.
-constexpr Duration log_resumption_limit = 200ms;
 /// More than one step takes: 256 messages of each member, each of 1 kB and copied for log and ground.
 constexpr std::size_t memory_of_a_step = std::size_t{4} << 20;
 
@@ -250,9 +248,11 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   };
   log_options.number = &page.log_number;
   if (const auto run = page.log_run.load(); goes_on && run != 0) {
-    const LogResumption noted{OnboardTime{Duration{run}}, page.log_number.load(), page.log_durable.load()};
-    log_options.resume =
-        resumption_within(log_resumption_limit, noted, [log_path, noted] { return resumption_of(log_path, noted); });
+    log_options.resume = {OnboardTime{Duration{run}}, page.log_number.load(), page.log_durable.load()};
+    log_options.resolve = [log_path, strategy](Database& database, const LogResumption& noted) {
+      const LogResumption of_files = resumption_of(log_path, noted);
+      return strategy == DatabaseStrategy::Postgresql ? resumption_in(database, of_files) : std::optional{of_files};
+    };
   }
   ThreadedPacketLog log{clock, std::move(store), std::move(log_options)};
   written = &log;

@@ -3,10 +3,6 @@
 #include "supervisor/platform/storage/begin_log.hpp"
 
 #include <algorithm>
-#include <future>
-#include <system_error>
-#include <thread>
-#include <utility>
 
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/os/thread.hpp"
@@ -34,35 +30,28 @@ std::optional<std::string> why_not_begun(ThreadedPacketLog& log, const Clock& cl
   return trouble.present ? trouble.text : "the disk of the log does not answer";
 }
 
+std::optional<LogResumption> resumption_in(Database& database, LogResumption noted, std::uint64_t tail_octets) {
+  const auto page =
+      database.read({.since = noted.durable, .run = noted.run, .last = 1, .tail_octets = tail_octets});
+  if (!page && page.error().code == ErrorCode::Unavailable) return std::nullopt;
+  if (page && !page->records.empty()) {
+    const LogRecord& record = page->records.back();
+    noted.durable = std::max(noted.durable, record.number + (record.lost > 0 ? record.lost - 1 : 0));
+  }
+  noted.last = std::max(noted.last, noted.durable);
+  return noted;
+}
+
 LogResumption resumption_of(const std::filesystem::path& log, LogResumption noted) {
   const auto pieces = pieces_of(log);
   constexpr std::size_t newest = 2;
   constexpr std::uint64_t newest_octets = std::uint64_t{1} << 20;  // its last record, and some that are damaged
   for (std::size_t i = pieces.size(); i > 0 && pieces.size() - i < newest; --i) {
     auto opened = open_database(pieces[i - 1].strategy, pieces[i - 1].path, DatabaseAccess::Read);
-    if (!opened) continue;
-    const auto page =
-        (*opened)->read({.since = noted.durable, .run = noted.run, .last = 1, .tail_octets = newest_octets});
-    if (!page || page->records.empty()) continue;
-    const LogRecord& record = page->records.back();
-    const std::uint64_t reached = record.number + (record.lost > 0 ? record.lost - 1 : 0);
-    noted.durable = std::max(noted.durable, reached);
+    if (opened) noted = resumption_in(**opened, noted, newest_octets).value_or(noted);
   }
   noted.last = std::max(noted.last, noted.durable);
   return noted;
-}
-
-LogResumption resumption_within(Duration limit, LogResumption noted, std::function<LogResumption()> find) {
-  std::promise<LogResumption> promise;
-  auto found = promise.get_future();
-  try {
-    std::thread{[promise = std::move(promise), find = std::move(find)]() mutable {
-      promise.set_value(find());
-    }}.detach();
-  } catch (const std::system_error&) {  // no thread is left
-    return noted;
-  }
-  return found.wait_for(limit) == std::future_status::ready ? found.get() : noted;
 }
 
 }  // namespace hirosco::supervisor

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -22,10 +22,9 @@ void begin_log(ThreadedPacketLog& log);
 /// Realtime: blocks.
 [[nodiscard]] LogResumption resumption_of(const std::filesystem::path& log, LogResumption noted);
 
-/// The same for who must not wait for a disk: what was noted, where that does not answer within `limit` (docs/adr/0192). What it has beyond
-/// counts as lost then, and is there all the same.
-/// \param find In a thread of its own, which outlives this call where the disk holds it up.
-/// Realtime: waits for `limit` at most.
-[[nodiscard]] LogResumption resumption_within(Duration limit, LogResumption noted, std::function<LogResumption()> find);
+/// The same of one database, as one that is no file has to be asked itself. Empty: it cannot be reached now.
+/// Realtime: blocks.
+[[nodiscard]] std::optional<LogResumption> resumption_in(Database& database, LogResumption noted,
+                                                         std::uint64_t tail_octets = 0);
 
 }  // namespace hirosco::supervisor

@@ -6,7 +6,9 @@
 
 #include <fstream>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hirosco/pus/packet/packet.hpp"
@@ -146,19 +148,26 @@ TEST_F(ResumedLog, LooksAtTheEndOfATextOnly) {
   EXPECT_EQ(newest.back().number, many);
 }
 
-TEST(ResumptionWithin, IsWhatTheDiskSaysOrWhatWasNoted) {
-  const LogResumption noted{.run = OnboardTime{Duration{7}}, .last = 13, .durable = 4};
-  auto better = noted;
-  better.durable = 10;
-  EXPECT_EQ(resumption_within(long_enough, noted, [better] { return better; }).durable, 10U);
-  const auto stall = std::make_shared<Stall>();
-  const auto found = resumption_within(1ms, noted, [stall, better] {
-    stall->release.wait();
-    return better;
-  });
-  EXPECT_EQ(found.durable, 4U) << "the disk does not answer";
-  EXPECT_EQ(found.last, 13U);
-  stall->release.count_down();
+/// A server: reached or not.
+struct AskedDatabase final : Database {
+  explicit AskedDatabase(ErrorCode code) : code_{code} {}
+
+ private:
+  Result<> do_append(std::span<const LogRecord>) override { return ok(); }
+  Result<LogPage> do_read(const LogQuery&) override { return fail(code_, "asked"); }
+  [[nodiscard]] std::string_view do_strategy() const noexcept override { return "asked"; }
+  ErrorCode code_;
+};
+
+TEST_F(ResumedLog, IsToldByItsDatabaseAsSoonAsThatCanBeReached) {
+  MemoryDatabase memory;
+  ASSERT_TRUE(memory.append(batch_of(1, 10)));
+  EXPECT_EQ(resumption_in(memory, noted(13, 4))->durable, 10U);
+  EXPECT_EQ(resumption_in(memory, noted(13, 4))->last, 13U);
+  AskedDatabase away{ErrorCode::Unavailable};
+  EXPECT_FALSE(resumption_in(away, noted(13, 4)));
+  AskedDatabase nothing_there{ErrorCode::NotFound};
+  EXPECT_EQ(resumption_in(nothing_there, noted(13, 4))->durable, 4U) << "that is an answer";
 }
 
 TEST_F(ResumedLog, PassesOverAPieceThatCannotBeRead) {

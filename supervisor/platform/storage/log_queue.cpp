@@ -10,6 +10,10 @@
 namespace hirosco::supervisor {
 
 namespace {
+[[nodiscard]] std::uint32_t told_as_lost(std::uint64_t numbers) noexcept {
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(numbers, UINT32_MAX));
+}
+
 /// The share of the ring of telecommands and events that only events and actions may use: a quarter.
 constexpr std::size_t reserve_divisor = 4;
 
@@ -82,12 +86,20 @@ void LogQueue::resume(const LogResumption& from, OnboardTime stored, TimePoint m
   if (from.last <= from.durable) return;
   const std::uint64_t missing = from.last - from.durable;
   lost_ = missing;
-  gap_ = Gap{.first = from.durable + 1,
-             .last = from.last,
-             .lost = static_cast<std::uint32_t>(std::min<std::uint64_t>(missing, UINT32_MAX)),
-             .died = true,
-             .stored = stored,
-             .monotonic = monotonic};
+  inherited_ = Gap{.first = from.durable + 1,
+                   .last = from.last,
+                   .lost = told_as_lost(missing),
+                   .stored = stored,
+                   .monotonic = monotonic};
+}
+
+void LogQueue::found_on_disk(std::uint64_t durable) noexcept {
+  if (!inherited_ || durable < inherited_->first) return;
+  const std::uint64_t found = std::min(durable, inherited_->last);
+  lost_ -= found - inherited_->first + 1;
+  inherited_->first = found + 1;
+  inherited_->lost = told_as_lost(inherited_->last - found);
+  if (found == inherited_->last) inherited_.reset();
 }
 
 std::uint64_t LogQueue::push(const LogEntry& entry, OnboardTime stored, TimePoint monotonic) {
@@ -126,7 +138,7 @@ bool LogQueue::make_room(const LogEntry& entry) {
 
 void LogQueue::miss(std::uint64_t number, OnboardTime stored, TimePoint monotonic) {
   if (!gap_)
-    gap_ = Gap{.first = number, .last = number, .lost = 0, .died = false, .stored = stored, .monotonic = monotonic};
+    gap_ = Gap{.first = number, .last = number, .lost = 0, .stored = stored, .monotonic = monotonic};
   // A refused record may be followed by the loss of an older one.
   if (number < gap_->first) {
     gap_->first = number;
@@ -138,6 +150,7 @@ void LogQueue::miss(std::uint64_t number, OnboardTime stored, TimePoint monotoni
 }
 
 std::uint64_t LogQueue::next_waiting() const noexcept {
+  if (inherited_) return inherited_->first;
   std::uint64_t next = gap_ ? gap_->first : none;
   if (telemetry_.size() != 0) next = std::min(next, telemetry_.front().number);
   if (vital_.size() != 0) next = std::min(next, vital_.front().number);
@@ -148,26 +161,31 @@ void LogQueue::take(LogBatch& batch, std::size_t count, std::uint64_t up_to) {
   for (; count > 0 && !batch.full(); --count) {
     const std::uint64_t next = next_waiting();
     if (next == none || next > up_to) return;
-    if (gap_ && gap_->first == next) take_gap(batch);
-    else if (vital_.size() != 0 && vital_.front().number == next) take_from(vital_, batch);
-    else take_from(telemetry_, batch);
+    if (inherited_) {
+      take_gap(*inherited_, "the supervisor died before they were on the disk", batch);
+      inherited_.reset();
+    } else if (gap_ && gap_->first == next) {
+      take_gap(*gap_, "no room before the database", batch);
+      gap_.reset();
+    } else if (vital_.size() != 0 && vital_.front().number == next) {
+      take_from(vital_, batch);
+    } else {
+      take_from(telemetry_, batch);
+    }
   }
 }
 
-void LogQueue::take_gap(LogBatch& batch) {
+void LogQueue::take_gap(const Gap& gap, std::string_view why, LogBatch& batch) const {
   LogRecord& record = batch.add(0);
   record.run = run_;
-  record.number = gap_->first;
-  record.stored = gap_->stored;
-  record.monotonic = gap_->monotonic;
+  record.number = gap.first;
+  record.stored = gap.stored;
+  record.monotonic = gap.monotonic;
   record.kind = LogKind::Gap;
   record.source = 0;
   record.peer = 0;
-  record.lost = gap_->lost;
-  const char* const why =
-      gap_->died ? "the supervisor died before they were on the disk" : "no room before the database";
-  record.note = Note{std::string{why} + ", up to number " + std::to_string(gap_->last)};
-  gap_.reset();
+  record.lost = gap.lost;
+  record.note = Note{std::string{why} + ", up to number " + std::to_string(gap.last)};
 }
 
 void LogQueue::take_from(Ring& ring, LogBatch& batch) {

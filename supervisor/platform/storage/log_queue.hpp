@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "supervisor/platform/storage/database.hpp"
@@ -67,6 +68,10 @@ class LogQueue {
   LogQueue(const Limits& limits, OnboardTime run);
   /// Numbers go on from there; what was not on the disk is missing. Before the first record.
   void resume(const LogResumption& from, OnboardTime stored, TimePoint monotonic);
+  /// More of what the program that died had is on the disk than it had noted: up to this number. Before any of it is taken.
+  void found_on_disk(std::uint64_t durable) noexcept;
+  /// All records below what waits; before anything was taken they are on the disk.
+  [[nodiscard]] std::uint64_t before_waiting() const noexcept { return empty() ? last_number_ : next_waiting() - 1; }
   /// The number, or 0 when there is no room.
   std::uint64_t push(const LogEntry& entry, OnboardTime stored, TimePoint monotonic);
   /// Moves up to `count` records with numbers up to `up_to` into the batch, as far as it has room.
@@ -76,7 +81,7 @@ class LogQueue {
   [[nodiscard]] bool empty() const noexcept { return next_waiting() == none; }
   /// Number of the first waiting record, `none` without one.
   [[nodiscard]] std::uint64_t next_waiting() const noexcept;
-  [[nodiscard]] std::size_t waiting() const noexcept { return telemetry_.size() + vital_.size() + (gap_ ? 1 : 0); }
+  [[nodiscard]] std::size_t waiting() const noexcept { return telemetry_.size() + vital_.size() + (gap_ ? 1 : 0) + (inherited_ ? 1 : 0); }
   /// A telecommand, an event or an action waits.
   [[nodiscard]] bool vital_waiting() const noexcept { return vital_.size() != 0; }
   [[nodiscard]] std::uint64_t last_number() const noexcept { return last_number_; }
@@ -120,19 +125,19 @@ class LogQueue {
     std::uint64_t first{};
     std::uint64_t last{};
     std::uint32_t lost{};
-    bool died{false};  ///< the program that had them
     OnboardTime stored{};
     TimePoint monotonic{};
   };
 
   bool make_room(const LogEntry& entry);
   void miss(std::uint64_t number, OnboardTime stored, TimePoint monotonic);
-  void take_gap(LogBatch& batch);
+  void take_gap(const Gap& gap, std::string_view why, LogBatch& batch) const;
   void take_from(Ring& ring, LogBatch& batch);
 
   OnboardTime run_;
   Ring telemetry_;
   Ring vital_;
+  std::optional<Gap> inherited_;  ///< what the program had that died; before all others
   std::optional<Gap> gap_;
   std::uint64_t last_number_{0};
   std::uint64_t lost_{0};

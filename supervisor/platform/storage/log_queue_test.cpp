@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <random>
 
@@ -286,6 +287,37 @@ TEST(LogQueue, OfOneThatDiedWithEverythingOnTheDiskNothingIsMissing) {
   queue.resume({.run = OnboardTime{5s}, .last = 20, .durable = 20}, OnboardTime{51s}, TimePoint{1s});
   EXPECT_TRUE(queue.empty());
   EXPECT_EQ(push(queue, queued_telecommand()), 21U);
+}
+
+TEST(LogQueue, WhatIsFoundOnTheDiskIsNotMissingWhateverHasComeMeanwhile) {
+  for (std::uint64_t found = 16; found <= 25; ++found) {
+    LogQueue queue{{.telemetry_records = 2, .telemetry_octets = 1000}, OnboardTime{50s}};
+    queue.resume({.run = OnboardTime{5s}, .last = 20, .durable = 17}, OnboardTime{51s}, TimePoint{1s});
+    EXPECT_EQ(push(queue, queued_telecommand()), 21U);
+    for (std::uint64_t number = 22; number <= 24; ++number) EXPECT_EQ(push(queue, queued_telemetry()), number);
+    EXPECT_EQ(queue.before_waiting(), 17U);
+    queue.found_on_disk(found);
+    const std::uint64_t durable = std::clamp<std::uint64_t>(found, 17, 20);
+    EXPECT_EQ(queue.before_waiting(), durable) << found;
+    EXPECT_EQ(queue.lost(), 20 - durable + 1) << "of its own the oldest telemetry";
+    const auto all = take_all(queue);
+    std::uint64_t next = durable + 1;
+    for (const LogRecord& record : all) {
+      EXPECT_EQ(record.number, next) << found;
+      next += record.kind == LogKind::Gap ? record.lost : 1;
+    }
+    EXPECT_EQ(next, 25U) << found;
+  }
+}
+
+TEST(LogQueue, WhereAllIsFoundOnTheDiskNothingWaits) {
+  LogQueue queue{{}, OnboardTime{50s}};
+  queue.resume({.run = OnboardTime{5s}, .last = 20, .durable = 17}, OnboardTime{51s}, TimePoint{1s});
+  EXPECT_EQ(queue.waiting(), 1U);
+  queue.found_on_disk(20);
+  EXPECT_TRUE(queue.empty());
+  EXPECT_EQ(queue.waiting(), 0U);
+  EXPECT_EQ(queue.before_waiting(), 20U);
 }
 
 }  // namespace

@@ -103,7 +103,10 @@ class ThreadedPacketLog::Writer {
         queue_{options_.limits, clock.onboard()},
         database_{std::move(database)},
         batch_{options_.batch_records} {
-    if (options_.resume) queue_.resume(*options_.resume, clock.onboard(), clock.now());
+    if (options_.resume) {
+      queue_.resume(*options_.resume, clock.onboard(), clock.now());
+      durable_.store(options_.resume->durable);  // who asks is never told less than the one before had told
+    }
     run_ = queue_.run();
   }
 
@@ -212,8 +215,33 @@ class ThreadedPacketLog::Writer {
   }
 
   void work() {
+    if (options_.resume && options_.resolve) resolve(*options_.resume);
     while (next_step()) {}
     ended_.post();
+  }
+
+  /// What has reached the disk is neither counted as lost nor given to it again. Where it does not say before this ends or another database
+  /// is to take over, what was noted holds.
+  void resolve(const LogResumption& noted) {
+    auto found = options_.resolve(*database_, noted);
+    while (!found) {
+      TimePoint now{};
+      {
+        const LockGuard lock{mutex_};
+        if (abandoned_ || stopping_ || next_database_) return;
+        now = clock_.now();
+      }
+      static_cast<void>(work_.wait_until(now + locked_database_pause));
+      found = options_.resolve(*database_, noted);
+    }
+    {
+      const LockGuard lock{mutex_};
+      queue_.found_on_disk(found->durable);
+      durable_.store(queue_.before_waiting(), std::memory_order_release);
+      for (int i = 0; i < flushing_; ++i) progress_.post();
+    }
+    const LockGuard lock{callback_mutex_};
+    if (options_.on_progress) options_.on_progress();
   }
 
   /// One round of the thread; false when its work is over.

@@ -108,6 +108,10 @@ class ThreadedPacketLog final : public PacketLog {
     /// Goes on with the records of a log whose program died: with their run and their numbers. Those that it did not get to the disk
     /// stand in a gap.
     std::optional<LogResumption> resume{};
+    /// Asks the disk how far that log came, in the log's own thread before it stores anything: it may wait as long as the disk does, while
+    /// records get their numbers and wait behind (docs/adr/0192). Empty: it does not answer yet, and is asked again. Null: what was noted
+    /// is believed.
+    std::function<std::optional<LogResumption>(Database&, const LogResumption&)> resolve{};
     std::atomic<std::uint64_t>* number{nullptr};  ///< of the newest record, for who resumes this one; null: nobody does
   };
   /// `clock` is the real monotonic one and must outlive the log.
