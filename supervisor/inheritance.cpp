@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/inheritance.hpp"
 
+#include <fcntl.h>
+
 #include <utility>
 
 #include "hirosco/utilities/os/life.hpp"
@@ -13,6 +15,8 @@ Inheritance::Inheritance() {
   if (auto mapped = MappedMemory::map(keeper_page_descriptor, sizeof(KeeperPage), MapMode::ReadWrite)) {
     page_memory_ = std::move(*mapped);
     page_ = reinterpret_cast<KeeperPage*>(page_memory_.octets().data());
+  } else {
+    page_unreadable_ = ::fcntl(keeper_page_descriptor, F_GETFD) >= 0;
   }
   if (auto mapped = MappedMemory::map(keeper_journal_descriptor, journal_octets, MapMode::ReadWrite)) {
     journal_memory_ = std::move(*mapped);

@@ -25,7 +25,9 @@ class Inheritance {
 
   [[nodiscard]] KeeperPage& page() noexcept { return *page_; }
   /// False: the keeper is of another build, and nothing of what it holds can be told.
-  [[nodiscard]] bool fits() const noexcept { return page_->layout.load() == KeeperPage::layout_now; }
+  [[nodiscard]] bool fits() const noexcept {
+    return !page_unreadable_ && page_->layout.load() == KeeperPage::layout_now;
+  }
   /// There was a supervisor before this one.
   [[nodiscard]] bool goes_on() const noexcept { return page_->starts.load() > 1; }
   [[nodiscard]] StoreClient store() const noexcept;
@@ -45,6 +47,7 @@ class Inheritance {
   MappedMemory page_memory_, journal_memory_, texts_memory_;
   KeeperPage own_;
   KeeperPage* page_{&own_};
+  bool page_unreadable_{false};  ///< there is one, and it is shorter than ours
   std::optional<Journal> journal_;
   std::optional<TextsInForce> texts_;
 };

@@ -113,6 +113,19 @@ TEST_F(InheritanceTest, MemoryThatIsTooShortIsNotTaken) {
   EXPECT_EQ(inheritance.journal(), nullptr);
 }
 
+TEST_F(InheritanceTest, AKeeperWithAShorterPageIsOfAnotherBuildAndNotNone) {
+  const SharedMemory page = hold(keeper_page_descriptor, sizeof(KeeperPage) - 1);
+  EXPECT_FALSE(Inheritance{}.fits()) << "its craft may fly already";
+  ::close(keeper_page_descriptor);
+  EXPECT_TRUE(Inheritance{}.fits()) << "there is no keeper";
+}
+
+TEST_F(KeeperInheritance, AKeeperFitsWhosePageIsOfThisLayout) {
+  EXPECT_TRUE(Inheritance{}.fits());
+  page->layout = KeeperPage::layout_now - 1;
+  EXPECT_FALSE(Inheritance{}.fits());
+}
+
 TEST_F(InheritanceTest, WhatGuardsTellIsNotedInThePageThatItHas) {
   descriptor::Mission mission = testing::small_mission();
   for (const std::size_t member : {0U, 1U}) {

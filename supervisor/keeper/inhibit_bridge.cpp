@@ -89,7 +89,9 @@ bool InhibitBridge::has_all() const noexcept {
 
 void InhibitBridge::let_go() noexcept {
   for (Line& line : lines_) line.flow.reset();
-  page_.left_inhibits.store(start_, std::memory_order_release);
+  // Where a start was refused the one that takes over is a later one than was waited for.
+  page_.left_inhibits.store(std::max(start_, page_.wants_inhibits.load(std::memory_order_acquire)),
+                            std::memory_order_release);
 }
 
 void InhibitBridge::run() {

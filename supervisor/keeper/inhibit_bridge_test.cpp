@@ -164,6 +164,17 @@ TEST_F(Bridged, TheNextGuardFindsTheEndnodeFree) {
   EXPECT_TRUE(flows.open(address, FlowSide::Subsystem));
 }
 
+TEST_F(Bridged, AStartThatTheSystemRefusedLeavesTheEndnodeFreeForTheNextOne) {
+  page.inhibits[0].note(true, 77, 500);
+  bridge.begin_at(now);
+  ASSERT_TRUE(bridge.step(now));
+  page.starts.store(3);  // the second could not be made
+  page.wants_inhibits.store(3);
+  EXPECT_FALSE(bridge.step(now));
+  EXPECT_EQ(page.left_inhibits.load(), 3u) << "it would wait for that, and its devices stop";
+  EXPECT_TRUE(flows.open(address, FlowSide::Subsystem));
+}
+
 TEST_F(Bridged, AStopBeforeItBeginsHoldsWhenItDoes) {
   page.inhibits[0].note(true, 77, 500);
   bridge.stop();
