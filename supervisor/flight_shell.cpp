@@ -271,7 +271,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   if (realtime) keep_code_in_memory();
   static_cast<void>(realtime ? set_fifo_priority(supervisor_priority) : ask_for_short_slices());
   EpochFile epochs{std::filesystem::path{log_path}.replace_extension(".epoch")};
-  const auto first_epoch = goes_on ? epochs.next(clock.onboard(), page.epoch_in_use.load()) : epochs.first(clock.onboard());
+  const auto first_epoch =
+      goes_on ? epochs.next(clock.onboard(), page.epoch_in_use.load()) : epochs.first(clock.onboard());
   if (!first_epoch) {
     if (goes_on || !log_refused())
       errors.say(fmt::format("hirosco: {}: {}\n", epochs.path().string(), first_epoch.error().text));

@@ -79,8 +79,10 @@ std::vector<ResourceRow> ResourceMarks::rows(const descriptor::SubsystemDescript
   queue(Resource::CycleEvents, "cycle_events_kB", declared.queues.events_octets / kb);
   queue(Resource::CycleHousekeeping, "cycle_housekeeping_kB", declared.queues.housekeeping_octets / kb);
   if (subsystem.service_loops.empty()) return rows;
-  queue(Resource::LoopRequests, "queue of a loop",
-        std::ranges::min(subsystem.service_loops, {}, &descriptor::ServiceLoop::queue).queue);
+  // The share of the one that was fullest: which one of several that is nobody tells, so in no unit of theirs.
+  if (subsystem.service_loops.size() == 1)
+    queue(Resource::LoopRequests, "queue of a loop", subsystem.service_loops[0].queue);
+  else queue(Resource::LoopRequests, "fullest queue of a loop, %", all_percent);
   queue(Resource::LoopReports, "loop_reports_kB", declared.queues.loop_reports_octets / kb);
   return rows;
 }

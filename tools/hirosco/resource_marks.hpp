@@ -16,7 +16,7 @@ namespace hirosco::tools {
 
 /// What a subsystem declares of one resource beside the most that it has taken: as `<Resources>` calls it, in that unit.
 struct ResourceRow {
-  std::string attribute;  ///< "memory_kB", "Pool 64"; of loops of services what the fullest has
+  std::string attribute;  ///< "memory_kB", "Pool 64"; of several loops of services the share of the fullest, in percent
   std::optional<std::uint64_t> declared{};  ///< nothing: it is not limited
   std::uint64_t high{0};
   /// Of what is declared, rounded up; nothing where that is nothing.

@@ -67,5 +67,14 @@ TEST_F(ResourceMarksTest, OfLoopsOfServicesAreThereWhereItHasSome) {
   EXPECT_EQ(all.back(), "loop_reports_kB 64 2 4");
 }
 
+TEST_F(ResourceMarksTest, OfSeveralLoopsTheShareAloneIsToldAsNobodySaysWhichWasFullest) {
+  subsystem.service_loops.push_back({.name = "SLOW", .queue = 4});
+  subsystem.service_loops.push_back({.name = "SLOWER", .queue = 64});
+  marks.hear(std::vector<pus::HousekeepingValue>{{"RESOURCE_STATS.QUEUES_HIGH", "%", {0, 0, 0, 0, 75, 2}}});
+  const auto all = lines(marks.rows(subsystem));
+  ASSERT_GE(all.size(), 2U);
+  EXPECT_EQ(all[all.size() - 2], "fullest queue of a loop, % 100 75 75");
+}
+
 }  // namespace
 }  // namespace hirosco::tools

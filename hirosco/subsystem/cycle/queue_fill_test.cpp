@@ -174,5 +174,39 @@ TEST(QueuesOfASubsystem, OfALoopOfServicesAreToldToo) {
   EXPECT_EQ(warnings(rig)[0], (std::array<std::uint32_t, 3>{static_cast<std::uint32_t>(Resource::LoopRequests), 3, 4}));
 }
 
+TEST(QueuesOfASubsystem, OneRequestThatFillsASmallQueueOfALoopIsNoWarningAndOneThatIsRefusedIs) {
+  struct Store final : Subsystem {
+    CustomService store{"STORE"};
+    Result<> offline() override {
+      store.on_request("KEEP", []() -> Result<> { return ok(); });
+      provide(store);
+      return ok();
+    }
+  };
+  for (const std::uint32_t queue : {1U, 2U, 3U}) {
+    Store author;
+    Rig rig{author, R"(<Subsystem name="STORE" id="21">
+      <CustomService name="STORE" type="200"><Request name="KEEP" subtype="1"/></CustomService>
+      <ServiceLoop name="SLOW" period_us="20000" queue=")" +
+                        std::to_string(queue) + R"("/>
+      <Service name="STORE" loop="SLOW"/>
+      <Configuration name="C" id="1" sampling_us="1000"/></Subsystem>)"};
+    rig.bring_to(State::PreOperational);
+    const auto send = [&](std::uint32_t requests) {
+      for (std::uint32_t i = 0; i < requests; ++i) rig.send(200, 1, {});
+      rig.service();
+      rig.subsystem.own_loop_step(0, rig.clock.now());
+      tell(rig);
+    };
+    send(queue);
+    EXPECT_EQ(high(rig, Resource::LoopRequests), 100U);
+    EXPECT_TRUE(warnings(rig).empty()) << queue << ": it is made for that";
+    send(queue + 1);
+    ASSERT_EQ(warnings(rig).size(), 1U) << queue;
+    EXPECT_EQ(warnings(rig)[0],
+              (std::array<std::uint32_t, 3>{static_cast<std::uint32_t>(Resource::LoopRequests), queue, queue}));
+  }
+}
+
 }  // namespace
 }  // namespace hirosco

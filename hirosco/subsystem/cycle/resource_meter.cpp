@@ -53,11 +53,11 @@ void ResourceMeter::note_waiting(const descriptor::Waiting& most) noexcept {
     note(static_cast<Resource>(static_cast<std::size_t>(Resource::WaitingAnswers) + i), most[i]);
 }
 
-void ResourceMeter::note_queues(const QueueFills& fills) noexcept {
+void ResourceMeter::note_queues(const QueueFills& fills, const QueueFills& judged) noexcept {
   for (std::size_t i = 0; i < fills.size(); ++i) {
     if (fills[i].room == 0) continue;
-    queue_rooms_[i] = fills[i].room;
-    note(static_cast<Resource>(static_cast<std::size_t>(Resource::CycleCommands) + i), fills[i].most);
+    if (judged[i].room != 0) queue_rooms_[i] = judged[i].room;
+    note(static_cast<Resource>(static_cast<std::size_t>(Resource::CycleCommands) + i), judged[i].most);
     const std::uint8_t percent = fills[i].percent();
     queues_[i].store(percent, std::memory_order_relaxed);
     if (percent > queues_high_[i].load(std::memory_order_relaxed))

@@ -85,7 +85,8 @@ class ResourceMeter {
   /// How many messages have waited at once since this was said last.  Thread: service loop.
   void note_waiting(const descriptor::Waiting& most) noexcept;
   /// How full its queues have been since this was said last.  Thread: service loop.
-  void note_queues(const QueueFills& fills) noexcept;
+  /// \param judged What of it is warned of; a place without room: nothing.
+  void note_queues(const QueueFills& fills, const QueueFills& judged) noexcept;
   /// Tells each crossing once.  Realtime: bounded. Thread: service loop.
   void tell_crossings(const std::function<void(const Crossing&)>& tell);
 

@@ -159,7 +159,9 @@ void GenericSubsystem::look_at_resources(TimePoint now) {
   const OwnLoop::Fills of_loops = loops_.take_fills();
   queues[place_of(descriptor::Resource::LoopRequests)] = of_loops.requests;
   queues[place_of(descriptor::Resource::LoopReports)] = of_loops.reports;
-  resources_.note_queues(queues);
+  QueueFills judged = queues;
+  judged[place_of(descriptor::Resource::LoopRequests)] = of_loops.judged;
+  resources_.note_queues(queues, judged);
   resources_.tell_crossings([this](const ResourceMeter::Crossing& found) {
     const std::array<double, 5> arguments{static_cast<double>(found.resource), static_cast<double>(found.block_octets),
                                           static_cast<double>(found.used), static_cast<double>(found.limit),

@@ -14,6 +14,8 @@ namespace {
 /// In one step, in watched time: longer is no slow request any more.
 constexpr Duration least_hang = std::chrono::milliseconds{500};
 constexpr int hang_periods = 3;
+/// From so many requests on a queue that is nearly full is worth a warning; below that it is with what it is made for.
+constexpr std::uint32_t least_judged = 4;
 
 /// In front of a telecommand.
 struct Offered {
@@ -51,11 +53,13 @@ OwnLoop::OwnLoop(const Parts& parts)
 bool OwnLoop::offer(Octets packet, std::uint32_t mode_epoch) noexcept {
   const std::uint32_t waiting = waiting_.load(std::memory_order_acquire);
   in_mark_.note(std::min(waiting + 1, parts_.declared.queue), 0, 0);
-  if (waiting >= parts_.declared.queue) return false;
-  // Counted before it can be taken.
-  waiting_.fetch_add(1, std::memory_order_acq_rel);
-  if (in_.try_write(octets_of(Offered{mode_epoch}), packet)) return true;
-  waiting_.fetch_sub(1, std::memory_order_acq_rel);
+  if (waiting < parts_.declared.queue) {
+    // Counted before it can be taken.
+    waiting_.fetch_add(1, std::memory_order_acq_rel);
+    if (in_.try_write(octets_of(Offered{mode_epoch}), packet)) return true;
+    waiting_.fetch_sub(1, std::memory_order_acq_rel);
+  }
+  refused_ = true;
   return false;
 }
 
@@ -74,8 +78,11 @@ void OwnLoop::tell(const Listener& listener) {
 
 OwnLoop::Fills OwnLoop::take_fills() noexcept {
   in_mark_.note(waiting_.load(std::memory_order_acquire), 0, 0);
-  return {.requests = {in_mark_.take(), parts_.declared.queue},
-          .reports = {out_mark_.take(), static_cast<std::uint32_t>(out_.capacity())}};
+  const QueueFill requests{in_mark_.take(), parts_.declared.queue};
+  const bool judged = std::exchange(refused_, false) || requests.room >= least_judged;
+  return {.requests = requests,
+          .reports = {out_mark_.take(), static_cast<std::uint32_t>(out_.capacity())},
+          .judged = judged ? requests : QueueFill{}};
 }
 
 bool OwnLoop::hangs(Duration passed) noexcept {

@@ -59,6 +59,8 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   /// The most that has waited on its two ways since this was asked last: requests, octets of what it said.
   struct Fills {
     QueueFill requests, reports;
+    QueueFill
+        judged{};  ///< requests, as they are warned of; nothing where they are so few that one alone fills much, and none was refused
   };
   [[nodiscard]] Fills take_fills() noexcept;
   /// Looked at after `passed`: it has been in one step for longer than three of its periods and half a second. One that only waits for
@@ -105,6 +107,7 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   RecordRing in_;
   RecordRing out_;
   FillMark in_mark_, out_mark_;  ///< the service loop's
+  bool refused_{false};  ///< since take_fills(), the service loop's
   pus::Verification verification_;
   std::atomic<std::uint32_t> waiting_{0};
   std::atomic<std::uint64_t> steps_{0};

@@ -77,6 +77,7 @@ OwnLoop::Fills OwnLoops::take_fills() noexcept {
     const OwnLoop::Fills found = loop->take_fills();
     take(fullest.requests, found.requests);
     take(fullest.reports, found.reports);
+    if (found.judged.room != 0) take(fullest.judged, found.judged);
   }
   return fullest;
 }

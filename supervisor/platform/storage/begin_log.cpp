@@ -31,8 +31,7 @@ std::optional<std::string> why_not_begun(ThreadedPacketLog& log, const Clock& cl
 }
 
 std::optional<LogResumption> resumption_in(Database& database, LogResumption noted, std::uint64_t tail_octets) {
-  const auto page =
-      database.read({.since = noted.durable, .run = noted.run, .last = 1, .tail_octets = tail_octets});
+  const auto page = database.read({.since = noted.durable, .run = noted.run, .last = 1, .tail_octets = tail_octets});
   if (!page && page.error().code == ErrorCode::Unavailable) return std::nullopt;
   if (page && !page->records.empty()) {
     const LogRecord& record = page->records.back();

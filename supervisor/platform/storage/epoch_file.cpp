@@ -67,7 +67,8 @@ Result<std::uint32_t> EpochFile::above_kept(OnboardTime now, std::uint64_t used)
   std::uint64_t kept = 0;
   std::ifstream{path()} >> kept;
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now.time_since_epoch()).count() - year_2020_s;
-  const std::uint64_t first = std::max({kept + 1, used + 1, static_cast<std::uint64_t>(std::max<std::int64_t>(seconds, 1))});
+  const std::uint64_t first =
+      std::max({kept + 1, used + 1, static_cast<std::uint64_t>(std::max<std::int64_t>(seconds, 1))});
   if (first > last_first)
     return fail(ErrorCode::OutOfRange, "the epochs of devices have run out: reset the devices, then remove this file",
                 static_cast<std::int64_t>(kept));

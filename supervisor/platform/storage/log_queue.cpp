@@ -137,8 +137,7 @@ bool LogQueue::make_room(const LogEntry& entry) {
 }
 
 void LogQueue::miss(std::uint64_t number, OnboardTime stored, TimePoint monotonic) {
-  if (!gap_)
-    gap_ = Gap{.first = number, .last = number, .lost = 0, .stored = stored, .monotonic = monotonic};
+  if (!gap_) gap_ = Gap{.first = number, .last = number, .lost = 0, .stored = stored, .monotonic = monotonic};
   // A refused record may be followed by the loss of an older one.
   if (number < gap_->first) {
     gap_->first = number;

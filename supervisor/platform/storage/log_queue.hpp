@@ -81,7 +81,9 @@ class LogQueue {
   [[nodiscard]] bool empty() const noexcept { return next_waiting() == none; }
   /// Number of the first waiting record, `none` without one.
   [[nodiscard]] std::uint64_t next_waiting() const noexcept;
-  [[nodiscard]] std::size_t waiting() const noexcept { return telemetry_.size() + vital_.size() + (gap_ ? 1 : 0) + (inherited_ ? 1 : 0); }
+  [[nodiscard]] std::size_t waiting() const noexcept {
+    return telemetry_.size() + vital_.size() + (gap_ ? 1 : 0) + (inherited_ ? 1 : 0);
+  }
   /// A telecommand, an event or an action waits.
   [[nodiscard]] bool vital_waiting() const noexcept { return vital_.size() != 0; }
   [[nodiscard]] std::uint64_t last_number() const noexcept { return last_number_; }
