@@ -17,7 +17,8 @@
 namespace hirosco::supervisor {
 
 /// The executables of a mission that has a manifest, in memory, each with the digest that stands there for its name. They are
-/// read before the flight; who crashed is started anew from memory, and waits for no disk and no hash.
+/// read before the flight; who crashed is started anew from memory, and waits for no
+/// disk and no hash. A supervisor that goes on for another one reads them anew, from the disk (docs/adr/0192).
 /// Thread: the supervisor's; a file is read by a thread of its own, for which nobody waits longer than longest_wait.
 class HeldPrograms {
  public:
