@@ -9,8 +9,11 @@ namespace hirosco::supervisor {
 namespace {
 
 using namespace testing;
+using ::testing::AllOf;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using enum descriptor::State;
 namespace st129 = pus::st129;
 using What = st129::Subscribed::What;
