@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/inheritance.hpp"
 
-#include <fcntl.h>
-
+#include <cerrno>
 #include <utility>
 
 #include "hirosco/utilities/os/life.hpp"
@@ -16,7 +15,8 @@ Inheritance::Inheritance() {
     page_memory_ = std::move(*mapped);
     page_ = reinterpret_cast<KeeperPage*>(page_memory_.octets().data());
   } else {
-    page_unreadable_ = ::fcntl(keeper_page_descriptor, F_GETFD) >= 0;
+    const Error& why = mapped.error();
+    page_unreadable_ = why.code != ErrorCode::SystemFailure || why.value != EBADF;
   }
   if (auto mapped = MappedMemory::map(keeper_journal_descriptor, journal_octets, MapMode::ReadWrite)) {
     journal_memory_ = std::move(*mapped);
