@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <deque>
+
 #include "robotics/shapes/swept.hpp"
 #include "subsystems/robot_arm/testing/plant.hpp"
 
@@ -156,7 +158,9 @@ TEST(ClearanceByConstruction, IsTheLimitOfThoseWhoAreBuiltNearEachOther) {
   const std::vector<std::string> standing{"slide"};
   robotics::sweep(shapes.hulls, robot, standing);
   EXPECT_FALSE(robotics::urdf::fix(robot, standing));
-  robotics::Clearance made{robotics::Model::make(robotics::urdf::describe(robot)).value(), shapes.hulls};
+  static std::deque<robotics::Model> models;  // which clearances go by
+  models.push_back(robotics::Model::make(robotics::urdf::describe(robot)).value());
+  robotics::Clearance made{models.back(), shapes.hulls};
   made.set_limit(0.02);
   return made;
 }
