@@ -88,7 +88,7 @@ class Descriptor:
         # Those that it has without declaring them; a foreign one may leave them out.
         ids = {"CYCLE_STATS": 39, "CYCLE_TIMES": 40, "LINK_STATS": 41, "CYCLE_BUDGET": 38, "CYCLE_SPIN": 35, "LOOP_STATS": 34, "RESOURCE_STATS": 37, "HEAP_USES": 33, "DESCRIPTOR": 36}
         self.framework = [Value(name, STRUCT, id=ids[name], members=[Value(word, kind, count, place) for word, place, kind, count in members])
-                          for name, members in FRAMEWORK.items()]
+                          for name, members in FRAMEWORK.items()] + self._outputs()
         self.functions = [Function(each.get("name"), self._states(each.get("states", "Operational")),
                                    [self._argument(i, argument) for i, argument in enumerate(each.iter("Argument"), 1)])
                           for each in self.root.iter("Function")]
@@ -98,6 +98,19 @@ class Descriptor:
         self.configurations = {int(each.get("id")): each for each in self.root.findall("Configuration")}
         self.services = {int(each.get("type"), 0) for each in self.root.iter("CustomService")}
         self.devices = {each.get("name"): each for each in self.root.findall("Device")}
+
+    def _outputs(self):
+        """What is put out to each actuator, or would be: NAME_OUTPUT with the fields of its output; ids as the framework gives them."""
+        found, used = [], {}
+        for device in self.root.findall("Device"):
+            fields = [self._value(each) for each in device.findall("Output/Field")]
+            if device.get("actuator") != "yes" or not fields:
+                continue
+            for field in fields:
+                field.id = 239 - used.get(field.type, 0)
+                used[field.type] = used.get(field.type, 0) + 1
+            found.append(Value(device.get("name").replace("-", "_").replace(".", "_") + "_OUTPUT", STRUCT, id=42 + len(found), members=fields))
+        return found
 
     def _states(self, words):
         return [STATES.index(word) for word in words.split()]
