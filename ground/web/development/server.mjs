@@ -134,7 +134,7 @@ function status(t = now) {
   if (state === 'fresh') return {t, link: {connected: false, age_s: 1e9, rx: 0, tx: 0, lost: 0}, mode: null, commandable: false, subsystems: [], links: []};
   const up = state !== 'stopped' && [...states.values()].filter((state) => state === 'Operational').length >= flight.mission.subsystems.length;
   return {t, link: {connected: true, age_s: longest_value_s / 2, rx: archive.length, tx: commands.length, lost: 0},
-    mode: mode ?? (up || state === 'stopped' ? flight.mission.start_mode ?? 'telepresence' : 'commissioning'), commandable: true,
+    mode: mode ?? (up || state === 'stopped' ? flight.mission.start_mode : 'commissioning'), commandable: true,
     subsystems: flight.mission.subsystems.map((one) => ({id: one.id, name: one.name, state: state_of(one),
       configuration: one.configurations[one.configurations.length - 1]?.name, cycles: Math.round((t - first_t) * 2000), overruns: 0, missed: 0,
       latency_max_ns: 61000, execution_mean_ns: 8400, inhibited: state_of(one) === 'ErrorOperational' ? ['failure'] : state === 'stopped' && flight.stop.stopped.includes(one.name) ? ['device'] : [], waits_for: '', age_s: 0.1})),

@@ -149,7 +149,8 @@ TEST(QueuesOfASubsystem, RemarksThatMayHaveHalfOnlyAreWarnedOfWhereTheyAreLost) 
   EXPECT_EQ(told[0], (std::array<std::uint32_t, 3>{static_cast<std::uint32_t>(Resource::CycleEvents), 16'384, 16'384}));
 }
 
-TEST(QueuesOfASubsystem, OfALoopOfServicesAreToldToo) {
+/// Whose service runs in a loop of its own, in which so many requests may wait.
+struct Stored {
   struct Store final : Subsystem {
     CustomService store{"STORE"};
     Result<> offline() override {
@@ -158,52 +159,44 @@ TEST(QueuesOfASubsystem, OfALoopOfServicesAreToldToo) {
       return ok();
     }
   } author;
-  Rig rig{author, R"(<Subsystem name="STORE" id="21">
-    <CustomService name="STORE" type="200"><Request name="KEEP" subtype="1"/></CustomService>
-    <ServiceLoop name="SLOW" period_us="20000" queue="4"/>
-    <Service name="STORE" loop="SLOW"/>
-    <Configuration name="C" id="1" sampling_us="1000"/></Subsystem>)"};
-  rig.bring_to(State::PreOperational);
-  for (int i = 0; i < 3; ++i) rig.send(200, 1, {});
-  rig.service();
-  rig.subsystem.own_loop_step(0, rig.clock.now());
-  tell(rig);
-  EXPECT_EQ(high(rig, Resource::LoopRequests), 75U);
-  EXPECT_GE(high(rig, Resource::LoopReports), 1U);
-  ASSERT_EQ(warnings(rig).size(), 1U);
-  EXPECT_EQ(warnings(rig)[0], (std::array<std::uint32_t, 3>{static_cast<std::uint32_t>(Resource::LoopRequests), 3, 4}));
+  Rig rig;
+  explicit Stored(std::uint32_t queue)
+      : rig{author, R"(<Subsystem name="STORE" id="21">
+          <CustomService name="STORE" type="200"><Request name="KEEP" subtype="1"/></CustomService>
+          <ServiceLoop name="SLOW" period_us="20000" queue=")" +
+                        std::to_string(queue) + R"("/>
+          <Service name="STORE" loop="SLOW"/>
+          <Configuration name="C" id="1" sampling_us="1000"/></Subsystem>)"} {
+    rig.bring_to(State::PreOperational);
+  }
+  /// Before the loop's next step.
+  void ask(std::uint32_t requests) {
+    for (std::uint32_t i = 0; i < requests; ++i) rig.send(200, 1, {});
+    rig.service();
+    rig.subsystem.own_loop_step(0, rig.clock.now());
+    tell(rig);
+  }
+};
+
+TEST(QueuesOfASubsystem, OfALoopOfServicesAreToldToo) {
+  Stored stored{4};
+  stored.ask(3);
+  EXPECT_EQ(high(stored.rig, Resource::LoopRequests), 75U);
+  EXPECT_GE(high(stored.rig, Resource::LoopReports), 1U);
+  ASSERT_EQ(warnings(stored.rig).size(), 1U);
+  EXPECT_EQ(warnings(stored.rig)[0],
+            (std::array<std::uint32_t, 3>{static_cast<std::uint32_t>(Resource::LoopRequests), 3, 4}));
 }
 
 TEST(QueuesOfASubsystem, OneRequestThatFillsASmallQueueOfALoopIsNoWarningAndOneThatIsRefusedIs) {
-  struct Store final : Subsystem {
-    CustomService store{"STORE"};
-    Result<> offline() override {
-      store.on_request("KEEP", []() -> Result<> { return ok(); });
-      provide(store);
-      return ok();
-    }
-  };
   for (const std::uint32_t queue : {1U, 2U, 3U}) {
-    Store author;
-    Rig rig{author, R"(<Subsystem name="STORE" id="21">
-      <CustomService name="STORE" type="200"><Request name="KEEP" subtype="1"/></CustomService>
-      <ServiceLoop name="SLOW" period_us="20000" queue=")" +
-                        std::to_string(queue) + R"("/>
-      <Service name="STORE" loop="SLOW"/>
-      <Configuration name="C" id="1" sampling_us="1000"/></Subsystem>)"};
-    rig.bring_to(State::PreOperational);
-    const auto send = [&](std::uint32_t requests) {
-      for (std::uint32_t i = 0; i < requests; ++i) rig.send(200, 1, {});
-      rig.service();
-      rig.subsystem.own_loop_step(0, rig.clock.now());
-      tell(rig);
-    };
-    send(queue);
-    EXPECT_EQ(high(rig, Resource::LoopRequests), 100U);
-    EXPECT_TRUE(warnings(rig).empty()) << queue << ": it is made for that";
-    send(queue + 1);
-    ASSERT_EQ(warnings(rig).size(), 1U) << queue;
-    EXPECT_EQ(warnings(rig)[0],
+    Stored stored{queue};
+    stored.ask(queue);
+    EXPECT_EQ(high(stored.rig, Resource::LoopRequests), 100U);
+    EXPECT_TRUE(warnings(stored.rig).empty()) << queue << ": it is made for that";
+    stored.ask(queue + 1);
+    ASSERT_EQ(warnings(stored.rig).size(), 1U) << queue;
+    EXPECT_EQ(warnings(stored.rig)[0],
               (std::array<std::uint32_t, 3>{static_cast<std::uint32_t>(Resource::LoopRequests), queue, queue}));
   }
 }

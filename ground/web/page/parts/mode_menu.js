@@ -95,7 +95,7 @@ function Menu({on_close}) {
           onClick=${() => { on_close(); go(chosen, answer); }}>Go ${chosen?.name}</button>` : null}</div></div></div>`;
 }
 
-/// The mode, and whether it is true: what its members have fallen from is no telepresence any more.
+/// The mode, and whether it is true: what its members have fallen from is that mode no more.
 export function Mode() {
   const [opened, set_opened] = useState(false);
   const open = opened || mode_wanted.value !== '';

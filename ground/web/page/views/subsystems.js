@@ -12,7 +12,7 @@ import {SubsystemCard, borne_missed, configuration_of, missed_lately, state_look
 import {inhibited_text} from '../stop_story.js';
 import {columns, freshness, link, mission, mode_of, operator, replay, slow, status_of, subsystem_of, values} from '../store.js';
 
-/// "Bring telepresence up": every step with its verdict; the first refusal stops it.
+/// Brings a mode up: every step with its verdict; the first refusal stops it.
 function Commissioning() {
   const able = (mission.value?.modes ?? []).filter((mode) => mode.commission?.length);
   const [name, set_name] = useState(null);
