@@ -57,9 +57,8 @@ struct SupervisorParts final : OwnSubsystem::Author {
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });
     telecommands.at_once("SHUTDOWN", [this](const pus::Request& request) { shutdown.command(request); });
-    supervision.answers(pus::st129::permission_question, [this](const pus::Request& asked, Octets data) {
-      telecommands.answer_permission(asked, data);
-    });
+    supervision.answers(pus::st129::permission_question,
+                        [this](const pus::Request& asked, Octets data) { judgement.answer(asked, data); });
     supervision.answers(pus::st129::mode_question,
                         [this](const pus::Request& asked, Octets data) { modes.preview(asked, data); });
     supervision.answers(pus::st129::plan_question,
@@ -97,8 +96,9 @@ struct SupervisorParts final : OwnSubsystem::Author {
   GroundRoute ground_route;
   // data handling
   SupervisionService supervision{own};
+  Judgement judgement{craft, own, graph, power};
   Telecommands telecommands{
-      {craft, own, graph, power, unanswered, traffic, ground_route, commanded, stored, supervision}};
+      {craft, own, judgement, power, unanswered, traffic, ground_route, commanded, stored, supervision}};
   LogWatch log_watch;
   OwnTelecommands own_telecommands;
   Replies replies{craft, unanswered};

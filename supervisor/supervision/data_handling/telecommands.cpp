@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/subsystem/service_loop/requester.hpp"
@@ -20,9 +19,6 @@ namespace {
 using pus::FailureCode;
 using pus::FailureNotice;
 
-/// Reports on damaged packets in one second (pus-c tailoring 5.3).
-constexpr int damaged_reports_per_second = 10;
-
 }  // namespace
 
 std::string telecommand_text(const pus::TelecommandView& telecommand) {
@@ -36,7 +32,7 @@ std::string telecommand_text(const pus::TelecommandView& telecommand) {
 void Telecommands::take(const Incoming& incoming) {
   ++parts_.traffic.counts.telecommands;
   const auto telecommand = pus::TelecommandView::parse(incoming.packet);
-  if (!telecommand) return take_damaged(incoming, telecommand.error());
+  if (!telecommand) return refusals_.refuse_damaged(incoming.packet, incoming.origin, telecommand.error());
   pus::Request request = pus::request_of(*telecommand);
   // Reports to a claimed id would end somebody else's requests.
   const bool foreign = !incoming.origin.owns(request.source, craft_.mission);
@@ -49,7 +45,7 @@ void Telecommands::take(const Incoming& incoming) {
   parts_.power.observe();
   // Before the number: whoever is stopped in between is not let go by this one.
   const std::uint64_t fences = incoming.free_at.value_or(craft_.guard.fences(apid));
-  auto decision = judge(*telecommand, incoming.origin);
+  auto decision = parts_.judgement.judge(*telecommand, incoming.origin);
   if (decision && said_before_a_stop(incoming) && !decision->essential &&
       (decision->releases_stop || decision->starts || (decision->acts && acts_in_another_situation(incoming, apid)))) {
     FailureNotice notice{FailureCode::NotPermittedNow};
@@ -61,7 +57,7 @@ void Telecommands::take(const Incoming& incoming) {
   if (!decision) {
     copy_to_ground();
     if (decision.error().code() == FailureCode::PowerShort) parts_.power.tell_shortage(apid, decision.error());
-    return reject(incoming, request, decision.error());
+    return refusals_.refuse(incoming.packet, incoming.origin, request, decision.error());
   }
   if (decision->reserves_w > 0)
     parts_.power.ledger().reserve(apid, decision->reserves_w, request, craft_.now + WaitingForDisk::limit);
@@ -102,12 +98,13 @@ void Telecommands::take(const Incoming& incoming) {
     copy_to_ground();
     static_cast<void>(craft_.log.append(received));
     // Behind that it came in: its end is the last that log and ground hear of it.
-    if (unsent) reject(incoming, request, *unsent);
+    if (unsent) refusals_.refuse(incoming.packet, incoming.origin, request, *unsent);
     return;
   }
   copy_to_ground();
   const std::uint64_t number = craft_.log.append(received);
-  if (number == 0 || waiting_.full()) return reject(incoming, request, FailureNotice{FailureCode::QueueFull});
+  if (number == 0 || waiting_.full())
+    return refusals_.refuse(incoming.packet, incoming.origin, request, FailureNotice{FailureCode::QueueFull});
   // Its own telecommands were not permitted by the mode, so a change of mode does not void them.
   const std::uint32_t mode_epoch = incoming.origin.is_supervisor() ? 0 : craft_.mode_epoch;
   waiting_.add({number,
@@ -135,48 +132,6 @@ bool Telecommands::acts_in_another_situation(const Incoming& incoming, std::uint
   return apid == supervisor_apid || craft_.guard.was_stopped_since(apid, *incoming.known_stop);
 }
 
-void Telecommands::take_damaged(const Incoming& incoming, const FailureNotice& notice) {
-  const auto header = pus::read_primary_header(incoming.packet);
-  if (header && header->apid == pus::idle_apid) return;  // idle packets are dropped silently
-  const std::uint32_t request_id = header ? header->request_id : 0;
-  if (craft_.now - report_window_ >= 1s) {
-    report_window_ = craft_.now;
-    reports_in_window_ = 0;
-  }
-  ++reports_in_window_;
-  reject(incoming, {request_id, incoming.origin.apid(), 0}, notice);
-}
-
-/// All that may refuse a well-formed telecommand, without doing anything about it: what is asked before sending and what
-/// is decided on sending are this one function.
-std::expected<Permitted, FailureNotice> Telecommands::judge(const pus::TelecommandView& telecommand,
-                                                            const Origin& origin) const {
-  const auto decision = decide(telecommand, origin, situation_of(telecommand.apid()));
-  // A stop is asked for no name: one by who may not is an unwanted stop at worst, a refused one would be none (adr 0068).
-  const std::uint16_t source = telecommand.source();
-  if (!origin.owns(source, craft_.mission) && !(decision && decision->stops_the_craft))
-    return std::unexpected{FailureNotice{FailureCode::ForeignSource}.with(source)};
-  // Who has failed, is stopped or on its way down commands nobody; towards safety it may.
-  if (decision && !decision->essential && origin.is_subsystem() && !is_sound(origin.apid()))
-    return std::unexpected{FailureNotice{FailureCode::WrongState}};
-  if (!decision || !(decision->releases_stop || decision->starts)) return decision;
-  // On the way down nobody begins to move any more, nor comes up.
-  if (craft_.shutting_down) return std::unexpected{FailureNotice{FailureCode::NotPermittedNow}};
-  // What a recovery has stopped is not released by a command that crosses it, nor who cannot hear it.
-  if (const Member* addressee = std::as_const(craft_).member(telecommand.apid());
-      addressee != nullptr && addressee->alive() && (addressee->recovery.running() || addressee->closed_at))
-    return std::unexpected{FailureNotice{FailureCode::WrongState}};
-  return decision;
-}
-
-bool Telecommands::is_sound(std::uint16_t apid) const {
-  const Member* member = std::as_const(craft_).member(apid);
-  if (member == nullptr || member->recovery.running()) return false;
-  const auto state = member->state();
-  using enum descriptor::State;
-  return state == PreOperational || state == SafeOperational || state == Operational;
-}
-
 /// Stopping the craft is no request of another one, and never too much.
 std::optional<FailureNotice> Telecommands::refuse_flood(const pus::TelecommandView& telecommand, const Origin& origin,
                                                         const Permitted& permitted) {
@@ -194,69 +149,11 @@ std::optional<FailureNotice> Telecommands::refuse_flood(const pus::TelecommandVi
   return std::nullopt;
 }
 
-Situation Telecommands::situation_of(std::uint16_t apid) const {
-  Situation situation{.mission = craft_.mission,
-                      .mode = *craft_.mode,
-                      .links = parts_.links,
-                      .state = std::nullopt,
-                      .power = &parts_.power.ledger(),
-                      .down = false,
-                      .changing = craft_.changing_to != nullptr,
-                      .in_force = [this] { return in_force(); }};
-  if (apid == supervisor_apid) {
-    situation.state = parts_.own.state();
-    situation.configuration = parts_.own.configuration();
-    return situation;
-  }
-  const Member* addressee = std::as_const(craft_).member(apid);
-  situation.down = addressee != nullptr && !addressee->alive();
-  if (addressee == nullptr || situation.down) return situation;
-  situation.state = addressee->state();
-  situation.configuration = addressee->configuration();
-  situation.rereading = addressee->descriptor_changes;
-  return situation;
-}
-
-std::vector<descriptor::InForce> Telecommands::in_force() const {
-  std::vector<descriptor::InForce> all;
-  for (const Member& member : std::as_const(craft_).members) {
-    if (!member.alive()) continue;
-    const descriptor::SubsystemDescriptor& subsystem = member.descriptor();
-    all.push_back({&subsystem, subsystem.find_configuration(member.configuration())});
-  }
-  return all;
-}
-
-void Telecommands::answer_permission(const pus::Request& request, Octets asked) {
-  const auto header = pus::read_primary_header(asked);
-  pus::Verification& verification = parts_.own.verification();
-  if (!header) return verification.rejected(request, FailureNotice{FailureCode::DataLength});
-  verification.accepted(request);
-  verification.started(request);
-  const auto telecommand = pus::TelecommandView::parse(asked);
-  const auto decision = telecommand ? judge(*telecommand, Origin::of(request.source, craft_.mission))
-                                    : std::unexpected{telecommand.error()};
-  std::array<std::byte, 7> data;
-  OctetWriter writer{data};
-  writer.put(header->request_id);
-  writer.put(static_cast<std::uint8_t>(decision ? 1 : 0));
-  writer.put(static_cast<std::uint16_t>(decision ? 0 : static_cast<std::uint16_t>(decision.error().code())));
-  parts_.own.telemetry().report(pus::st129::service_type, pus::st129::permission_answer, request.source, data);
-  verification.completed(request);
-}
-
-/// Before the first of them is sent, and once for all: whoever goes on must not refuse what its addressee carries out (docs/adr/0190).
-bool Telecommands::note_leaving(std::uint64_t up_to) {
-  leaving_ = up_to;
-  const auto told_of = [&](const auto& each) { return each.number <= up_to && each.request.source != supervisor_apid; };
-  const bool any = std::ranges::any_of(waiting_.all(), told_of);
-  if (any) craft_.remember();
-  return any;
-}
-
 void Telecommands::forward_durable() {
   const std::uint64_t durable = craft_.log.durable();
-  const bool somebodys = note_leaving(durable);
+  // Before the first of them is sent, and once for all: whoever goes on must not refuse what its addressee carries out (docs/adr/0190).
+  const bool somebodys = waiting_.leave_up_to(durable);
+  if (somebodys) craft_.remember();
   while (const auto next = waiting_.take_durable(durable)) {
     // What was permitted before a fence is void after it: it was permitted for another situation (hazard SF4).
     if (craft_.guard.fences(next->apid) != next->fences) {
@@ -266,10 +163,10 @@ void Telecommands::forward_durable() {
     // Nor does anybody begin to move by what held when it was said: a link may have gone since, or a state.
     bool releases_stop = false;
     if (next->releases_stop) {
-      const auto decision =
-          judge(*pus::TelecommandView::parse(next->packet), next->origin);  // it was parsed when it came
+      const auto decision = parts_.judgement.judge(*pus::TelecommandView::parse(next->packet),
+                                                   next->origin);  // it was parsed when it came
       if (!decision) {
-        reject({.packet = next->packet, .origin = next->origin}, next->request, decision.error());
+        refusals_.refuse(next->packet, next->origin, next->request, decision.error());
         continue;
       }
       releases_stop = decision->releases_stop;
@@ -280,7 +177,7 @@ void Telecommands::forward_durable() {
     }
     const auto unsent = send(
         {next->apid, next->origin, next->packet, next->memory, next->mode_epoch, false, releases_stop, next->fences});
-    if (unsent) reject({.packet = next->packet, .origin = next->origin}, next->request, *unsent);
+    if (unsent) refusals_.refuse(next->packet, next->origin, next->request, *unsent);
   }
   if (somebodys) craft_.remember();  // that they have left, and what they set and command
 }
@@ -302,43 +199,20 @@ void Telecommands::outcome_unknown(std::uint16_t apid) {
 
 void Telecommands::note(OctetWriter& writer) const {
   parts_.unanswered.note(writer);
-  const auto put = [&](std::uint16_t apid, const pus::Request& request) {
-    writer.put(apid).put(request.id).put(request.source).put(request.ack);
-  };
-  for (const bool leaving : {false, true}) {
-    // Of its own nobody waits for an end.
-    const auto is_kind = [&](const WaitingForDisk::Telecommand& each) {
-      return (each.number <= leaving_) == leaving && each.request.source != supervisor_apid;
-    };
-    const auto own = static_cast<std::size_t>(std::ranges::count_if(waiting_.all(), is_kind));
-    writer.put(static_cast<std::uint16_t>(own + (leaving ? 0 : waited_before_.size())));
-    if (!leaving)
-      for (const auto& [apid, request] : waited_before_) put(apid, request);
-    for (const WaitingForDisk::Telecommand& each : waiting_.all())
-      if (is_kind(each)) put(each.apid, each.request);
-  }
+  waiting_.note(writer);
 }
 
 void Telecommands::recall(OctetReader& reader) {
   parts_.unanswered.recall(reader);
-  for (const bool leaving : {false, true})
-    for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
-      const auto apid = reader.get<std::uint16_t>();
-      const auto id = reader.get<std::uint32_t>();
-      const auto source = reader.get<std::uint16_t>();
-      const pus::Request request{id, source, reader.get<std::uint8_t>()};
-      if (leaving) parts_.unanswered.was_leaving(apid, request);
-      else waited_before_.push_back({apid, request});
-    }
+  for (const auto& [apid, request] : waiting_.recall(reader)) parts_.unanswered.was_leaving(apid, request);
 }
 
 /// What had not left is void: it was permitted by somebody else, in a situation that has passed. Of what was leaving its addressee says
 /// whether it had.
 void Telecommands::end_what_was_begun() {
   pus::Verification& verification = parts_.own.verification();
-  for (const auto& [apid, request] : waited_before_)
+  for (const pus::Request& request : waiting_.take_waited_before())
     verification.rejected(request, FailureNotice{FailureCode::NotPermittedNow});
-  waited_before_.clear();
   parts_.unanswered.hears_from(craft_.now);
   for (const pus::Request& request : parts_.unanswered.take_settled())
     verification.completion_failed(request, FailureNotice{FailureCode::OutcomeUnknown});
@@ -348,7 +222,7 @@ void Telecommands::end_what_was_begun() {
 }
 
 void Telecommands::refuse(const WaitingForDisk::Telecommand& waited, FailureCode why) {
-  reject({.packet = waited.packet, .origin = waited.origin}, waited.request, FailureNotice{why});
+  refusals_.refuse(waited.packet, waited.origin, waited.request, FailureNotice{why});
 }
 
 /// The supervisor ends it, as who is addressed cannot hear it; a plan that was quicker has done what it asks for.
@@ -413,27 +287,6 @@ void Telecommands::log_forwarded(const Outgoing& outgoing) {
                                        .peer = outgoing.apid,
                                        .packet = outgoing.packet,
                                        .note = outgoing.essential ? "essential" : ""}));
-}
-
-void Telecommands::reject(const Incoming& incoming, const pus::Request& request, const FailureNotice& notice) {
-  const bool damaged = notice.code() == FailureCode::ErrorControl || notice.code() == FailureCode::IllegalLength ||
-                       notice.code() == FailureCode::IllegalPrimaryHeader ||
-                       notice.code() == FailureCode::IllegalSequenceFlags;
-  // Beyond the cap they are counted only: a flood of them must not fill the log's queue before honest telecommands.
-  if (damaged && reports_in_window_ > damaged_reports_per_second) return parts_.traffic.count_rejection(notice.code());
-  const auto header = pus::read_primary_header(incoming.packet);
-  std::string note{to_text(notice.code())};
-  // Nobody else says which client of the ground link it was.
-  if (notice.code() == FailureCode::ForeignSource && incoming.origin.is_ground())
-    note += fmt::format(", client {}", incoming.origin.client());
-  if (const auto reason = pus::reason_in(notice.data())) note += fmt::format(": {}", reason->text);
-  static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandRefused,
-                                       .source = incoming.origin.apid(),
-                                       .peer = header ? header->apid : std::uint16_t{0},
-                                       .packet = incoming.packet,
-                                       .note = std::string_view{note}}));
-  if (notice.code() == FailureCode::UnknownApid) parts_.own.verification().routing_failed(request, notice);
-  else parts_.own.verification().rejected(request, notice);
 }
 
 }  // namespace hirosco::supervisor

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <expected>
 #include <functional>
 #include <map>
 #include <optional>
@@ -12,7 +11,8 @@
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/ground_route.hpp"
-#include "supervisor/supervision/data_handling/permission.hpp"
+#include "supervisor/supervision/data_handling/judgement.hpp"
+#include "supervisor/supervision/data_handling/refusals.hpp"
 #include "supervisor/supervision/data_handling/supervision_service.hpp"
 #include "supervisor/supervision/data_handling/traffic.hpp"
 #include "supervisor/supervision/data_handling/unanswered.hpp"
@@ -46,7 +46,7 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
   struct Parts {
     Craft& craft;
     OwnSubsystem& own;
-    const LinkGraph& links;
+    const Judgement& judgement;
     PowerHandling& power;
     Unanswered& unanswered;
     Traffic& traffic;
@@ -55,7 +55,8 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
     StoredValues& stored;
     SupervisionService& supervision;
   };
-  explicit Telecommands(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
+  explicit Telecommands(const Parts& parts)
+      : parts_{parts}, craft_{parts.craft}, refusals_{parts.craft, parts.own, parts.traffic} {}
 
   void take(const Incoming& incoming);
   /// What has become durable leaves.
@@ -78,8 +79,6 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
   void at_once(std::string function, std::function<void(const pus::Request&)> carry_out) {
     at_once_.emplace(std::move(function), std::move(carry_out));
   }
-  /// TC[129,1]: would the telecommand that is its data be permitted now, from who asks?
-  void answer_permission(const pus::Request& request, Octets asked);
   /// Who starts a subsystem that is down, or says why it could not.
   void starts_with(std::function<Result<>(std::uint16_t apid)> start) { start_ = std::move(start); }
 
@@ -95,36 +94,23 @@ class Telecommands final : public Watch, public Accounts, public Remembered {
     bool releases_stop{false};
     std::uint64_t fences{0};  ///< of the addressee at permission
   };
-  [[nodiscard]] std::expected<Permitted, pus::FailureNotice> judge(const pus::TelecommandView& telecommand,
-                                                                   const Origin& origin) const;
   [[nodiscard]] bool said_before_a_stop(const Incoming& incoming) const;
   [[nodiscard]] bool acts_in_another_situation(const Incoming& incoming, std::uint16_t apid) const;
-  [[nodiscard]] bool is_sound(std::uint16_t apid) const;
   /// A subsystem that asks more than it may at once: the others' telecommands have their place.
   [[nodiscard]] std::optional<pus::FailureNotice> refuse_flood(const pus::TelecommandView& telecommand,
                                                                const Origin& origin, const Permitted& permitted);
-  [[nodiscard]] Situation situation_of(std::uint16_t apid) const;
-  [[nodiscard]] std::vector<descriptor::InForce> in_force() const;
-  void take_damaged(const Incoming& incoming, const pus::FailureNotice& notice);
   void refuse(const WaitingForDisk::Telecommand& waited, pus::FailureCode why);
-  void reject(const Incoming& incoming, const pus::Request& request, const pus::FailureNotice& notice);
-  /// Why it did not leave; whoever asked rejects it. Empty: it has left, and the log says so.
+  /// Why it did not leave; whoever asked refuses it. Empty: it has left, and the log says so.
   [[nodiscard]] std::optional<pus::FailureNotice> send(const Outgoing& outgoing);
   void log_forwarded(const Outgoing& outgoing);
   void start(const WaitingForDisk::Telecommand& waited);
-  /// False: of what leaves nobody but this supervisor would miss an end.
-  [[nodiscard]] bool note_leaving(std::uint64_t up_to);
 
   Parts parts_;
   Craft& craft_;
+  Refusals refusals_;
   std::map<std::string, std::function<void(const pus::Request&)>, std::less<>> at_once_;
   std::function<Result<>(std::uint16_t)> start_;
   WaitingForDisk waiting_;
-  std::uint64_t leaving_{0};  ///< what waits up to this number of its record is about to leave
-  std::vector<std::pair<std::uint16_t, pus::Request>>
-      waited_before_;  ///< when the supervisor before died: none of them had left
-  TimePoint report_window_{};
-  int reports_in_window_{0};
   struct Window {
     TimePoint begin{};
     std::size_t taken{0};

@@ -34,4 +34,47 @@ std::size_t WaitingForDisk::count_of(std::uint16_t origin) const {
       std::ranges::count(waiting_, origin, [](const Telecommand& each) { return each.origin.apid(); }));
 }
 
+bool WaitingForDisk::leave_up_to(std::uint64_t number) {
+  leaving_ = number;
+  const auto told_of = [&](const Telecommand& each) {
+    return each.number <= number && each.request.source != supervisor_apid;
+  };
+  return std::ranges::any_of(waiting_, told_of);
+}
+
+void WaitingForDisk::note(OctetWriter& writer) const {
+  const auto put = [&](std::uint16_t apid, const pus::Request& request) {
+    writer.put(apid).put(request.id).put(request.source).put(request.ack);
+  };
+  for (const bool leaving : {false, true}) {
+    const auto is_kind = [&](const Telecommand& each) {
+      return (each.number <= leaving_) == leaving && each.request.source != supervisor_apid;
+    };
+    const auto own = static_cast<std::size_t>(std::ranges::count_if(waiting_, is_kind));
+    writer.put(static_cast<std::uint16_t>(own + (leaving ? 0 : waited_before_.size())));
+    if (!leaving)
+      for (const auto& [apid, request] : waited_before_) put(apid, request);
+    for (const Telecommand& each : waiting_)
+      if (is_kind(each)) put(each.apid, each.request);
+  }
+}
+
+std::vector<std::pair<std::uint16_t, pus::Request>> WaitingForDisk::recall(OctetReader& reader) {
+  std::vector<std::pair<std::uint16_t, pus::Request>> were_leaving;
+  for (auto* const kind : {&waited_before_, &were_leaving})
+    for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+      const auto apid = reader.get<std::uint16_t>();
+      const auto id = reader.get<std::uint32_t>();
+      const auto source = reader.get<std::uint16_t>();
+      kind->push_back({apid, {id, source, reader.get<std::uint8_t>()}});
+    }
+  return were_leaving;
+}
+
+std::vector<pus::Request> WaitingForDisk::take_waited_before() {
+  std::vector<pus::Request> taken;
+  for (const auto& [apid, request] : std::exchange(waited_before_, {})) taken.push_back(request);
+  return taken;
+}
+
 }  // namespace hirosco::supervisor

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/pus/service/service.hpp"
+#include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/time.hpp"
 #include "supervisor/supervision/data_handling/origin.hpp"
 
@@ -55,8 +57,20 @@ class WaitingForDisk {
   /// How many of this member's wait; 0: of the ground.
   [[nodiscard]] std::size_t count_of(std::uint16_t origin) const;
 
+  // --- beyond this supervisor (docs/adr/0190) -----------------------------------------------------------------------
+  /// Those up to this number of their record are about to leave. False: nobody but this supervisor would miss an end of one.
+  [[nodiscard]] bool leave_up_to(std::uint64_t number);
+  /// Those that wait, and those that are about to leave. Not the supervisor's own: nobody waits for their end.
+  void note(OctetWriter& writer) const;
+  /// \return with their addressees, those that were about to leave.
+  [[nodiscard]] std::vector<std::pair<std::uint16_t, pus::Request>> recall(OctetReader& reader);
+  /// Those that waited when the supervisor before died: none of them had left. They are forgotten.
+  [[nodiscard]] std::vector<pus::Request> take_waited_before();
+
  private:
   std::deque<Telecommand> waiting_;
+  std::uint64_t leaving_{0};  ///< up to this number they are about to leave
+  std::vector<std::pair<std::uint16_t, pus::Request>> waited_before_;
 };
 
 }  // namespace hirosco::supervisor

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <utility>
+
 namespace hirosco::supervisor {
 namespace {
 
@@ -67,6 +70,66 @@ TEST_F(WaitingForDiskTest, IsFullAtItsBound) {
   EXPECT_FALSE(waiting.full());
   add(WaitingForDisk::most);
   EXPECT_TRUE(waiting.full());
+}
+
+/// What waits for a disk, and what goes on with it when its supervisor has died.
+struct WaitingBeforeTest : WaitingForDiskTest {
+  WaitingForDisk next;
+
+  void add_of(std::uint64_t number, std::uint16_t source) {
+    waiting.add({.number = number,
+                 .apid = 10,
+                 .origin = Origin::ground(),
+                 .packet = {},
+                 .memory = {},
+                 .request = {static_cast<std::uint32_t>(number + 100), source, 9}});
+  }
+  /// Request ids of those that were about to leave.
+  std::vector<std::uint32_t> recalled() {
+    std::array<std::byte, 256> octets{};
+    OctetWriter writer{octets};
+    waiting.note(writer);
+    OctetReader reader{writer.written()};
+    std::vector<std::uint32_t> ids;
+    for (const auto& [apid, request] : next.recall(reader)) {
+      EXPECT_EQ(apid, 10);
+      ids.push_back(request.id);
+    }
+    EXPECT_TRUE(reader.exhausted());
+    return ids;
+  }
+  std::vector<std::uint32_t> waited_before() {
+    std::vector<std::uint32_t> ids;
+    for (const pus::Request& each : next.take_waited_before()) ids.push_back(each.id);
+    return ids;
+  }
+};
+
+TEST_F(WaitingBeforeTest, WhatWasAboutToLeaveIsToldApartFromWhatWaited) {
+  for (const std::uint64_t number : {1U, 2U, 3U}) add_of(number, 7);
+  EXPECT_TRUE(waiting.leave_up_to(2));
+  EXPECT_EQ(recalled(), (std::vector<std::uint32_t>{101, 102}));
+  EXPECT_EQ(waited_before(), std::vector<std::uint32_t>{103});
+  EXPECT_TRUE(waited_before().empty());
+}
+
+TEST_F(WaitingBeforeTest, NobodyMissesAnEndOfTheSupervisorsOwn) {
+  add_of(1, supervisor_apid);
+  add_of(2, 7);
+  EXPECT_FALSE(waiting.leave_up_to(1));
+  EXPECT_TRUE(waiting.leave_up_to(2));
+  EXPECT_EQ(recalled(), std::vector<std::uint32_t>{102});
+}
+
+TEST_F(WaitingBeforeTest, WhatWaitedIsNotedForOneMoreUntilItWasTaken) {
+  add_of(1, 7);
+  EXPECT_TRUE(recalled().empty());
+  std::swap(waiting, next);  // who went on dies, too
+  EXPECT_TRUE(recalled().empty());
+  EXPECT_EQ(waited_before(), std::vector<std::uint32_t>{101});
+  std::swap(waiting, next);
+  static_cast<void>(recalled());
+  EXPECT_TRUE(waited_before().empty());
 }
 
 }  // namespace
