@@ -99,4 +99,16 @@ std::string left_open(const Sandbox& sandbox) {
   return open;
 }
 
+std::string shut_out(const Sandbox& had, const Sandbox& wants) {
+  for (const std::string& place : wants.writable)
+    if (std::ranges::find(had.writable, place) == had.writable.end()) return place;
+  if (wants.sockets.local && !had.sockets.local) return "UNIX sockets";
+  if (wants.sockets.datagrams && !had.sockets.datagrams) return "others by UDP";
+  if (wants.queues && !had.queues) return "message queues";
+  for (const std::uint16_t port : wants.sockets.ports)
+    if (!had.sockets.streams && std::ranges::find(had.sockets.ports, port) == had.sockets.ports.end())
+      return "TCP port " + std::to_string(port);
+  return {};
+}
+
 }  // namespace hirosco::supervisor

@@ -30,6 +30,9 @@ namespace hirosco::supervisor {
 /// What it reaches beyond what is its own, because the system knows no narrower rule, in words; empty: nothing.
 [[nodiscard]] std::string left_open(const Sandbox& sandbox);
 
+/// What of `wants` is not let through by `had`, in words; empty: nothing.
+[[nodiscard]] std::string shut_out(const Sandbox& had, const Sandbox& wants);
+
 /// A script reaches what its interpreter needs, which nobody says.
 [[nodiscard]] bool is_script(const std::filesystem::path& program);
 

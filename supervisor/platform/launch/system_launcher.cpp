@@ -4,8 +4,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <signal.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -36,10 +34,6 @@ constexpr int permit_number = 5;
 constexpr int script_number = 6;
 constexpr int text_number = 7;
 
-[[nodiscard]] FileDescriptor open_statm(const std::string& process) {
-  return FileDescriptor{::open(("/proc/" + process + "/statm").c_str(), O_RDONLY | O_CLOEXEC)};
-}
-
 /// The supervisor's end of a channel. The keeper has a duplicate, so that closing it alone would not end what is at the other end;
 /// a supervisor that is killed closes nothing.
 class OwnedEnd final : public Channel {
@@ -55,8 +49,6 @@ class OwnedEnd final : public Channel {
   SocketChannel channel_;
 };
 
-/// How long one that cannot be gone on with may take to go before it is told as one that hangs.
-constexpr int longest_end_ms = 50;
 /// Of whom only the handle is known.
 constexpr int unknown_pid = -1;
 
@@ -98,10 +90,6 @@ template <class Page>
   return found.empty() ? file : found.string();
 }
 
-[[nodiscard]] std::string version_of(const std::string& executable, const std::string& version) {
-  return version.empty() ? executable : executable + descriptor::version_mark + version;
-}
-
 [[nodiscard]] std::vector<std::string> arguments_of(const descriptor::MissionSubsystem& subsystem) {
   std::vector<std::string> words{"--descriptor", placed(subsystem.subsystem.file.string()),
                                  "--channel",    std::to_string(channel_number),
@@ -126,59 +114,15 @@ std::expected<std::string, std::string> SystemLauncher::begin(const descriptor::
   if (!mission.manifest) return std::string{};
   const SystemClock clock;
   const TimePoint begun = clock.now();
-  const HeldPrograms& held = hold_to(mission);
+  const HeldPrograms& held = programs_.hold_to(mission);
   return fmt::format("{} executables of {} kB are as the manifest says, read in {:.1f} ms", held.count(),
                      held.octets() / 1024, 1e3 * seconds(clock.now() - begun));
-}
-
-const HeldPrograms& SystemLauncher::hold_to(const descriptor::Mission& mission) {
-  held_ = std::make_unique<HeldPrograms>(mission);
-  held_->read_all(mission);
-  return *held_;
-}
-
-std::optional<StartRefusal> SystemLauncher::refuse(const descriptor::MissionSubsystem& subsystem) {
-  if (!held_) return std::nullopt;
-  auto found = held_->find(file_of(subsystem));
-  return found ? std::nullopt : std::optional{std::move(found.error())};
-}
-
-std::string SystemLauncher::file_of(const descriptor::MissionSubsystem& subsystem) const {
-  const auto version = versions_.find(subsystem.subsystem.name);
-  return version == versions_.end() ? subsystem.executable : version_of(subsystem.executable, version->second);
-}
-
-std::expected<bool, StartRefusal> SystemLauncher::prepare(const descriptor::MissionSubsystem& subsystem,
-                                                          const std::string& version) {
-  if (!held_) return ProcessLauncher::prepare(subsystem, version);
-  auto found = held_->find(version_of(subsystem.executable, version), Duration{0});
-  if (found) return true;
-  if (found.error().why.code == ErrorCode::Unavailable) return false;
-  return std::unexpected{std::move(found.error())};
-}
-
-void SystemLauncher::use(const descriptor::MissionSubsystem& subsystem, const std::string& version) {
-  if (version.empty()) versions_.erase(subsystem.subsystem.name);
-  else versions_[subsystem.subsystem.name] = version;
-}
-
-void SystemLauncher::drop(const descriptor::MissionSubsystem& subsystem, const std::string& version) {
-  if (held_ && !version.empty()) held_->drop(version_of(subsystem.executable, version));
 }
 
 std::string SystemLauncher::shut_out(const descriptor::MissionSubsystem& flown,
                                      const descriptor::MissionSubsystem& fresh) {
   const ProcessUser user = user_of_processes();
-  const Sandbox had = sandbox_of(flown, {}, instance_, user), wants = sandbox_of(fresh, {}, instance_, user);
-  for (const std::string& place : wants.writable)
-    if (std::ranges::find(had.writable, place) == had.writable.end()) return place;
-  if (wants.sockets.local && !had.sockets.local) return "UNIX sockets";
-  if (wants.sockets.datagrams && !had.sockets.datagrams) return "others by UDP";
-  if (wants.queues && !had.queues) return "message queues";
-  for (const std::uint16_t port : wants.sockets.ports)
-    if (!had.sockets.streams && std::ranges::find(had.sockets.ports, port) == had.sockets.ports.end())
-      return "TCP port " + std::to_string(port);
-  return {};
+  return supervisor::shut_out(sandbox_of(flown, {}, instance_, user), sandbox_of(fresh, {}, instance_, user));
 }
 
 std::string SystemLauncher::left_open(const descriptor::MissionSubsystem& subsystem) const {
@@ -199,20 +143,8 @@ std::string SystemLauncher::isolation_not_asked() const {
 }
 
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
-  auto& [program, script] = programs_[subsystem.executable];
-  const ProgramImage* image = nullptr;
-  if (held_) {
-    const auto found = held_->find(file_of(subsystem));
-    if (!found) return fail(found.error().why);
-    image = *found;
-    program = image->file();
-    script = image->is_script();
-  }
-  if (program.empty()) {
-    program = find_program(subsystem.executable);
-    script = is_script(program);
-  }
-  if (program.empty()) return fail(ErrorCode::NotFound, "its executable is neither beside this program nor in PATH");
+  HIROSCO_TRY_LET(const auto found, programs_.find(subsystem));
+  const auto& [program, script, image] = found;
   HIROSCO_TRY_LET(auto vital, make_page<VitalPage>(memory_, "hirosco-vital"));
   HIROSCO_TRY_LET(auto permit, make_page<PermitPage>(memory_, "hirosco-permit"));
   // Its counts go on where those of the process before it ended (decision 8b).
@@ -268,13 +200,13 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     start.inherited.push_back({errors ? errors->get() : nothing.get(), output});
   auto spawned = Process::spawn(start);
   if (!spawned) {
-    program.clear();  // it may be elsewhere by now
+    programs_.look_again(subsystem);
     return fail(spawned.error());
   }
   auto held = hold(*spawned, std::move(ends.first), std::move(vital.second), std::move(permit.second));
   if (!held) {
     // One that nobody could end is not let go at all.
-    end_now(std::move(*spawned));
+    running_.end_now(std::move(*spawned));
     return fail(held.error());
   }
   LaunchedSubsystem& launched = *held;
@@ -295,12 +227,8 @@ Result<LaunchedSubsystem> SystemLauncher::hold(Process& process, FileDescriptor 
   launched.permit = std::move(permit);
   launched.port = std::make_unique<LocalMemberPort>(std::make_unique<OwnedEnd>(std::move(channel)), launched.vital,
                                                     launched.permit);
-  launched.process = next_++;
   launched.grip = std::move(grip);
-  memory_use_[launched.process] = open_statm(std::to_string(process.pid()));
-  if (!memory_use_[0]) memory_use_[0] = open_statm("self");
-  if (auto meter = ProcessMeter::of(process.pid())) meters_.emplace(launched.process, std::move(*meter));
-  processes_.emplace(launched.process, std::move(process));
+  launched.process = running_.add(std::move(process));
   return launched;
 }
 
@@ -308,7 +236,7 @@ bool SystemLauncher::keep_with(StoreClient store, const descriptor::Mission& mis
                                const KeeperPage* page) {
   store_ = store;
   inherited_ = std::move(inherited);
-  page_ = page;
+  running_.ends_told_by(page);
   for (const auto& subsystem : mission.subsystems) slots_.emplace(subsystem.subsystem.name, slots_.size());
   return true;
 }
@@ -317,9 +245,9 @@ bool SystemLauncher::keep_with(StoreClient store, const descriptor::Mission& mis
 void SystemLauncher::keep(const std::string& name, LaunchedSubsystem& launched, const MemoryHandle& vital,
                           const MemoryHandle& permit, const FileDescriptor& errors) {
   const auto slot = slots_.find(name);
-  const auto process = processes_.find(launched.process);
-  if (slot == slots_.end() || process == processes_.end()) return;
-  const int handle = process->second.handle().get();
+  const Process* process = running_.find(launched.process);
+  if (slot == slots_.end() || process == nullptr) return;
+  const int handle = process->handle().get();
   const auto taken =
       store_.keep(slot->second, {launched.port->channel().wait_descriptor(), SealedMemory::descriptor(vital),
                                  SealedMemory::descriptor(permit), handle, errors ? errors.get() : handle});
@@ -354,20 +282,10 @@ NotAdopted SystemLauncher::end_at_once(std::size_t slot, Process process, const 
   const bool of_system = why.code == ErrorCode::SystemFailure && why.value > 0;
   const std::string words =
       of_system ? fmt::format("{} ({})", why.text, std::strerror(static_cast<int>(why.value))) : std::string{why.text};
-  const std::uint32_t number = end_now(std::move(process));
+  const std::uint32_t number = running_.end_now(std::move(process));
   if (number == 0) store_.forget(slot);
   else kept_[number] = slot;  // another supervisor tries again
   return {.why = words, .process = number};
-}
-
-std::uint32_t SystemLauncher::end_now(Process process) {
-  static_cast<void>(process.send_signal(SIGKILL));
-  pollfd look{process.handle().get(), POLLIN, 0};
-  static_cast<void>(::poll(&look, 1, longest_end_ms));
-  if (const auto end = process.poll(); end && *end) return 0;
-  const std::uint32_t number = next_++;
-  processes_.emplace(number, std::move(process));
-  return number;
 }
 
 Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, Process& process,
@@ -405,74 +323,18 @@ Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, Proc
 }
 
 std::optional<ProcessEnd> SystemLauncher::ended(std::uint32_t process) {
-  const auto found = processes_.find(process);
-  if (found == processes_.end()) return ProcessEnd{};
-  const auto status = found->second.poll();
-  if (!status || !*status) return std::nullopt;
-  ProcessEnd end{(*status)->kind == ExitStatus::Kind::Signalled, (*status)->value};
-  if ((*status)->kind == ExitStatus::Kind::Unknown) {
-    // Its parent was a supervisor that is gone: the keeper is told, a moment later.
-    constexpr std::uint32_t not_told = 0xFFFF'FFFF;
-    const auto pid = static_cast<std::uint32_t>(found->second.pid());
-    const std::uint32_t how = page_ != nullptr ? page_->end_of(pid).value_or(not_told) : not_told;
-    constexpr Duration longest = 300ms;
-    const TimePoint now = SystemClock{}.now();
-    const bool told = how != not_told;
-    if (!told && page_ != nullptr && now - end_asked_.emplace(process, now).first->second < longest)
-      return std::nullopt;
-    end_asked_.erase(process);
-    if (told) end = {(how & ended_by_signal) != 0, static_cast<int>(how & 0xFF)};
-  }
-  if (const auto slot = kept_.find(process); slot != kept_.end()) {
+  if (running_.find(process) == nullptr) return ProcessEnd{};
+  const auto end = running_.ended(process);
+  if (const auto slot = kept_.find(process); end && slot != kept_.end()) {
     store_.forget(slot->second);
     kept_.erase(slot);
   }
-  processes_.erase(found);
-  memory_use_.erase(process);
-  meters_.erase(process);
   return end;
 }
 
-void SystemLauncher::kill(std::uint32_t process) {
-  if (const auto found = processes_.find(process); found != processes_.end())
-    static_cast<void>(found->second.send_signal(SIGKILL));
-}
-
-std::optional<ProcessUsage> SystemLauncher::usage(std::uint32_t process) noexcept {
-  const auto found = meters_.find(process);
-  return found != meters_.end() ? found->second.look() : std::nullopt;
-}
-
-std::uint32_t SystemLauncher::resident_kb(std::uint32_t process) noexcept {
-  const auto found = memory_use_.find(process);
-  if (found == memory_use_.end()) return 0;
-  std::array<char, 128> text;
-  const auto octets = ::pread(found->second.get(), text.data(), text.size(), 0);
-  if (octets <= 0) return 0;
-  // "size resident shared ...", in pages.
-  const std::string_view line{text.data(), static_cast<std::size_t>(octets)};
-  const auto blank = line.find(' ');
-  std::uint64_t pages = 0;
-  if (blank != std::string_view::npos) std::from_chars(line.data() + blank + 1, line.data() + line.size(), pages);
-  static const auto page_octets = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  return static_cast<std::uint32_t>(pages * page_octets / 1024);
-}
-
-void SystemLauncher::kill_all() {
-  for (auto& [number, process] : processes_) static_cast<void>(process.send_signal(SIGKILL));
-}
-
-bool SystemLauncher::any_running() {
-  for (auto entry = processes_.begin(); entry != processes_.end();) {
-    const auto status = entry->second.poll();
-    entry = !status || status->has_value() ? processes_.erase(entry) : std::next(entry);
-  }
-  return !processes_.empty();
-}
-
 int SystemLauncher::wait_descriptor(std::uint32_t process) {
-  const auto found = processes_.find(process);
-  return found != processes_.end() ? found->second.handle().get() : -1;
+  const Process* found = running_.find(process);
+  return found != nullptr ? found->handle().get() : -1;
 }
 
 }  // namespace hirosco::supervisor

@@ -14,7 +14,8 @@
 #include "hirosco/utilities/os/process.hpp"
 #include "supervisor/keeper/kept_store.hpp"
 #include "supervisor/platform/launch/flight_launcher.hpp"
-#include "supervisor/platform/launch/held_programs.hpp"
+#include "supervisor/platform/launch/programs_in_use.hpp"
+#include "supervisor/platform/launch/running_processes.hpp"
 #include "supervisor/platform/launch/standard_error.hpp"
 
 namespace hirosco::supervisor {
@@ -36,24 +37,37 @@ class SystemLauncher final : public FlightLauncher {
       const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] bool keep_with(StoreClient store, const descriptor::Mission& mission, InheritedParts inherited,
                                const KeeperPage* page) override;
-  [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& subsystem) override;
+  [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& subsystem) override {
+    return programs_.refuse(subsystem);
+  }
   [[nodiscard]] std::expected<bool, StartRefusal> prepare(const descriptor::MissionSubsystem& subsystem,
-                                                          const std::string& version) override;
-  void use(const descriptor::MissionSubsystem& subsystem, const std::string& version) override;
+                                                          const std::string& version) override {
+    return programs_.has_manifest() ? programs_.prepare(subsystem, version)
+                                    : ProcessLauncher::prepare(subsystem, version);
+  }
+  void use(const descriptor::MissionSubsystem& subsystem, const std::string& version) override {
+    programs_.use(subsystem, version);
+  }
   [[nodiscard]] std::string shut_out(const descriptor::MissionSubsystem& flown,
                                      const descriptor::MissionSubsystem& fresh) override;
   [[nodiscard]] std::string left_open(const descriptor::MissionSubsystem& subsystem) const override;
-  void drop(const descriptor::MissionSubsystem& subsystem, const std::string& version) override;
+  void drop(const descriptor::MissionSubsystem& subsystem, const std::string& version) override {
+    programs_.drop(subsystem, version);
+  }
   /// From now on it starts what the manifest of this mission lists, and nothing else. Reads all of it first.
-  const HeldPrograms& hold_to(const descriptor::Mission& mission);
+  const HeldPrograms& hold_to(const descriptor::Mission& mission) { return programs_.hold_to(mission); }
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
-  void kill(std::uint32_t process) override;
+  void kill(std::uint32_t process) override { running_.kill(process); }
   [[nodiscard]] std::vector<std::string> isolation_lacks() const override;
   [[nodiscard]] std::string isolation_not_asked() const override;
-  [[nodiscard]] std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override;
-  [[nodiscard]] std::uint32_t resident_kb(std::uint32_t process) noexcept override;
-  void kill_all() override;
-  [[nodiscard]] bool any_running() override;
+  [[nodiscard]] std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override {
+    return running_.usage(process);
+  }
+  [[nodiscard]] std::uint32_t resident_kb(std::uint32_t process) noexcept override {
+    return running_.resident_kb(process);
+  }
+  void kill_all() override { running_.kill_all(); }
+  [[nodiscard]] bool any_running() override { return running_.any(); }
   [[nodiscard]] int wait_descriptor(std::uint32_t process) override;
 
  private:
@@ -63,11 +77,8 @@ class SystemLauncher final : public FlightLauncher {
   [[nodiscard]] Result<AdoptedSubsystem> take_over(const std::string& name, Process& process,
                                                    std::array<FileDescriptor, kept_roles>& kept);
   [[nodiscard]] NotAdopted end_at_once(std::size_t slot, Process process, const Error& why);
-  /// 0, or as which process it is still to be seen to its end.
-  std::uint32_t end_now(Process process);
   void keep(const std::string& name, LaunchedSubsystem& launched, const MemoryHandle& vital, const MemoryHandle& permit,
             const FileDescriptor& errors);
-  [[nodiscard]] std::string file_of(const descriptor::MissionSubsystem& subsystem) const;
 
   [[nodiscard]] ProcessUser user_of_processes() const noexcept {
     return users_ && one_user_.empty() ? ProcessUser::ItsOwn : ProcessUser::WhoeverFlies;
@@ -81,25 +92,13 @@ class SystemLauncher final : public FlightLauncher {
   const std::string instance_{flight_instance()};  ///< part of where the frames of devices are
   SealedMemory memory_;
   StandardError errors_;
-  std::map<std::uint32_t, FileDescriptor> memory_use_;  ///< statm of each process, and our own
-  std::map<std::uint32_t, ProcessMeter> meters_;
-  std::map<std::uint32_t, Process> processes_;
+  RunningProcesses running_;
   std::map<std::string, Mapping, std::less<>> vital_;  ///< newest page of each subsystem, outlives its process
-  std::unique_ptr<HeldPrograms> held_;  ///< null: the mission has no manifest
-  std::map<std::string, std::string, std::less<>> versions_;  ///< by subsystem, where it is not the mission's own
-  /// Without one: where each executable was found, and what it is: a disk is not asked again in flight, where it might hang.
-  struct FoundProgram {
-    std::filesystem::path file;  ///< empty: not looked for yet, or to be looked for again
-    bool script{false};
-  };
-  std::map<std::string, FoundProgram, std::less<>> programs_;
+  ProgramsInUse programs_;
   StoreClient store_{-1};
   std::map<std::string, std::size_t, std::less<>> slots_;
   InheritedParts inherited_;
-  const KeeperPage* page_{nullptr};
-  std::map<std::uint32_t, TimePoint> end_asked_;  ///< of processes that have ended, and nobody has said how
   std::map<std::uint32_t, std::size_t> kept_;  ///< slot of each process
-  std::uint32_t next_{1};
 };
 
 }  // namespace hirosco::supervisor
