@@ -27,9 +27,9 @@ void LinkCommands::provide() {
     return begun ? running : refused(pus::FailureCode::WrongStatus);
   });
   own_.on_function("UNLINK", [this](double link, Call call) -> Outcome {
-    using enum LinkHandshakes::Released;
+    using enum LinkReleases::Released;
     renewals_.drop(static_cast<std::uint8_t>(link));
-    const bool begun = handling_.release(static_cast<std::uint8_t>(link), [=, this](LinkHandshakes::Released how) {
+    const bool begun = handling_.release(static_cast<std::uint8_t>(link), [=, this](LinkReleases::Released how) {
       if (how == ByBoth) return own_.finish(call);
       const auto code = how == Refused ? pus::FailureCode::ExecutionError : pus::FailureCode::Timeout;
       own_.abort(call, code, "an end has not let go of link", static_cast<std::int64_t>(link));

@@ -14,18 +14,6 @@ namespace st128 = pus::st128;
 
 namespace {
 
-/// Each stage of a handshake is one packet there and one back: a second is plenty, also beside a busy core.
-constexpr Duration stage_limit = 2s;
-
-[[nodiscard]] std::string terms_text(const st128::Agreement& agreement) {
-  const auto hertz = [](Duration period) { return std::to_string(std::chrono::nanoseconds{1s} / period) + " Hz"; };
-  return std::string{to_text(agreement.method)} + ", " + std::string{to_text(agreement.byte_order)} + " endian, " +
-         std::string{to_text(agreement.kind)} + ", " + hertz(agreement.producer_period) + " to " +
-         hertz(agreement.consumer_period) + ", " + std::to_string(agreement.payload_octets()) + " octets" +
-         (agreement.depth == 0 ? "" : ", " + std::to_string(agreement.depth) + " samples deep") +
-         (agreement.wakes ? ", each starts a cycle" : "");
-}
-
 /// Where the mission puts an end, else in this computer at a port that the system chooses.
 [[nodiscard]] std::string place_of(const std::string& declared) { return declared.empty() ? "127.0.0.1" : declared; }
 
@@ -47,7 +35,7 @@ bool LinkHandshakes::establish(std::uint8_t id, TimePoint now, Done done) {
   handshake.link = link;
   handshake.producer = from->subsystem.id;
   handshake.consumer = to->subsystem.id;
-  handshake.deadline = now + stage_limit;
+  handshake.deadline = now + LinkOperator::answer_limit;
   handshake.done = std::move(done);
   std::array<std::byte, max_packet_octets> buffer;
   if (const auto octets = st128::write_offer_request(buffer, {id, link->requires_}))
@@ -55,16 +43,10 @@ bool LinkHandshakes::establish(std::uint8_t id, TimePoint now, Done done) {
   return true;
 }
 
-bool LinkHandshakes::release(std::uint8_t link, ReleaseDone done) {
+bool LinkHandshakes::release(std::uint8_t link, LinkReleases::Done done) {
   // One that a single end still holds may be released again: an earlier release may have ended without that end.
   if (!graph_.is_held(link) || releases(link) || handshakes_.contains(link)) return false;
-  const auto* described = mission_.find_link(link);
-  releases_[link].done = std::move(done);
-  const std::array data{std::byte{link}};
-  // The consumer first, so that it never sees a producer that left.
-  for (const std::string& name : {described->to, described->from})
-    if (const std::uint16_t end = mission_.find_subsystem(name)->subsystem.id; graph_.holds(link, end))
-      operator_.send_link_command(end, st128::detach, data, {});
+  releases_.begin(link, std::move(done));
   return true;
 }
 
@@ -108,7 +90,7 @@ void LinkHandshakes::detached(std::uint8_t link, std::uint16_t from) {
   const auto found = handshakes_.find(link);
   if (found == handshakes_.end()) down(link, "detached by " + std::to_string(from));
   graph_.let_go(link, from);
-  if (found == handshakes_.end()) return end_releases();
+  if (found == handshakes_.end()) return releases_.end_those_let_go();
   // Reports of one subsystem come in order: a producer that attached in this handshake and detached since has left it.
   // Before that the report is a late one of the link's earlier life.
   const Handshake& handshake = found->second;
@@ -129,7 +111,7 @@ void LinkHandshakes::offered(Handshake& handshake, const st128::Offer& offer) {
   const auto octets = st128::write_terms_request(buffer, request);
   if (!octets) return give_up(handshake.link->id, "the offer does not fit a packet");
   handshake.stage = Stage::AwaitAgreement;
-  handshake.deadline += stage_limit;
+  handshake.deadline += LinkOperator::answer_limit;
   operator_.send_link_command(handshake.producer, st128::negotiate_terms, Octets{buffer}.first(*octets), {});
 }
 
@@ -137,7 +119,7 @@ void LinkHandshakes::agreed(Handshake& handshake, const st128::Agreement& agreem
   const std::uint32_t payload = agreement.payload_octets();
   if (payload == 0 || payload > max_payload_octets(agreement.kind))
     return give_up(handshake.link->id, "payload size out of range");
-  const LinkMechanism* mechanism = find_link_mechanism(mechanisms_, agreement.method, agreement.kind);
+  const LinkMechanism* mechanism = memory_.mechanism_for(agreement);
   if (mechanism == nullptr) return give_up(handshake.link->id, "no mechanism here carries " + terms_text(agreement));
   if (const auto shared = share(handshake, agreement); !shared) return give_up(handshake.link->id, shared.error().text);
   handshake.agreement = agreement;
@@ -147,46 +129,26 @@ void LinkHandshakes::agreed(Handshake& handshake, const st128::Agreement& agreem
                        .consumer = place_of(handshake.link->to_address),
                        .key = 0};
   handshake.stage = Stage::AwaitProducer;
-  handshake.deadline += stage_limit;
+  handshake.deadline += LinkOperator::answer_limit;
   attach(handshake, st128::Role::Producer);
 }
 
-/// What both ends share: memory made for this link, or, of a set that is lent to somebody else already, that one's.
 Result<> LinkHandshakes::share(Handshake& handshake, const st128::Agreement& agreement) {
-  handshake.epoch = handshake.made = ++epoch_;
-  const descriptor::MissionLink& link = *handshake.link;
-  const bool lends = agreement.kind == LinkKind::Loaned;
-  if (lends)
-    for (const auto& [id, lent] : lent_) {
-      const descriptor::MissionLink& other = *mission_.find_link(id);
-      const bool of_set = id != link.id && other.from == link.from && other.provides == link.provides;
-      const bool lives = handshakes_.contains(id) || (graph_.holds(id, handshake.producer) && !releases(id));
-      if (!of_set || !lives || lent.layout_hash != agreement.layout_hash()) continue;
-      handshake.shared = lent.shared;
-      handshake.made = lent.made;
-      break;
-    }
-  if (handshake.made == handshake.epoch) {
-    const LinkMechanism* mechanism = find_link_mechanism(mechanisms_, agreement.method, agreement.kind);
-    HIROSCO_TRY_LET(handshake.shared, mechanism->establish(memory_, agreement.layout(handshake.epoch)));
-  }
-  if (lends) lent_.insert_or_assign(link.id, Lent{handshake.shared, handshake.made, agreement.layout_hash()});
+  handshake.epoch = ++epoch_;
+  const auto lends_still = [&](std::uint8_t id) {
+    return handshakes_.contains(id) || (graph_.holds(id, handshake.producer) && !releases(id));
+  };
+  HIROSCO_TRY_LET(const auto shared, memory_.share(*handshake.link, agreement, handshake.epoch, lends_still));
+  handshake.shared = shared.memory;
+  handshake.made = shared.made;
   return ok();
 }
 
 void LinkHandshakes::attach(const Handshake& handshake, st128::Role role) {
-  const bool producer = role == st128::Role::Producer;
   std::array<std::byte, max_packet_octets> buffer;
-  const auto octets =
-      st128::write_attach_request(buffer, {.link = handshake.link->id,
-                                           .role = role,
-                                           .epoch = handshake.epoch,
-                                           .set = producer ? handshake.link->provides : handshake.link->requires_,
-                                           .agreement = handshake.agreement,
-                                           .route = handshake.route,
-                                           .made = handshake.made == handshake.epoch ? 0 : handshake.made});
+  const auto octets = handshake.write_attach(buffer, role);
   if (!octets) return;  // the same agreement came in a packet: it fits; else the stage's time limit ends it
-  operator_.send_link_command(producer ? handshake.producer : handshake.consumer, st128::attach,
+  operator_.send_link_command(role == st128::Role::Producer ? handshake.producer : handshake.consumer, st128::attach,
                               Octets{buffer}.first(*octets), handshake.shared);
 }
 
@@ -196,7 +158,7 @@ void LinkHandshakes::attached(Handshake& handshake, const st128::Attached& repor
     if (has_route && !is_at(report.route.producer, handshake.route.producer))
       return give_up(handshake.link->id, "the producer stands at '" + report.route.producer + "'");
     handshake.stage = Stage::AwaitConsumer;
-    handshake.deadline += stage_limit;
+    handshake.deadline += LinkOperator::answer_limit;
     if (has_route) {
       handshake.route.producer = report.route.producer;
       handshake.route.key = report.route.key;
@@ -219,7 +181,7 @@ void LinkHandshakes::reach(Handshake& handshake) {
       buffer, {.link = handshake.link->id, .epoch = handshake.epoch, .consumer = handshake.route.consumer});
   if (!octets) return;  // an address came in a packet: it fits; else the stage's time limit ends it
   handshake.stage = Stage::AwaitReached;
-  handshake.deadline += stage_limit;
+  handshake.deadline += LinkOperator::answer_limit;
   operator_.send_link_command(handshake.producer, st128::reach, Octets{buffer}.first(*octets), {});
 }
 
@@ -228,12 +190,9 @@ void LinkHandshakes::up(Handshake& handshake) {
   Handshake finished = std::move(handshake);
   handshakes_.erase(link);
   // Without a view the link is only not told about.
-  const LinkMechanism* mechanism = find_link_mechanism(mechanisms_, finished.agreement.method, finished.agreement.kind);
-  if (auto view = mechanism->look(memory_, finished.shared)) views_[link] = std::move(*view);
+  if (auto view = memory_.look(finished.agreement, finished.shared)) views_[link] = std::move(view);
   graph_.set_up(link, true);
-  const LinkRoute& route = finished.route;
-  const std::string where = route.producer.empty() ? "" : ", " + route.producer + " to " + route.consumer;
-  operator_.link_changed(*finished.link, true, terms_text(finished.agreement) + where);
+  operator_.link_changed(*finished.link, true, finished.terms());
   if (finished.done) finished.done(true);
 }
 
@@ -243,7 +202,7 @@ void LinkHandshakes::give_up(std::uint8_t link, const std::string& why, std::uin
   Handshake failed = std::move(found->second);
   handshakes_.erase(found);
   // Who could not lend in it may have lost it: the next try is made of its own.
-  if (failed.made != 0) std::erase_if(lent_, [&](const auto& entry) { return entry.second.made == failed.made; });
+  if (failed.made != 0) memory_.lend_no_more(failed.made);
   // Whoever was told to attach may have done so or may still do it: an end that stays attached would refuse the next try.
   const std::array data{std::byte{link}};
   if (failed.stage >= Stage::AwaitConsumer && failed.consumer != without)
@@ -257,7 +216,7 @@ void LinkHandshakes::give_up(std::uint8_t link, const std::string& why, std::uin
 std::vector<std::uint8_t> LinkHandshakes::under_way() const {
   std::vector<std::uint8_t> links;
   for (const auto& [link, handshake] : handshakes_) links.push_back(link);
-  for (const auto& [link, release] : releases_)
+  for (const std::uint8_t link : releases_.links())
     if (!handshakes_.contains(link)) links.push_back(link);
   return links;
 }
@@ -285,17 +244,6 @@ void LinkHandshakes::down(std::uint8_t link, const std::string& why) {
   operator_.link_changed(*mission_.find_link(link), false, why);
 }
 
-void LinkHandshakes::end_releases() {
-  std::vector<ReleaseDone> ended;
-  for (auto entry = releases_.begin(); entry != releases_.end();) {
-    const bool over = !graph_.is_held(entry->first);
-    if (over) ended.push_back(std::move(entry->second.done));
-    entry = over ? releases_.erase(entry) : std::next(entry);
-  }
-  for (const ReleaseDone& done : ended)
-    if (done) done(Released::ByBoth);
-}
-
 bool LinkHandshakes::is_end_of(std::uint8_t link, std::uint16_t apid) const {
   const auto* described = mission_.find_link(link);
   if (described == nullptr) return false;
@@ -307,30 +255,21 @@ bool LinkHandshakes::is_end_of(std::uint8_t link, std::uint16_t apid) const {
 void LinkHandshakes::failed(std::uint16_t apid, std::uint8_t subtype, std::uint8_t link, const std::string& why) {
   const bool knows_nothing = why.find(to_text(pus::FailureCode::UnknownIdentifier)) != std::string::npos;
   if (subtype == st128::detach && broken_off_.contains(link) && knows_nothing) graph_.let_go(link, apid);
-  // Who has let go since refuses nothing: it has nothing left to let go of.
-  if (const auto release = releases_.find(link); release != releases_.end())
-    release->second.refused |= subtype == st128::detach && graph_.holds(link, apid);
+  if (subtype == st128::detach) releases_.refused(link, apid);
   const auto found = handshakes_.find(link);
   if (found == handshakes_.end()) return;
-  Handshake& handshake = found->second;
   // What belonged to an earlier handshake, or takes one down, ends none.
-  const bool of_stage =
-      handshake.stage == Stage::AwaitOffer       ? subtype == st128::request_offer && apid == handshake.consumer
-      : handshake.stage == Stage::AwaitAgreement ? subtype == st128::negotiate_terms && apid == handshake.producer
-      : handshake.stage == Stage::AwaitProducer  ? subtype == st128::attach && apid == handshake.producer
-      : handshake.stage == Stage::AwaitReached   ? subtype == st128::reach && apid == handshake.producer
-                                                 : subtype == st128::attach && apid == handshake.consumer;
-  if (of_stage) handshake.failure = why;
+  if (found->second.awaits(apid, subtype)) found->second.failure = why;
 }
 
 void LinkHandshakes::forget(std::uint16_t apid) {
   std::vector<std::uint8_t> broken;
   for (const auto& [link, handshake] : handshakes_)
-    if (handshake.producer == apid || handshake.consumer == apid) broken.push_back(link);
+    if (handshake.is_between(apid)) broken.push_back(link);
   for (const std::uint8_t link : broken) give_up(link, "a partner is gone", apid);
   for (const std::uint8_t link : graph_.links_of(apid)) down(link, "subsystem " + std::to_string(apid) + " is gone");
   graph_.forget_all_of(apid);
-  end_releases();
+  releases_.end_those_let_go();
 }
 
 void LinkHandshakes::step(TimePoint now) {
@@ -339,17 +278,7 @@ void LinkHandshakes::step(TimePoint now) {
     if (!handshake.failure.empty()) over[link] = handshake.failure;
     else if (now > handshake.deadline) over[link] = "time limit of the handshake";
   for (const auto& [link, why] : over) give_up(link, why);
-  end_releases();
-  std::vector<Release> failed;
-  for (auto entry = releases_.begin(); entry != releases_.end();) {
-    Release& release = entry->second;
-    if (release.deadline == TimePoint{}) release.deadline = now + stage_limit;
-    const bool ends = release.refused || now > release.deadline;
-    if (ends) failed.push_back(std::move(release));
-    entry = ends ? releases_.erase(entry) : std::next(entry);
-  }
-  for (const Release& each : failed)
-    if (each.done) each.done(each.refused ? Released::Refused : Released::Unanswered);
+  releases_.step(now);
 }
 
 }  // namespace hirosco::supervisor

@@ -16,32 +16,27 @@
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/st128_realtime_link/link_handshake.hpp"
+#include "supervisor/supervision/realtime_links/handshake_under_way.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
+#include "supervisor/supervision/realtime_links/link_memory.hpp"
+#include "supervisor/supervision/realtime_links/link_operator.hpp"
+#include "supervisor/supervision/realtime_links/link_releases.hpp"
 
 /// Leads the handshake of service 128 between two subsystems and keeps the graph (paper 4.3, decisions 19 and 20).
 namespace hirosco::supervisor {
-
-/// What link handling asks of the supervisor around it.
-class LinkOperator {
- public:
-  virtual ~LinkOperator() = default;
-  /// Sends TC[128,subtype] through permit, route and log; memory travels beside it.
-  virtual void send_link_command(std::uint16_t apid, std::uint8_t subtype, Octets data, const MemoryHandle& memory) = 0;
-  /// A link came up, was taken down or could not be made; `text` says what was agreed or why not.
-  virtual void link_changed(const descriptor::MissionLink& link, bool up, const std::string& text) = 0;
-};
 
 class LinkHandshakes {
  public:
   /// Called once with the outcome of an establish.
   using Done = std::function<void(bool success)>;
-  /// How a release ended: nobody holds the link any more, an end refused to let go, or one said nothing in its time.
-  enum class Released : std::uint8_t { ByBoth, Refused, Unanswered };
-  using ReleaseDone = std::function<void(Released)>;
 
   LinkHandshakes(const descriptor::Mission& mission, LinkGraph& graph, MemoryProvider& memory,
                  LinkMechanisms mechanisms, LinkOperator& supervisor)
-      : mission_{mission}, memory_{memory}, mechanisms_{mechanisms}, operator_{supervisor}, graph_{graph} {}
+      : mission_{mission},
+        operator_{supervisor},
+        graph_{graph},
+        memory_{mission, memory, mechanisms},
+        releases_{mission, graph, supervisor} {}
 
   [[nodiscard]] const LinkGraph& graph() const noexcept { return graph_; }
   /// Of the newest handshake; those of a supervisor that goes on are newer.
@@ -55,9 +50,9 @@ class LinkHandshakes {
   [[nodiscard]] bool establish(std::uint8_t link, TimePoint now, Done done);
   /// Takes a link down at whichever end holds it, and ends when none does. False: nobody holds it, it is being taken down
   /// already, or a handshake of it is under way.
-  [[nodiscard]] bool release(std::uint8_t link, ReleaseDone done);
+  [[nodiscard]] bool release(std::uint8_t link, LinkReleases::Done done);
   /// A release of it is under way.
-  [[nodiscard]] bool releases(std::uint8_t link) const { return releases_.contains(link); }
+  [[nodiscard]] bool releases(std::uint8_t link) const { return releases_.under_way(link); }
   /// How a link does. Empty: it is not up, nothing was produced yet, or it cannot be seen.
   [[nodiscard]] std::optional<LinkGlance> glance(std::uint8_t link) const noexcept;
   /// Whether a link that is up can be looked at from here: what passes a network nobody sees but its consumer.
@@ -73,21 +68,8 @@ class LinkHandshakes {
   void step(TimePoint now);
 
  private:
-  enum class Stage : std::uint8_t { AwaitOffer, AwaitAgreement, AwaitProducer, AwaitConsumer, AwaitReached };
-  struct Handshake {
-    const descriptor::MissionLink* link{};
-    std::uint16_t producer{};
-    std::uint16_t consumer{};
-    Stage stage{Stage::AwaitOffer};
-    TimePoint deadline{};
-    std::string failure{};  ///< why it ends before its deadline
-    std::uint32_t epoch{};
-    std::uint32_t made{};  ///< epoch for which the memory was made
-    pus::st128::Agreement agreement;
-    MemoryHandle shared;  ///< by both ends
-    LinkRoute route;  ///< as far as it is known, of a link that is not memory
-    Done done;
-  };
+  using Handshake = HandshakeUnderWay;
+  using Stage = HandshakeUnderWay::Stage;
   void offered(Handshake& handshake, const pus::st128::Offer& offer);
   void agreed(Handshake& handshake, const pus::st128::Agreement& agreement);
   [[nodiscard]] Result<> share(Handshake& handshake, const pus::st128::Agreement& agreement);
@@ -100,30 +82,15 @@ class LinkHandshakes {
   /// Ends a handshake; `without`: the partner that needs no word of it because it refused, left or died.
   void give_up(std::uint8_t link, const std::string& why, std::uint16_t without = 0);
   void down(std::uint8_t link, const std::string& why);
-  /// Those whose link nobody holds any more, however that came about.
-  void end_releases();
   [[nodiscard]] bool is_end_of(std::uint8_t link, std::uint16_t apid) const;
 
   const descriptor::Mission& mission_;
-  MemoryProvider& memory_;
-  LinkMechanisms mechanisms_;
   LinkOperator& operator_;
   LinkGraph& graph_;
+  LinkMemory memory_;
+  LinkReleases releases_;
   std::map<std::uint8_t, Handshake> handshakes_;
   std::map<std::uint8_t, std::unique_ptr<LinkView>> views_;  ///< of links that are up
-  struct Release {
-    ReleaseDone done;
-    TimePoint deadline{};  ///< set by the first step() after it was asked for
-    bool refused{false};  ///< by an end that holds on
-  };
-  std::map<std::uint8_t, Release> releases_;
-  /// Memory that a set is lent in, by the links that have it. One whose producer has let go of it lends nothing any more.
-  struct Lent {
-    MemoryHandle shared;
-    std::uint32_t made{};
-    std::uint64_t layout_hash{};
-  };
-  std::map<std::uint8_t, Lent> lent_;
   std::set<std::uint8_t> broken_off_;
   std::uint32_t epoch_{0};
 };

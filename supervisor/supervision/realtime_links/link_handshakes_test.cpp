@@ -21,7 +21,7 @@ using ::testing::ElementsAre;
 using testing::hand;
 using ::testing::IsEmpty;
 using testing::LinkHandshakesTest;
-using enum LinkHandshakes::Released;
+using enum LinkReleases::Released;
 
 TEST_F(LinkHandshakesTest, TheHandshakeAsksTheConsumerThenTheProducerThenAttachesProducerAndConsumer) {
   ASSERT_TRUE(links.establish(2, now, done()));

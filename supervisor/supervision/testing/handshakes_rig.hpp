@@ -41,7 +41,7 @@ struct LinkHandshakesTest : ::testing::Test {
   LinkGraph graph{mission};
   LinkHandshakes links{mission, graph, memory, standard_link_mechanisms(), supervisor};
   std::vector<bool> ends;
-  std::vector<LinkHandshakes::Released> released;
+  std::vector<LinkReleases::Released> released;
   TimePoint now{};
   pus::st128::Offer offer{
       .set = "HAND_STATE", .period = 1ms, .terms = {}, .depth = 0, .fields = {{"ANGLE", Type::Double, 2}}};
@@ -52,8 +52,8 @@ struct LinkHandshakesTest : ::testing::Test {
   LinkHandshakes::Done done() {
     return [this](bool success) { ends.push_back(success); };
   }
-  LinkHandshakes::ReleaseDone on_release() {
-    return [this](LinkHandshakes::Released how) { released.push_back(how); };
+  LinkReleases::Done on_release() {
+    return [this](LinkReleases::Released how) { released.push_back(how); };
   }
   void report(std::uint16_t from, std::uint8_t subtype, Octets data) {
     std::array<std::byte, 4096> buffer{};
