@@ -77,7 +77,8 @@ void Api::handle(const HttpRequest& request, std::function<void(HttpResponse)> r
   if (route == nullptr) return respond(error(404, reading ? "nothing is there" : "nothing takes POSTs there"));
   json body = json::object();
   if (!reading) {
-    if (session_.in_replay(header(request, "x-client"))) return respond(error(409, "this page replays the past"));
+    if (session_.pages().in_replay(header(request, "x-client")))
+      return respond(error(409, "this page replays the past"));
     body = parsed_request(request.body);
     if (!body.is_object()) return respond(error(400, "a JSON object is wanted, with each key once"));
   }
@@ -118,8 +119,8 @@ std::optional<HttpResponse> Api::refuse_socket(const HttpRequest& request) {
 
 void Api::opened(const HttpRequest& request, Peer& peer) {
   const auto target = read_target(request.target);
-  static_cast<void>(session_.opened(peer, target && role_of(request, *target) == Role::Operator,
-                                    target ? target->text("seat").value_or("") : std::string{}));
+  static_cast<void>(session_.pages().opened(peer, target && role_of(request, *target) == Role::Operator,
+                                            target ? target->text("seat").value_or("") : std::string{}));
 }
 
 // --- the page --------------------------------------------------------------------------------------------------------

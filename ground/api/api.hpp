@@ -37,8 +37,8 @@ class Api final : public Application {
   void handle(const HttpRequest& request, std::function<void(HttpResponse)> respond) override;
   [[nodiscard]] std::optional<HttpResponse> refuse_socket(const HttpRequest& request) override;
   void opened(const HttpRequest& request, Peer& peer) override;
-  void received(const Peer& peer, const std::string& text) override { session_.received(peer, text); }
-  void closed(const Peer& peer) override { session_.closed(peer); }
+  void received(const Peer& peer, const std::string& text) override { session_.pages().received(peer, text); }
+  void closed(const Peer& peer) override { session_.pages().closed(peer); }
   void link_up() override { session_.link_up(); }
   void link_down() override { session_.link_down(); }
   void not_sent(Octets packet) override { session_.not_sent(packet); }

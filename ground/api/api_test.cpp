@@ -127,9 +127,9 @@ TEST_F(AnApi, OpensASocketForWhoMayReadAndKnowsWhoMayCommand) {
   api.opened(request("GET", "/ws?token=looks&seat=b", ""), observer);
   EXPECT_EQ(page.last("hello")["operator"], true);
   EXPECT_EQ(observer.last("hello")["operator"], false);
-  EXPECT_EQ(session.present()["pages"][0]["seat"], "a");
+  EXPECT_EQ(session.pages().present()["pages"][0]["seat"], "a");
   api.closed(observer);
-  EXPECT_EQ(session.client_count(), 1U);
+  EXPECT_EQ(session.pages().count(), 1U);
 }
 
 TEST_F(AnApi, AnswersTheSixthWrongTokenInAMinuteASecondLaterOneAfterTheOther) {

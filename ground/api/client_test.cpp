@@ -21,8 +21,8 @@ using ::testing::SizeIs;
 
 class AClient : public testing::PlayedStation {
  protected:
-  void opens() { session.opened(page, true, "a"); }
-  void says(const std::string& text) { session.received(page, text); }
+  void opens() { session.pages().opened(page, true, "a"); }
+  void says(const std::string& text) { session.pages().received(page, text); }
   /// Without who is here, which changes at each of a page's words.
   [[nodiscard]] std::vector<std::string> told() const {
     auto types = page.types();
@@ -195,9 +195,9 @@ TEST_F(AClient, SaysWhatItDoesNotUnderstand) {
 TEST_F(AClient, IsCalledAsItsPageSaysAsFarAsThereIsRoom) {
   opens();
   says(R"({"type":"name","name":")" + std::string(40, 'x') + R"("})");
-  EXPECT_EQ(session.present()["pages"][0]["name"], std::string(Authority::longest_name, 'x'));
+  EXPECT_EQ(session.pages().present()["pages"][0]["name"], std::string(Authority::longest_name, 'x'));
   says(R"({"type":"name"})");
-  EXPECT_EQ(session.present()["pages"][0]["name"], "");
+  EXPECT_EQ(session.pages().present()["pages"][0]["name"], "");
 }
 
 }  // namespace

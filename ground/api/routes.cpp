@@ -123,7 +123,7 @@ void post_authority(const Question& asked, const Respond& respond) {
   respond(outcome(asked.session.authority(asked.body)));
 }
 
-void get_present(const Question& asked, const Respond& respond) { respond(answer(asked.session.present())); }
+void get_present(const Question& asked, const Respond& respond) { respond(answer(asked.session.pages().present())); }
 
 void get_flights(const Question& asked, const Respond& respond) { respond(answer(asked.session.flights().list())); }
 
@@ -159,7 +159,7 @@ void post_mode_preview(const Question& asked, const Respond& respond) {
 }
 
 void post_fault(const Question& asked, const Respond& respond) {
-  asked.session.fault(asked.body, [respond](const Answered<json>& result) { respond(outcome(result)); });
+  asked.session.faults().inject(asked.body, [respond](const Answered<json>& result) { respond(outcome(result)); });
 }
 
 // --- the table -------------------------------------------------------------------------------------------------------

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "ground/api/client.hpp"
 #include "ground/model/json.hpp"
 #include "ground/model/views.hpp"
 
@@ -14,7 +13,6 @@ namespace {
 using nlohmann::json;
 
 constexpr Duration housekeeping_period = 1s;
-constexpr Duration injections_period = 200ms;
 
 /// Who a client says that it is.
 [[nodiscard]] Authority::Seat seat_of(const json& body) {
@@ -50,12 +48,19 @@ Session::Session(Parts parts)
                  .heard = [this](const Heard& heard, OnboardTime t) { take_past(heard, t); },
                  .filled =
                      [this](OnboardTime from, OnboardTime to) {
-                       broadcast({{"type", "filled"}, {"from", json_time(from)}, {"to", json_time(to)}});
+                       pages_.tell({{"type", "filled"}, {"from", json_time(from)}, {"to", json_time(to)}});
                      }}},
       flights_{parts_.catalogue, parts_.archive},
       alarms_{parts_.archive, flights_.began()},
       stacks_{parts_.archive},
-      authority_{[this](const StoredMark& mark) { keep(mark); }} {
+      authority_{[this](const StoredMark& mark) { keep(mark); }},
+      pages_{*this},
+      faults_{{.ask_device = parts_.outside.ask_device,
+               .injected = parts_.outside.injected,
+               .catalogue = parts_.catalogue,
+               .archive = parts_.archive,
+               .now = [this] { return now(); },
+               .tell = [this](const json& message) { pages_.tell(message); }}} {
   if (const auto extent = parts_.archive.extent()) archived_until_ = extent->to;
   // What the station before this one had not fetched yet.
   for (const StoredGap& gap : parts_.archive.gaps({.from = flights_.began()}))
@@ -113,7 +118,7 @@ void Session::take(const pus::TelemetryView& packet, Octets octets) {
 void Session::tell_event(const StoredEvent& event) {
   json message = event_json(event);
   message["type"] = "event";
-  broadcast(message);
+  pages_.tell(message);
   if (auto alarm = alarms_.hear(event)) tell_alarm(std::move(*alarm));
 }
 
@@ -128,7 +133,7 @@ void Session::begin_flight() {
     add_gap(flights_.began(), *first, CatchUp::After::TheBegin);
   json message = flights_.present();
   message["type"] = "flight";
-  broadcast(message);
+  pages_.tell(message);
 }
 
 void Session::keep(const StoredMark& mark) {
@@ -137,105 +142,43 @@ void Session::keep(const StoredMark& mark) {
   json message = authority();
   message["type"] = "authority";
   message["did"] = mark_json(mark);
-  broadcast(message);
+  pages_.tell(message);
 }
 
 Authority::Now Session::both_times() const { return {.ground = parts_.clock.now(), .onboard = now()}; }
 
 void Session::tell_alarm(json alarm) {
   alarm["type"] = "alarm";
-  broadcast(alarm);
+  pages_.tell(alarm);
 }
 
 void Session::add_gap(OnboardTime from, OnboardTime to, CatchUp::After after) {
   if (to <= from) return;
   parts_.archive.add(StoredGap{from, to});
   catch_up_.missing(from, to, after);
-  broadcast({{"type", "gap"}, {"from", json_time(from)}, {"to", json_time(to)}});
+  pages_.tell({{"type", "gap"}, {"from", json_time(from)}, {"to", json_time(to)}});
 }
 
 void Session::tell_command(const StoredCommand& command) {
   json message = command_json(command);
   message["type"] = "command";
-  broadcast(message);
+  pages_.tell(message);
 }
 
 void Session::tick() {
   const TimePoint now = parts_.clock.now();
   commands_.expire(now);
   catch_up_.tick();
-  for (const auto& client : clients_) client->tick(now);
-  if (now >= next_injections_) {
-    take_injections();
-    next_injections_ = now + injections_period;
-  }
-  if (others_changed_) tell_who_is_here();
+  pages_.tick(now);
+  faults_.tick(now);
+  pages_.tell_who_is_here();
   parts_.archive.commit();
   if (now >= next_housekeeping_) {
     parts_.archive.keep_within_limit();
-    std::set<std::string> present;
-    for (const auto& client : clients_) present.insert(client->seat());
-    authority_.see(std::move(present), both_times());
+    authority_.see(pages_.seats(), both_times());
     for (json& alarm : alarms_.expire(this->now())) tell_alarm(std::move(alarm));
     next_housekeeping_ = now + housekeeping_period;
   }
-}
-
-// --- clients ---------------------------------------------------------------------------------------------------------
-
-std::string Session::opened(Peer& peer, bool is_operator, const std::string& seat) {
-  std::string id = "c" + std::to_string(next_client_++);
-  // An observer's page cannot hold what it cannot take.
-  clients_.push_back(std::make_unique<Client>(
-      *this, peer,
-      Client::Who{
-          .id = id, .seat = is_operator ? seat.substr(0, Authority::longest_seat) : "", .is_operator = is_operator}));
-  others_changed_ = true;
-  return id;
-}
-
-void Session::received(const Peer& peer, const std::string& text) {
-  for (const auto& client : clients_)
-    if (&client->peer() == &peer) {
-      client->received(text);
-      others_changed_ = true;
-      return;
-    }
-}
-
-void Session::closed(const Peer& peer) {
-  std::erase_if(clients_, [&](const auto& client) { return &client->peer() == &peer; });
-  others_changed_ = true;
-}
-
-json Session::present() const {
-  json pages = json::array();
-  std::size_t operators = 0;
-  for (const auto& client : clients_) {
-    operators += client->is_operator() ? 1 : 0;
-    if (pages.size() == most_present) continue;
-    pages.push_back({{"client", client->id()},
-                     {"seat", client->seat()},
-                     {"name", client->name()},
-                     {"operator", client->is_operator()},
-                     {"replay", client->in_replay()}});
-  }
-  return {{"pages", std::move(pages)}, {"operators", operators}, {"observers", clients_.size() - operators}};
-}
-
-void Session::tell_who_is_here() {
-  others_changed_ = false;
-  json message = present();
-  message["type"] = "present";
-  broadcast(message);
-}
-
-bool Session::in_replay(const std::string& client) const {
-  return std::ranges::any_of(clients_, [&](const auto& c) { return c->id() == client && c->in_replay(); });
-}
-
-void Session::broadcast(const json& message) {
-  for (const auto& client : clients_) client->tell(message);
 }
 
 // --- requests --------------------------------------------------------------------------------------------------------
@@ -272,7 +215,7 @@ Answered<json> Session::alarm(const json& body) {
   if (!done) return done;
   json message = *done;
   message["type"] = message.contains("alarms") ? "alarms" : "alarm";
-  broadcast(message);
+  pages_.tell(message);
   return alarms_.list();
 }
 
@@ -281,7 +224,7 @@ Answered<json> Session::keep_stack(const json& body) {
   if (!done) return done;
   json message = *done;
   message["type"] = "stacks";
-  broadcast(message);
+  pages_.tell(message);
   return done;
 }
 
@@ -292,7 +235,7 @@ Answered<json> Session::tell_of_flight(const json& body) {
   if (!done) return done;
   json message = *done;
   message["type"] = "notes";
-  broadcast(message);
+  pages_.tell(message);
   return done;
 }
 
@@ -302,51 +245,6 @@ void Session::mode_preview(const json& body, std::function<void(Answered<json>)>
 
 void Session::preview(const json& body, std::function<void(Answered<json>)> done) {
   commands_.preview(body, std::move(done));
-}
-
-void Session::fault(const json& body, std::function<void(Answered<json>)> done) {
-  const std::string device = text_of(body, "device");
-  const std::string line = text_of(body, "line");
-  const auto& devices = parts_.catalogue.mission().devices;
-  // The name becomes part of a path: only what the mission declares gets there.
-  if (std::ranges::none_of(devices, [&](const auto& known) { return known.name == device; }))
-    return done(refuse(404, "the mission has no simulated device '" + device + "'"));
-  constexpr std::size_t longest_line = 255;
-  if (line.empty() || line.size() > longest_line || std::ranges::any_of(line, [](unsigned char c) { return c < ' '; }))
-    return done(refuse(400, "line: one line of text is wanted"));
-  constexpr std::size_t most_own = 100;
-  if (parts_.outside.injected) own_faults_.emplace_back(device, line);
-  if (own_faults_.size() > most_own) own_faults_.pop_front();
-  parts_.outside.ask_device(device, line,
-                            [this, device, line, done = std::move(done)](std::optional<std::string> answer) {
-                              if (answer != "ok")
-                                static_cast<void>(is_own_fault(device, line));  // nothing was injected
-                              if (!answer) return done(refuse(503, "the device does not answer"));
-                              tell_fault({now(), device, line, *answer});
-                              done(json{{"answer", *answer}});
-                            });
-}
-
-void Session::tell_fault(const StoredFault& fault) {
-  parts_.archive.add(fault);
-  broadcast({{"type", "fault"},
-             {"t", json_time(fault.t)},
-             {"device", fault.device},
-             {"line", fault.line},
-             {"answer", fault.answer}});
-}
-
-void Session::take_injections() {
-  if (!parts_.outside.injected) return;
-  for (const StoredFault& fault : parts_.outside.injected())
-    if (!is_own_fault(fault.device, fault.line)) tell_fault(fault);
-}
-
-bool Session::is_own_fault(const std::string& device, const std::string& line) {
-  const auto own = std::ranges::find(own_faults_, std::pair{device, line});
-  if (own == own_faults_.end()) return false;
-  own_faults_.erase(own);
-  return true;
 }
 
 json Session::link_json() const {

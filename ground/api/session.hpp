@@ -3,16 +3,14 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
-#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "ground/api/application.hpp"
+#include "ground/api/device_faults.hpp"
+#include "ground/api/open_pages.hpp"
 #include "ground/archive/archive.hpp"
 #include "ground/commands/commands.hpp"
 #include "ground/downlink/catch_up.hpp"
@@ -40,8 +38,6 @@ struct Surroundings {
   std::function<std::vector<StoredFault>()> injected{};
 };
 
-class Client;
-
 class Session {
  public:
   struct Parts {
@@ -67,21 +63,9 @@ class Session {
   /// Batches to the clients, limits of time. Call 20 times a second.
   void tick();
 
-  // --- clients ------------------------------------------------------------------------------------------------------
-  /// Client::id of a new client; it is told everything at once. `peer` lives until closed(); `seat` as in Authority, "" = none.
-  std::string opened(Peer& peer, bool is_operator, const std::string& seat = {});
-  void received(const Peer& peer, const std::string& text);
-  void closed(const Peer& peer);
-  /// Whether this client looks at the past: its commands are refused.
-  [[nodiscard]] bool in_replay(const std::string& client) const;
-
   // --- requests (bodies as in ground/api/README.md) -----------------------------------------------------------------
   /// Of who commands, unless it is essential; what the descriptor marks only when it is confirmed.
   [[nodiscard]] Answered<nlohmann::json> command(const nlohmann::json& body);
-  /// {pages: [{client, seat, name, operator, replay}], operators, observers}: who has a page open here; of more than
-  /// most_present the first, the counts are of all.
-  [[nodiscard]] nlohmann::json present() const;
-  static constexpr std::size_t most_present = 32;
   /// Who commands, and who asks for it.
   [[nodiscard]] nlohmann::json authority() const;
   [[nodiscard]] Answered<nlohmann::json> authority(const nlohmann::json& body);
@@ -92,11 +76,13 @@ class Session {
   /// Answers through `done`, at the latest after 2 s.
   void preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
   void mode_preview(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
-  void fault(const nlohmann::json& body, std::function<void(Answered<nlohmann::json>)> done);
   [[nodiscard]] nlohmann::json status() const;
   /// Of the link, in every status.
   [[nodiscard]] nlohmann::json link_json() const;
 
+  /// Whoever has a page open here.
+  [[nodiscard]] OpenPages& pages() noexcept { return pages_; }
+  [[nodiscard]] DeviceFaults& faults() noexcept { return faults_; }
   [[nodiscard]] const Catalogue& catalogue() const noexcept { return parts_.catalogue; }
   [[nodiscard]] Archive& archive() const noexcept { return parts_.archive; }
   [[nodiscard]] const Model& model() const noexcept { return model_; }
@@ -107,7 +93,6 @@ class Session {
   [[nodiscard]] bool connected() const noexcept { return connected_; }
   /// On-board time now as far as the ground can tell.
   [[nodiscard]] OnboardTime now() const;
-  [[nodiscard]] std::size_t client_count() const noexcept { return clients_.size(); }
 
  private:
   void take(const pus::TelemetryView& packet, Octets octets);
@@ -118,14 +103,8 @@ class Session {
   void tell_command(const StoredCommand& command);
   void tell_alarm(nlohmann::json alarm);
   void begin_flight();
-  void tell_who_is_here();
   void keep(const StoredMark& mark);
   [[nodiscard]] Authority::Now both_times() const;
-  void broadcast(const nlohmann::json& message);
-  void take_injections();
-  void tell_fault(const StoredFault& fault);
-  /// One that a client asked for here, and takes it off those that are known.
-  [[nodiscard]] bool is_own_fault(const std::string& device, const std::string& line);
 
   Parts parts_;
   Model model_;
@@ -136,17 +115,14 @@ class Session {
   Alarms alarms_;
   Stacks stacks_;
   Authority authority_;
+  OpenPages pages_;
+  DeviceFaults faults_;
   bool connected_{false};
   std::optional<OnboardTime>
       first_heard_;  ///< of a craft of which nothing was known, until it is known since when it flies
   TimePoint newest_received_{};
   std::optional<OnboardTime> archived_until_;  ///< by those before this process
-  std::vector<std::unique_ptr<Client>> clients_;
-  std::uint64_t next_client_{1};
-  bool others_changed_{false};  ///< who has a page open, since it was told
   TimePoint next_housekeeping_{};
-  TimePoint next_injections_{};
-  std::deque<std::pair<std::string, std::string>> own_faults_;  ///< device and line, until that tells of it, too
 };
 
 }  // namespace hirosco::ground

@@ -14,18 +14,12 @@
 namespace hirosco::ground {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 using testing::opening;
 using testing::PlayedPage;
 using ::testing::SizeIs;
 
 class ASession : public testing::PlayedStation {
  protected:
-  [[nodiscard]] auto keep_answer() {
-    return [this](Answered<nlohmann::json> answer) { answers.push_back(std::move(answer)); };
-  }
-  std::vector<Answered<nlohmann::json>> answers;
   PlayedPage page, other;
 };
 
@@ -37,8 +31,8 @@ TEST_F(ASession, KnowsTheTimeOnBoardByTheNewestPacketAndWhatHasPassedSince) {
 }
 
 TEST_F(ASession, KeepsEachPacketAndWhatItSaidAndTellsItsPages) {
-  session.opened(page, true);
-  session.opened(other, false);
+  session.pages().opened(page, true);
+  session.pages().opened(other, false);
   hears(testing::torque_high(catalogue, opening));
   for (const PlayedPage* one : {&page, &other}) {
     EXPECT_EQ(one->last("event")["name"], "TORQUE_HIGH");
@@ -52,7 +46,7 @@ TEST_F(ASession, KeepsEachPacketAndWhatItSaidAndTellsItsPages) {
 }
 
 TEST_F(ASession, TellsWhatWasLostBetweenTwoLinks) {
-  session.opened(page, true);
+  session.pages().opened(page, true);
   session.link_up();
   hears(testing::torque_high(catalogue, opening));
   session.link_down();
@@ -73,7 +67,7 @@ TEST_F(ASession, OfAStreamThatIsNoTelemetryWantsAnotherLink) {
 }
 
 TEST_F(ASession, TellsOfAnotherFlight) {
-  session.opened(page, true);
+  session.pages().opened(page, true);
   hears(testing::overview(catalogue, {.more = {{"SUPERVISOR.SUBSYSTEMS.CYCLES[0]", 500}}}, opening));
   EXPECT_EQ(page.last("flight")["id"], 1);
   hears(testing::overview(catalogue, {.more = {{"SUPERVISOR.SUBSYSTEMS.CYCLES[0]", 100}}}, opening + 60s));
@@ -82,8 +76,8 @@ TEST_F(ASession, TellsOfAnotherFlight) {
 }
 
 TEST_F(ASession, FollowsATelecommandForEverybody) {
-  session.opened(page, true);
-  session.opened(other, false);
+  session.pages().opened(page, true);
+  session.pages().opened(other, false);
   session.link_up();
   ASSERT_TRUE(session.command(bore("a")));
   hears(verdict(0, 7, opening));
@@ -118,7 +112,7 @@ TEST_F(ASession, AsksOnceMoreWhatIsToBeConfirmed) {
 }
 
 TEST_F(ASession, TellsEverybodyWhoCommandsAndKeepsIt) {
-  session.opened(page, true, "b");
+  session.pages().opened(page, true, "b");
   EXPECT_EQ(session.authority({{"action", "grab"}, {"seat", "a"}}).error().status, 400U);
   const auto taken = session.authority({{"action", "take"}, {"seat", "a"}, {"sender", "anna"}});
   ASSERT_TRUE(taken);
@@ -130,92 +124,10 @@ TEST_F(ASession, TellsEverybodyWhoCommandsAndKeepsIt) {
   EXPECT_TRUE(session.authority()["holder"].is_null()) << "no page of that seat is open";
 }
 
-TEST_F(ASession, TellsWhoHasAPageOpen) {
-  const std::string first = session.opened(page, true, std::string(100, 'a'));
-  EXPECT_EQ(session.opened(other, false, "b"), "c2");
-  session.received(page, R"({"type":"name","name":"anna"})");
-  pass(batch);
-  const auto told = other.last("present");
-  EXPECT_EQ(told["operators"], 1);
-  EXPECT_EQ(told["observers"], 1);
-  ASSERT_EQ(told["pages"].size(), 2U);
-  EXPECT_EQ(told["pages"][0]["client"], first);
-  EXPECT_EQ(told["pages"][0]["name"], "anna");
-  EXPECT_EQ(told["pages"][0]["seat"], std::string(Authority::longest_seat, 'a'));
-  EXPECT_EQ(told["pages"][1]["seat"], "") << "an observer commands from no seat";
-  const auto before = other.count("present");
-  pass(1s);
-  EXPECT_EQ(other.count("present"), before) << "nothing has changed";
-  session.closed(page);
-  pass(batch);
-  EXPECT_EQ(session.client_count(), 1U);
-  EXPECT_EQ(other.last("present")["operators"], 0);
-}
-
-TEST_F(ASession, ListsNoMoreThanSomePagesAndCountsAll) {
-  std::vector<PlayedPage> pages(Session::most_present + 3);
-  for (PlayedPage& one : pages) session.opened(one, false);
-  EXPECT_EQ(session.present()["pages"].size(), Session::most_present);
-  EXPECT_EQ(session.present()["observers"], pages.size());
-}
-
-TEST_F(ASession, KnowsWhoLooksAtThePast) {
-  hears(testing::torque_high(catalogue, opening));
-  const std::string id = session.opened(page, true);
-  EXPECT_FALSE(session.in_replay(id));
-  session.received(page, R"({"type":"replay","at":2145916900,"speed":0})");
-  EXPECT_TRUE(session.in_replay(id));
-  EXPECT_FALSE(session.in_replay("c99"));
-  session.received(page, R"({"type":"live"})");
-  EXPECT_FALSE(session.in_replay(id));
-}
-
-TEST_F(ASession, InjectsNothingIntoWhatTheMissionDoesNotHave) {
-  session.fault({{"device", "../spindle"}, {"line", "unplug"}}, keep_answer());
-  session.fault({{"device", "spindle"}, {"line", ""}}, keep_answer());
-  session.fault({{"device", "spindle"}, {"line", "unplug\nquit"}}, keep_answer());
-  session.fault({{"device", "spindle"}, {"line", std::string(256, 'x')}}, keep_answer());
-  ASSERT_THAT(answers, SizeIs(4));
-  EXPECT_EQ(answers[0].error().status, 404U);
-  for (std::size_t i = 1; i < answers.size(); ++i) EXPECT_EQ(answers[i].error().status, 400U) << i;
-  EXPECT_THAT(asked, IsEmpty());
-}
-
-TEST_F(ASession, TellsAFaultOnceThoughTheDeviceTellsOfItToo) {
-  session.opened(page, true);
-  session.fault({{"device", "spindle"}, {"line", "unplug"}}, keep_answer());
-  ASSERT_THAT(asked, SizeIs(1));
-  asked[0].answer("ok");
-  ASSERT_THAT(answers, SizeIs(1));
-  EXPECT_EQ((*answers[0])["answer"], "ok");
-  injected = {{opening, "spindle", "unplug", "ok"}, {opening, "spindle", "plug", "ok"}};
-  pass(1s);
-  EXPECT_EQ(page.count("fault"), 2U);
-  EXPECT_EQ(page.last("fault")["line"], "plug") << "somebody else's";
-  EXPECT_THAT(archive->faults({}), SizeIs(2));
-  injected = {{opening, "spindle", "unplug", "ok"}};
-  pass(1s);
-  EXPECT_EQ(page.count("fault"), 3U) << "once is once";
-}
-
-TEST_F(ASession, OfAFaultThatWasNotInjectedExpectsNoWordOfTheDevice) {
-  session.opened(page, true);
-  session.fault({{"device", "spindle"}, {"line", "unplug"}}, keep_answer());
-  session.fault({{"device", "spindle"}, {"line", "plug"}}, keep_answer());
-  asked.at(0).answer(std::nullopt);
-  asked.at(1).answer("no such line");
-  EXPECT_EQ(answers.at(0).error().status, 503U);
-  EXPECT_EQ((*answers.at(1))["answer"], "no such line");
-  EXPECT_EQ(page.count("fault"), 1U);
-  injected = {{opening, "spindle", "unplug", "ok"}, {opening, "spindle", "plug", "ok"}};
-  pass(1s);
-  EXPECT_EQ(page.count("fault"), 3U) << "these are somebody else's";
-}
-
 TEST_F(ASession, TellsEverybodyOfStacksNotesAndAcknowledgedAlarms) {
   hears(testing::overview(catalogue, {}, opening));
   hears(testing::torque_high(catalogue, opening));
-  session.opened(page, true);
+  session.pages().opened(page, true);
   ASSERT_TRUE(session.keep_stack({{"name", "home"}, {"text", "hirosco tc DRILL WIPE"}, {"sender", "anna"}}));
   EXPECT_EQ(page.last("stacks")["stacks"][0]["who"], "anna");
   ASSERT_TRUE(session.tell_of_flight({{"flight", 1}, {"note", "loud"}}));
@@ -250,7 +162,7 @@ TEST_F(ASession, SaysHowItIsWithTheAgeOfEachValue) {
 TEST_F(ASession, OfTheNextStationGoesOnWhereTheArchiveEnds) {
   hears(testing::torque_high(catalogue, opening));
   Session next{{.catalogue = catalogue, .archive = *archive, .clock = clock, .outside = {{}, {}, {}}}};
-  next.opened(page, true);
+  next.pages().opened(page, true);
   EXPECT_TRUE(next.link_json()["age_s"].is_null()) << "it has heard nothing itself";
   next.link_up();
   EXPECT_TRUE(next.receive(testing::torque_high(catalogue, opening + 60s)));

@@ -227,7 +227,7 @@ struct TwoPeople : GroundStation {
 TEST_F(TwoPeople, OneCommandsAndTheOtherIsRefusedByTheStationUntilItIsHandedOver) {
   commission();
   Page page;
-  static_cast<void>(station.session().opened(page, true, "ben"));
+  static_cast<void>(station.session().pages().opened(page, true, "ben"));
   EXPECT_EQ(send("anna", "JOYSTICK", "SET_FORCE_SCALE", {{"SCALE", 0.01}}), 202U);
   EXPECT_EQ(send("ben", "JOYSTICK", "SET_FORCE_SCALE", {{"SCALE", 0.02}}), 409U);
   EXPECT_EQ(told, "anna commands: ask for the command, or wait until it is handed over");
@@ -242,7 +242,7 @@ TEST_F(TwoPeople, OneCommandsAndTheOtherIsRefusedByTheStationUntilItIsHandedOver
     if (mark["kind"] == "authority")
       log.push_back(mark["who"].get<std::string>() + " " + mark["action"].get<std::string>());
   EXPECT_EQ(log, (std::vector<std::string>{"ben was handed", "ben asked", "anna took"}));
-  station.session().closed(page);
+  station.session().pages().closed(page);
   station.run(40s);
   EXPECT_TRUE(station.get("/api/authority")["holder"].is_null()) << "nobody is there any more";
 }
@@ -250,11 +250,12 @@ TEST_F(TwoPeople, OneCommandsAndTheOtherIsRefusedByTheStationUntilItIsHandedOver
 TEST_F(TwoPeople, EachPageIsToldWhoElseLooksByNameAndKindAndWhetherAtThePast) {
   commission();
   Page anna, ben, guest;
-  static_cast<void>(station.session().opened(anna, true, "seat-anna"));
-  static_cast<void>(station.session().opened(ben, true, "seat-ben"));
-  static_cast<void>(station.session().opened(guest, false, "seat-guest"));
-  station.session().received(anna, R"({"type":"name","name":"anna"})");
-  station.session().received(ben, R"({"type":"name","name":"ben, who has a name of more than thirty-two octets"})");
+  static_cast<void>(station.session().pages().opened(anna, true, "seat-anna"));
+  static_cast<void>(station.session().pages().opened(ben, true, "seat-ben"));
+  static_cast<void>(station.session().pages().opened(guest, false, "seat-guest"));
+  station.session().pages().received(anna, R"({"type":"name","name":"anna"})");
+  station.session().pages().received(ben,
+                                     R"({"type":"name","name":"ben, who has a name of more than thirty-two octets"})");
   station.run(200ms);
   const json told = anna.last("present");
   EXPECT_EQ(told["operators"], 2);
@@ -267,24 +268,24 @@ TEST_F(TwoPeople, EachPageIsToldWhoElseLooksByNameAndKindAndWhetherAtThePast) {
   EXPECT_EQ(told["pages"][2]["seat"], "") << "an observer cannot hold what it cannot take";
   EXPECT_EQ(told["pages"][2]["operator"], false);
   EXPECT_EQ(guest.last("present"), told) << "observers are told, too";
-  station.session().received(ben, R"({"type":"replay","at":0,"speed":0})");
+  station.session().pages().received(ben, R"({"type":"replay","at":0,"speed":0})");
   station.run(200ms);
   EXPECT_EQ(anna.last("present")["pages"][1]["replay"], true);
-  station.session().closed(ben);
+  station.session().pages().closed(ben);
   station.run(200ms);
   EXPECT_EQ(anna.last("present")["pages"].size(), 2U);
   EXPECT_EQ(station.get("/api/present")["operators"], 1);
   std::vector<Page> crowd(40);
-  for (Page& page : crowd) static_cast<void>(station.session().opened(page, false));
+  for (Page& page : crowd) static_cast<void>(station.session().pages().opened(page, false));
   EXPECT_EQ(station.get("/api/present")["pages"].size(), 32U);
   EXPECT_EQ(station.get("/api/present")["observers"], 41) << "counted are all";
-  for (Page& page : crowd) station.session().closed(page);
+  for (Page& page : crowd) station.session().pages().closed(page);
 }
 
 TEST_F(TwoPeople, ANoteOfAFlightIsToldToEveryPageAndStaysWithTheFlight) {
   commission();
   Page page;
-  static_cast<void>(station.session().opened(page, false));
+  static_cast<void>(station.session().pages().opened(page, false));
   const json note{{"flight", 1}, {"note", "the wall <i>gave way</i>"}, {"sender", "anna"}};
   EXPECT_EQ(station.post("/api/flights", note)["notes"].size(), 1U);
   EXPECT_EQ(page.last("notes")["notes"][0]["text"], "the wall <i>gave way</i>") << "as it was written: pages show text";
@@ -329,7 +330,7 @@ TEST_F(TwoPeople, WhatTheDescriptorMarksIsSentOnlyWhenItIsConfirmed) {
 TEST_F(TwoPeople, AlarmsAreAcknowledgedForEverybodyAndKeptByTheStation) {
   commission();
   Page page;
-  static_cast<void>(station.session().opened(page, true, "ben"));
+  static_cast<void>(station.session().pages().opened(page, true, "ben"));
   station.post("/api/faults", {{"device", "joystick"}, {"line", "unplug"}});
   ASSERT_TRUE(station.run_until([&] { return !page.of_type("alarm").empty(); }));
   const json alarm = page.last("alarm");
@@ -404,9 +405,9 @@ TEST_F(GroundStation, HostileInputIsTextOrRefused) {
     EXPECT_EQ(answer.status, 400U) << body;
   }
   Page page;
-  station.session().opened(page, true);
+  station.session().pages().opened(page, true);
   for (const char* text : {"", "{", "[1]", "7", R"({"type":"replay","at":"x"})", R"({"type":{}})", "\xff"})
-    station.session().received(page, text);
+    station.session().pages().received(page, text);
   EXPECT_EQ(page.of_type("error").size(), 7U);
   const auto answer = station.ask("POST", "/api/faults", {{"device", "../../etc"}, {"line", "x"}});
   EXPECT_EQ(answer.status, 404U);

@@ -25,7 +25,7 @@ TEST_F(GroundArchive, ThatSomebodyLocksKeepsNoPageFromHearingOfATelecommand) {
   Station station{flight, file};
   ASSERT_TRUE(station.run_until([&] { return flight.craft().supervisor().commissioned(); }));
   Page page;
-  station.session().opened(page, true);
+  station.session().pages().opened(page, true);
   sqlite3* other = nullptr;
   ASSERT_EQ(sqlite3_open(file.c_str(), &other), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr), SQLITE_OK);
@@ -51,7 +51,7 @@ TEST_F(GroundArchive, ARestartedGatewayStillKnowsAndFetchesWhatWasSaidInItsAbsen
   flight.craft().run(2s);
   Station station{flight, file};
   Page page;
-  station.session().opened(page, true);
+  station.session().pages().opened(page, true);
   ASSERT_TRUE(station.run_until([&] { return !page.of_type("filled").empty(); }));
   EXPECT_GE(station.get("/api/events?limit=1000")["events"].size(), events);
   EXPECT_EQ(station.get("/api/commands")["commands"][0]["stage"], "completed");
@@ -71,10 +71,10 @@ TEST_F(GroundArchive, AGatewayThatEndsWhileItFetchesIsFollowedByOneThatFetchesTh
   {
     Station station{flight, file};
     Page page;
-    station.session().opened(page, true);
+    station.session().pages().opened(page, true);
     ASSERT_TRUE(station.run_until([&] { return !page.of_type("gap").empty(); }));
     EXPECT_GE(gaps(station), 1U) << "it has not asked yet";
-    station.session().closed(page);
+    station.session().pages().closed(page);
   }
   Station station{flight, file};
   EXPECT_TRUE(station.run_until([&] { return gaps(station) == 0; }))

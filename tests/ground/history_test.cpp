@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 TEST_F(GroundStation, HistoryIsWhatTheLiveViewShowedAndLongOnesKeepTheirExtremes) {
   commission();
   Page page;
-  station.session().opened(page, true);
+  station.session().pages().opened(page, true);
   const double from = station.get("/api/status")["t"].get<double>();
   station.run(2s);
   const std::string name = "MANIPULATOR.CUR_VALUES.TORQUE[1]";
@@ -71,7 +71,7 @@ TEST_F(GroundStation, ReplayTellsTheSameStoryAndLocksCommanding) {
   commission();
   const double from = station.get("/api/status")["t"].get<double>();
   Page live;
-  station.session().opened(live, true);
+  station.session().pages().opened(live, true);
   station.run(50ms);
   station.command("JOYSTICK", "SET_FORCE_SCALE", {{"SCALE", 0.05}});
   EXPECT_EQ(station.post("/api/faults", {{"device", "joystick"}, {"line", "unplug"}})["answer"], "ok");
@@ -79,9 +79,9 @@ TEST_F(GroundStation, ReplayTellsTheSameStoryAndLocksCommanding) {
   const double to = station.get("/api/status")["t"].get<double>();
 
   Page page;
-  const std::string client = station.session().opened(page, true);
+  const std::string client = station.session().pages().opened(page, true);
   page.messages.clear();
-  station.session().received(page, json{{"type", "replay"}, {"at", from}, {"speed", 10}}.dump());
+  station.session().pages().received(page, json{{"type", "replay"}, {"at", from}, {"speed", 10}}.dump());
   EXPECT_EQ(page.messages.front()["type"], "replay");
   const json first = page.last("status");
   EXPECT_EQ(subsystem_of(first, "JOYSTICK")["state"], "Operational");
@@ -105,7 +105,7 @@ TEST_F(GroundStation, ReplayTellsTheSameStoryAndLocksCommanding) {
   EXPECT_EQ(page.of_type("fault").size(), 1U);
   EXPECT_EQ(subsystem_of(page.last("status"), "JOYSTICK")["state"], "Offline");
 
-  station.session().received(page, R"({"type":"live"})");
+  station.session().pages().received(page, R"({"type":"live"})");
   EXPECT_EQ(page.last("replay")["state"], "live");
   EXPECT_FALSE(page.last("status").contains("replay"));
   EXPECT_EQ(station
@@ -118,7 +118,7 @@ TEST_F(GroundStation, ReplayTellsTheSameStoryAndLocksCommanding) {
 TEST_F(GroundStation, ALinkThatWasAwayIsAGapAndValuesGrowOldMeanwhile) {
   commission();
   Page page;
-  station.session().opened(page, true);
+  station.session().pages().opened(page, true);
   station.cut_link();
   station.run(3s);
   const json away = station.get("/api/status");
@@ -143,7 +143,7 @@ TEST_F(GroundStation, WhatWasSaidBeforeItsFirstLinkIsToldAsIfItHadHeardIt) {
   ASSERT_TRUE(flight.craft().run_until([&] { return flight.craft().supervisor().commissioned(); }, 60s));
   flight.craft().run(2s);
   Page page;
-  station.session().opened(page, true);
+  station.session().pages().opened(page, true);
   station.join_link();
   ASSERT_TRUE(station.run_until([&] {
     return !page.of_type("filled").empty() && station.get("/api/timeline?from=0&to=4000000000")["gaps"].empty();
@@ -163,7 +163,7 @@ TEST_F(GroundStation, WhatWasSaidBeforeItsFirstLinkIsToldAsIfItHadHeardIt) {
 TEST_F(GroundStation, AVerdictAndAnAlarmThatWereMissedReachTheirTelecommandAndTheOperator) {
   commission();
   Page page;
-  station.session().opened(page, true);
+  station.session().pages().opened(page, true);
   station.post("/api/commands", {{"subsystem", "JOYSTICK"}, {"function", "PING"}});
   station.cut_link();  // it has left, its reports find nobody
   flight.craft().run(500ms);
@@ -187,8 +187,8 @@ TEST_F(GroundStation, AReplayBeginsWithTheNewestValuesHoweverOldThoseOfOthersAre
   ASSERT_TRUE(station.session().receive(telemetry(other.apid, 3, 25, noon - 1h, data)));
   ASSERT_TRUE(station.session().receive(joints(noon, 1.0)));
   Page page;
-  station.session().opened(page, true);
-  station.session().received(page, json{{"type", "replay"}, {"at", 2'145'916'900.0}, {"speed", 0}}.dump());
+  station.session().pages().opened(page, true);
+  station.session().pages().received(page, json{{"type", "replay"}, {"at", 2'145'916'900.0}, {"speed", 0}}.dump());
   EXPECT_EQ(page.last("values")["replay"], true);
   EXPECT_EQ(page.last("values")["set"][first_joint][1], 2'145'916'900.0);
 }
@@ -201,9 +201,9 @@ TEST_F(GroundStation, AReplayLeavesOutNoEventOfABurst) {
   ASSERT_TRUE(station.session().receive(joints(noon + 3s, 1.0)));
   ASSERT_TRUE(station.session().receive(joints(noon, 1.0)));
   Page page;
-  station.session().opened(page, true);
+  station.session().pages().opened(page, true);
   page.messages.clear();
-  station.session().received(page, json{{"type", "replay"}, {"at", 2'145'916'900.0}, {"speed", 100}}.dump());
+  station.session().pages().received(page, json{{"type", "replay"}, {"at", 2'145'916'900.0}, {"speed", 100}}.dump());
   ASSERT_TRUE(station.run_until([&] { return page.last("replay")["state"] == "ended"; }));
   EXPECT_EQ(page.of_type("event").size(), burst);
 }

@@ -139,8 +139,8 @@ TEST_F(GroundStation, SaysWhatASubsystemWaitsForAndNothingWhenItIsReady) {
 TEST_F(GroundStation, EveryPageSeesEveryStageOfEverybodysTelecommands) {
   commission();
   Page one, other;
-  station.session().opened(one, true);
-  station.session().opened(other, true);
+  station.session().pages().opened(one, true);
+  station.session().pages().opened(other, true);
   const json sent = station.post("/api/commands", {{"subsystem", "JOYSTICK"},
                                                    {"function", "SET_FORCE_SCALE"},
                                                    {"arguments", {{"SCALE", 0.05}}},
@@ -163,7 +163,7 @@ TEST(GroundStationOfAnAuthorsRefusal, CallsItByItsNameInTheDescriptorEverywhere)
   ASSERT_TRUE(station.run_until([&] { return flight.craft().supervisor().commissioned(); }));
   station.run(1s);
   Page page;
-  station.session().opened(page, true);
+  station.session().pages().opened(page, true);
   const json refused = station.command("MANIPULATOR", "MOVE_TO", {{"Q1", 1.0}, {"Q2", 2.6}, {"DURATION", 0.2}});
   EXPECT_EQ(refused["stage"], "failed");
   EXPECT_EQ(refused["code"], 0x8002);
@@ -204,7 +204,7 @@ class AnotherGround : public GroundStation {
 TEST_F(AnotherGround, ShowsItsTelecommandsWithFunctionArgumentsSenderAndWhatBecameOfThem) {
   commission();
   Page page;
-  station.session().opened(page, true);
+  station.session().pages().opened(page, true);
   const json scaled = call("JOYSTICK", "SET_FORCE_SCALE", {0.05}, 0x4001);
   EXPECT_EQ(scaled["function"], "SET_FORCE_SCALE");
   EXPECT_EQ(scaled["arguments"], (json{{"SCALE", 0.05}}));
@@ -342,8 +342,8 @@ TEST_F(GroundStation, AnArgumentThatDoesNotFitIsNamedAndNothingIsSent) {
 TEST_F(GroundStation, AStalledPageLosesHousekeepingNotEventsAndTheOthersNothing) {
   commission();
   Page good, stalled;
-  station.session().opened(good, true);
-  station.session().opened(stalled, true);
+  station.session().pages().opened(good, true);
+  station.session().pages().opened(stalled, true);
   stalled.takes = false;
   station.run(1s);
   stalled.pending = std::size_t{1} << 20;
