@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "hirosco/pus/st03_housekeeping/housekeeping_definition.hpp"
+
 namespace hirosco::pus {
 namespace {
 
@@ -23,13 +25,6 @@ constexpr std::size_t id_and_interval_octets = 6;
   return FailureNotice{code}.with(static_cast<std::uint8_t>(index));
 }
 
-/// Octets of the definition in TM[3,10].
-[[nodiscard]] std::size_t definition_octets(const HousekeepingLayout& layout) noexcept {
-  std::size_t sum = 2 + 1 + 4 + 1 + 4 * layout.once.size() + 1;
-  for (const auto& set : layout.sets) sum += 2 + 1 + 4 * set.values.size();
-  return sum;
-}
-
 [[nodiscard]] bool contains(const HousekeepingLayout& layout, std::uint32_t wire) noexcept {
   const auto has = [wire](const std::vector<SampledValue>& values) {
     return std::ranges::find(values, wire, &SampledValue::wire) != values.end();
@@ -38,18 +33,6 @@ constexpr std::size_t id_and_interval_octets = 6;
 }
 
 }  // namespace
-
-/// A definition as TC[3,1] and TC[3,29] carry it.
-struct HousekeepingService::Definition {
-  struct Set {
-    std::uint16_t repetitions{};
-    std::vector<std::uint32_t> parameters;
-  };
-  std::uint16_t id{};
-  std::uint32_t interval{};
-  std::vector<std::uint32_t> once;
-  std::vector<Set> sets;
-};
 
 HousekeepingService::HousekeepingService(const descriptor::SubsystemDescriptor& subsystem, HousekeepingSampler& sampler,
                                          Verification& verification, TelemetrySink& sink)
@@ -139,37 +122,9 @@ void HousekeepingService::handle(const TelecommandView& telecommand, const Reque
   }
 }
 
-std::expected<HousekeepingService::Definition, FailureNotice> HousekeepingService::read_definition(
-    Octets data, bool with_interval) const {
-  OctetReader reader{data};
-  std::optional<std::size_t> empty_list;
-  const auto read_ids = [&reader, &empty_list](std::vector<std::uint32_t>& ids, bool may_be_empty) {
-    const std::size_t at = reader.position();
-    const auto count = reader.get<std::uint8_t>();
-    if (count == 0 && !may_be_empty && !empty_list) empty_list = at;
-    for (std::size_t i = 0; i < count && reader.good(); ++i) ids.push_back(reader.get<std::uint32_t>());
-  };
-  Definition definition;
-  definition.id = reader.get<std::uint16_t>();
-  if (with_interval) definition.interval = reader.get<std::uint32_t>();
-  const std::size_t first_count_at = reader.position();
-  read_ids(definition.once, true);
-  const auto sets = reader.get<std::uint8_t>();
-  for (std::size_t i = 0; i < sets && reader.good(); ++i) {
-    definition.sets.emplace_back();
-    definition.sets.back().repetitions = reader.get<std::uint16_t>();
-    read_ids(definition.sets.back().parameters, false);
-  }
-  if (!reader.exhausted()) return std::unexpected{FailureNotice{FailureCode::DataLength}};
-  if (definition.once.empty() && definition.sets.empty()) empty_list = first_count_at;
-  if (empty_list)
-    return std::unexpected{FailureNotice{FailureCode::IllegalField}.with(static_cast<std::uint16_t>(*empty_list))};
-  return definition;
-}
-
 /// Adds what the definition says; a notice names the position of the bad parameter among all of the request.
 HousekeepingService::Notice HousekeepingService::extend(HousekeepingLayout& layout,
-                                                        const Definition& definition) const {
+                                                        const HousekeepingDefinition& definition) const {
   std::size_t index = 0;
   const auto add = [&](std::vector<SampledValue>& to, std::uint32_t wire) -> Notice {
     const SampledValue* value = find_value(wire);
@@ -202,7 +157,7 @@ HousekeepingService::Notice HousekeepingService::check_capacity(const Housekeepi
 }
 
 void HousekeepingService::create(Octets data, const Request& request) {
-  const auto definition = read_definition(data, true);
+  const auto definition = read_definition(data, DefinitionOf::NewStructure);
   if (!definition) return verification_.rejected(request, definition.error());
   verification_.accepted(request);
   if (find(definition->id) != nullptr)
@@ -217,7 +172,7 @@ void HousekeepingService::create(Octets data, const Request& request) {
 }
 
 void HousekeepingService::append(Octets data, const Request& request) {
-  const auto definition = read_definition(data, false);
+  const auto definition = read_definition(data, DefinitionOf::AppendedParameters);
   if (!definition) return verification_.rejected(request, definition.error());
   verification_.accepted(request);
   Structure* structure = find(definition->id);
@@ -322,21 +277,8 @@ void HousekeepingService::report_layouts(Octets data, const Request& request) {
 }
 
 void HousekeepingService::send_layout(const Structure& structure, const Request& request) {
-  const HousekeepingLayout& layout = layout_of(structure);
-  std::vector<std::byte> buffer(definition_octets(layout));
-  OctetWriter writer{buffer};
-  const auto put_ids = [&writer](const std::vector<SampledValue>& values) {
-    writer.put(static_cast<std::uint8_t>(values.size()));
-    for (const auto& value : values) writer.put(value.wire);
-  };
-  writer.put(structure.id).put(static_cast<std::uint8_t>(structure.enabled ? 1 : 0)).put(structure.interval);
-  put_ids(layout.once);
-  writer.put(static_cast<std::uint8_t>(layout.sets.size()));
-  for (const auto& set : layout.sets) {
-    writer.put(set.repetitions);
-    put_ids(set.values);
-  }
-  sink_.report(service_type, structure_report, request.source, writer.written());
+  sink_.report(service_type, structure_report, request.source,
+               write_definition(layout_of(structure), structure.enabled, structure.interval));
 }
 
 void HousekeepingService::report_periodic_properties(Octets data, const Request& request) {

@@ -5,7 +5,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <expected>
 #include <memory>
 #include <optional>
 #include <span>
@@ -135,6 +134,8 @@ class HousekeepingSampler {
   std::atomic<std::uint64_t> failed_samples_{0};
 };
 
+struct HousekeepingDefinition;
+
 /// The service loop's half: TC[3,1], 3, 5, 6, 9, 27, 29, 31 and 33. What it accepts takes effect at the beginning of the
 /// next cycle.  Thread: the service loop.
 class HousekeepingService final : public Service {
@@ -179,7 +180,6 @@ class HousekeepingService final : public Service {
     bool predefined{false};
   };
   using Notice = std::optional<FailureNotice>;
-  struct Definition;
 
   [[nodiscard]] Structure* find(std::uint16_t id) noexcept;
   [[nodiscard]] const SampledValue* find_value(std::uint32_t wire) const noexcept;
@@ -196,8 +196,7 @@ class HousekeepingService final : public Service {
   void report_layouts(Octets data, const Request& request);
   void report_periodic_properties(Octets data, const Request& request);
   void send_layout(const Structure& structure, const Request& request);
-  [[nodiscard]] std::expected<Definition, FailureNotice> read_definition(Octets data, bool with_interval) const;
-  [[nodiscard]] Notice extend(HousekeepingLayout& layout, const Definition& definition) const;
+  [[nodiscard]] Notice extend(HousekeepingLayout& layout, const HousekeepingDefinition& definition) const;
   [[nodiscard]] Notice check_capacity(const HousekeepingLayout& layout) const;
   /// Unknown identifiers and want of room in the command queue, for lists of structure ids.
   [[nodiscard]] Notice check_known(std::size_t index, std::uint16_t id, std::size_t commands_before) noexcept;

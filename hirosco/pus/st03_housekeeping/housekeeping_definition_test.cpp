@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "hirosco/pus/st03_housekeeping/housekeeping_definition.hpp"
+
+#include <gtest/gtest.h>
+
+#include <initializer_list>
+#include <vector>
+
+/// Octets as pus-c 8.3.2 lays them out; what the service makes of them is in housekeeping_structures_test.cpp.
+namespace hirosco::pus {
+namespace {
+
+std::vector<std::byte> octets(std::initializer_list<int> numbers) {
+  std::vector<std::byte> made;
+  for (const int number : numbers) made.push_back(static_cast<std::byte>(number));
+  return made;
+}
+
+TEST(HousekeepingDefinition, OfANewStructureHasItsInterval) {
+  const auto data = octets({0, 2, 0, 0, 0, 4, 1, 1, 2, 3, 4, 1, 0, 2, 1, 5, 6, 7, 8});
+  const auto read = read_definition(data, DefinitionOf::NewStructure);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->id, 2);
+  EXPECT_EQ(read->interval, 4U);
+  EXPECT_EQ(read->once, std::vector<std::uint32_t>{0x01020304});
+  ASSERT_EQ(read->sets.size(), 1U);
+  EXPECT_EQ(read->sets[0].repetitions, 2);
+  EXPECT_EQ(read->sets[0].parameters, std::vector<std::uint32_t>{0x05060708});
+}
+
+TEST(HousekeepingDefinition, OfWhatIsAppendedHasNone) {
+  const auto data = octets({0, 2, 1, 1, 2, 3, 4, 0});
+  const auto read = read_definition(data, DefinitionOf::AppendedParameters);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->interval, 0U);
+  EXPECT_EQ(read->once, std::vector<std::uint32_t>{0x01020304});
+}
+
+TEST(HousekeepingDefinition, ThatIsCutOrHasOctetsBehindItIsRefused) {
+  const auto whole = octets({0, 2, 0, 0, 0, 4, 1, 1, 2, 3, 4, 0});
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const auto read = read_definition(Octets{whole}.first(length), DefinitionOf::NewStructure);
+    ASSERT_FALSE(read) << length;
+    EXPECT_EQ(read.error().code(), FailureCode::DataLength) << length;
+  }
+  auto longer = whole;
+  longer.push_back({});
+  EXPECT_EQ(read_definition(longer, DefinitionOf::NewStructure).error().code(), FailureCode::DataLength);
+}
+
+TEST(HousekeepingDefinition, OfNoParameterIsRefusedWithThePlaceOfTheEmptyList) {
+  const auto position = [](const std::vector<std::byte>& data) {
+    const FailureNotice notice = read_definition(data, DefinitionOf::NewStructure).error();
+    EXPECT_EQ(notice.code(), FailureCode::IllegalField);
+    return OctetReader{notice.data()}.get<std::uint16_t>();
+  };
+  EXPECT_EQ(position(octets({0, 2, 0, 0, 0, 4, 0, 0})), 6);
+  EXPECT_EQ(position(octets({0, 2, 0, 0, 0, 4, 0, 1, 0, 2, 0})), 10) << "a set of none";
+}
+
+TEST(HousekeepingDefinition, IsReportedAsItIsInForce) {
+  HousekeepingLayout layout{2, 4, {}, {}};
+  layout.once = {{.wire = 0x01020304}};
+  layout.sets = {{2, {{.wire = 0x05060708}}}};
+  EXPECT_EQ(write_definition(layout, true, 8), octets({0, 2, 1, 0, 0, 0, 8, 1, 1, 2, 3, 4, 1, 0, 2, 1, 5, 6, 7, 8}));
+  EXPECT_EQ(definition_octets(layout), write_definition(layout, true, 8).size());
+}
+
+}  // namespace
+}  // namespace hirosco::pus
