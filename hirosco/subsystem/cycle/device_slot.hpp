@@ -15,7 +15,7 @@
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/resource/quota.hpp"
 #include "hirosco/subsystem/author/ports.hpp"
-#include "hirosco/subsystem/cycle/device_output.hpp"
+#include "hirosco/subsystem/cycle/output_to_device.hpp"
 
 /// What the cycle moves between the author's ports and devices: one slot per device of the chosen configuration. Slots are
 /// built by the service loop while the cycle rests; step functions run in the cycle and are bounded.
@@ -78,7 +78,7 @@ class DeviceSlot {
   /// The cycle has another period from now on.
   void follow(Duration sampling) noexcept;
   /// What write() sends.
-  [[nodiscard]] DeviceOutput& output() noexcept { return output_; }
+  [[nodiscard]] OutputToDevice& output() noexcept { return output_; }
 
  private:
   static constexpr std::uint32_t never = 1'000'000'000;
@@ -104,7 +104,7 @@ class DeviceSlot {
   Duration sampling_{};
   std::uint32_t watchdog_us_;
   std::vector<LayoutField> input_layout_;
-  DeviceOutput output_;
+  OutputToDevice output_;
   std::vector<std::byte> frame_;
   std::uint32_t sequence_{0};
   Loss since_good_;

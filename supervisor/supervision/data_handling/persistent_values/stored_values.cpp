@@ -8,42 +8,12 @@
 #include <utility>
 
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
-#include "supervisor/supervision/data_handling/permission.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/set_values.hpp"
 
 namespace hirosco::supervisor {
 namespace {
 
 using Parameters = pus::ParameterService;
-
-/// The event has seconds in 32 bits.
-[[nodiscard]] double seconds_of(OnboardTime time) {
-  return static_cast<double>(std::chrono::floor<std::chrono::seconds>(time.time_since_epoch()).count());
-}
-
-[[nodiscard]] bool is_write(const pus::TelecommandView& telecommand) {
-  return telecommand.service() == Parameters::service_type && telecommand.subtype() == Parameters::set_values;
-}
-
-/// Id and value of each that a TC[20,3] or a TM[20,2] of this subsystem has.
-template <class Take>
-void each_value(const descriptor::SubsystemDescriptor& subsystem, Octets data, Take take) {
-  OctetReader reader{data};
-  for (auto count = reader.get<std::uint8_t>(); count > 0; --count) {
-    const auto id = reader.get<std::uint32_t>();
-    const auto place = descriptor::find_parameter(subsystem, id);
-    if (!reader.good() || !place) return;
-    const descriptor::Parameter& parameter = subsystem.parameters[place->parameter];
-    const Octets value = reader.get(parameter.octets(place->member));
-    if (!reader.good()) return;
-    take(id, value);
-  }
-}
-
-/// The parameter that an id is of, or is in.
-[[nodiscard]] std::uint32_t owner_of(const descriptor::SubsystemDescriptor& subsystem, std::uint32_t id) {
-  const auto place = descriptor::find_parameter(subsystem, id);
-  return place ? descriptor::identity_of(subsystem, {{}, place->parameter, std::nullopt, {}}).wire() : id;
-}
 
 /// A write takes effect at the next cycle boundary, and a function may have come between two of them.
 [[nodiscard]] Duration settling(const descriptor::SubsystemDescriptor& subsystem) {
@@ -55,7 +25,7 @@ void each_value(const descriptor::SubsystemDescriptor& subsystem, Octets data, T
 }  // namespace
 
 void StoredValues::begin() {
-  begun_ = craft_.now;
+  news_.begin(craft_.now);
   for (descriptor::MissionSubsystem& member : craft_.mission.subsystems) {
     ValueSet values{member};
     const std::uint16_t apid = member.subsystem.id;
@@ -108,8 +78,7 @@ void StoredValues::begin(std::uint16_t apid, Subject& subject) {
     craft_.tell(fmt::format("{} takes over {} stored value{}, of {}", name, subject.values.size(),
                             subject.values.size() == 1 ? "" : "s", time_text(subject.since)),
                 apid);
-    news_.push_back({"VALUES_TAKEN", static_cast<double>(apid), static_cast<double>(subject.values.size()),
-                     seconds_of(subject.since)});
+    news_.taken(apid, subject.values.size(), subject.since);
     // The one that was not whole, or not as new, must not stay the only other one.
     if (heal || behind) keep(subject);
     return;
@@ -121,43 +90,18 @@ void StoredValues::refuse(const Subject& subject, std::size_t copy, CopyFault fa
   const descriptor::SubsystemDescriptor& subsystem = subject.member->subsystem;
   craft_.tell(fmt::format("copy {} of {}'s stored values is not used: {}", copy + 1, subsystem.name, to_text(fault)),
               subsystem.id);
-  news_.push_back(
-      {"VALUES_REFUSED", static_cast<double>(subsystem.id), static_cast<double>(copy + 1), static_cast<double>(fault)});
-}
-
-/// The persistent parameters that it sets, or has an argument of.
-StoredValues::Ids StoredValues::set_by(const pus::TelecommandView& telecommand, const Subject& subject) const {
-  const descriptor::SubsystemDescriptor& subsystem = subject.member->subsystem;
-  Ids ids;
-  if (is_write(telecommand)) {
-    each_value(subsystem, telecommand.application_data(), [&](std::uint32_t id, Octets) {
-      if (const auto owner = owner_of(subsystem, id); subject.values.has(owner)) ids.insert(owner);
-    });
-    return ids;
-  }
-  const auto call = called_function(telecommand);
-  const descriptor::Function* request =
-      call ? subsystem.find_function(call->name) : subsystem.find_request(telecommand.service(), telecommand.subtype());
-  if (request == nullptr) return ids;
-  for (const auto& argument : request->arguments) {
-    const auto* parameter =
-        argument.of.empty() ? nullptr
-                            : subsystem.find_parameter(std::string_view{argument.of}.substr(0, argument.of.find('.')));
-    if (parameter == nullptr || !parameter->persistent) continue;
-    ids.insert(ParameterId{subsystem.id, parameter->field.type, parameter->id}.wire());
-  }
-  return ids;
+  news_.refused(subsystem.id, copy + 1, fault);
 }
 
 void StoredValues::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand) {
   const auto subject = subjects_.find(apid);
   if (subject == subjects_.end()) return;
-  Ids ids = set_by(telecommand, subject->second);
+  Ids ids = set_by(telecommand, subject->second.member->subsystem, subject->second.values);
   if (ids.empty()) return;
   const pus::Request request = pus::request_of(telecommand);
   AwaitedChanges::Change change{apid, request.id, request.source, ids};
   const Octets data = telecommand.application_data();
-  if (is_write(telecommand)) change.values.assign(data.begin(), data.end());
+  if (sets_values(telecommand)) change.values.assign(data.begin(), data.end());
   if ((telecommand.ack() & pus::ack_completion) == 0 || !awaited_.add(std::move(change)))
     ask_later(subject->second, ids);
 }
@@ -289,7 +233,7 @@ ValueCopy StoredValues::copy_of(const Subject& subject) {
 }
 
 void StoredValues::watch(TimePoint now) {
-  tell_news(now);
+  news_.tell(now);
   for (auto& [apid, subject] : subjects_) {
     if (!subject.changed.empty() && now >= subject.ask_at) ask(apid, subject);
     if (!subject.failing || now < subject.retry_at) continue;
@@ -343,15 +287,6 @@ void StoredValues::recall(OctetReader& reader) {
     if (const auto copy = read_copy(reader.get(reader.get<std::uint16_t>()))) left.unkept = *copy;
   }
   awaited_.recall(reader);
-}
-
-/// An event that nobody can hear yet would be in the log only.
-void StoredValues::tell_news(TimePoint now) {
-  if (news_.empty()) return;
-  const Member* link = craft_.ground_link();
-  const bool heard = link == nullptr || (link->alive() && link->state() == descriptor::State::Operational);
-  if (!heard && now - begun_ < patience) return;
-  for (const News& each : std::exchange(news_, {})) own_.announce(each.event, {each.apid, each.first, each.second});
 }
 
 }  // namespace hirosco::supervisor

@@ -5,14 +5,12 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "supervisor/platform/storage/value_store.hpp"
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/data_handling/persistent_values/awaited_changes.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/found_values.hpp"
 #include "supervisor/supervision/data_handling/persistent_values/value_set.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/succession/journal.hpp"
@@ -29,12 +27,10 @@ class StoredValues final : public Hearer, public Watch, public Remembered {
  public:
   /// A disk that did not take them is tried again after so long.
   static constexpr Duration retry_after = std::chrono::seconds{10};
-  /// What was found at the start is told when the ground link is there, but not later than this.
-  static constexpr Duration patience = std::chrono::seconds{10};
 
   /// Null: nothing outlives the flight, as nobody keeps anything.
   StoredValues(Craft& craft, OwnSubsystem& own, CommandDesk& desk, ValueStore* store)
-      : craft_{craft}, own_{own}, desk_{desk}, store_{store} {}
+      : craft_{craft}, own_{own}, desk_{desk}, store_{store}, news_{craft, own} {}
 
   /// Before any subsystem is started, or when those that run were taken over: each begins with what its copies have, if one is whole and
   /// fits, and goes on with what was recalled.  Realtime: blocks.
@@ -71,15 +67,10 @@ class StoredValues final : public Hearer, public Watch, public Remembered {
     Ids changed{};
     std::optional<ValueCopy> unkept{};
   };
-  struct News {
-    std::string event;
-    double apid{}, first{}, second{};
-  };
   void begin(std::uint16_t apid, Subject& subject);
   void go_on(Subject& subject, const Left& left);
   void hear_end(std::uint16_t from, const pus::TelemetryView& report);
   void refuse(const Subject& subject, std::size_t copy, CopyFault fault);
-  [[nodiscard]] Ids set_by(const pus::TelecommandView& telecommand, const Subject& subject) const;
   void take_write(Subject& subject, Octets data);
   void take_report(Subject& subject, Octets data);
   void ask_later(Subject& subject, const Ids& ids);
@@ -88,7 +79,6 @@ class StoredValues final : public Hearer, public Watch, public Remembered {
   void keep(Subject& subject);
   [[nodiscard]] static ValueCopy copy_of(const Subject& subject);
   void take_outcomes(TimePoint now);
-  void tell_news(TimePoint now);
 
   Craft& craft_;
   OwnSubsystem& own_;
@@ -97,8 +87,7 @@ class StoredValues final : public Hearer, public Watch, public Remembered {
   std::map<std::uint16_t, Subject> subjects_;  ///< that have persistent parameters, by APID
   AwaitedChanges awaited_;
   std::map<std::uint16_t, Left> left_;
-  std::vector<News> news_;  ///< of the start
-  TimePoint begun_{};
+  FoundValues news_;  ///< of the start
 };
 
 }  // namespace hirosco::supervisor

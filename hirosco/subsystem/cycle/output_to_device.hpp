@@ -16,11 +16,11 @@ namespace hirosco {
 
 /// What a device is told to do: the author's output within its declared ranges, or the declared safe values, as octets of a frame.
 /// Made by the service loop while the cycle rests.  Realtime: bounded by the fields, but for the constructor. Thread: the cycle.
-class DeviceOutput {
+class OutputToDevice {
  public:
   /// `layout`: of `object`, which is the author's, with the lengths that the declaration gives; all but it outlive this.
-  DeviceOutput(const descriptor::Device& device, std::endian order, std::vector<LayoutField> layout,
-               ObjectFields& fields, MutableOctets object);
+  OutputToDevice(const descriptor::Device& device, std::endian order, std::vector<LayoutField> layout,
+                 ObjectFields& fields, MutableOctets object);
   [[nodiscard]] Octets safe() const noexcept { return safe_payload_; }
   /// What goes out in this cycle. `authors`: the output as the author has left it, else the safe values.
   [[nodiscard]] Octets put_out(bool authors) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/subsystem/cycle/device_output.hpp"
+#include "hirosco/subsystem/cycle/output_to_device.hpp"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ struct OutputOfAMotor : ::testing::Test {
   std::array<NativeField, 1> native{NativeField{.type = Type::Uint16, .count = 2}};
   ObjectFields fields{native, {}};
 
-  DeviceOutput output(std::endian order = std::endian::big) {
+  OutputToDevice output(std::endian order = std::endian::big) {
     return {subsystem.devices[0], order, {{Type::Uint16, 2, 0}}, fields, std::as_writable_bytes(std::span{current})};
   }
   static std::vector<int> numbers(Octets octets) {
@@ -41,7 +41,7 @@ struct OutputOfAMotor : ::testing::Test {
 
 TEST_F(OutputOfAMotor, IsTheAuthorsOrTheSafeValuesAndWhatOfTheseIsNotDeclaredIsZero) {
   current = {0x0304, 0x0506};
-  DeviceOutput made = output();
+  OutputToDevice made = output();
   EXPECT_EQ(numbers(made.put_out(true)), (std::vector{3, 4, 5, 6}));
   EXPECT_EQ(numbers(made.put_out(false)), (std::vector{1, 2, 0, 0}));
   EXPECT_EQ(numbers(made.safe()), (std::vector{1, 2, 0, 0}));
@@ -49,7 +49,7 @@ TEST_F(OutputOfAMotor, IsTheAuthorsOrTheSafeValuesAndWhatOfTheseIsNotDeclaredIsZ
 
 TEST_F(OutputOfAMotor, HasTheByteOrderOfItsEndnode) {
   current = {0x0304, 0x0506};
-  DeviceOutput made = output(std::endian::little);
+  OutputToDevice made = output(std::endian::little);
   EXPECT_EQ(numbers(made.put_out(true)), (std::vector{4, 3, 6, 5}));
   EXPECT_EQ(numbers(made.safe()), (std::vector{2, 1, 0, 0}));
 }
@@ -57,7 +57,7 @@ TEST_F(OutputOfAMotor, HasTheByteOrderOfItsEndnode) {
 TEST_F(OutputOfAMotor, LeavesItsDeclaredRangeNowhere) {
   subsystem.devices[0].output[0].field.minimum = 10;
   subsystem.devices[0].output[0].field.maximum = 1'000;
-  DeviceOutput made = output();
+  OutputToDevice made = output();
   current = {9, 1'001};
   EXPECT_EQ(numbers(made.put_out(true)), (std::vector{0, 10, 0x03, 0xE8}));
   current = {10, 1'000};
@@ -67,7 +67,7 @@ TEST_F(OutputOfAMotor, LeavesItsDeclaredRangeNowhere) {
 TEST_F(OutputOfAMotor, JumpsWhereItIsFurtherFromWhatWasPutOutThanItsStep) {
   descriptor::Bumpless terms;
   terms.steps = {{.device = 0, .output = 0, .most = 5}};
-  DeviceOutput made = output();
+  OutputToDevice made = output();
   current = {100, 100};
   EXPECT_FALSE(made.would_jump(subsystem, terms)) << "nothing of the author's was put out";
   static_cast<void>(made.put_out(true));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 // Safety module: cycle (docs/safety/modules.csv).
-#include "hirosco/subsystem/cycle/device_output.hpp"
+#include "hirosco/subsystem/cycle/output_to_device.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,8 +27,8 @@ namespace {
 
 }  // namespace
 
-DeviceOutput::DeviceOutput(const descriptor::Device& device, std::endian order, std::vector<LayoutField> layout,
-                           ObjectFields& fields, MutableOctets object)
+OutputToDevice::OutputToDevice(const descriptor::Device& device, std::endian order, std::vector<LayoutField> layout,
+                               ObjectFields& fields, MutableOctets object)
     : device_{&device},
       order_{order},
       layout_{std::move(layout)},
@@ -38,13 +38,13 @@ DeviceOutput::DeviceOutput(const descriptor::Device& device, std::endian order, 
       payload_(safe_payload_.size()),
       next_payload_(safe_payload_.size()) {}
 
-void DeviceOutput::encode_authors(MutableOctets payload) noexcept {
+void OutputToDevice::encode_authors(MutableOctets payload) noexcept {
   fields_->fit(object_);
   encode(layout_, object_, payload, order_);
   keep_in_range(payload);
 }
 
-void DeviceOutput::keep_in_range(MutableOctets payload) noexcept {
+void OutputToDevice::keep_in_range(MutableOctets payload) noexcept {
   std::size_t at = 0;
   for (const auto& output : device_->output) {
     const descriptor::Field& field = output.field;
@@ -65,14 +65,14 @@ void DeviceOutput::keep_in_range(MutableOctets payload) noexcept {
   }
 }
 
-Octets DeviceOutput::put_out(bool authors) noexcept {
+Octets OutputToDevice::put_out(bool authors) noexcept {
   if (authors || told_ != nullptr) encode_authors(payload_);
   passed_ = authors;
   return authors ? payload_ : safe_payload_;
 }
 
-bool DeviceOutput::would_jump(const descriptor::SubsystemDescriptor& subsystem,
-                              const descriptor::Bumpless& terms) noexcept {
+bool OutputToDevice::would_jump(const descriptor::SubsystemDescriptor& subsystem,
+                                const descriptor::Bumpless& terms) noexcept {
   if (!device_->actuator || !passed_) return false;
   encode_authors(next_payload_);
   OctetReader before{Octets{payload_}, order_}, next{Octets{next_payload_}, order_};
@@ -91,7 +91,7 @@ bool DeviceOutput::would_jump(const descriptor::SubsystemDescriptor& subsystem,
   return false;
 }
 
-void DeviceOutput::tell(Telling what) noexcept {
+void OutputToDevice::tell(Telling what) noexcept {
   if (told_ == nullptr) return;
   const bool authors = passed_ || what == Telling::Wish;
   told_->show(authors ? payload_ : safe_payload_, order_);
