@@ -10,8 +10,11 @@
 #include "ground/api/session.hpp"
 
 namespace hirosco::ground {
+namespace {
 
 using nlohmann::json;
+
+}  // namespace
 
 OpenPages::OpenPages(Session& session) : session_{session} {}
 OpenPages::~OpenPages() = default;

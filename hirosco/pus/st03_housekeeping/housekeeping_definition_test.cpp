@@ -11,14 +11,14 @@
 namespace hirosco::pus {
 namespace {
 
-std::vector<std::byte> octets(std::initializer_list<int> numbers) {
+std::vector<std::byte> these_octets(std::initializer_list<int> numbers) {
   std::vector<std::byte> made;
   for (const int number : numbers) made.push_back(static_cast<std::byte>(number));
   return made;
 }
 
 TEST(HousekeepingDefinition, OfANewStructureHasItsInterval) {
-  const auto data = octets({0, 2, 0, 0, 0, 4, 1, 1, 2, 3, 4, 1, 0, 2, 1, 5, 6, 7, 8});
+  const auto data = these_octets({0, 2, 0, 0, 0, 4, 1, 1, 2, 3, 4, 1, 0, 2, 1, 5, 6, 7, 8});
   const auto read = read_definition(data, DefinitionOf::NewStructure);
   ASSERT_TRUE(read);
   EXPECT_EQ(read->id, 2);
@@ -30,7 +30,7 @@ TEST(HousekeepingDefinition, OfANewStructureHasItsInterval) {
 }
 
 TEST(HousekeepingDefinition, OfWhatIsAppendedHasNone) {
-  const auto data = octets({0, 2, 1, 1, 2, 3, 4, 0});
+  const auto data = these_octets({0, 2, 1, 1, 2, 3, 4, 0});
   const auto read = read_definition(data, DefinitionOf::AppendedParameters);
   ASSERT_TRUE(read);
   EXPECT_EQ(read->interval, 0U);
@@ -38,7 +38,7 @@ TEST(HousekeepingDefinition, OfWhatIsAppendedHasNone) {
 }
 
 TEST(HousekeepingDefinition, ThatIsCutOrHasOctetsBehindItIsRefused) {
-  const auto whole = octets({0, 2, 0, 0, 0, 4, 1, 1, 2, 3, 4, 0});
+  const auto whole = these_octets({0, 2, 0, 0, 0, 4, 1, 1, 2, 3, 4, 0});
   for (std::size_t length = 0; length < whole.size(); ++length) {
     const auto read = read_definition(Octets{whole}.first(length), DefinitionOf::NewStructure);
     ASSERT_FALSE(read) << length;
@@ -55,15 +55,16 @@ TEST(HousekeepingDefinition, OfNoParameterIsRefusedWithThePlaceOfTheEmptyList) {
     EXPECT_EQ(notice.code(), FailureCode::IllegalField);
     return OctetReader{notice.data()}.get<std::uint16_t>();
   };
-  EXPECT_EQ(position(octets({0, 2, 0, 0, 0, 4, 0, 0})), 6);
-  EXPECT_EQ(position(octets({0, 2, 0, 0, 0, 4, 0, 1, 0, 2, 0})), 10) << "a set of none";
+  EXPECT_EQ(position(these_octets({0, 2, 0, 0, 0, 4, 0, 0})), 6);
+  EXPECT_EQ(position(these_octets({0, 2, 0, 0, 0, 4, 0, 1, 0, 2, 0})), 10) << "a set of none";
 }
 
 TEST(HousekeepingDefinition, IsReportedAsItIsInForce) {
   HousekeepingLayout layout{2, 4, {}, {}};
   layout.once = {{.wire = 0x01020304}};
   layout.sets = {{2, {{.wire = 0x05060708}}}};
-  EXPECT_EQ(write_definition(layout, true, 8), octets({0, 2, 1, 0, 0, 0, 8, 1, 1, 2, 3, 4, 1, 0, 2, 1, 5, 6, 7, 8}));
+  EXPECT_EQ(write_definition(layout, true, 8),
+            these_octets({0, 2, 1, 0, 0, 0, 8, 1, 1, 2, 3, 4, 1, 0, 2, 1, 5, 6, 7, 8}));
   EXPECT_EQ(definition_octets(layout), write_definition(layout, true, 8).size());
 }
 

@@ -23,6 +23,75 @@ std::optional<std::size_t> value_octets(const descriptor::SubsystemDescriptor& s
   return octets;
 }
 
+[[nodiscard]] std::vector<std::byte> kept(Octets octets) { return {octets.begin(), octets.end()}; }
+
+[[nodiscard]] Raised raised_by(Octets message) {
+  const auto event = pus::read_event_message(message);
+  if (!event) throw std::runtime_error{"the subsystem sent an event that is none"};
+  return {event->severity, event->reported, event->id, kept(event->auxiliary)};
+}
+
+[[nodiscard]] Asked asked_by(const pus::TelecommandView& request, std::uint32_t known_stop) {
+  return {request.request_id(),
+          request.apid(),
+          request.source(),
+          request.ack(),
+          request.service(),
+          request.subtype(),
+          kept(request.application_data()),
+          known_stop};
+}
+
+/// A report is to be of its shape.
+[[nodiscard]] Telemetry told_by(Octets packet, const descriptor::SubsystemDescriptor& subsystem) {
+  const auto view = pus::TelemetryView::parse(packet);
+  if (!view) throw std::runtime_error{"the subsystem sent something that is not telemetry"};
+  const Octets data = view->source_data();
+  if (const std::string why =
+          pus::testing::unlike_its_shape(view->service(), view->subtype(), data,
+                                         [&](std::uint32_t parameter) { return value_octets(subsystem, parameter); });
+      !why.empty())
+    throw std::runtime_error{"the subsystem sent " + why};
+  return {view->service(), view->subtype(), view->destination(), kept(data)};
+}
+
+[[nodiscard]] st128::Agreement in_memory(std::vector<st128::OfferedField> fields, Duration producer_period,
+                                         Duration consumer_period) {
+  return {.method = LinkMethod::SharedMemory,
+          .byte_order = descriptor::ByteOrder::Little,
+          .kind = LinkKind::Latest,
+          .producer_period = producer_period,
+          .consumer_period = consumer_period,
+          .fields = std::move(fields)};
+}
+
+/// Application data of TC[8,1] by the function's name. Whoever sends a telecommand may not know the ranges; the subsystem does, and refuses.
+[[nodiscard]] std::vector<std::byte> call_data(const descriptor::SubsystemDescriptor& subsystem,
+                                               std::string_view function,
+                                               const std::vector<std::optional<Value>>& arguments) {
+  const descriptor::Function* found = subsystem.find_function(function);
+  const auto common = pus::common_functions();
+  for (const auto& candidate : common)
+    if (candidate.name == function) found = &candidate;
+  if (found == nullptr) {
+    std::string names;
+    for (const auto& one : subsystem.functions) names += " " + one.name;
+    throw std::runtime_error{"Rig::call: " + subsystem.name + " has no function '" + std::string{function} +
+                             "'; its descriptor has:" + names};
+  }
+  descriptor::Function unbounded = *found;
+  for (auto& argument : unbounded.arguments) {
+    argument.field.minimum = argument.field.maximum = std::nullopt;
+    argument.texts.clear();
+  }
+  auto data = pus::encode_call(unbounded, arguments);
+  if (!data)
+    throw std::runtime_error{"Rig::call: " + found->name + " of " + subsystem.name + ": " + data.error().text +
+                             ": no telecommand can carry it; give " + std::to_string(pus::value_count(*found)) +
+                             " values of the types that the descriptor says"};
+  return std::move(*data);
+}
+
 }  // namespace
 
 std::string hex(Octets octets) {
@@ -117,34 +186,11 @@ void Rig::service() {
   for (;;) {
     const auto found = channels.supervisor_end().receive(buffer);
     if (!found || found->flow == Flow::None) return;
-    if (found->message.kind == MessageKind::Event) {
-      const auto event = pus::read_event_message(found->message.packet);
-      if (!event) throw std::runtime_error{"the subsystem sent an event that is none"};
-      raised.push_back(
-          {event->severity, event->reported, event->id, {event->auxiliary.begin(), event->auxiliary.end()}});
-      continue;
-    }
-    if (const auto request = pus::TelecommandView::parse(found->message.packet)) {
-      const Octets data = request->application_data();
-      asked.push_back({request->request_id(),
-                       request->apid(),
-                       request->source(),
-                       request->ack(),
-                       request->service(),
-                       request->subtype(),
-                       {data.begin(), data.end()},
-                       found->message.epoch});
-      continue;
-    }
-    const auto view = pus::TelemetryView::parse(found->message.packet);
-    if (!view) throw std::runtime_error{"the subsystem sent something that is not telemetry"};
-    const Octets data = view->source_data();
-    if (const std::string why = pus::testing::unlike_its_shape(
-            view->service(), view->subtype(), data,
-            [this](std::uint32_t parameter) { return value_octets(subsystem.descriptor(), parameter); });
-        !why.empty())
-      throw std::runtime_error{"the subsystem sent " + why};
-    telemetry.push_back({view->service(), view->subtype(), view->destination(), {data.begin(), data.end()}});
+    const Octets packet = found->message.packet;
+    if (found->message.kind == MessageKind::Event) raised.push_back(raised_by(packet));
+    else if (const auto request = pus::TelecommandView::parse(packet))
+      asked.push_back(asked_by(*request, found->message.epoch));
+    else telemetry.push_back(told_by(packet, subsystem.descriptor()));
   }
 }
 
@@ -187,29 +233,7 @@ Sent Rig::call(std::string_view function, std::initializer_list<double> argument
 }
 
 Sent Rig::call_with(std::string_view function, const std::vector<std::optional<Value>>& arguments) {
-  const descriptor::Function* found = subsystem.descriptor().find_function(function);
-  const auto common = pus::common_functions();
-  for (const auto& candidate : common)
-    if (candidate.name == function) found = &candidate;
-  if (found == nullptr) {
-    std::string names;
-    for (const auto& one : subsystem.descriptor().functions) names += " " + one.name;
-    throw std::runtime_error{"Rig::call: " + subsystem.descriptor().name + " has no function '" +
-                             std::string{function} + "'; its descriptor has:" + names};
-  }
-  // Whoever sends a telecommand may not know the ranges; the subsystem does, and refuses.
-  descriptor::Function unbounded = *found;
-  for (auto& argument : unbounded.arguments) {
-    argument.field.minimum = argument.field.maximum = std::nullopt;
-    argument.texts.clear();
-  }
-  const auto data = pus::encode_call(unbounded, arguments);
-  if (!data)
-    throw std::runtime_error{"Rig::call: " + found->name + " of " + subsystem.descriptor().name + ": " +
-                             data.error().text + ": no telecommand can carry it; give " +
-                             std::to_string(pus::value_count(*found)) +
-                             " values of the types that the descriptor says"};
-  return send(8, 1, *data);
+  return send(8, 1, call_data(subsystem.descriptor(), function, arguments));
 }
 
 void Rig::answer(std::uint16_t from, std::uint8_t service, std::uint8_t subtype, Octets data,
@@ -286,20 +310,13 @@ int Rig::events(std::uint16_t id) const {
 
 Rig::Partner Rig::attach(std::uint8_t link, st128::Role role, std::string set, std::vector<st128::OfferedField> fields,
                          std::string* outcome_text, Duration producer_period) {
-  const st128::AttachRequest request{.link = link,
-                                     .role = role,
-                                     .epoch = link_epoch,
-                                     .set = std::move(set),
-                                     .agreement = {.method = LinkMethod::SharedMemory,
-                                                   .byte_order = descriptor::ByteOrder::Little,
-                                                   .kind = LinkKind::Latest,
-                                                   .producer_period = producer_period,
-                                                   .consumer_period = subsystem.cycle_demand().period,
-                                                   .fields = std::move(fields)}};
-  const LinkLayout layout{.epoch = request.epoch,
-                          .payload_octets = request.agreement.payload_octets(),
-                          .layout_hash = request.agreement.layout_hash(),
-                          .period = producer_period};
+  const st128::AttachRequest request{
+      .link = link,
+      .role = role,
+      .epoch = link_epoch,
+      .set = std::move(set),
+      .agreement = in_memory(std::move(fields), producer_period, subsystem.cycle_demand().period)};
+  const LinkLayout layout = request.agreement.layout(request.epoch);
   Partner partner;
   partner.memory = memory.create("link", link_memory_octets(layout.payload_octets)).value();
   const bool we_produce = role == st128::Role::Consumer;
