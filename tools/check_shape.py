@@ -92,6 +92,7 @@ ELSEWHERE = {
     "supervisor/guard/supervisor_watch.cpp": "supervisor/guard/watching_test.cpp",
     "supervisor/platform/launch/stream_member_port.cpp": "supervisor/supervision/subsystem_handling/stream_member_test.cpp",
     "supervisor/platform/storage/ascii_database.cpp": "supervisor/platform/storage/database_test.cpp",
+    "supervisor/platform/storage/log_writer.cpp": "supervisor/platform/storage/packet_log_test.cpp",
     "supervisor/platform/storage/sqlite_database.cpp": "supervisor/platform/storage/database_test.cpp",
     "supervisor/platform/storage/postgresql_": "supervisor/platform/storage/postgresql_database_test.cpp",
     "supervisor/platform/storage/value_disk.cpp": "supervisor/platform/storage/value_store_test.cpp",

@@ -55,6 +55,12 @@ std::optional<std::size_t> value_octets(const descriptor::SubsystemDescriptor& s
   return {view->service(), view->subtype(), view->destination(), kept(data)};
 }
 
+/// Which event a report is of; empty: it is of none.
+[[nodiscard]] std::optional<std::uint16_t> event_in(const Telemetry& report) {
+  if (report.service != 5 || report.subtype > 4) return std::nullopt;
+  return OctetReader{report.data}.get<std::uint16_t>();
+}
+
 [[nodiscard]] st128::Agreement in_memory(std::vector<st128::OfferedField> fields, Duration producer_period,
                                          Duration consumer_period) {
   return {.method = LinkMethod::SharedMemory,
@@ -301,11 +307,7 @@ std::vector<std::string> Rig::reports(std::uint8_t service, std::uint8_t subtype
 }
 
 int Rig::events(std::uint16_t id) const {
-  return static_cast<int>(std::ranges::count_if(telemetry, [&](const Telemetry& report) {
-    if (report.service != 5 || report.subtype > 4) return false;
-    OctetReader reader{report.data};
-    return reader.get<std::uint16_t>() == id;
-  }));
+  return static_cast<int>(std::ranges::count(telemetry, std::optional{id}, event_in));
 }
 
 Rig::Partner Rig::attach(std::uint8_t link, st128::Role role, std::string set, std::vector<st128::OfferedField> fields,

@@ -92,6 +92,8 @@ class DirectPacketLog final : public PacketLog {
   LogCounters counted_;
 };
 
+class LogWriter;
+
 /// A writer thread behind the queue, group commit. A stalled disk stalls only that thread.
 /// The destructor writes what waits, for at most `flush_limit`; then it gives up and leaves the thread to end by itself
 /// when the disk lets go of it.
@@ -132,10 +134,9 @@ class ThreadedPacketLog final : public PacketLog {
   [[nodiscard]] StoreTrouble do_trouble() const override;
   [[nodiscard]] OnboardTime do_run() const noexcept override;
 
-  class Writer;
   const Clock& clock_;
   Duration flush_limit_;
-  std::shared_ptr<Writer> writer_;  // shared with its thread, which may outlive this object
+  std::shared_ptr<LogWriter> writer_;  // shared with its thread, which may outlive this object
 };
 
 }  // namespace hirosco::supervisor
