@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""The shape of the house: no file over 500 lines, no class over 300, with its members in whatever files over 650, `supervisor.hpp` under
+"""The shape of the house: no file over 500 lines, no class over 300, with its members in whatever files neither but for those of docs/larger_classes.csv, `supervisor.hpp` under
 90, no circle of folders, a test beside each file of the supervisor and the ground station. Prints what breaks it, and breaks each rule once itself, to be caught."""
-import bisect, collections, pathlib, re, sys
+import bisect, collections, csv, pathlib, re, sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PARTS = ("hirosco", "robotics", "supervisor", "subsystems", "simulation", "missions", "ground", "tools", "tests", "bench")
-LONGEST_FILE, LONGEST_CLASS, LONGEST_WHOLE = 500, 300, 440
+LONGEST_FILE, LONGEST_CLASS, LONGEST_WHOLE = 500, 300, 300
+# With their members these are larger still, and grow no more: a row that is not needed any more is told.
+with (ROOT / "docs/larger_classes.csv").open(newline="") as table:
+    LARGER = {row["class"]: int(row["lines"]) for row in csv.DictReader(table)}
 OTHERS = {"supervisor/supervisor.hpp": 90}
 CODE = (".cpp", ".hpp", ".py", ".js", ".mjs", ".xsd")
 CLASS = re.compile(r"^(?:template <.*> *)?(?:class|struct) (?:\[\[\w+\]\] )?((?:\w+::)*\w+)[^;(]*\{", re.M)
@@ -78,7 +81,7 @@ def too_large(texts):
         if count > limit:
             yield f"{name} has {count} lines with its members, {limit} at most"
     if any(name in lines for name in LARGER):
-        yield from (f"check_shape.py: {name} is in LARGER and has {lines[name]} lines" for name in LARGER if lines[name] <= LONGEST_WHOLE)
+        yield from (f"docs/larger_classes.csv: {name} has {lines[name]} lines, as others may" for name in LARGER if lines[name] <= LONGEST_WHOLE)
 
 
 # Where each file has its test beside it, and which have theirs elsewhere, or together.
@@ -162,10 +165,22 @@ PLANTED = [({"hirosco/a.cpp": "\n" * 501}, "501 lines"), ({"hirosco/a.xsd": "\n"
            ({"hirosco/a.hpp": "class Spread {\n" + "  int a;\n" * 250 + "};\n",
              "hirosco/a.cpp": "int Spread::a() {\n" + "  b();\n" * 250 + "}\n",
              "hirosco/b.cpp": "Spread::~Spread() {\n" + "  b();\n" * 250 + "}\n"}, "Spread has 7"),
+           # In two files and folders, half of it nested, and members of a template.
+           ({"hirosco/a/a.hpp": "namespace hirosco::a {\nclass Whole {\n" + "  int a;\n" * 120 + "};\n}  // namespace hirosco::a\n",
+             "hirosco/a/a.cpp": "namespace hirosco::a {\nnamespace {\nint b() { return '{'; }\n}\nvoid Whole::Inner::a() {\n" + "  b();\n" * 100 + "}\n}\n",
+             "hirosco/b/b.cpp": 'namespace hirosco {\nconstexpr auto c = "{";  // {\nvoid a::Whole<T>::a() {\n' + "  b();\n" * 100 + "}\n}\n"},
+            "hirosco::a::Whole has 32"),
+           *[({"hirosco/a.hpp": "namespace {} {{\nclass {} {{\n}};\n}}\n".format(*name.rsplit("::", 1))}, f"larger_classes.csv: {name} has") for name in LARGER],
            ({"hirosco/a/a.hpp": '#include "hirosco/b/b.hpp"\n', "hirosco/b/b.hpp": '#include "hirosco/c/c.hpp"\n',
              "hirosco/c/c.hpp": '#include "hirosco/a/a.hpp"\n'}, "hirosco/a -> hirosco/b -> hirosco/c -> hirosco/a"),
            ({"supervisor/a.cpp": ""}, "no a_test.cpp"), ({"ground/shell/a.cpp": ""}, "which there is not"),
            ({"ground/a.cpp": "", "ground/a_test.cpp": "", "ground/shell/b.cpp": ""}, "has its test beside it, or is no more")]
-missed = [f"planted and not seen: {wanted}" for texts, wanted in PLANTED if not any(wanted in found for found in problems(texts))]
+# Two classes of one name are no breach, be it in two namespaces or each in a file of its own.
+SOUND = {"hirosco/a.hpp": "namespace hirosco::a {\nclass Twin {\n" + "  int a;\n" * 200 + "};\n}  // namespace hirosco::a\n",
+         "hirosco/b.hpp": "namespace hirosco::b {\nclass Twin {\n" + "  int a;\n" * 200 + "};\n}\n",
+         "hirosco/c.cpp": "namespace hirosco::a {\nnamespace {\nclass Twin {\n" + "  int a;\n" * 200 + "};\n}  // namespace\n}\n",
+         "hirosco/d.cpp": "namespace hirosco::a {\nnamespace {\nvoid Twin::a() {\n" + "  b();\n" * 200 + "}\n}\n}\n"}
+missed = [f"taken for a breach: {found}" for found in problems(SOUND)]
+missed += [f"planted and not seen: {wanted}" for texts, wanted in PLANTED if not any(wanted in found for found in problems(texts))]
 ours = dict(files())
 sys.exit("\n".join(problems(ours) + missed) or ("no files" if not ours else None))

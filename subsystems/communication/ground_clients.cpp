@@ -183,7 +183,7 @@ Result<GroundClients::Admission> GroundClients::admit(GroundPort port, TimePoint
   place->generation = generation;
   place->id = static_cast<ClientId>(generation * most_clients + static_cast<std::size_t>(place - clients_.data()));
   place->order = next_order_++;
-  place->read_to = written_;
+  place->read_to = ring_.written();
   place->counters.port = port;
   place->counters.admitted = now;
   place->counters.heard = now;
@@ -232,14 +232,14 @@ bool GroundClients::is_settled(ClientId id) const noexcept {
 void GroundClients::queue(Client& client) noexcept {
   if (client.queued || !client.waits()) return;
   client.queued = true;
-  turns_[(first_turn_ + waiting_++) % most_clients] = static_cast<std::uint8_t>(place_of(client.id));
+  turns_.join(static_cast<std::uint8_t>(place_of(client.id)));
 }
 
 bool GroundClients::somebody_catches_up(TimePoint now) noexcept {
   bool found = false;
   for (Client& client : clients_) {
     if (!client.listens()) continue;
-    const std::uint64_t backlog = written_ - client.read_to;
+    const std::uint64_t backlog = ring_.written() - client.read_to;
     if (backlog <= limits_.behind_octets / 2) client.behind_since.reset();
     const bool begins = !client.behind_since && backlog > limits_.behind_octets;
     const bool progresses = client.behind_since && client.read_to - client.behind_from >= limits_.progress_octets;
@@ -255,12 +255,11 @@ bool GroundClients::somebody_catches_up(TimePoint now) noexcept {
 bool GroundClients::hand_over(GroundTraffic& traffic, TimePoint now) {
   const bool held = somebody_catches_up(now);
   std::size_t passed_over = 0;
-  for (int left = packets_per_turn; left > 0 && waiting_ > passed_over; --left) {
-    Client& client = clients_[turns_[first_turn_]];
+  for (int left = packets_per_turn; left > 0 && turns_.size() > passed_over; --left) {
+    Client& client = clients_[turns_.first()];
     if (held && client.allowance > now + little_burst) {
       // Its turn comes again when the listener has.
-      first_turn_ = (first_turn_ + 1) % most_clients;
-      turns_[(first_turn_ + waiting_ - 1) % most_clients] = static_cast<std::uint8_t>(place_of(client.id));
+      turns_.pass_over();
       ++passed_over;
       continue;
     }
@@ -282,12 +281,11 @@ bool GroundClients::hand_over(GroundTraffic& traffic, TimePoint now) {
     const std::uint64_t idle_before = client.deframer.idle_packets();
     client.deframer.pop(now);
     counters_.idle_packets += client.deframer.idle_packets() - idle_before;
-    first_turn_ = (first_turn_ + 1) % most_clients;
-    --waiting_;
+    turns_.done();
     client.queued = false;
     queue(client);
   }
-  return waiting_ == 0;
+  return turns_.size() == 0;
 }
 
 std::size_t GroundClients::waiting_packets() const noexcept {
@@ -301,13 +299,9 @@ Result<> GroundClients::telemetry(Octets packet) {
   if (packet.size() > ring_.size())
     return fail(ErrorCode::ResourceExhausted, "telemetry longer than the backlog", std::ssize(packet));
   for (Client& client : clients_)
-    if (client.listens() && written_ + packet.size() - client.read_to > ring_.size())
+    if (client.listens() && ring_.written() + packet.size() - client.read_to > ring_.size())
       client.dismissed = CloseReason::Slow;
-  const std::size_t start = written_ % ring_.size();
-  const std::size_t first_part = std::min(packet.size(), ring_.size() - start);
-  copy_octets(packet.first(first_part), MutableOctets{ring_}.subspan(start));
-  copy_octets(packet.subspan(first_part), ring_);
-  written_ += packet.size();
+  ring_.put(packet);
   ++counters_.telemetry_packets;
   return ok();
 }
@@ -315,9 +309,7 @@ Result<> GroundClients::telemetry(Octets packet) {
 Octets GroundClients::output(ClientId id) const noexcept {
   const Client* client = find(id);
   if (client == nullptr || !client->listens()) return {};
-  const std::size_t start = client->read_to % ring_.size();
-  const std::size_t waiting = static_cast<std::size_t>(written_ - client->read_to);
-  return Octets{ring_}.subspan(start, std::min(waiting, ring_.size() - start));
+  return ring_.after(client->read_to);
 }
 
 void GroundClients::sent(ClientId id, std::size_t octets) noexcept {
@@ -361,12 +353,7 @@ void GroundClients::remove(ClientId id, CloseReason reason) noexcept {
   if (client == nullptr) return;
   if (client->queued) {
     // What it left is nobody's any more; only the end of the whole link gets here.
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < waiting_; ++i) {
-      const std::uint8_t place = turns_[(first_turn_ + i) % most_clients];
-      if (place != place_of(id)) turns_[(first_turn_ + kept++) % most_clients] = place;
-    }
-    waiting_ = kept;
+    turns_.leave(static_cast<std::uint8_t>(place_of(id)));
     client->queued = false;
   }
   ++counters_.closed[std::to_underlying(condemned(id).value_or(reason))];

@@ -12,6 +12,8 @@
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
+#include "subsystems/communication/telemetry_ring.hpp"
+#include "subsystems/communication/turns.hpp"
 
 /// The clients of the ground link and what they send, without any socket (decisions 25 and 28).
 namespace hirosco::communication {
@@ -84,6 +86,29 @@ struct ClientCounters {
   std::uint64_t octets_sent{0};
 };
 
+/// One client of the link: what it sends, what it has read, and when it had its turns.
+struct GroundClient {
+  explicit GroundClient(Duration incomplete) noexcept : deframer{incomplete} {}
+  ClientId id{0};  ///< 0: free
+  std::uint8_t generation{0};
+  bool queued{false};  ///< has a turn
+  std::uint64_t order{0};
+  std::uint64_t read_to{0};
+  std::optional<CloseReason> dismissed{};
+  std::optional<TimePoint> behind_since{};  ///< of a listener: since then it has taken less than progress_octets
+  std::uint64_t behind_from{0};
+  /// Who sends little: a packet moves it on by little_period, and never further ahead than one beyond little_burst.
+  TimePoint allowance{};
+  ClientCounters counters{};
+  bool settled{true};
+  std::uint64_t settled_at{0};  ///< what came before this octet of it was perhaps said before a stop
+  Deframer deframer;
+  [[nodiscard]] bool waits() const noexcept { return !deframer.front().empty(); }
+  [[nodiscard]] bool listens() const noexcept {
+    return id != 0 && !dismissed && counters.port == GroundPort::TelemetryAndTelecommands;
+  }
+};
+
 /// All clients of the link. Telemetry is kept once, in a ring that every client reads at its own pace; who falls behind
 /// by more than the ring is cut, never waited for. Telecommands are taken in turn, one of each client, and stay with
 /// their client, which is then not read, while nobody takes them: nothing that was received is lost.
@@ -96,7 +121,7 @@ struct ClientCounters {
 /// Realtime: bounded; memory is taken by the constructor. Thread: one.
 class GroundClients {
  public:
-  static constexpr std::size_t most_clients = 256;
+  static constexpr std::size_t most_clients = Turns::most;
   struct Limits {
     std::size_t clients{most_clients};
     std::size_t reserve{16};  ///< places for the telecommand port alone; at most an eighth of all
@@ -133,7 +158,7 @@ class GroundClients {
   /// because nothing waits any more.
   bool hand_over(GroundTraffic& traffic, TimePoint now);
   /// Somebody's packets have not been taken yet.
-  [[nodiscard]] bool packets_wait() const noexcept { return waiting_ != 0; }
+  [[nodiscard]] bool packets_wait() const noexcept { return turns_.size() != 0; }
   /// Whole packets that nobody has taken yet.
   [[nodiscard]] std::size_t waiting_packets() const noexcept;
   /// Queues a packet for every client of the telemetry port. ResourceExhausted: longer than the backlog.
@@ -159,27 +184,7 @@ class GroundClients {
   static constexpr int packets_per_turn = 1024;
 
  private:
-  struct Client {
-    explicit Client(Duration incomplete) noexcept : deframer{incomplete} {}
-    ClientId id{0};  ///< 0: free
-    std::uint8_t generation{0};
-    bool queued{false};  ///< in turns_
-    std::uint64_t order{0};
-    std::uint64_t read_to{0};
-    std::optional<CloseReason> dismissed{};
-    std::optional<TimePoint> behind_since{};  ///< of a listener: since then it has taken less than progress_octets
-    std::uint64_t behind_from{0};
-    /// Who sends little: a packet moves it on by little_period, and never further ahead than one beyond little_burst.
-    TimePoint allowance{};
-    ClientCounters counters{};
-    bool settled{true};
-    std::uint64_t settled_at{0};  ///< what came before this octet of it was perhaps said before a stop
-    Deframer deframer;
-    [[nodiscard]] bool waits() const noexcept { return !deframer.front().empty(); }
-    [[nodiscard]] bool listens() const noexcept {
-      return id != 0 && !dismissed && counters.port == GroundPort::TelemetryAndTelecommands;
-    }
-  };
+  using Client = GroundClient;
   [[nodiscard]] Client* find(ClientId client) noexcept;
   [[nodiscard]] const Client* find(ClientId client) const noexcept;
   [[nodiscard]] Client* free_place(GroundPort port) noexcept;
@@ -191,14 +196,10 @@ class GroundClients {
 
   Limits limits_;
   std::vector<Client> clients_;
-  std::vector<std::byte> ring_;
-  std::uint64_t written_{0};
+  TelemetryRing ring_;
   std::uint64_t next_order_{0};
   std::size_t listeners_{0};
-  /// Places of those whose packets wait, in the order of their turns.
-  std::array<std::uint8_t, most_clients> turns_{};
-  std::size_t first_turn_{0};
-  std::size_t waiting_{0};
+  Turns turns_;  ///< of those whose packets wait
   LinkCounters counters_;
 };
 
