@@ -21,7 +21,6 @@ struct FoundValuesTest : PartsTest {
   void SetUp() override {
     PartsTest::SetUp();
     start_all(PreOperational);
-    start_supervisor();
     found.begin(clock.now());
   }
   void routed(const pus::TelemetryView& packet) override {
@@ -32,7 +31,7 @@ struct FoundValuesTest : PartsTest {
   }
   void tell() {
     found.tell(clock.now());
-    own_step();
+    for (int step = 0; step < 3; ++step) own_step();
   }
 };
 
