@@ -98,10 +98,15 @@ std::size_t ParameterValues::size_of(std::uint32_t parameter) {
 }
 
 std::expected<void, pus::FailureCode> ParameterValues::check_write(std::uint32_t parameter, Octets value) {
+  return check_write_in(at_.state, parameter, value);
+}
+
+std::expected<void, pus::FailureCode> ParameterValues::check_write_in(State state, std::uint32_t parameter,
+                                                                      Octets value) const {
   const auto place = dictionary_.place_of(parameter);
   if (!place) return std::unexpected{pus::FailureCode::UnknownIdentifier};
   const descriptor::Parameter& declared = descriptor_.parameters[place->index];
-  if (!declared.writable_in(at_.state)) return std::unexpected{pus::FailureCode::NotPermittedNow};
+  if (!declared.writable_in(state)) return std::unexpected{pus::FailureCode::NotPermittedNow};
   // A value that the next cycle overwrites was not set, whatever a report said.
   if (orders_.wanted() && cycle_.writes_itself(place->index)) return std::unexpected{pus::FailureCode::NotPermittedNow};
   if (!dictionary_.accepts(place->index, place->member, value))
@@ -112,6 +117,13 @@ std::expected<void, pus::FailureCode> ParameterValues::check_write(std::uint32_t
 
 std::expected<void, pus::FailureCode> ParameterValues::submit_write(std::span<const pus::ParameterAccess::Write> writes,
                                                                     const pus::Request&) {
+  if (auto queued = queue(writes); !queued) return queued;
+  // While the cycle rests the service loop is the writer; one that is still coming to rest is applied for when it has.
+  if (orders_.rests()) apply();
+  return {};
+}
+
+std::expected<void, pus::FailureCode> ParameterValues::queue(std::span<const pus::ParameterAccess::Write> writes) {
   std::array<ParameterWrite, pus::max_instructions> batch;
   std::size_t count = 0;
   for (const auto& write : writes)
@@ -120,8 +132,6 @@ std::expected<void, pus::FailureCode> ParameterValues::submit_write(std::span<co
   if (const auto queued = writes_.enqueue(dictionary_, std::span{batch}.first(count)); !queued)
     return std::unexpected{queued.error().code == ErrorCode::OutOfRange ? pus::FailureCode::CapacityExceeded
                                                                         : pus::FailureCode::Busy};
-  // While the cycle rests the service loop is the writer; one that is still coming to rest is applied for when it has.
-  if (orders_.rests()) apply();
   return {};
 }
 

@@ -94,6 +94,8 @@ bool StateMachine::run_phase(State next, TimePoint now) {
         parts_.cycle.lost_devices().awaits_first_answer() &&
         now <= phase_deadline_ - transient_limit + first_answer_limit)
       return false;
+    // What ST[20] has found permitted in a loop of its own is queued before this, or judged once more (docs/adr/0200).
+    const LockGuard lock{parts_.values.judging()};
     awaiting_cycle_ =
         parts_.rings.command({.kind = CommandKind::EnterState, .index = static_cast<std::uint16_t>(next)});
     return false;
