@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "simulation/mujoco/mujoco_scene.hpp"
+#include "simulation/mujoco/mujoco_urdf.hpp"
+
 namespace hirosco::simulation {
 namespace {
 
@@ -19,16 +22,16 @@ MujocoRobot::MujocoRobot(MujocoSpec spec)
     : world_{std::move(spec)}, drives_{world_.spec().joints()}, contacts_{world_.spec()} {}
 
 std::expected<MujocoRobot, std::string> MujocoRobot::make(std::string_view urdf, const MeshSource& meshes) {
-  auto spec = MujocoSpec::make(urdf, meshes);
+  auto spec = spec_of_urdf(urdf, meshes);
   if (!spec) return std::unexpected{std::move(spec.error())};
   return make(std::move(*spec));
 }
 
 std::expected<MujocoRobot, std::string> MujocoRobot::make_in_scene(std::string_view mjcf, std::string_view urdf,
                                                                    const MeshSource& files) {
-  auto joints = MujocoSpec::driven_joints(urdf);
+  auto joints = driven_joints(urdf);
   if (!joints) return std::unexpected{std::move(joints.error())};
-  auto spec = MujocoSpec::make_scene(mjcf, std::move(*joints), files);
+  auto spec = spec_of_scene(mjcf, std::move(*joints), files);
   if (!spec) return std::unexpected{std::move(spec.error())};
   return make(std::move(*spec));
 }
