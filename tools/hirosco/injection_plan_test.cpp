@@ -22,8 +22,8 @@ std::vector<std::string> planned(const std::vector<std::string>& texts, Duration
 }
 
 TEST(InjectionPlan, GoesByTheTimesAndNotByTheOrderOnTheCommandLine) {
-  EXPECT_THAT(planned({"2.5 robot plug", "1.5 robot unplug", "0 joystick hand cartesian 0.02 0 2"}),
-              ElementsAre("0 ms joystick hand cartesian 0.02 0 2", "1500 ms robot unplug", "2500 ms robot plug"));
+  EXPECT_THAT(planned({"2.5 robot plug", "1.5 robot unplug", "0 stick hold 0.02 0 2"}),
+              ElementsAre("0 ms stick hold 0.02 0 2", "1500 ms robot unplug", "2500 ms robot plug"));
 }
 
 TEST(InjectionPlan, KeepsTheOrderOfThoseOfOneTime) {
