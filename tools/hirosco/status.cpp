@@ -152,8 +152,7 @@ int status(const StatusOptions& options) {
                                                  mission.name, seconds(listening))};
   const bool well = judged.verdict == terminal::Verdict::Well;
   if (connection.json) {
-    const bool knows_way = overview && judged.verdict == terminal::Verdict::NotWell;
-    const auto way_up = knows_way ? terminal::way_up(*overview, mission) : std::vector<std::string>{};
+    const auto way_up = overview && !well ? terminal::way_up(*overview, mission) : std::vector<std::string>{};
     fmt::print("{}\n", json_line(terminal::verdict_json(mission.name, judged, way_up)));
   } else if (!overview) print_line(judged.line, look_of(descriptor::Severity::High));
   else if (only != nullptr) print_line(judged.line, "");
