@@ -193,6 +193,7 @@ void check_file(const std::filesystem::path& file, const CheckOptions& options, 
         !options.fly)
       problem.grade = descriptor::Grade::Warning;
   findings.add(std::move(missing));
+  findings.add(unisolated(*reading.value));
   if (options.fly) findings.add(unintroduced(*reading.value));
 }
 
