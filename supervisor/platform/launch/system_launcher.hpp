@@ -35,7 +35,7 @@ class SystemLauncher final : public FlightLauncher {
   [[nodiscard]] std::expected<AdoptedSubsystem, NotAdopted> adopt(
       const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] bool keep_with(StoreClient store, const descriptor::Mission& mission, InheritedParts inherited,
-                               const KeeperPage* page) override;
+                               KeeperPage* page) override;
   [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::expected<bool, StartRefusal> prepare(const descriptor::MissionSubsystem& subsystem,
                                                           const std::string& version) override;
@@ -48,6 +48,7 @@ class SystemLauncher final : public FlightLauncher {
   const HeldPrograms& hold_to(const descriptor::Mission& mission);
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
+  [[nodiscard]] std::string_view take_not_kept(std::uint32_t process) override;
   [[nodiscard]] std::vector<std::string> isolation_lacks() const override;
   [[nodiscard]] std::string isolation_not_asked() const override;
   [[nodiscard]] std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override;
@@ -96,7 +97,7 @@ class SystemLauncher final : public FlightLauncher {
   StoreClient store_{-1};
   std::map<std::string, std::size_t, std::less<>> slots_;
   InheritedParts inherited_;
-  const KeeperPage* page_{nullptr};
+  KeeperPage* page_{nullptr};
   std::map<std::uint32_t, TimePoint> end_asked_;  ///< of processes that have ended, and nobody has said how
   std::map<std::uint32_t, std::size_t> kept_;  ///< slot of each process
   std::uint32_t next_{1};
