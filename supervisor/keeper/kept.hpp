@@ -157,8 +157,8 @@ inline constexpr Duration keeper_patience = std::chrono::seconds{3};
 inline constexpr Duration ending_patience = std::chrono::seconds{10};
 /// The supervisor: less than its own guard grants it before all is fenced, so that another one can go on with what moves.
 inline constexpr Duration supervisor_patience = std::chrono::milliseconds{800};
-/// The same until its first step: it waits for nobody's write on the way there. It reads (epochs, values, programs of a manifest): a disk
-/// that stands still holds it up, and keeps the one before from being reaped in the first place (docs/adr/0192).
+/// The same until its first step: it waits for no disk on the way there, and in that step it reads stored values, beside its guard. A disk that
+/// stands still may hold it up in that, and keeps the one before from being reaped in the first place (docs/adr/0192).
 inline constexpr Duration successor_patience = std::chrono::seconds{5};
 
 /// Looks at one counter of the page from time to time.

@@ -124,6 +124,11 @@ std::expected<std::string, std::string> SystemLauncher::begin(const descriptor::
   for (const auto& subsystem : mission.subsystems)
     if (subsystem.user) user_of_[subsystem.subsystem.name] = *subsystem.user;
   if (!mission.manifest) return std::string{};
+  if (page_ != nullptr && page_->starts.load() > 1) {
+    held_ = std::make_unique<HeldPrograms>(mission);
+    held_->read_all_beside(mission);
+    return std::string{"executables of the manifest are read anew, beside the flight"};
+  }
   const SystemClock clock;
   const TimePoint begun = clock.now();
   const HeldPrograms& held = hold_to(mission);

@@ -29,7 +29,7 @@ class SystemLauncher final : public FlightLauncher {
   /// \param own_users Who started the flight may end users of their own (docs/adr/0177): they are what it starts where the mission and our
   /// rights have it so.
   explicit SystemLauncher(bool own_users = false) : own_users_granted_{own_users} {}
-  /// Holds to the mission's manifest where it has one.
+  /// Holds to the mission's manifest where it has one. Behind keep_with(): who goes on for another supervisor waits for no disk here.
   [[nodiscard]] std::expected<std::string, std::string> begin(const descriptor::Mission& mission) override;
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::expected<AdoptedSubsystem, NotAdopted> adopt(

@@ -194,6 +194,16 @@ TEST_F(ManifestStart, IsOfWhatWasReadBeforeTheFlightWhateverBecomesOfTheFile) {
   EXPECT_EQ(run(), 0);
 }
 
+TEST_F(ManifestStart, UnderWhoGoesOnIsReadBesideTheFlightAndHeldAllTheSame) {
+  KeeperPage page;
+  page.starts = 2;
+  ASSERT_TRUE(launcher.keep_with(StoreClient{-1}, mission, {}, &page));
+  EXPECT_EQ(launcher.begin(mission).value(), "executables of the manifest are read anew, beside the flight");
+  while (launcher.refuse(mission.subsystems[0])) {}
+  is_now("/bin/false");
+  EXPECT_EQ(run(), 0);
+}
+
 TEST_F(ManifestStart, OfAnotherFileIsRefused) {
   is_now("/bin/false");
   EXPECT_EQ(run(), 1) << "without a manifest it is the name that counts";
