@@ -317,8 +317,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
               kept ? keeper_descriptor : -1};
   Progress keeper_progress;
   bool keeper_still = false;
-  const TimePoint started = clock.now();
-  TimePoint next_status = started + console.period();
+  const TimePoint began = keeper.flight_began(clock.now());
+  TimePoint next_status = clock.now() + console.period();
   bool ends_as_a_whole = false, asked_to_end = false;
   const MemoryReserve reserve{memory_of_a_step};
   AskedStops stops{page};
@@ -394,7 +394,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
       epochs.keep_above(epoch_in_use);
       if (clock.now() < next_status) continue;
       next_status += console.period();
-      console.show(overview_of(mission, supervisor), clock.now() - started);
+      console.show(overview_of(mission, supervisor), clock.now() - began);
     }
   });
   console.ended();
@@ -420,8 +420,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   if (!without_cause.empty()) {
     errors.say(fmt::format(
         "hirosco: {} reaction{} of high severity that no fault, telecommand or scenario of this flight had caused, "
-        "the first {:.3f} s after the start: hirosco log --text plan\n",
-        without_cause.size(), without_cause.size() == 1 ? "" : "s", seconds(without_cause.front().at - started)));
+        "the first {:.3f} s after the start of the flight: hirosco log --text plan\n",
+        without_cause.size(), without_cause.size() == 1 ? "" : "s", seconds(without_cause.front().at - began)));
     return exit_unprovoked;
   }
   return supervisor.succeeded() ? 0 : exit_finding;
