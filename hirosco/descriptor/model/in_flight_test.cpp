@@ -176,7 +176,8 @@ TEST(InFlight, WhatTheConfigurationInForceWasMadeOfWaits) {
            {R"(<HKService id="11" interval="10">)", R"(<HKService id="11" interval="20">)", "its housekeeping"},
            {"127.0.0.1:4000", "127.0.0.1:4002", "device MOTOR: its endnodes"},
            {R"(value="red")", R"(value="blue")", "device LAMP: its endnodes, limits or settings"},
-           {R"("UINT8" minimum="0" maximum="1")", R"("UINT8" minimum="0" maximum="2")", "device LAMP: what it may be told"},
+           {R"("UINT8" minimum="0" maximum="1")", R"("UINT8" minimum="0" maximum="2")",
+            "device LAMP: what it may be told"},
            {R"(age="3")", R"(age="5")", "required set IN: its age"},
            {R"(power_W="5")", R"(power_W="6")", "its limits or power"}}) {
     const SubsystemDescriptor fresh = read(changed(edit.from, edit.to, flown_text));
