@@ -64,11 +64,11 @@ void check_services(const xml::Attribute& at, const Permit& permit, MissionDraft
   }
   for (const std::uint8_t service : permit.services)
     if (std::ranges::none_of(meant, [&](const auto* each) { return has_service(*each, service); }))
-      draft.problems.add(at, "E0352",
-                         permit.subsystem == "*" ? fmt::format("no subsystem has a service {}", service)
-                                                 : fmt::format("'{}' has no service {}", permit.subsystem, service),
-                         own.empty() ? "services of its own stand in its descriptor: <CustomService>"
-                                     : "services of its own:" + own);
+      draft.problems.add(
+          at, "E0352",
+          permit.subsystem == "*" ? fmt::format("no subsystem has a service {}", service)
+                                  : fmt::format("'{}' has no service {}", permit.subsystem, service),
+          own.empty() ? "services of its own stand in its descriptor: <CustomService>" : "services of its own:" + own);
 }
 
 void check_parameters(const xml::Attribute& at, const Permit& permit, MissionDraft& draft) {
