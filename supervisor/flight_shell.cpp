@@ -50,7 +50,7 @@ constexpr int exit_usage = 2;
 constexpr int exit_environment = 3;
 constexpr int exit_internal = 4;
 constexpr int exit_unprovoked = 5;
-/// Below every cycle, above ordinary work.
+/// Below the cycles of what moves, above ordinary work; the supervisor's descriptor says none (docs/adr/0203).
 constexpr int supervisor_priority = 30;
 constexpr Duration last_wait = 2s;
 static_assert(ending_patience > 3 * last_wait, "the keeper ends nobody who waits for a disk at its end");

@@ -15,6 +15,8 @@
 /// Which services a subsystem offers, and in which loops they run (docs/adr/0096). Plain data, as the descriptor says it.
 namespace hirosco::descriptor {
 
+/// Lowest type of a service of a subsystem's own: those below are the standard's and the framework's.
+inline constexpr std::uint8_t first_custom_service = 192;
 /// Most loops that a subsystem has besides its service loop and its cycle.
 inline constexpr std::size_t max_service_loops = 8;
 /// Most requests that wait in one of them.

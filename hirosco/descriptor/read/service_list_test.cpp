@@ -135,22 +135,5 @@ TEST(ServiceList, OfWhichServicesOfTheFrameworkADescriptorHasNothingToSayTheRead
                      "ST30 is offered by every subsystem or by none");
 }
 
-TEST(ServiceList, IsNoMatterOfTheSupervisorsLoop) {
-  const std::string supervisor = changed(
-      "</Subsystem>", R"(<ServiceLoop name="SLOW" period_us="1000"/><Service name="ST03" loop="SLOW"/></Subsystem>)",
-      file_system()(data / "supervisor.xml").value());
-  const auto reading = read_mission(data / "mission.xml", overlay({{"supervisor.xml", supervisor}}));
-  ASSERT_EQ(reading.problems.size(), 1U);
-  EXPECT_EQ(reading.problems[0].code, "E0332");
-}
-
-TEST(ServiceList, TheSupervisorsCycleSpinsForNobody) {
-  const auto supervisor = changed(R"(sampling_us=")", R"(priority="10" budget_us="10" spin_us="10" sampling_us=")",
-                                  file_system()(data / "supervisor.xml").value());
-  const auto reading = read_mission(data / "mission.xml", overlay({{"supervisor.xml", supervisor}}));
-  ASSERT_EQ(reading.problems.size(), 1U) << rendered(reading.problems, {});
-  EXPECT_EQ(reading.problems[0].code, "E0332");
-}
-
 }  // namespace
 }  // namespace hirosco::descriptor

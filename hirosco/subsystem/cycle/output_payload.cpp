@@ -12,7 +12,7 @@
 namespace hirosco {
 namespace {
 
-/// Declared safe values in wire form.
+/// Declared safe values in wire form: an actuator has them, others have zeros.
 [[nodiscard]] std::vector<std::byte> safe_payload(const descriptor::Device& device, std::endian order) {
   std::vector<std::byte> payload;
   for (const auto& output : device.output) {
