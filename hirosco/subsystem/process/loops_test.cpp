@@ -351,7 +351,8 @@ TEST(OwnLoopThreads, SetAndReportValuesWhileAServiceInAnotherLoopStands) {
   EXPECT_EQ(driven.told.failures, 0);
 }
 
-/// Another text of the descriptor, with another range, while they judge by the one before (docs/adr/0200).
+/// Another text of the descriptor, with another range, while they judge by the one before (docs/adr/0200): whether they rest is what the
+/// thread sanitizer sees.
 TEST(OwnLoopThreads, RestWhileWhatTheyJudgeByChanges) {
   Archive archive;
   Driven driven{archive, archive_descriptor};

@@ -110,10 +110,11 @@ std::optional<FailureNotice> DescriptorChanges::take() {
   if (!coming_) return FailureNotice{FailureCode::WrongStatus};
   descriptor::SubsystemDescriptor fresh = std::move(*coming_);
   coming_.reset();
-  if (auto refused = against(fresh)) return refused;
   {
-    // Ranges, and what may be written when, are read in the threads of these.
+    // Ranges, and what may be written when, are read in the threads of these. What they have told as set is looked at.
     const LoopsAtRest at_rest{loops_.all()};
+    values_.apply_at_rest();
+    if (auto refused = against(fresh)) return refused;
     descriptor::take_over(descriptor_, std::move(fresh));
   }
   ++changes_;

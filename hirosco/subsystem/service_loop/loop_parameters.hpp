@@ -23,10 +23,13 @@ class LoopParameters final : public pus::ParameterAccess {
     return values_.check_write_in(home_.state(), parameter, value);
   }
   std::expected<void, pus::FailureCode> submit_write(std::span<const Write> writes, const pus::Request&) override {
-    // The service loop has gone on since: another state may be on its way to the cycle, and none is told to it until these are queued.
+    // The service loop has gone on since: none is told to the cycle until these are queued, and one that was told has to permit them, too.
     const LockGuard lock{values_.judging()};
-    for (const Write& write : writes)
+    for (const Write& write : writes) {
       if (auto still = check_write(write.id, write.value); !still) return still;
+      if (!values_.sent_into()) continue;
+      if (auto there = values_.check_write_in(*values_.sent_into(), write.id, write.value); !there) return there;
+    }
     return values_.queue(writes);
   }
 

@@ -5,8 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <initializer_list>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -27,7 +31,7 @@ using ::testing::StartsWith;
 constexpr const char* shelf_descriptor = R"(<Subsystem name="SHELF" id="10">
   <ParamRef name="FILES" id="0" type="UINT32" init="7" minimum="0" maximum="1000"
             writable="PreOperational SafeOperational Operational"/>
-  <ParamRef name="FOLDERS" id="1" type="UINT32" init="1" minimum="0" maximum="9" writable="PreOperational"/>
+  <ParamRef name="FOLDERS" id="1" type="UINT32" init="1" minimum="0" maximum="9" writable="PreOperational" persistent="yes"/>
   <ParamRef name="TURNS" id="2" type="UINT32" minimum="0" maximum="4000000000" writable="PreOperational SafeOperational"/>
   <ServiceLoop name="VALUES" period_us="20000" queue="2"/>
   <Service name="ST20" loop="VALUES"/>
@@ -39,6 +43,7 @@ constexpr const char* shelf_descriptor = R"(<Subsystem name="SHELF" id="10">
 /// Its node counts its turns in Safe-Operational.
 struct Shelf final : Subsystem {
   Parameter<std::uint32_t> files, folders, turns;
+  std::function<void()> meanwhile;  ///< in other threads, while the service loop is with the author
 
   Result<Step> software_init() override {
     publish("FILES", files);
@@ -49,6 +54,13 @@ struct Shelf final : Subsystem {
   Result<> safe_operational(const Cycle&) noexcept override {
     turns.store(turns.load() + 1);
     return ok();
+  }
+  Result<Step> post_operational() override {
+    if (meanwhile) meanwhile();
+    return done;
+  }
+  void telemetry(Octets) override {
+    if (meanwhile) meanwhile();
   }
 };
 
@@ -159,6 +171,60 @@ TEST_F(ParametersOfALoop, AreJudgedByStateAndModeWhenItDoesItNotWhenItCame) {
   EXPECT_EQ(seen(author.files), 7U);
 }
 
+/// What comes to its turn between the order and its being there must not be set behind it.
+TEST_F(ParametersOfALoop, AreJudgedByTheStateTooThatTheCycleIsSentInto) {
+  rig.bring_to(State::PreOperational);
+  const Sent entered = rig.set_state(State::SafeOperational);
+  rig.service();
+  const Sent of_both = set({{files, 5}}), of_before = set({{folders, 2}});
+  rig.service();
+  step_loop();
+  rig.settle();
+  EXPECT_EQ(rig.outcome(entered), "1 3 7");
+  EXPECT_EQ(rig.outcome(of_both), "1 3 7");
+  EXPECT_THAT(rig.outcome(of_before), StartsWith("1 4:0107"));
+  EXPECT_EQ(seen(author.folders), 1U);
+  rig.set_state_now(State::Offline);
+  rig.bring_to(State::PreOperational);
+  EXPECT_EQ(outcome_of(set({{folders, 2}})), "1 3 7") << "it is there";
+}
+
+TEST_F(ParametersOfALoop, ThatArePersistentAreKeptThoughTheyAreSetOnTheWayDown) {
+  rig.bring_to(State::PreOperational, 0);
+  const Sent sent = set({{folders, 5}});
+  rig.service();
+  author.meanwhile = [this] { step_loop(); };
+  rig.set_state_now(State::Offline);
+  author.meanwhile = nullptr;
+  EXPECT_EQ(rig.outcome(sent), "1 3 7");
+  rig.bring_to(State::PreOperational, 0);
+  EXPECT_EQ(seen(author.folders), 5U);
+}
+
+TEST_F(ParametersOfALoop, AreLookedAtAsTheyAreSetWhereANarrowerRangeIsTaken) {
+  rig.bring_to(State::PreOperational, 0);
+  std::string narrower{shelf_descriptor};
+  const std::string was = R"(maximum="1000")";
+  narrower.replace(narrower.find(was), was.size(), R"(maximum="8")");
+  const MemoryHandle memory = rig.memory.create("text", narrower.size()).value();
+  std::ranges::copy(std::as_bytes(std::span{narrower}),
+                    rig.memory.map(memory, Access::ReadWrite).value().octets.begin());
+  ASSERT_TRUE(rig.memory.seal_writers(memory));
+  std::array<std::byte, 4> octets;
+  OctetWriter{octets}.put(static_cast<std::uint32_t>(narrower.size()));
+  const Sent judged = rig.send(130, 1, octets, memory), sent = set({{files, 9}});
+  rig.service();
+  author.meanwhile = [this] { step_loop(); };
+  rig.answer(11, 200, 1, {});
+  const Sent taken = rig.send(130, 2, {});
+  rig.settle();
+  EXPECT_EQ(rig.outcome(judged), "1 3 7");
+  EXPECT_EQ(rig.outcome(sent), "1 3 7");
+  EXPECT_THAT(rig.outcome(taken), StartsWith("1 4:0107"));
+  EXPECT_EQ(seen(author.files), 9U);
+  EXPECT_EQ(outcome_of(set({{files, 10}})), "1 3 7") << "the range before";
+}
+
 TEST_F(ParametersOfALoop, ThatTheCycleWritesItselfAreRefused) {
   rig.bring_to(State::SafeOperational);
   EXPECT_THAT(outcome_of(set({{turns, 5}})), StartsWith("1 4:0107"));
@@ -188,6 +254,18 @@ TEST_F(ParametersOfALoop, AreRefusedWhereTheConfigurationDoesNotOfferThem) {
   rig.set_state_now(State::Offline);
   rig.bring_to(State::PreOperational, 1);
   EXPECT_EQ(outcome_of(read(files)), "1 3 7");
+}
+
+/// Asked for under one that offers them.
+TEST_F(ParametersOfALoop, AreRefusedWhereTheConfigurationThatCameMeanwhileDoesNotOfferThem) {
+  rig.bring_to(State::PreOperational, 0);
+  const Sent sent = set({{files, 5}});
+  rig.service();
+  EXPECT_EQ(rig.configure_now(3), "1 3 7");
+  step_loop();
+  rig.settle();
+  EXPECT_EQ(rig.outcome(sent), "2:000614");
+  EXPECT_EQ(seen(author.files), 7U);
 }
 
 TEST_F(ParametersOfALoop, AreRefusedAsBusyWhileTheCycleTakesNoneOfThoseThatWait) {

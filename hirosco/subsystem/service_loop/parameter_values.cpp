@@ -73,6 +73,11 @@ Result<> ParameterValues::initialise() {
 /// A process that goes through Offline loses no more than one that ends (docs/adr/0087). What could not be set is not taken along.
 void ParameterValues::remember_persistent() {
   if (!std::exchange(initialised_, false)) return;
+  {
+    // A loop of ST[20]'s own is by here done with what it judged by the states before, and has told it as set (docs/adr/0200).
+    const LockGuard lock{judging_};
+    apply_at_rest();
+  }
   std::array<std::byte, descriptor::max_persistent_octets> room;
   for (std::size_t index = 0; index < descriptor_.parameters.size(); ++index) {
     const descriptor::Parameter& parameter = descriptor_.parameters[index];

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -55,8 +56,12 @@ class ParameterValues final : public pus::ParameterAccess {
   /// As submit_write(), but whoever is the writer sets them: the cycle at its boundary, the service loop in its next step.
   [[nodiscard]] std::expected<void, pus::FailureCode> queue(std::span<const pus::ParameterAccess::Write> writes);
   /// Held by that loop from its last look at the state until it has queued, and by the service loop where it tells the cycle of another
-  /// state: what the state before permitted is queued before that, or not at all. The cycle never holds it.
+  /// state and where it hears that it is there: what the state before alone permits is queued before that, or not at all. The cycle never
+  /// holds it.
   [[nodiscard]] Mutex& judging() noexcept { return judging_; }
+  /// Under judging(): the state that the cycle was sent into and is not known to be in. Thread: set by the service loop.
+  void send_into(std::optional<State> state) noexcept { sent_into_ = state; }
+  [[nodiscard]] std::optional<State> sent_into() const noexcept { return sent_into_; }
 
   // ParameterAccess; the first two also for that loop.
   std::expected<std::size_t, ErrorCode> read(std::uint32_t parameter, MutableOctets big_endian) override;
@@ -74,6 +79,7 @@ class ParameterValues final : public pus::ParameterAccess {
   Dictionary dictionary_;
   WriteQueue writes_{32, 2048};
   Mutex judging_;
+  std::optional<State> sent_into_;  ///< under judging_
   bool initialised_{false};
 };
 
