@@ -30,7 +30,7 @@ class Guidance {
     None,  ///< not yet
     Reached,
     NotReached,  ///< its path has ended, and it is not there
-    LineLost,  ///< the joints cannot follow
+    LineLost,  ///< the joints cannot follow: it brakes
     NoWay,  ///< it was judged before it went, and stands
   };
   /// Why there is no way.
@@ -43,7 +43,7 @@ class Guidance {
   struct News {
     bool half_way{false};  ///< once in a motion that has a goal
     End end{End::None};
-    Reason why{};  ///< of NoWay
+    Reason why{};  ///< of LineLost and NoWay
   };
   explicit Guidance(const Parts& parts) noexcept : parts_{parts} {}
 
@@ -97,6 +97,7 @@ class Guidance {
   [[nodiscard]] std::optional<Reason> search() noexcept;
   [[nodiscard]] std::optional<Reason> no_posture() noexcept;
   [[nodiscard]] std::optional<Reason> judge_line() noexcept;
+  [[nodiscard]] News lose_line() noexcept;
   [[nodiscard]] Outcome start(const Result<>& planned) noexcept;
   [[nodiscard]] Outcome start_jog(Setpoints::Kind kind, double seconds) noexcept;
   [[nodiscard]] End arrive(bool gives_way) noexcept;

@@ -36,7 +36,7 @@ void ActuatorGate::write_devices() noexcept {
   // The epoch that was checked in this cycle: an output under an older permission must not carry a newer one.
   const std::uint32_t epoch = parts_.permit.checked_epoch();
   const auto telling =
-      parts_.control.state() == State::Operational ? OutputToDevice::Telling::PutOut : OutputToDevice::Telling::Wish;
+      parts_.control.state() == State::Operational ? OutputPayload::Telling::PutOut : OutputPayload::Telling::Wish;
   for (DeviceSlot& device : parts_.plan.devices) {
     device.write(epoch, active, stopping);
     device.output().tell(telling);

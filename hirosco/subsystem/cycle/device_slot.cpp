@@ -21,26 +21,6 @@ constexpr std::uint32_t longest_introduction = 40;
   return order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
 }
 
-[[nodiscard]] std::vector<LayoutField> layout_fields(std::span<const NativeField> native) {
-  std::vector<LayoutField> fields;
-  for (const NativeField& field : native) fields.push_back({field.type, field.count, field.offset});
-  return fields;
-}
-
-[[nodiscard]] std::vector<descriptor::Field> outputs_of(const descriptor::Device& device) {
-  std::vector<descriptor::Field> fields;
-  for (const auto& output : device.output) fields.push_back(output.field);
-  return fields;
-}
-
-/// The fields of an object that agrees with its declaration, with the lengths that this gives.
-[[nodiscard]] std::span<const NativeField> with_lengths(ObjectFields& fields,
-                                                        const std::vector<descriptor::Field>& declared,
-                                                        MutableOctets object) noexcept {
-  for (std::size_t i = 0; i < declared.size(); ++i) fields.set_length(i, declared[i].count, object);
-  return fields.all();
-}
-
 }  // namespace
 
 DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::DeviceUse& use, DevicePortBase& port,
@@ -52,9 +32,8 @@ DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::Devic
       silence_limit_{realtime ? use.silence.realtime : use.silence.reduced},
       every_{use.every},
       watchdog_us_{realtime ? use.watchdog_us : use.watchdog_reduced_us},
-      input_layout_{layout_fields(with_lengths(port.input_layout_, device.input, port.input_))},
-      output_{device, order_, layout_fields(with_lengths(port.output_layout_, outputs_of(device), port.output_)),
-              port.output_layout_, port.output_},
+      input_layout_{agreed_layout(port.input_layout_, device.input, port.input_)},
+      output_{device, port.output_layout_, port.output_, order_},
       frame_(max_device_frame_octets) {
   port_->alive_ = false;
   port_->fresh_ = false;

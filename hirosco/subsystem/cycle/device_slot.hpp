@@ -15,7 +15,7 @@
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/resource/quota.hpp"
 #include "hirosco/subsystem/author/ports.hpp"
-#include "hirosco/subsystem/cycle/output_to_device.hpp"
+#include "hirosco/subsystem/cycle/output_payload.hpp"
 
 /// What the cycle moves between the author's ports and devices: one slot per device of the chosen configuration. Slots are
 /// built by the service loop while the cycle rests; step functions run in the cycle and are bounded.
@@ -75,10 +75,10 @@ class DeviceSlot {
   void read(bool count_silence, bool counts = true) noexcept;
   /// Sends the author's output if `active`, else the declared safe values.
   void write(std::uint32_t epoch, bool active, bool stopping) noexcept;
+  /// What write() sends.
+  [[nodiscard]] OutputPayload& output() noexcept { return output_; }
   /// The cycle has another period from now on.
   void follow(Duration sampling) noexcept;
-  /// What write() sends.
-  [[nodiscard]] OutputToDevice& output() noexcept { return output_; }
 
  private:
   static constexpr std::uint32_t never = 1'000'000'000;
@@ -104,7 +104,7 @@ class DeviceSlot {
   Duration sampling_{};
   std::uint32_t watchdog_us_;
   std::vector<LayoutField> input_layout_;
-  OutputToDevice output_;
+  OutputPayload output_;
   std::vector<std::byte> frame_;
   std::uint32_t sequence_{0};
   Loss since_good_;

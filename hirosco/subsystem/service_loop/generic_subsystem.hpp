@@ -16,6 +16,7 @@
 #include "hirosco/subsystem/service_loop/cycle_reports.hpp"
 #include "hirosco/subsystem/service_loop/descriptor_changes.hpp"
 #include "hirosco/subsystem/service_loop/incoming.hpp"
+#include "hirosco/subsystem/service_loop/loop_parameters.hpp"
 #include "hirosco/subsystem/service_loop/state_machine.hpp"
 
 namespace hirosco {
@@ -108,7 +109,7 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
 
   [[nodiscard]] bool commissioned() const noexcept;
   TimePoint step_services(TimePoint now);
-  const std::vector<pus::Service*>& stepped_here();
+  pus::ParameterAccess& parameters_for_its_loop() noexcept;
   void look_at_resources(TimePoint now);
 
   Subsystem& author_;
@@ -126,6 +127,7 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
   ParameterValues values_;
   LoopMeter loop_meter_;
   OwnLoops loops_;
+  LoopParameters loop_parameters_;  ///< where ST[20] is in one of them
   CycleLoop cycle_;
   LinkEnds links_;
   DescriptorChanges descriptor_changes_;
@@ -136,8 +138,6 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
   pus::DescriptorService descriptor_service_;
   std::vector<std::unique_ptr<pus::Service>> made_services_;  ///< by their kinds
   std::vector<pus::Service*> services_;  ///< the framework's, then the author's
-  std::vector<pus::Service*> stepped_here_;
-  std::size_t sorted_services_{0};  ///< of services_: whether they are stepped here is known
   Requester requester_;
   Subscriber subscriber_;
   ForeignParameters foreign_;

@@ -43,6 +43,12 @@ pus::ServiceHome& OwnLoops::home_of(std::uint8_t type) noexcept {
   return subsystem_;
 }
 
+const std::vector<pus::Service*>& OwnLoops::in_none(const std::vector<pus::Service*>& services) {
+  for (; sorted_ < services.size(); ++sorted_)
+    if (pus::Service* const service = services[sorted_]; of(service->type()) == nullptr) in_none_.push_back(service);
+  return in_none_;
+}
+
 void OwnLoops::take_permit(const PermitPage& page) noexcept {
   for (const auto& loop : loops_) loop->take_permit(page);
 }

@@ -35,6 +35,8 @@ class OwnLoops {
   [[nodiscard]] OwnLoop* of(std::uint8_t type) noexcept;
   /// Where the service of this type is at home: in one of them, or with the subsystem.
   [[nodiscard]] pus::ServiceHome& home_of(std::uint8_t type) noexcept;
+  /// Of the subsystem's services, which may become more, those that are in none. Asked in each step: of which each is, is asked once.
+  [[nodiscard]] const std::vector<pus::Service*>& in_none(const std::vector<pus::Service*>& services);
   /// Another supervisor's page counts from now on.
   void take_permit(const PermitPage& page) noexcept;
   /// One has said what tell() has not told yet.  Realtime: wait-free. Thread: any.
@@ -51,6 +53,8 @@ class OwnLoops {
   const descriptor::SubsystemDescriptor& descriptor_;
   pus::ServiceHome& subsystem_;
   std::vector<std::unique_ptr<OwnLoop>> loops_;
+  std::vector<pus::Service*> in_none_;
+  std::size_t sorted_{0};  ///< services of which it is known whether they are in one
   TimePoint looked_at_;
 };
 

@@ -22,6 +22,11 @@ const HeldPrograms& ProgramsInUse::hold_to(const descriptor::Mission& mission) {
   return *held_;
 }
 
+void ProgramsInUse::hold_to_beside(const descriptor::Mission& mission) {
+  held_ = std::make_unique<HeldPrograms>(mission);
+  held_->read_all_beside(mission);
+}
+
 Result<ProgramsInUse::Found> ProgramsInUse::find(const descriptor::MissionSubsystem& subsystem) {
   if (held_) {
     const auto image = held_->find(name_of(subsystem));

@@ -26,6 +26,8 @@ class ProgramsInUse {
   };
   /// From now on what the manifest of this mission lists, and nothing else. Reads all of it first.
   const HeldPrograms& hold_to(const descriptor::Mission& mission);
+  /// The same beside a flight: nobody waits for what is read. Until a program is there find() and refuse() say that it is still being read.
+  void hold_to_beside(const descriptor::Mission& mission);
   [[nodiscard]] bool has_manifest() const noexcept { return held_ != nullptr; }
 
   [[nodiscard]] Result<Found> find(const descriptor::MissionSubsystem& subsystem);

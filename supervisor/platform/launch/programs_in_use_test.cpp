@@ -68,6 +68,16 @@ TEST_F(ProgramsInUseTest, WithAManifestItIsWhatWasReadBeforeTheFlight) {
   EXPECT_EQ(found->image->digest(), mission.manifest->listed[0].digest);
 }
 
+TEST_F(ProgramsInUseTest, BesideAFlightItIsTheSameAsSoonAsItHasBeenRead) {
+  programs.hold_to_beside(mission);
+  EXPECT_TRUE(programs.has_manifest());
+  const auto what = found();
+  ASSERT_TRUE(what);
+  EXPECT_EQ(what->image->digest(), mission.manifest->listed[0].digest);
+  std::filesystem::remove(own());
+  EXPECT_TRUE(programs.find(lamp())) << "the disk is not asked again";
+}
+
 TEST_F(ProgramsInUseTest, WhatTheManifestDoesNotHaveThatWayIsRefused) {
   std::filesystem::copy_file("/bin/false", own(), std::filesystem::copy_options::overwrite_existing);
   programs.hold_to(mission);

@@ -112,6 +112,10 @@ std::expected<std::string, std::string> SystemLauncher::begin(const descriptor::
   for (const auto& subsystem : mission.subsystems)
     if (subsystem.user) user_of_[subsystem.subsystem.name] = *subsystem.user;
   if (!mission.manifest) return std::string{};
+  if (page_ != nullptr && page_->starts.load() > 1) {
+    programs_.hold_to_beside(mission);
+    return std::string{"executables of the manifest are read anew, beside the flight"};
+  }
   const SystemClock clock;
   const TimePoint begun = clock.now();
   const HeldPrograms& held = programs_.hold_to(mission);
@@ -233,9 +237,10 @@ Result<LaunchedSubsystem> SystemLauncher::hold(Process& process, FileDescriptor 
 }
 
 bool SystemLauncher::keep_with(StoreClient store, const descriptor::Mission& mission, InheritedParts inherited,
-                               const KeeperPage* page) {
+                               KeeperPage* page) {
   store_ = store;
   inherited_ = std::move(inherited);
+  page_ = page;
   running_.ends_told_by(page);
   for (const auto& subsystem : mission.subsystems) slots_.emplace(subsystem.subsystem.name, slots_.size());
   return true;
@@ -248,11 +253,19 @@ void SystemLauncher::keep(const std::string& name, LaunchedSubsystem& launched, 
   const Process* process = running_.find(launched.process);
   if (slot == slots_.end() || process == nullptr) return;
   const int handle = process->handle().get();
+  if (page_ != nullptr && slot->second < most_kept) page_->not_taken[slot->second].store(0, std::memory_order_release);
   const auto taken =
       store_.keep(slot->second, {launched.port->channel().wait_descriptor(), SealedMemory::descriptor(vital),
                                  SealedMemory::descriptor(permit), handle, errors ? errors.get() : handle});
   if (taken) kept_[launched.process] = slot->second;
   else if (store_.has_keeper()) launched.not_kept = taken.error().text;
+}
+
+std::string_view SystemLauncher::take_not_kept(std::uint32_t process) {
+  const auto slot = kept_.find(process);
+  if (page_ == nullptr || slot == kept_.end() || slot->second >= most_kept) return {};
+  const bool taken = page_->not_taken[slot->second].exchange(0) == 0;
+  return taken ? std::string_view{} : "the keeper has no descriptors left to hold it by";
 }
 
 std::expected<AdoptedSubsystem, NotAdopted> SystemLauncher::adopt(const descriptor::MissionSubsystem& subsystem) {

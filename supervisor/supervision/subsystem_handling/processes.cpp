@@ -30,6 +30,16 @@ namespace {
 constexpr Duration closed_channel_limit = 1s;
 /// The signal that ends whoever is not gone on with.
 constexpr int killed = 9;
+
+[[nodiscard]] std::string inhibit_words(const descriptor::SubsystemDescriptor& subsystem, const GuardFinding& finding) {
+  const auto& devices = subsystem.devices;
+  const std::string_view device =
+      finding.device < devices.size() ? devices[finding.device].name : std::string_view{"?"};
+  const bool silent = finding.kind == GuardFinding::Kind::InhibitSilent;
+  return fmt::format(": the second inhibit of its device {} {}: that it has heard a stop would be known of nobody",
+                     device, silent ? "does not answer" : "is of another version, build both from one hirosco");
+}
+
 }  // namespace
 
 void Processes::start_all() {
@@ -94,7 +104,7 @@ Result<> Processes::launch(Member& member) {
     }
   }
   craft_.guard.adopt(member.apid(), *launched);
-  tell_not_kept(member, *launched);
+  tell_not_kept(member, launched->not_kept);
   member.started(std::move(*launched));
   if (!std::exchange(member.was_started, true) && member.fences_when_free)
     member.fences_when_free = craft_.guard.fences(member.apid());
@@ -103,11 +113,10 @@ Result<> Processes::launch(Member& member) {
   return ok();
 }
 
-void Processes::tell_not_kept(const Member& member, const LaunchedSubsystem& launched) {
-  if (!launched.not_kept.empty())
-    craft_.tell(
-        fmt::format("{} ends with this supervisor, should that die: {}", member.descriptor().name, launched.not_kept),
-        member.apid());
+void Processes::tell_not_kept(const Member& member, std::string_view why) {
+  if (!why.empty())
+    craft_.tell(fmt::format("{} ends with this supervisor, should that die: {}", member.descriptor().name, why),
+                member.apid());
 }
 
 std::optional<MemoryHandle> Processes::adopt(Member& member, std::string_view against) {
@@ -141,7 +150,7 @@ std::optional<MemoryHandle> Processes::adopt(Member& member, std::string_view ag
   if (adopted->stopped) member.fences_when_free.reset();
   static_cast<void>(parts_.resources.claim(member));  // it has it already
   const std::string_view why = craft_.guard.take_over(member.apid(), *adopted, against);
-  tell_not_kept(member, adopted->launched);
+  tell_not_kept(member, adopted->launched.not_kept);
   member.started(std::move(adopted->launched));
   member.enter_mode(craft_.mode_epoch);
   const bool operational = member.state() == State::Operational;
@@ -203,10 +212,12 @@ void Processes::let_go(Member& subject) {
 void Processes::watch(TimePoint now) {
   watch_ends(Whom::All);
   watch_leaving();
-  for (const Member& member : craft_.members)
-    if (member.alive())
-      craft_.guard.falls_with(member.apid(),
-                              parts_.reactions.fenced_by(member, descriptor::event_of_death, Severity::High));
+  for (const Member& member : craft_.members) {
+    if (!member.alive()) continue;
+    craft_.guard.falls_with(member.apid(),
+                            parts_.reactions.fenced_by(member, descriptor::event_of_death, Severity::High));
+    tell_not_kept(member, craft_.launcher.take_not_kept(member.process()));
+  }
   while (const auto apid = parts_.restarts.take_due(now))
     if (!craft_.shutting_down && !start(*apid)) parts_.restarts.again(*apid, now);
 }
@@ -284,17 +295,11 @@ void Processes::hear_of(Member& subject, const GuardFinding& finding) {
     case Killed: return tell(" was ended: it did not come back or had not stopped in time");
     case Ended: return parts_.reception.give_up(subject);  // what it left unsaid is read when its process has gone
     case InhibitSilent:
-    case InhibitOfOtherVersion: {
-      const auto& devices = subject.descriptor().devices;
-      const std::string_view device =
-          finding.device < devices.size() ? devices[finding.device].name : std::string_view{"?"};
-      tell(fmt::format(
-          ": the second inhibit of its device {} {}: that it has heard a stop would be known of nobody", device,
-          finding.kind == InhibitSilent ? "does not answer" : "is of another version, build both from one hirosco"));
+    case InhibitOfOtherVersion:
+      tell(inhibit_words(subject.descriptor(), finding));
       parts_.own.announce("INHIBIT_SILENT",
                           {static_cast<double>(subject.apid()), static_cast<double>(finding.device + 1)});
       return parts_.reactions.react(subject, "INHIBIT_SILENT", Severity::Medium);
-    }
     default: return;
   }
   parts_.own.announce("HANG", {static_cast<double>(subject.apid())});
