@@ -25,7 +25,11 @@ struct Flight final : supervisor::testing::AdoptionTest {
     start_all(descriptor::State::Operational);
     parts.own.start(craft.mode_epoch);
     parts.graph.set_up(1, true);
-    parts.own_telecommands.command(supervisor::testing::arm, "MOVE_TO", 1.0, nullptr);
+    // A telecommand of the ground that nobody has answered yet.
+    const auto move =
+        supervisor::testing::telecommand(supervisor::testing::arm, 8, 1, supervisor::testing::call_data("MOVE_TO"));
+    parts.telecommands.take({.packet = move, .origin = Origin::ground()});
+    parts.telecommands.forward_durable();
   }
   void TestBody() override {}
 
