@@ -93,8 +93,8 @@ void check_handshake(Octets octets) {
 }
 
 /// What is written into octets of its own, in the form of those that fill a buffer.
-template <class Octets_>
-[[nodiscard]] Octets put(MutableOctets to, const Octets_& octets) {
+template <class Data>
+[[nodiscard]] Octets put(MutableOctets to, const Data& octets) {
   std::ranges::copy(octets, to.begin());
   return Octets{to}.first(octets.size());
 }
