@@ -94,6 +94,13 @@ def a_member_leaves_in_a_change_of_mode_that_was_under_way(w):
 
 
 @case(GOES_ON)
+def a_member_leaves_as_a_plan_that_was_under_way_counts_as_failed(w):
+    lost(w)
+    w.action(2310 * MS, "JOYSTICK: the supervisor died in the midst of a plan, which counts as failed")
+    w.at(2400 * MS, f"state MANIPULATOR {SAFE}")
+
+
+@case(GOES_ON)
 def a_member_leaves_in_what_the_supervisor_was_at(w):
     w.action(1900 * MS, "recovery of JOYSTICK")
     lost(w)

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "hirosco/pus/st08_function/function_service.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 /// Arguments of functions and of requests to own services, of every type, from whatever octets come. What is taken is what
 /// the descriptor permits, and goes back to the octets that it came from.
@@ -49,14 +48,11 @@ using pus::Argument;
   return function;
 }
 
-void expect(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "does not hold: %s\n", what);
-  std::abort();
-}
+using fuzz::expect;
 
 /// All values of a list are permitted, and are the octets that they came from.
 void check_list(pus::ArgumentList declared, Octets list) {
+  fuzz::taken();
   pus::ArgumentReader reader{declared, list};
   const std::vector<Value> values = reader.rest();
   expect(reader.good() && values.size() == pus::value_count(declared), "a list has all its values");

@@ -3,8 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A fuzz target under libFuzzer, ASan and UBSan: as many inputs as it is given, from its corpus on, break nothing; and each
 planted defect is found, so that the target can see. fuzz_test.py arguments BUILD-FOLDER [--runs N]. Skipped
-where there is no clang with libFuzzer (tools/skip_reason)."""
+where there is no clang with libFuzzer (tools/skip_reason). Of targets that need whole libraries there is none: README.md."""
 import argparse, pathlib, re, shutil, subprocess, sys, tempfile
+import seeds
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -13,6 +14,13 @@ FLAGS = ["-std=c++23", "-O1", "-g1", "-fsanitize=fuzzer,address,undefined", "-fn
 LONGEST_INPUT = 400
 MOST_RUNS_WITH_A_DEFECT = 2_000_000
 ARGUMENTS = "hirosco/pus/service/arguments.cpp"
+PACKET, CUC = "hirosco/pus/packet/packet.cpp", "hirosco/pus/packet/cuc.cpp"
+DOWNLINK = "ground/downlink/downlink.cpp"
+EVENT = "hirosco/pus/st05_event/event_message.cpp"
+SUPERVISION = "hirosco/pus/st129_supervision/supervision_messages.cpp"
+HANDSHAKE = "hirosco/pus/st128_realtime_link/link_handshake_octets.cpp"
+DEVICE, ENABLE, POWER = (f"hirosco/data_transfer/device/{name}_frame.cpp" for name in ("device", "enable", "power"))
+NETWORK, LOCK = "hirosco/data_transfer/device/device_network.cpp", "tools/hirosco/flight_lock.cpp"
 FRAMES = "hirosco/data_transfer/channel/stream_frame.cpp"
 DATAGRAMS = "hirosco/data_transfer/link/link_datagram.cpp"
 STREAMS = "hirosco/data_transfer/device/stream_framing.cpp"
@@ -24,7 +32,7 @@ MESH, COLLADA = "robotics/shapes/mesh.cpp", "robotics/shapes/collada.cpp"
 SCREEN = "tools/terminal/screen.cpp"
 SCREEN_MODEL = "tools/terminal/screen_model.cpp"
 # What a target needs of the system besides the C++ library.
-SYSTEM = {"mesh": ["-isystem", "/usr/include/eigen3", "-lexpat"], "urdf": ["-isystem", "/usr/include/eigen3", "-lexpat"], "screen": ["-lfmt"]}
+SYSTEM = {"mesh": ["-isystem", "/usr/include/eigen3", "-lexpat"], "urdf": ["-isystem", "/usr/include/eigen3", "-lexpat"], "screen": ["-lfmt"], "words": ["-lfmt"]}
 # The files of a target, and its defects: what stands in a file, and what does in its place.
 TARGETS = {"arguments": (
     [ARGUMENTS, "hirosco/pus/st08_function/function_service.cpp", "hirosco/pus/st01_verification/verification.cpp",
@@ -36,6 +44,42 @@ TARGETS = {"arguments": (
           "good = permits(argument, read_number(reader, argument.field.type)) && (good || i + 1 == argument.field.count);"),
      "an argument that is given twice counts":
          ("hirosco/pus/st08_function/function_service.cpp", " && taken_[id - 1].empty();", ";")}),
+    "packets": (
+    [PACKET, CUC, DOWNLINK],
+    {"a packet may be shorter than it says":
+         (PACKET, "announced_octets(packet) != packet.size())\n    return std::unexpected", "announced_octets(packet) < packet.size())\n    return std::unexpected"),
+     "a telecommand may be of another version":
+         (PACKET, "if (u8_at(packet, 6) >> 4 != pus_version) return refuse(IllegalPusVersion);", ""),
+     "a report is taken before its last octet is there":
+         (DOWNLINK, "if (!good || rest.size() < size) break;", "if (!good || rest.size() + 1 < size) break;")}),
+    "messages": (
+    [EVENT, SUPERVISION, HANDSHAKE, "hirosco/pus/st128_realtime_link/link_handshake.cpp", "hirosco/data_transfer/wire_layout.cpp", PACKET, CUC],
+    {"an octet behind words is read":
+         (SUPERVISION, "return {reinterpret_cast<const char*>(words.data()), words.size()};", "return {reinterpret_cast<const char*>(words.data()), words.size() + 1};"),
+     "something may stand behind a problem of a descriptor":
+         (SUPERVISION, "return reader.exhausted() ? std::optional{std::move(problem)}", "return reader.good() ? std::optional{std::move(problem)}"),
+     "a consumer is woken by a switch that is none":
+         (HANDSHAKE, "require(is_depth(samples, queued) && flag <= 1);", "require(is_depth(samples, queued));"),
+     "an offer may be of another link than its request":
+         (HANDSHAKE, "reader.require(link_of_offer == message.link);", ""),
+     "an event's data begin in its number":
+         (EVENT, "octets.subspan(event_message_head_octets)", "octets.subspan(event_message_head_octets - 1)")}),
+    "device_frames": (
+    [DEVICE, ENABLE, POWER],
+    {"ends that are swapped understand each other":
+         (DEVICE, 'if (found_kind != static_cast<std::uint8_t>(kind)) return fail(ErrorCode::Malformed, "device frame kind", found_kind);', ""),
+     "a frame may be longer than it says":
+         (DEVICE, "if (payload_octets != octets.size() - device_frame_overhead_octets)", "if (payload_octets > octets.size() - device_frame_overhead_octets)"),
+     "something may stand behind the frame of an inhibit":
+         (ENABLE, "if (octets.size() != enable_frame_octets)", "if (octets.size() < enable_frame_octets)"),
+     "a switch of power goes off before it is on":
+         (POWER, 'if (found.off_after_ms == 0) return fail(ErrorCode::Malformed, "power frame time", 0);', "")}),
+    "words": (
+    ["hirosco/data_transfer/link/internet_address.cpp", NETWORK, "hirosco/data_transfer/device/serial_line.cpp", "hirosco/parameter/exact_number.cpp", LOCK],
+    {"a network may have bits behind its prefix":
+         (NETWORK, "if (!made.contains(made.network))", "if (made.prefix == 0)"),
+     "a flight may be of no process":
+         (LOCK, "lock.keeper <= 0", "lock.keeper < 0")}),
     "parameters": (
     [DICTIONARY, PARAMETERS, "hirosco/pus/st01_verification/verification.cpp", "hirosco/pus/packet/packet.cpp",
      "hirosco/pus/packet/cuc.cpp", "hirosco/parameter/exact_number.cpp", "hirosco/parameter/native_layout.cpp",
@@ -157,9 +201,7 @@ def main():
     corpus = folder / "corpus"
     shutil.rmtree(folder, ignore_errors=True)
     corpus.mkdir(parents=True)
-    lines = [line for line in (HERE / f"{given.target}_corpus.txt").read_text().splitlines() if not line.startswith("#")]
-    for number, line in enumerate(lines):
-        (corpus / f"seed{number}").write_bytes(bytes.fromhex(line))
+    seeds.write(HERE / f"{given.target}_corpus.txt", corpus)
     problem = fuzz(built(name, [harness, *(ROOT / file for file in files)], folder / "target", system), corpus, given.runs)
     print(f"{given.runs} runs of {given.target}: {problem or 'nothing found'}")
     missed = 0

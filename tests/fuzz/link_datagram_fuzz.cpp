@@ -3,13 +3,12 @@
 #include "hirosco/data_transfer/link/link_datagram.hpp"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "hirosco/utilities/crc16.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 /// What a network may bring to a consumer of a link, one datagram after the other: what is taken was written by the producer of
 /// this link, goes forward only, and is written to the octets that it came from.
@@ -24,11 +23,7 @@ const LinkLayout layout{.epoch = 3,
                         .depth = 0,
                         .route = {.link = 2, .producer = {}, .consumer = {}, .key = 9}};
 
-void expect(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "does not hold: %s\n", what);
-  std::abort();
-}
+using fuzz::expect;
 
 /// A datagram as `write_link_datagram` makes it is this one, octet by octet: nothing of it is unlooked at.
 void check_taken(const LinkDatagramGate::Taken& taken, Octets received) {
@@ -52,6 +47,7 @@ class Consumer {
     sequence_ = taken->head.sequence;
     count_ = taken->head.count;
     ++taken_;
+    fuzz::taken();
     expect(!gate_.take(octets), "nothing is taken twice");
     ++received_;
   }

@@ -2,25 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
 #include "robotics/shapes/mesh.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 /// A mesh from whatever octets come, as each kind of file. What is taken has triangles of points that there are, each a place; what is refused says why.
 namespace {
 
 using namespace hirosco::robotics;
 
-void expect(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "does not hold: %s\n", what);
-  std::abort();
-}
+using hirosco::fuzz::expect;
 
 void check(const Mesh& mesh) {
+  hirosco::fuzz::taken();
   expect(!mesh.triangles.empty(), "a mesh has a triangle");
   for (const Mesh::Triangle& triangle : mesh.triangles)
     for (const std::uint32_t corner : triangle)

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 #include <vector>
 
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 /// Octets as the data of TC[20,3], on a dictionary with switches, words and numbers: whatever they are, the parameters hold what
 /// their C++ types may hold, and a request sets all of its values or none.
@@ -25,11 +24,7 @@ struct Lamp {
   double level;
 };
 
-void expect(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "does not hold: %s\n", what);
-  std::abort();
-}
+using fuzz::expect;
 
 [[nodiscard]] std::vector<ParameterSpec> declared() {
   return {{"LAMP",
@@ -127,6 +122,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   service.handle(*telecommand, pus::request_of(*telecommand));
   const auto after = home.values();
   expect(home.refused() != home.completed(), "a request is refused or completed");
+  if (home.completed()) fuzz::taken();
   expect(!home.refused() || before == after, "what is refused changes nothing");
   expect(home.all_set(), "what is set is what was sent");
   return 0;

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <string_view>
 
+#include "tests/fuzz/fuzz.hpp"
 #include "tools/terminal/columns.hpp"
 #include "tools/terminal/lines.hpp"
 #include "tools/terminal/screen.hpp"
@@ -15,11 +14,7 @@ namespace {
 
 using namespace hirosco::terminal;
 
-void demand(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "does not hold: %s\n", what);
-  std::abort();
-}
+using hirosco::fuzz::expect;
 
 }  // namespace
 
@@ -36,21 +31,22 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
   Lines lines{300};
   lines.take(text, [&](std::string_view line) { model.take(line); });
   const Picture before = draw(model, room, 0);
+  if (!before.rows.empty()) hirosco::fuzz::taken();
   while (!keys.empty()) {
     const std::size_t left = keys.size();
     model.press(take_key(keys), before.event_rows);
-    demand(keys.size() < left, "each key takes an octet at least");
+    expect(keys.size() < left, "each key takes an octet at least");
   }
   const Picture after = draw(model, room, data[1] % 5);
-  if (room.columns != 0) demand(after.rows.size() == room.rows, "as many rows as there are");
+  if (room.columns != 0) expect(after.rows.size() == room.rows, "as many rows as there are");
   for (const std::string& line : words_of(after))
-    demand(width_of(line) <= room.columns, "no row is wider than the terminal");
+    expect(width_of(line) <= room.columns, "no row is wider than the terminal");
   for (const char letter : paint(after, before, room, {.colour = false, .unicode = false}))
-    demand(letter == '\x1b' || (letter >= ' ' && letter < 0x7F), "ASCII and sequences");
+    expect(letter == '\x1b' || (letter >= ' ' && letter < 0x7F), "ASCII and sequences");
   for (const PictureRow& row : after.rows)
     for (const Span& span : row)
       for (const char letter : span.text)
-        demand(static_cast<unsigned char>(letter) >= ' ' && letter != 0x7F, "nothing of what was told steers");
-  demand(farewell(model, "log").size() < 100, "a few words at the end");
+        expect(static_cast<unsigned char>(letter) >= ' ' && letter != 0x7F, "nothing of what was told steers");
+  expect(farewell(model, "log").size() < 100, "a few words at the end");
   return 0;
 }

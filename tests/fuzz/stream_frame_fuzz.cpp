@@ -3,12 +3,11 @@
 #include "hirosco/data_transfer/channel/stream_frame.hpp"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <span>
 #include <vector>
 
 #include "hirosco/utilities/crc16.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 /// A stream of a member's frames, whatever octets come: what is taken is a whole frame of ours, and is written to the octets that it
 /// came from; what waits for more waits for no more than a frame can have.
@@ -16,11 +15,7 @@ namespace {
 
 using namespace hirosco;
 
-void expect(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "does not hold: %s\n", what);
-  std::abort();
-}
+using fuzz::expect;
 
 [[nodiscard]] std::size_t number_at(Octets octets, std::size_t place) {
   return std::to_integer<std::size_t>(octets[place]) << 8 | std::to_integer<std::size_t>(octets[place + 1]);
@@ -36,6 +31,7 @@ void check_waiting(Octets received) {
 void check_taken(const StreamFrame& frame, Octets received) {
   expect(frame.octets == frame.payload.size() + stream_frame_extra_octets && frame.octets <= received.size(),
          "a frame is what was received");
+  fuzz::taken();
   const auto kind = static_cast<unsigned>(frame.kind);
   expect(kind >= 1 && kind <= 3, "a frame is of a kind that there is");
   std::vector<std::byte> again(frame.octets);

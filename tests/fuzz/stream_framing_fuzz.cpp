@@ -3,12 +3,11 @@
 #include "hirosco/data_transfer/device/stream_framing.hpp"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <span>
 #include <vector>
 
 #include "hirosco/utilities/crc16.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 /// A serial line or TCP stream to a device, whatever octets come, in whatever pieces: what is taken stands in the stream as a whole
 /// frame of ours, how the stream was cut changes nothing, there is always room for more, and two longest frames behind the last
@@ -18,11 +17,7 @@ namespace {
 using namespace hirosco;
 using Frames = std::vector<std::vector<std::byte>>;
 
-void expect(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "does not hold: %s\n", what);
-  std::abort();
-}
+using fuzz::expect;
 
 Frames frames_of(Octets stream, std::size_t piece) {
   StreamDeframer deframer;
@@ -57,6 +52,7 @@ void check(const std::vector<std::byte>& stream, std::size_t piece) {
     const auto place = std::search(from, stream.end(), wire.begin(), wire.end());
     expect(place != stream.end(), "what was taken stands in the stream, in its order");
     from = place + static_cast<std::ptrdiff_t>(wire.size());
+    fuzz::taken();
   }
 }
 

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <set>
 #include <string>
 #include <string_view>
 
 #include "robotics/dynamics/dynamics.hpp"
 #include "robotics/urdf/robot.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 /// A URDF file from whatever octets come, with short words for the long ones of the format, so that a fuzzer comes past the syntax. What is
 /// refused has a problem with a place and a hint; what is taken is one tree, and a model whose figures are numbers.
@@ -17,11 +16,7 @@ namespace {
 using namespace hirosco;
 using namespace hirosco::robotics;
 
-void expect(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "does not hold: %s\n", what);
-  std::abort();
-}
+using fuzz::expect;
 
 /// One octet for each part of a file; what has none stands for itself.
 [[nodiscard]] std::string spelled(std::string_view octets) {
@@ -76,6 +71,7 @@ void check_refused(const descriptor::Reading<urdf::Robot>& reading) {
 }
 
 void check_taken(const urdf::Robot& robot) {
+  fuzz::taken();
   std::set<std::string_view> names;
   std::set<std::size_t> children;
   for (const auto& link : robot.links) expect(names.insert(link.name).second, "names of links differ");

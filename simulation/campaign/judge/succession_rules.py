@@ -40,7 +40,8 @@ def left_alone(flight, victims, start, end):
 
 def before_itself(record, flight, start):
     """What the next supervisor does itself is what is judged; what the one before was at is an excuse."""
-    return record.time >= min(gone for gone, _ in flight.absences() if gone >= start) and not record.note.startswith("the change to mode ")
+    of_before = record.note.startswith("the change to mode ") or "the supervisor died in the midst of " in record.note
+    return record.time >= min(gone for gone, _ in flight.absences() if gone >= start) and not of_before
 
 
 def had_a_reason(flight, start, end):

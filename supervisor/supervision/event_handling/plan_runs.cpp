@@ -55,8 +55,8 @@ std::string PlanRuns::against(const PlanStart& plan) const {
 std::vector<PlanUnderWay> PlanRuns::under_way() const {
   std::vector<PlanUnderWay> found;
   for (const Run& run : runs_)
-    if (run.runner.running() && holds(run.plan))
-      found.push_back({run.plan.subject, run.plan.origin, run.plan.severity, run.plan.anew, run.plan.event});
+    if (run.runner.running() && holds(run.plan) && !is_overtaken(run))
+      found.push_back({run.plan.subject, run.plan.origin, run.plan.severity, run.plan.anew, run.plan.occasion.event});
   return found;
 }
 
@@ -112,13 +112,15 @@ void PlanRuns::give_up_those_down(const Run& by) {
       give_up(run, by.plan.number, by.plan.occasion.plan);
 }
 
+bool PlanRuns::is_overtaken(const Run& run) const {
+  const bool by_itself = safety_of(std::span{run.plan.steps}.first(run.at)) == Safety::Network;
+  return means_.craft.member(run.plan.subject)->recovery.going_down() && !by_itself && !run.plan.of_loss;
+}
+
 void PlanRuns::step_begins(Run& run, std::size_t step) {
   run.at = step;
   give_up_those_down(run);
-  const bool by_itself = safety_of(std::span{run.plan.steps}.first(step)) == Safety::Network;
-  // Somebody else took it down meanwhile, and it goes there without this one's help.
-  if (recovery_of(run.plan.subject).going_down() && !by_itself && !run.plan.of_loss)
-    give_up(run, loss_of_a_link, "for the loss of a link");
+  if (is_overtaken(run)) give_up(run, loss_of_a_link, "for the loss of a link");
 }
 
 void PlanRuns::ended(Run& run, const ProcedureEnd& end) {

@@ -25,7 +25,7 @@ struct PlanStart {
   Stage steps{};  ///< at least one, taken one after the other
   bool of_loss{false};  ///< whoever is gone is stopped and taken down whatever else runs for it (hazard SF5)
   std::uint16_t origin{};  ///< whose event it answers
-  std::string event{};
+  Stage idle{};  ///< further steps for its subject, which have nothing to do now
   bool anew{false};  ///< a supervisor before this one had begun it and died over it
 };
 
@@ -55,7 +55,7 @@ class PlanRuns {
   void begin(const PlanStart& plan);
   /// Why begin() would refuse it now, in words; empty: it would not.
   [[nodiscard]] std::string against(const PlanStart& plan) const;
-  /// Those that hold their subject.
+  /// Those that hold their subject, unless somebody else takes that down.
   [[nodiscard]] std::vector<PlanUnderWay> under_way() const;
 
  private:
@@ -75,6 +75,8 @@ class PlanRuns {
   void give_up(Run& run, std::uint16_t by, const std::string& name);
   /// Whoever goes down with this one's network follows no plan of its own any more.
   void give_up_those_down(const Run& by);
+  /// Somebody else has taken its subject down, and it goes there without this one's help.
+  [[nodiscard]] bool is_overtaken(const Run& run) const;
   void step_begins(Run& run, std::size_t step);
   void ended(Run& run, const ProcedureEnd& end);
   [[nodiscard]] MemberRecovery& recovery_of(std::uint16_t apid) { return means_.craft.member(apid)->recovery; }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -24,6 +25,10 @@ namespace {
 
 /// Nobody declares it: a plan may be for its severity.
 constexpr std::string_view event_of_failure = "RECOVERY_FAILED";
+
+[[nodiscard]] bool leads_to_where_it_is(const ProcedureStep& step, const Member& subject) {
+  return step.kind == &steps::set_state && subject.state() == steps::state_step::wanted(step);
+}
 
 }  // namespace
 
@@ -93,8 +98,7 @@ PlanStart Reactions::start_for(const Member& subject, const Member* whose, const
                   .priority = reaction.priority,
                   .severity = severity,
                   .of_loss = &subject == whose && is_loss(event),
-                  .origin = whose != nullptr ? whose->apid() : supervisor_apid,
-                  .event = std::string{event}};
+                  .origin = whose != nullptr ? whose->apid() : supervisor_apid};
   for (const descriptor::PlanStep& planned : reaction.steps) {
     const bool for_it = planned.subsystem.empty() ? whose == nullptr || whose == &subject
                                                   : planned.subsystem == subject.descriptor().name;
@@ -105,11 +109,11 @@ PlanStart Reactions::start_for(const Member& subject, const Member* whose, const
                              {start.occasion.plan, whose != nullptr ? start.occasion.event : std::string{}},
                              planned.words,
                              planned.arguments};
-    const bool does_something =
-        step.kind->run != nullptr && (step.kind->answers == nullptr || step.kind->answers(step, craft_));
     // What is about the craft is done once where a plan is for all.
     const bool elsewhere = whose == nullptr && step.kind->of_craft && &subject != first_of_all();
-    if (for_it && does_something && !elsewhere && (only.empty() || only == event)) start.steps.push_back(step);
+    if (!for_it || step.kind->run == nullptr || elsewhere || !(only.empty() || only == event)) continue;
+    const bool does_something = step.kind->answers == nullptr || step.kind->answers(step, craft_);
+    (does_something ? start.steps : start.idle).push_back(step);
   }
   return start;
 }
@@ -167,29 +171,38 @@ bool Reactions::begins_anew(std::uint16_t apid) const {
 
 bool Reactions::begin_anew(Member& subject) {
   const std::uint16_t apid = subject.apid();
-  const bool may = begins_anew(apid);
+  const bool may = begins_anew(apid) && !craft_.shutting_down;
+  const auto of_it = [apid](const PlanUnderWay& each) { return each.subject == apid; };
+  if (may) {
+    for (PlanUnderWay& each : before_) each.anew = each.anew || of_it(each);
+    craft_.remember();  // should this supervisor die by it at once, no third one does
+  }
   std::vector<PlanUnderWay> those;
-  std::erase_if(before_, [&](const PlanUnderWay& each) {
-    if (each.subject == apid) those.push_back(each);
-    return each.subject == apid;
-  });
-  bool begun = false;
+  std::ranges::copy_if(before_, std::back_inserter(those), of_it);
+  std::erase_if(before_, of_it);
+  bool goes_on = false;
   for (const PlanUnderWay& each : those) {
     const Member* origin = std::as_const(craft_).member(each.origin);
     if (!may || (origin == nullptr && each.origin != supervisor_apid)) continue;
-    auto starts = origin != nullptr
-                      ? answer_to(*origin, each.event, each.severity)
-                      : answer_to_own(reaction_to_own(each.event, each.severity), each.event, each.severity);
-    for (PlanStart& start : starts) {
-      if (start.subject != apid) continue;
-      craft_.tell(fmt::format("{}: plan {} because of {} begins anew: the supervisor died in the midst of it",
-                              craft_.name_of(apid), start.occasion.plan, each.event),
+    Severity severity = each.severity;
+    const Reaction reaction =
+        origin != nullptr ? reaction_to(*origin, each.event, severity) : reaction_to_own(each.event, severity);
+    PlanStart start = start_for(subject, origin, reaction, severity, each.event);
+    const auto is_there = [&](const ProcedureStep& step) { return leads_to_where_it_is(step, subject); };
+    // Who has come elsewhere than its plan leads has not followed that.
+    if (start.steps.empty() && (start.idle.empty() || !std::ranges::all_of(start.idle, is_there))) continue;
+    goes_on = start.anew = true;
+    // It stands fenced there; commanded there again it would refuse, and the plan fail.
+    start.steps.erase(start.steps.begin(), std::ranges::find_if_not(start.steps, is_there));
+    const bool has_to_do = !start.steps.empty();
+    if (!has_to_do || runs_.against(start).empty())
+      craft_.tell(fmt::format("{}: plan {} because of {} {}: the supervisor died in the midst of it",
+                              craft_.name_of(apid), start.occasion.plan, each.event,
+                              has_to_do ? "begins anew" : "has nothing left to do"),
                   apid);
-      start.anew = begun = true;
-      runs_.begin(start);
-    }
+    if (has_to_do) runs_.begin(start);
   }
-  return begun;
+  return goes_on;
 }
 
 void Reactions::note(OctetWriter& writer) const {

@@ -48,7 +48,8 @@ class Reactions final : public Remembered {
   /// A plan was under way for it when the supervisor before this one died, and begins anew (docs/adr/0201). Not one that had been begun anew
   /// already: over it two have died.
   [[nodiscard]] bool begins_anew(std::uint16_t apid) const;
-  /// It does, as if its event were told now: by the plan that answers that now, for this one. False: nothing is begun.
+  /// It does, as if its event were told now: by the plan that answers that now, for this one, without what is done already. False: none
+  /// answers it for this one, or this one has come elsewhere.
   bool begin_anew(Member& subject);
   /// What has not begun anew by now does not any more.
   void forget_what_was_under_way() noexcept { before_.clear(); }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -60,6 +61,20 @@ struct PlansOfTheLiving : AdoptionTest {
     event(arm, hot, Severity::Low);
     is_noted();
   }
+  /// Each that a member is sent under this supervisor is carried out, until nothing more comes; what that was.
+  std::vector<std::string> obeys(SupervisorParts& next, std::uint16_t apid) {
+    std::vector<std::string> all;
+    for (auto sent = received(apid); !sent.empty(); sent = received(apid))
+      for (const Received& each : sent) {
+        constexpr std::string_view to_state = "SET_STATE ";
+        if (each.text.starts_with(to_state))
+          set(apid, static_cast<descriptor::State>(std::stoi(each.text.substr(to_state.size()))));
+        all.push_back(each.text);
+        says(next, apid, each, 7);
+        next.telecommands.forward_durable();
+      }
+    return all;
+  }
 };
 
 TEST_F(PlansOfTheLiving, BeginAnewAndWhomTheyAddressInTheNetworkActsUntilThen) {
@@ -99,6 +114,68 @@ TEST_F(PlansOfTheLiving, OverWhichASecondSupervisorDiesCountAsFailedAndTheNetwor
   for (const std::uint16_t apid : {arm, hand}) EXPECT_TRUE(third.craft.member(apid)->recovery.going_down()) << apid;
 }
 
+/// In the very step in which they begin anew, behind which it would be noted.
+TEST_F(PlansOfTheLiving, ByWhichASecondSupervisorDiesAtOnceDoNotBeginAThirdTime) {
+  is_under_way({hand_brakes});
+  begins_to_hear(go_on());
+  ASSERT_THAT(texts(hand), ElementsAre("BRAKE"));
+  story.clear();
+  SupervisorParts& third = go_on();
+  for (const std::uint16_t apid : {arm, hand}) EXPECT_TRUE(third.craft.guard.fenced(apid)) << apid;
+  begins_to_hear(third);
+  EXPECT_TRUE(was_told("HAND" + std::string{failed}));
+  EXPECT_FALSE(was_told(anew));
+}
+
+TEST_F(PlansOfTheLiving, HaveNothingLeftToDoForWhoHasComeWhereTheyLeadItAndStopNobodyElse) {
+  is_under_way({{"set_state", {static_cast<std::int64_t>(SafeOperational)}}});
+  set(arm, SafeOperational);
+  SupervisorParts& next = go_on();
+  begins_to_hear(next);
+  EXPECT_TRUE(was_told("ARM: plan cool because of HOT has nothing left to do"));
+  EXPECT_FALSE(was_told(failed));
+  for (const std::uint16_t apid : {arm, hand}) EXPECT_THAT(texts(apid), IsEmpty()) << apid;
+  EXPECT_TRUE(next.craft.guard.fenced(arm));
+  EXPECT_FALSE(next.craft.guard.fenced(hand));
+}
+
+TEST_F(PlansOfTheLiving, CountAsFailedForWhoHasComeElsewhereThanTheyLeadIt) {
+  is_under_way({{"set_state", {static_cast<std::int64_t>(SafeOperational)}}});
+  set(arm, ErrorOperational);
+  SupervisorParts& next = go_on();
+  begins_to_hear(next);
+  EXPECT_TRUE(was_told("ARM" + std::string{failed}));
+  for (const std::uint16_t apid : {arm, hand}) {
+    EXPECT_TRUE(next.craft.guard.fenced(apid)) << apid;
+    EXPECT_TRUE(next.craft.member(apid)->recovery.going_down()) << apid;
+  }
+}
+
+/// It would refuse, and the plan fail.
+TEST_F(PlansOfTheLiving, CommandNobodyToWhereItHasComeAndGoOnFromThere) {
+  is_under_way({{"set_state", {static_cast<std::int64_t>(ErrorOperational)}},
+                {"set_state", {static_cast<std::int64_t>(PostOperational)}}});
+  set(arm, ErrorOperational);
+  SupervisorParts& next = go_on();
+  begins_to_hear(next);
+  EXPECT_THAT(texts(arm), ElementsAre(to(PostOperational)));
+  EXPECT_TRUE(next.craft.guard.fenced(arm));
+  EXPECT_FALSE(next.craft.guard.fenced(hand));
+}
+
+/// By the loss of a link, say, which is no plan: that gives way with its next step.
+TEST_F(PlansOfTheLiving, DoNotBeginAnewForWhomSomebodyElseHasTakenDownMeanwhile) {
+  is_under_way({hand_brakes});
+  ASSERT_TRUE(craft.member(hand)->recovery.goes_down());
+  is_noted();
+  SupervisorParts& next = go_on();
+  for (const std::uint16_t apid : {arm, hand}) EXPECT_TRUE(next.craft.guard.fenced(apid)) << apid;
+  begins_to_hear(next);
+  EXPECT_FALSE(was_told("begins anew"));
+  EXPECT_TRUE(was_told("HAND" + std::string{failed}));
+  EXPECT_TRUE(next.craft.member(hand)->recovery.going_down());
+}
+
 TEST_F(PlansOfTheLiving, LeaveWhomTheyStopStoppedAndNobodyElse) {
   is_under_way({{"set_state", {static_cast<std::int64_t>(SafeOperational)}}});
   SupervisorParts& next = go_on();
@@ -122,15 +199,12 @@ TEST_F(PlansOfTheLiving, GiveATaskToOneOfItsNetworkWhereverTheDeathLeftThat) {
   EXPECT_TRUE(next.craft.guard.fenced(arm));
   EXPECT_EQ(against(next, hand), "") << "the fence of the succession is no stop";
   begins_to_hear(next);
-  const auto giver = received(arm);
-  ASSERT_EQ(giver.size(), 1U);
-  EXPECT_EQ(giver[0].text, to(SafeOperational));
-  set(arm, SafeOperational);
-  says(next, arm, giver[0], 7);
-  next.telecommands.forward_durable();
-  EXPECT_THAT(texts(hand), Contains(to(Operational)));
+  EXPECT_THAT(texts(hand), IsEmpty()) << "before its giver has stopped";
+  EXPECT_THAT(obeys(next, arm), ElementsAre(to(SafeOperational)));
+  EXPECT_THAT(obeys(next, hand), ElementsAre(to(PreOperational), "CONFIGURE 1", to(SafeOperational), to(Operational)));
+  EXPECT_TRUE(next.craft.guard.fenced(arm));
   EXPECT_FALSE(next.craft.guard.fenced(hand));
-  EXPECT_FALSE(was_told("nobody takes over"));
+  EXPECT_TRUE(was_told("the task of ARM is with HAND"));
 }
 
 TEST_F(PlansOfTheLiving, ByWhichANetworkGoesDownBeginNothingAnewAndAllOfItGoesDownAsEver) {
