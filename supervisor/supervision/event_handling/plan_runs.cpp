@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace hirosco::supervisor {
@@ -21,6 +22,21 @@ namespace {
 }
 
 }  // namespace
+
+void PlanUnderWay::note(OctetWriter& writer) const {
+  writer.put(subject).put(origin).put(static_cast<std::uint8_t>(severity));
+  writer.put(static_cast<std::uint8_t>(anew ? 1 : 0)).put(static_cast<std::uint16_t>(event.size()));
+  writer.put(std::as_bytes(std::span{event}));
+}
+
+void PlanUnderWay::recall(OctetReader& reader) {
+  subject = reader.get<std::uint16_t>();
+  origin = reader.get<std::uint16_t>();
+  severity = static_cast<descriptor::Severity>(reader.get<std::uint8_t>());
+  anew = reader.get<std::uint8_t>() != 0;
+  const Octets name = reader.get(reader.get<std::uint16_t>());
+  event.assign(reinterpret_cast<const char*>(name.data()), name.size());
+}
 
 /// By what it has still to do: a stop that is done protects nothing from giving way.
 PlanRank PlanRuns::Run::rank() const { return rank_of(plan, at); }

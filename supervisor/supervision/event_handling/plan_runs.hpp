@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "hirosco/utilities/octets.hpp"
 #include "supervisor/supervision/event_handling/plan_rank.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/procedures/procedure_runner.hpp"
@@ -36,6 +37,9 @@ struct PlanUnderWay {
   descriptor::Severity severity{};
   bool anew{false};
   std::string event{};
+  /// As it stands in the journal. What a reader that is no longer good has given is nothing.
+  void note(OctetWriter& writer) const;
+  void recall(OctetReader& reader);
 };
 
 /// The plans that run, and which gives way to which (docs/adr/0090): one at a time for a member, and beside it only what answers its

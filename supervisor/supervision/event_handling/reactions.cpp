@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <span>
 #include <utility>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
@@ -209,22 +208,13 @@ void Reactions::note(OctetWriter& writer) const {
   std::vector<PlanUnderWay> all = runs_.under_way();
   all.insert(all.end(), before_.begin(), before_.end());
   writer.put(static_cast<std::uint16_t>(all.size()));
-  for (const PlanUnderWay& each : all) {
-    writer.put(each.subject).put(each.origin).put(static_cast<std::uint8_t>(each.severity));
-    writer.put(static_cast<std::uint8_t>(each.anew ? 1 : 0)).put(static_cast<std::uint16_t>(each.event.size()));
-    writer.put(std::as_bytes(std::span{each.event}));
-  }
+  for (const PlanUnderWay& each : all) each.note(writer);
 }
 
 void Reactions::recall(OctetReader& reader) {
   for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
     PlanUnderWay each;
-    each.subject = reader.get<std::uint16_t>();
-    each.origin = reader.get<std::uint16_t>();
-    each.severity = static_cast<Severity>(reader.get<std::uint8_t>());
-    each.anew = reader.get<std::uint8_t>() != 0;
-    const Octets event = reader.get(reader.get<std::uint16_t>());
-    each.event.assign(reinterpret_cast<const char*>(event.data()), event.size());
+    each.recall(reader);
     if (reader.good()) before_.push_back(std::move(each));
   }
 }
