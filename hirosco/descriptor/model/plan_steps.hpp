@@ -60,7 +60,8 @@ inline constexpr std::array restarts_with_limit{
     StepAttribute{.name = "to", .kind = StepAttribute::Kind::Word, .otherwise = 0, .words = states_to_come_back_to}};
 inline constexpr std::array function_to_call{
     StepAttribute{.name = "function", .kind = StepAttribute::Kind::Function},
-    StepAttribute{.name = "arguments", .kind = StepAttribute::Kind::Arguments, .otherwise = 0}};
+    StepAttribute{.name = "arguments", .kind = StepAttribute::Kind::Arguments, .otherwise = 0},
+    StepAttribute{.name = "done_within_s", .least = 15, .most = 600, .otherwise = 15}};
 inline constexpr std::array notice_to_give{StepAttribute{.name = "function", .kind = StepAttribute::Kind::Function}};
 inline constexpr std::array configuration_to_take{
     StepAttribute{.name = "configuration", .kind = StepAttribute::Kind::Configuration}};
@@ -85,6 +86,8 @@ inline constexpr std::size_t restart_within_s = place_of(detail::restarts_with_l
 inline constexpr std::size_t restart_pause_ms = place_of(detail::restarts_with_limit, "pause_ms");
 /// Up to which state its subject comes back to what it was commanded to be; 0 = it stays Offline.
 inline constexpr std::size_t restart_to = place_of(detail::restarts_with_limit, "to");
+/// From when it is sent to its completion (docs/adr/0206).
+inline constexpr std::size_t command_done_within_s = place_of(detail::function_to_call, "done_within_s");
 inline constexpr std::size_t wait_for_state = place_of(detail::state_to_wait_for, "state");
 inline constexpr std::size_t wait_for_of = place_of(detail::state_to_wait_for, "of");
 inline constexpr std::size_t wait_for_within_ms = place_of(detail::state_to_wait_for, "within_ms");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/descriptor/model/plan_steps.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/descriptor/testing.hpp"
 
@@ -14,6 +15,9 @@ using testing::changed;
 using testing::data;
 using testing::overlay;
 using testing::rendered;
+
+const std::string good_call =
+    R"(<Do action="command" subsystem="FLYWHEEL" function="SET_FORCE_SCALE" arguments="0.1")";
 
 TEST(MissionRecovery, ARestartSaysAsFarAsItComesBack) {
   for (const auto& [word, state] :
@@ -80,6 +84,19 @@ TEST(MissionRecovery, StepsNameWhatIsLookedUpForThem) {
   EXPECT_EQ(steps[5].subsystem, "FLYWHEEL");
 }
 
+TEST(MissionRecovery, ACommandSaysHowLongItMayTakeAndWhereItDoesNotItIsAsLongAsForAny) {
+  const auto reading = read_mission(
+      data / "mission.xml",
+      overlay({{"mission.xml", changed(R"(<When severity="low info"/><Do action="log"/>)",
+                                       R"(<When severity="low info"/>)" + good_call + "/>" + good_call +
+                                           R"( done_within_s="120"/>)")}}));
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
+  const auto& steps = reading.value->plans.at(2).steps;
+  EXPECT_EQ(steps.at(0).values.at(command_done_within_s), 15);
+  EXPECT_EQ(steps.at(1).values.at(command_done_within_s), 120);
+  EXPECT_EQ(steps.at(1).arguments, std::vector<double>{0.1});
+}
+
 TEST(MissionRecovery, AStepThatNamesWhatThereIsNotOrDoesNotFitIsRefused) {
   struct Case {
     std::string code, good, bad;
@@ -94,6 +111,10 @@ TEST(MissionRecovery, AStepThatNamesWhatThereIsNotOrDoesNotFitIsRefused) {
             R"(<Do action="command" subsystem="FLYWHEEL" function="SET_FORCE_SCALE" arguments="0.2"/>)"},
            {"E0372", R"(<Do action="log"/>)",
             R"(<Do action="command" subsystem="FLYWHEEL" function="SET_FORCE_SCALE" arguments="x"/>)"},
+           {"E0112", R"(<Do action="log"/>)", good_call + R"( done_within_s="14"/>)"},
+           {"E0112", R"(<Do action="log"/>)", good_call + R"( done_within_s="601"/>)"},
+           {"E0111", R"(<Do action="log"/>)", good_call + R"( done_within_s="1 min"/>)"},
+           {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" done_within_s="30"/>)"},
            {"E0316", R"(<Do action="log"/>)",
             R"(<Do action="configure" subsystem="FLYWHEEL" configuration="COUPLE"/>)"},
            {"E0309", R"(<Do action="log"/>)", R"(<Do action="link" link="99"/>)"},

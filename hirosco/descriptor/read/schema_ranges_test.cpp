@@ -101,7 +101,8 @@ std::string ranged_mission() {
       {R"(<Do action="log"/>)", R"(<Do action="log"/></Plan>
         <Plan name="back"><When event="PROCESS_DIED"/><Do action="restart" limit="3" within_s="9" pause_ms="9"/></Plan>
         <Plan name="all" priority="9"><When event="HANG"/><Do action="link" link="1"/><Do action="power" budget_W="9"/>
-          <Do action="wait_for" of="FLYWHEEL" state="Offline" within_ms="9"/>)"}};
+          <Do action="wait_for" of="FLYWHEEL" state="Offline" within_ms="9"/>
+          <Do action="command" subsystem="FLYWHEEL" function="SET_FORCE_SCALE" arguments="0.1" done_within_s="99"/>)"}};
   std::string text = testing::good_mission();
   for (const auto& [from, to] : more) text = testing::changed(from, to, text);
   return text;

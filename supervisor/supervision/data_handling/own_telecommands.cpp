@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <utility>
 #include <vector>
 
 #include "hirosco/pus/st08_function/function_service.hpp"
@@ -12,9 +14,8 @@
 namespace hirosco::supervisor {
 
 namespace {
-/// Generous: a slow disk alone may hold a telecommand back for seconds (decision 24). No less than it may wait for the disk, so
-/// that none is executed after it was reported as failed.
-constexpr Duration own_answer_limit = WaitingForDisk::limit;
+constexpr std::uint8_t ack_end = pus::ack_acceptance | pus::ack_completion;
+constexpr std::uint8_t ack_begin_and_end = ack_end | pus::ack_start;
 /// "execution error: sensor is broken 42"
 std::string words_of(pus::FailureCode code, Octets data) {
   std::string text{to_text(code)};
@@ -57,7 +58,7 @@ void OwnTelecommands::send(const Packet& what, CommandDone done, Duration takes)
   const auto packet = pus::write_telecommand(buffer,
                                              {.apid = apid,
                                               .sequence_count = count,
-                                              .ack = pus::ack_acceptance | pus::ack_completion,
+                                              .ack = takes > Duration{0} ? ack_begin_and_end : ack_end,
                                               .service = what.service,
                                               .subtype = what.subtype,
                                               .source = supervisor_apid},
@@ -67,10 +68,21 @@ void OwnTelecommands::send(const Packet& what, CommandDone done, Duration takes)
     return;
   }
   const auto telecommand = pus::TelecommandView::parse(*packet);
-  sent_[telecommand->request_id()] = {std::move(done), craft_.now + own_answer_limit + takes,
-                                      craft_.name_of(apid) + " " + telecommand_text(*telecommand), apid};
+  sent_[telecommand->request_id()] = {std::move(done), craft_.now + answer_limit,
+                                      craft_.name_of(apid) + " " + telecommand_text(*telecommand), apid, takes};
   telecommands_.take(
       {.packet = *packet, .origin = Origin::supervisor(), .memory = what.memory, .free_at = what.free_at});
+}
+
+void OwnTelecommands::Sent::begins() {
+  if (std::exchange(begun, takes > Duration{0})) return;
+  deadline += takes;
+}
+
+std::string OwnTelecommands::Sent::why() const {
+  if (!begun) return "no answer";
+  const auto limit = std::chrono::duration_cast<std::chrono::seconds>(answer_limit + takes);
+  return "begun, and not completed within " + std::to_string(limit.count()) + " s";
 }
 
 void OwnTelecommands::hear(std::uint16_t from, const pus::TelemetryView& report) {
@@ -80,6 +92,7 @@ void OwnTelecommands::hear(std::uint16_t from, const pus::TelemetryView& report)
   if (found == sent_.end() || !reader.good()) return;
   // Its end is told by whom it was for, or by the supervisor that did not let it go there.
   if (from != found->second.apid && from != supervisor_apid) return;
+  if (report.subtype() == 3) found->second.begins();
   const bool failure = report.subtype() % 2 == 0;
   const bool completed = report.subtype() == 7;
   if (!failure && !completed) return;
@@ -100,8 +113,9 @@ void OwnTelecommands::watch(TimePoint now) {
     return true;
   });
   for (const Sent& late : expired) {
-    craft_.tell(late.what + ": no answer");
-    if (late.done) late.done(false, "no answer");
+    const std::string why = late.why();
+    craft_.tell(late.what + ": " + why);
+    if (late.done) late.done(false, why);
   }
 }
 

@@ -30,7 +30,7 @@ class OwnTelecommands final : public CommandDesk, public Hearer, public Watch {
   void fail_all_to(std::uint16_t apid, const std::string& why);
   /// Service 1 reports on them.
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
-  /// Those that nobody answers.
+  /// Those that nobody answers, or that take longer than they may.
   void watch(TimePoint now) override;
 
  private:
@@ -39,6 +39,12 @@ class OwnTelecommands final : public CommandDesk, public Hearer, public Watch {
     TimePoint deadline{};
     std::string what;
     std::uint16_t apid{};
+    Duration takes{0};
+    bool begun{false};  ///< of what takes its time
+    /// Its addressee is there, and at it.
+    void begins();
+    /// Why it is given up.
+    [[nodiscard]] std::string why() const;
   };
   struct Packet {
     std::uint16_t apid{};

@@ -25,6 +25,12 @@ struct OwnTelecommandsTest : PartsTest {
     const auto sent = received(arm);
     return sent.empty() ? 0 : sent.front().request;
   }
+  std::uint32_t send_long() {
+    parts.own_telecommands.send(
+        arm, 17, 1, {}, {}, [this](bool, const std::string& why) { ends.push_back(why); }, 600s);
+    const auto sent = received(arm);
+    return sent.empty() ? 0 : sent.front().request;
+  }
 };
 
 TEST_F(OwnTelecommandsTest, ItsSenderHearsOfItsCompletion) {
@@ -58,14 +64,36 @@ TEST_F(OwnTelecommandsTest, ItsSenderHearsTheWordsAndTheNumberOfAnAuthor) {
 }
 
 TEST_F(OwnTelecommandsTest, WhatTakesItsTimeIsWaitedForThatMuchLonger) {
-  parts.own_telecommands.send(
-      arm, 17, 128, {}, {}, [this](bool, const std::string& why) { ends.push_back(why); }, 600s);
-  wait(615s - 1ms);
+  const auto request = send_long();
+  wait(10s);
+  for (int again = 0; again < 3; ++again) verify(arm, request, 3);
+  wait(605s - 1ms);
   parts.own_telecommands.watch(clock.now());
   EXPECT_THAT(ends, IsEmpty());
   wait(1ms);
   parts.own_telecommands.watch(clock.now());
+  EXPECT_THAT(ends, ElementsAre("begun, and not completed within 615 s"));
+}
+
+TEST_F(OwnTelecommandsTest, WhatTakesItsTimeAndHasNotBegunIsWaitedForNoLonger) {
+  const auto request = send_long();
+  verify(arm, request, 1);
+  verify(hand, request, 3);
+  wait(15s);
+  parts.own_telecommands.watch(clock.now());
   EXPECT_THAT(ends, ElementsAre("no answer"));
+}
+
+TEST_F(OwnTelecommandsTest, ABeginIsAskedForWhereItCounts) {
+  const auto asked = [this](Duration takes) {
+    parts.own_telecommands.send(arm, 17, 1, {}, {}, nullptr, takes);
+    MessageBuffer buffer;
+    const auto next = played[arm].channel.subsystem_end().receive(buffer);
+    const auto telecommand = pus::TelecommandView::parse(next->message.packet);
+    return telecommand ? pus::request_of(*telecommand).ack : std::uint8_t{0};
+  };
+  EXPECT_EQ(asked(Duration{0}), pus::ack_acceptance | pus::ack_completion);
+  EXPECT_EQ(asked(1s), pus::ack_acceptance | pus::ack_start | pus::ack_completion);
 }
 
 TEST_F(OwnTelecommandsTest, AReportToSomebodyElseEndsNothing) {

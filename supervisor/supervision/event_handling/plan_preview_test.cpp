@@ -141,6 +141,12 @@ TEST_F(PlanPreviewTest, AStepSaysItself) {
               ElementsAre("ARM, task to HAND in ONLY: HAND was stopped, and nobody has let it go since"));
 }
 
+TEST_F(PlanPreviewTest, ACommandSaysHowLongItMayTakeWhereThatIsLongerThanForAny) {
+  plan("out", {{"command", {0, 0, 120}, {}, {"BRAKE"}}, {"command", {0, 0, 15}, {}, {"BRAKE"}}});
+  EXPECT_THAT(words(*ask(arm, joint_hot)), ElementsAre("1 10 BRAKE within 120 s", "2 10 BRAKE"));
+  nothing_was_done();
+}
+
 TEST_F(PlanPreviewTest, OfALinkThatTheMissionSpeaksOfItTellsThat) {
   for (auto& link : craft.mission.links)
     if (link.id == 1) link.on_loss = descriptor::OnLoss::Ignore;

@@ -86,11 +86,15 @@ bool PlanRuns::makes_way(const PlanStart& plan) {
   if (!plan.of_loss) {
     const auto first = in_its_way(plan);
     if (first != runs_.end()) {
-      // The same is told of when it begins, any other once.
-      if (first->plan.number == plan.number || !first->refused.insert(plan.number).second) return false;
+      // Each is told of once: an event may come again in every cycle.
+      if (!first->refused.insert(plan.number).second) return false;
+      const Occasion &refused = plan.occasion, &runs = first->plan.occasion;
       means_.craft.tell(
-          fmt::format("{}: plan {} because of {} is refused, plan {} runs", means_.craft.name_of(plan.subject),
-                      plan.occasion.plan, plan.occasion.event, first->plan.occasion.plan),
+          first->plan.number == plan.number
+              ? fmt::format("{}: plan {} because of {} runs already, {} does not begin it anew",
+                            means_.craft.name_of(plan.subject), runs.plan, runs.event, refused.event)
+              : fmt::format("{}: plan {} because of {} is refused, plan {} runs", means_.craft.name_of(plan.subject),
+                            refused.plan, refused.event, runs.plan),
           plan.subject);
       own_.announce("PLAN_REFUSED", {static_cast<double>(plan.subject), static_cast<double>(plan.number),
                                      static_cast<double>(first->plan.number)});
@@ -99,8 +103,12 @@ bool PlanRuns::makes_way(const PlanStart& plan) {
   }
   for (Run& run : runs_) {
     if (run.plan.subject != plan.subject || !run.runner.running()) continue;
-    if (is_same(run)) cancel(run);  // begun anew
-    else if (pre_empts(begins, run.rank())) give_up(run, plan.number, plan.occasion.plan);
+    if (is_same(run)) {
+      cancel(run);
+      means_.craft.tell(fmt::format("{}: plan {} begins anew: {} came again while it ran",
+                                    means_.craft.name_of(plan.subject), plan.occasion.plan, plan.occasion.event),
+                        plan.subject);
+    } else if (pre_empts(begins, run.rank())) give_up(run, plan.number, plan.occasion.plan);
   }
   return true;
 }

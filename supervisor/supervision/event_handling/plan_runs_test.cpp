@@ -54,8 +54,30 @@ TEST_F(PlanRunsTest, AnEqualOrLowerOneIsRefusedAndThatIsToldOnce) {
   };
   EXPECT_EQ(told("ARM: plan equal because of SECOND is refused, plan runs runs"), 1);
   EXPECT_EQ(told("PLAN_REFUSED APID=10 PLAN=2 RUNS=1"), 1);
+}
+
+TEST_F(PlanRunsTest, ASecondEventOfAPlanThatRunsBeginsNothingAndThatIsToldOnce) {
+  plan("runs", "FIRST", 100, {to_be(ErrorOperational)});
   happens(first_event);
-  EXPECT_EQ(told("is refused"), 1) << "the same plan runs already";
+  EXPECT_THAT(texts(arm), ElementsAre(to(ErrorOperational)));
+  for (int again = 0; again < 3; ++again) happens(first_event);
+  EXPECT_THAT(texts(arm), IsEmpty());
+  own_step();
+  const auto told = [&](std::string_view what) {
+    return std::ranges::count_if(story, [&](const std::string& line) { return line.find(what) != std::string::npos; });
+  };
+  EXPECT_EQ(told("ARM: plan runs because of FIRST runs already, FIRST does not begin it anew"), 1);
+  EXPECT_EQ(told("PLAN_REFUSED APID=10 PLAN=1 RUNS=1"), 1);
+}
+
+TEST_F(PlanRunsTest, WhereItsStopIsDoneTheSameEventBeginsAPlanAnewAndThatIsTold) {
+  plan("runs", "FIRST", 100, {to_be(SafeOperational), {"command", {0, 0, 15}, {}, {"BRAKE"}}});
+  happens(first_event);
+  answered(arm);
+  EXPECT_THAT(texts(arm), ElementsAre("BRAKE"));
+  happens(first_event);
+  EXPECT_TRUE(was_told("ARM: plan runs begins anew: FIRST came again while it ran"));
+  EXPECT_THAT(texts(arm), ElementsAre(to(SafeOperational)));
 }
 
 TEST_F(PlanRunsTest, ARefusedPlanDoesNotBeginLater) {

@@ -106,5 +106,13 @@ TEST_F(PlannedReactionsTest, PriorityAndWhomAStepMovesAreShown) {
     }
 }
 
+TEST_F(PlannedReactionsTest, HowLongACommandMayTakeIsShown) {
+  plan("out", "HOT", "", {{"command", {0, 1, 120}, {}, {"STOW", "0.5"}, {0.5}}});
+  for (const PlannedReaction& each : planned_reactions(mission))
+    if (each.event == "HOT") {
+      EXPECT_EQ(each.steps, "command function=STOW arguments=0.5 done_within_s=120");
+    }
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

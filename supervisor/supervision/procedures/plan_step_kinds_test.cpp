@@ -85,7 +85,7 @@ struct PlanStepKinds : PartsTest {
 };
 
 TEST_F(PlanStepKinds, CommandCallsAFunctionWithItsNumbers) {
-  plan({{"command", {2, 1}, {}, {"STOW", "0.5"}, {0.5}}});
+  plan({{"command", {2, 1, 15}, {}, {"STOW", "0.5"}, {0.5}}});
   happens();
   EXPECT_THAT(texts(arm), ElementsAre("STOW"));
   EXPECT_TRUE(was_told("plan test: ARM STOW 0.5 because of BROKEN"));
@@ -93,7 +93,7 @@ TEST_F(PlanStepKinds, CommandCallsAFunctionWithItsNumbers) {
 }
 
 TEST_F(PlanStepKinds, ACommandThatFailsEscalatesOnceAndIsTold) {
-  plan({{"command", {2, 1}, {}, {"STOW", "0.5"}, {0.5}}, to_be(PreOperational)});
+  plan({{"command", {2, 1, 15}, {}, {"STOW", "0.5"}, {0.5}}, to_be(PreOperational)});
   happens();
   const auto begun = received(arm);
   ASSERT_EQ(begun.size(), 1U);
@@ -102,6 +102,45 @@ TEST_F(PlanStepKinds, ACommandThatFailsEscalatesOnceAndIsTold) {
   EXPECT_TRUE(guard.fenced(arm)) << "the plan for high severity: down with its network";
   EXPECT_EQ(std::ranges::count_if(story, [](const std::string& line) { return line.find("escalating") != line.npos; }),
             1);
+}
+
+TEST_F(PlanStepKinds, ACommandMayTakeAsLongAsItsStepSaysOnceItHasBegun) {
+  plan({{"command", {2, 1, 30}, {}, {"STOW", "0.5"}, {0.5}}, {"command", {2, 1, 15}, {}, {"STOW", "0.7"}, {0.7}}});
+  happens();
+  EXPECT_TRUE(was_told("plan test: ARM STOW 0.5 within 30 s because of BROKEN"));
+  const auto begun = received(arm);
+  ASSERT_EQ(begun.size(), 1U);
+  verify(arm, begun[0].request, 1);
+  verify(arm, begun[0].request, 3);
+  wait(20s);
+  parts.own_telecommands.watch(clock.now());
+  EXPECT_FALSE(was_told("escalating"));
+  verify(arm, begun[0].request, 7);
+  EXPECT_THAT(texts(arm), ElementsAre("STOW")) << "the next step";
+  EXPECT_FALSE(guard.fenced(arm));
+}
+
+TEST_F(PlanStepKinds, ACommandThatTakesLongerThanItsStepSaysEscalates) {
+  plan({{"command", {2, 1, 30}, {}, {"STOW", "0.5"}, {0.5}}});
+  happens();
+  verify(arm, received(arm).at(0).request, 3);
+  wait(30s - 1ms);
+  parts.own_telecommands.watch(clock.now());
+  EXPECT_FALSE(was_told("escalating"));
+  wait(1ms);
+  parts.own_telecommands.watch(clock.now());
+  EXPECT_TRUE(was_told("plan failed (begun, and not completed within 30 s): escalating"));
+  EXPECT_TRUE(guard.fenced(arm));
+}
+
+TEST_F(PlanStepKinds, ACommandThatDoesNotBeginEscalatesAsSoonAsAnyHoweverLongItMayTake) {
+  plan({{"command", {2, 1, 600}, {}, {"STOW", "0.5"}, {0.5}}});
+  happens();
+  verify(arm, received(arm).at(0).request, 1);
+  wait(CommandDesk::answer_limit);
+  parts.own_telecommands.watch(clock.now());
+  EXPECT_TRUE(was_told("plan failed (no answer): escalating")) << "accepted is not begun";
+  EXPECT_TRUE(guard.fenced(arm));
 }
 
 TEST_F(PlanStepKinds, ConfigureAndThenAState) {
@@ -144,7 +183,7 @@ TEST_F(PlanStepKinds, FenceOfAnotherLeavesWhoseEventItIs) {
 }
 
 TEST_F(PlanStepKinds, WhatFencesDoesSoBeforeTheFirstStepBegins) {
-  plan({{"command", {2, 1}, {}, {"STOW", "0.5"}, {0.5}}, {"kill"}});
+  plan({{"command", {2, 1, 15}, {}, {"STOW", "0.5"}, {0.5}}, {"kill"}});
   happens();
   EXPECT_TRUE(guard.fenced(arm));
   EXPECT_THAT(killed, IsEmpty()) << "the command runs";

@@ -28,7 +28,7 @@ struct PlansOfTheLiving : AdoptionTest {
   static constexpr const char* anew =
       "HAND: plan cool because of HOT begins anew: the supervisor died in the midst of it";
   static constexpr const char* failed = ": the supervisor died in the midst of a plan, which counts as failed";
-  const descriptor::PlanStep hand_brakes{"command", {1, 0}, "HAND", {"BRAKE"}};
+  const descriptor::PlanStep hand_brakes{"command", {1, 0, 15}, "HAND", {"BRAKE"}};
 
   void fly(std::string event, std::vector<descriptor::PlanStep> steps) {
     descriptor::Event told;
@@ -257,7 +257,7 @@ TEST_F(PlansOfTheLiving, DoNotBeginAnewBehindAStopOfEverything) {
 }
 
 TEST_F(PlansOfTheLiving, ForAnEventOfTheSupervisorItselfBeginAnewForAllThatAct) {
-  fly("JOURNAL_FULL", {{"command", {1, 0}, {}, {"BRAKE"}}});
+  fly("JOURNAL_FULL", {{"command", {1, 0, 15}, {}, {"BRAKE"}}});
   const auto* full = craft.mission.supervisor.find_event("JOURNAL_FULL");
   ASSERT_NE(full, nullptr);
   std::array<std::byte, pus::event_message_head_octets> buffer{};
