@@ -9,6 +9,7 @@ each stop one bring-up, and the arm does the same again.
 """
 import argparse
 import contextlib
+import math
 import os
 import signal
 import socket
@@ -27,6 +28,7 @@ CHANGES = {"hirosco-joystick": JOYSTICK, "hirosco-manipulator": ROBOT, "60": "1"
 FENCED_S = ACCEPTED_S = 0.5
 ENABLE_S = 0.05                     # an enable lasts so long (adr 0025); then the device begins its declared stop by itself
 HOME_M, DEPTH_M, SPRING = (0.3275, -0.0215), 0.0217, 2         # of the tip; of the hand for 40 N on the rail; near home
+HAND_M_S = 0.25                     # of a hand that brings the arm home
 BESIDE = ("valid flood", "damaged flood", "frozen log", "spinning cycle", "ground link stopped", "ground link dead")
 
 
@@ -51,15 +53,17 @@ class Arm:
 
     def go_home(self):
         """The tip to its home; returns the offset of the hand that is needed for that, which differs from bring-up to bring-up."""
-        offset = (0.0, 0.0)
+        offset, way_s = (0.0, 0.0), 0.2
         for _ in range(10):
-            self.hand(offset, 0.2)
-            time.sleep(0.5)
+            self.hand(offset, way_s)
+            time.sleep(way_s + 0.3)
             tip = self.craft.truth("robot")
             away = HOME_M[0] - tip["tip_x"], HOME_M[1] - tip["tip_y"]
             if max(map(abs, away)) < 0.002:
                 return offset
             offset = offset[0] + away[0], offset[1] + away[1]
+            # A hand that is there at once makes the robot limp on the way (RO8), and who is limp comes nowhere.
+            way_s = max(0.2, math.hypot(*away) / HAND_M_S)
         raise Unready(f"the arm does not come home: {tip}")
 
     def hand(self, offset, seconds):
