@@ -162,6 +162,18 @@ void ParameterValues::apply_at_rest() {
   if (orders_.rests() && writes_.waiting() != 0) apply();
 }
 
+std::optional<std::size_t> ParameterValues::waits_outside(const std::vector<descriptor::Parameter>& ranges) {
+  std::optional<std::size_t> found;
+  const auto fits = [&](const ParameterWrite& write) {
+    const descriptor::Parameter& declared = ranges[write.index];
+    if (!declared.writable() || in_range(declared, write.member, write.value)) return true;
+    found = write.index;
+    return false;
+  };
+  static_cast<void>(writes_.all_waiting(fits));
+  return found;
+}
+
 ForeignParameters::Home ParameterValues::foreign_home(std::function<void(std::uint16_t parameter)> tell) {
   const auto accepts = [this](std::uint16_t parameter, Octets value) {
     return dictionary_.accepts(parameter, -1, value) && in_range(descriptor_.parameters[parameter], -1, value);

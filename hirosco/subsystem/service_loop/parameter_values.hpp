@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/dictionary.hpp"
@@ -46,6 +47,8 @@ class ParameterValues final : public pus::ParameterAccess {
   void apply() { writes_.apply(dictionary_); }
   /// What waits is set if the cycle rests.
   void apply_at_rest();
+  /// A writable parameter for which a value waits that is outside of the ranges that these give to it, which are as many as its own.
+  [[nodiscard]] std::optional<std::size_t> waits_outside(const std::vector<descriptor::Parameter>& ranges);
   /// What is heard of others comes into a parameter as what a telecommand sets, without asking whether one may.
   [[nodiscard]] ForeignParameters::Home foreign_home(std::function<void(std::uint16_t parameter)> tell);
 
