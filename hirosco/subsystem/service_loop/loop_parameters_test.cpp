@@ -288,6 +288,15 @@ TEST_F(ParametersOfALoop, AreRefusedAsBusyWhileTheCycleTakesNoneOfThoseThatWait)
   EXPECT_EQ(outcome_of(set({{files, 8}})), "1 3 7");
 }
 
+TEST_F(ParametersOfALoop, AreRefusedWhereTheVitalPageSaysNoState) {
+  rig.bring_to(State::PreOperational);
+  rig.vital.state = 77;
+  EXPECT_THAT(outcome_of(set({{files, 5}})), StartsWith("2:000a"));
+  EXPECT_EQ(seen(author.files), 7U);
+  rig.vital.state = static_cast<std::uint32_t>(State::PreOperational);
+  EXPECT_EQ(outcome_of(set({{files, 5}})), "1 3 7");
+}
+
 /// A loop between its judgement and the queue, while the service loop goes on.
 struct Between final : pus::ServiceHome {
   explicit Between(const descriptor::SubsystemDescriptor& subsystem) : subsystem_{subsystem} {}
@@ -298,7 +307,10 @@ struct Between final : pus::ServiceHome {
   pus::SelfTest& self_test() noexcept override { return self_test_; }
   pus::FailureNotice refusal(pus::FailureCode code, const Error&) const override { return pus::FailureNotice{code}; }
 
+  bool mode_in_force() const noexcept override { return in_its_mode; }
+
   State is{State::PreOperational};
+  bool in_its_mode{true};
 
  private:
   const descriptor::SubsystemDescriptor& subsystem_;
@@ -324,7 +336,54 @@ TEST_F(ParametersOfALoop, AreNotQueuedByAStateThatIsNoMore) {
   const auto refused = parameters.submit_write({&write, 1}, {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error(), pus::FailureCode::NotPermittedNow);
+  between.is = State::PreOperational;
+  between.in_its_mode = false;
+  const auto of_old_mode = parameters.submit_write({&write, 1}, {});
+  ASSERT_FALSE(of_old_mode);
+  EXPECT_EQ(of_old_mode.error(), pus::FailureCode::WrongMode);
   EXPECT_EQ(values.writes().waiting(), 1U);
+}
+
+/// Takes as long as it takes.
+struct SlowService final : pus::Service {
+  const pus::ServiceKind& kind() const noexcept override { return pus::ParameterService::service_kind; }
+  void handle(const pus::TelecommandView&, const pus::Request&) override { during(); }
+  std::function<void()> during;
+};
+
+TEST_F(ParametersOfALoop, AreJudgedByTheModeInForceAsLongAsItTakes) {
+  Between subsystem{rig.descriptor()};
+  const Dictionary dictionary;
+  WriteQueue writes{1, 64};
+  LoopMeter meter{rig.descriptor().service_loops};
+  OwnLoop loop{OwnLoop::Parts{.declared = rig.descriptor().service_loops.front(),
+                              .subsystem = subsystem,
+                              .vital = rig.vital,
+                              .permit = rig.permit,
+                              .clock = rig.clock,
+                              .dictionary = dictionary,
+                              .writes = writes,
+                              .meter = meter,
+                              .place = 0}};
+  SlowService slow;
+  loop.host(slow);
+  std::vector<bool> in_force;
+  rig.permit.mode_epoch = 3;
+  slow.during = [&] {
+    in_force.push_back(loop.mode_in_force());
+    rig.permit.mode_epoch = 4;
+    in_force.push_back(loop.mode_in_force());
+    rig.permit.mode_epoch = 3;
+  };
+  std::array<std::byte, 32> buffer{};
+  const Octets packet = pus::write_telecommand(buffer, {.apid = 10, .service = 20, .subtype = 3}, {}).value();
+  EXPECT_TRUE(loop.offer(packet, 3));
+  EXPECT_TRUE(loop.offer(packet, 0));
+  static_cast<void>(loop.step(rig.clock.now()));
+  EXPECT_THAT(in_force, ElementsAre(true, false, true, true)) << "what no mode has permitted none takes back";
+  EXPECT_EQ(loop.state(), State::Offline);
+  rig.vital.state = 77;
+  EXPECT_EQ(loop.state(), State::Offline) << "a damaged page says none";
 }
 
 }  // namespace

@@ -58,9 +58,9 @@ class ParameterValues final : public pus::ParameterAccess {
                                                                      Octets value) const;
   /// As submit_write(), but whoever is the writer sets them: the cycle at its boundary, the service loop in its next step.
   [[nodiscard]] std::expected<void, pus::FailureCode> queue(std::span<const pus::ParameterAccess::Write> writes);
-  /// Held by that loop from its last look at the state until it has queued, and by the service loop where it tells the cycle of another
-  /// state and where it hears that it is there: what the state before alone permits is queued before that, or not at all. The cycle never
-  /// holds it.
+  /// Held by that loop from its last look at mode and state until it has queued, and by the service loop where it tells the cycle of
+  /// another state, where it hears that it is there, and before it looks at the first request under another mode: what mode and state
+  /// before alone permit is queued before that, or not at all. The cycle never holds it.
   [[nodiscard]] Mutex& judging() noexcept { return judging_; }
   /// Under judging(): the state that the cycle was sent into and is not known to be in. Thread: set by the service loop.
   void send_into(std::optional<State> state) noexcept { sent_into_ = state; }
