@@ -103,7 +103,10 @@ std::size_t ParameterValues::size_of(std::uint32_t parameter) {
 }
 
 std::expected<void, pus::FailureCode> ParameterValues::check_write(std::uint32_t parameter, Octets value) {
-  return check_write_in(at_.state, parameter, value);
+  auto permitted = check_write_in(at_.state, parameter, value);
+  // What comes behind the order into another state is set behind its entry.
+  if (!permitted || !sent_into_) return permitted;
+  return check_write_in(*sent_into_, parameter, value);
 }
 
 std::expected<void, pus::FailureCode> ParameterValues::check_write_in(State state, std::uint32_t parameter,

@@ -62,7 +62,8 @@ class ParameterValues final : public pus::ParameterAccess {
   /// another state, where it hears that it is there, and before it looks at the first request under another mode: what mode and state
   /// before alone permit is queued before that, or not at all. The cycle never holds it.
   [[nodiscard]] Mutex& judging() noexcept { return judging_; }
-  /// Under judging(): the state that the cycle was sent into and is not known to be in. Thread: set by the service loop.
+  /// Under judging(), or by the service loop, which alone sets it: the state that the cycle was sent into and is not known to be in, which
+  /// has to permit a write, too.
   void send_into(std::optional<State> state) noexcept { sent_into_ = state; }
   [[nodiscard]] std::optional<State> sent_into() const noexcept { return sent_into_; }
 
