@@ -38,6 +38,7 @@ constexpr const char* shelf_descriptor = R"(<Subsystem name="SHELF" id="10">
   <Configuration name="FIRST" id="1" sampling_us="1000"/>
   <Configuration name="SECOND" id="2" sampling_us="1000"><Set parameter="FILES" value="3"/></Configuration>
   <Configuration name="BARE" id="3" sampling_us="1000"><Service name="ST20" offered="no"/></Configuration>
+  <Bumpless between="FIRST SECOND"/>
 </Subsystem>)";
 
 /// Its node counts its turns in Safe-Operational.
@@ -53,6 +54,10 @@ struct Shelf final : Subsystem {
   }
   Result<> safe_operational(const Cycle&) noexcept override {
     turns.store(turns.load() + 1);
+    return ok();
+  }
+  Result<> bumpless(const descriptor::Configuration&, const descriptor::Configuration&,
+                    const Cycle&) noexcept override {
     return ok();
   }
   Result<Step> post_operational() override {
@@ -230,6 +235,32 @@ TEST_F(ParametersOfALoop, ThatTheCycleWritesItselfAreRefused) {
   EXPECT_THAT(outcome_of(set({{turns, 5}})), StartsWith("1 4:0107"));
   EXPECT_EQ(outcome_of(set({{files, 5}})), "1 3 7");
   EXPECT_EQ(seen(author.files), 5U);
+}
+
+/// Whoever restores what was set goes by the order in which it was told.
+TEST_F(ParametersOfALoop, AreToldAsSetBeforeTheConfigurationThatFollowsThemWithoutABreak) {
+  rig.bring_to(State::SafeOperational);
+  const Sent sent = set({{files, 5}});
+  rig.service();
+  author.meanwhile = [this] { step_loop(); };
+  rig.answer(11, 200, 1, {});
+  const Sent configured = rig.configure(2), behind = set({{files, 6}});
+  rig.service();
+  author.meanwhile = nullptr;
+  EXPECT_EQ(rig.outcome(sent), "") << "it waits in the loop's ring";
+  step_loop();
+  rig.cycle();
+  EXPECT_EQ(seen(author.files), 3U);
+  rig.service();
+  std::vector<std::uint32_t> completed;
+  for (const auto& report : rig.telemetry)
+    if (report.service == 1 && report.subtype == 7) completed.push_back(OctetReader{report.data}.get<std::uint32_t>());
+  ASSERT_GE(completed.size(), 2U);
+  EXPECT_EQ(completed[completed.size() - 2], sent.id);
+  EXPECT_EQ(completed.back(), configured.id);
+  EXPECT_EQ(rig.outcome(behind), "1 4:0108");
+  EXPECT_EQ(outcome_of(set({{files, 6}})), "1 3 7");
+  EXPECT_EQ(seen(author.files), 6U);
 }
 
 TEST_F(ParametersOfALoop, AreUnknownBeforeTheyArePublished) {

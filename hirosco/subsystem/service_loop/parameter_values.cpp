@@ -132,6 +132,7 @@ std::expected<void, pus::FailureCode> ParameterValues::submit_write(std::span<co
 }
 
 std::expected<void, pus::FailureCode> ParameterValues::queue(std::span<const pus::ParameterAccess::Write> writes) {
+  if (goes_over_) return std::unexpected{pus::FailureCode::Busy};
   std::array<ParameterWrite, pus::max_instructions> batch;
   std::size_t count = 0;
   for (const auto& write : writes)

@@ -67,6 +67,9 @@ class ParameterValues final : public pus::ParameterAccess {
   void send_into(std::optional<State> state) noexcept { sent_into_ = state; }
   [[nodiscard]] std::optional<State> sent_into() const noexcept { return sent_into_; }
 
+  /// As send_into(): whether the cycle goes over to another configuration, or may; what is to be set meanwhile is refused as busy.
+  void go_over(bool under_way) noexcept { goes_over_ = under_way; }
+
   // ParameterAccess; the first two also for that loop.
   std::expected<std::size_t, ErrorCode> read(std::uint32_t parameter, MutableOctets big_endian) override;
   std::size_t size_of(std::uint32_t parameter) override;
@@ -83,7 +86,8 @@ class ParameterValues final : public pus::ParameterAccess {
   Dictionary dictionary_;
   WriteQueue writes_{32, 2048};
   Mutex judging_;
-  std::optional<State> sent_into_;  ///< under judging_
+  std::optional<State> sent_into_;  ///< changed under judging_, by the service loop
+  bool goes_over_{false};  ///< as sent_into_
   bool initialised_{false};
 };
 
