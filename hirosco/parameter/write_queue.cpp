@@ -66,6 +66,20 @@ Result<> WriteQueue::enqueue(const Dictionary& dictionary, std::span<const Param
   return ok();
 }
 
+bool WriteQueue::all_waiting(const std::function<bool(const ParameterWrite&)>& good) {
+  // No place is filled anew meanwhile.
+  const LockGuard guard{enqueuers_};
+  const std::uint64_t end = filled_.load(std::memory_order_relaxed);
+  for (std::uint64_t number = applied_.load(std::memory_order_acquire); number < end; ++number) {
+    OctetReader batch{place(number), std::endian::native};
+    for (auto writes = batch.get<std::uint32_t>(); writes > 0; --writes) {
+      const StoredWrite write = next_write(batch);
+      if (!good({static_cast<std::uint16_t>(write.index), write.member, write.value})) return false;
+    }
+  }
+  return true;
+}
+
 std::size_t WriteQueue::apply(Dictionary& dictionary) noexcept {
   const std::uint64_t end = filled_.load(std::memory_order_acquire);
   const std::uint64_t begin = applied_.load(std::memory_order_relaxed);

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,11 @@ class WriteQueue {
   /// Applies every batch that was complete at the call; returns their number.
   /// Realtime: wait-free, at most `batches` batches. Thread: the writer's.
   std::size_t apply(Dictionary& dictionary) noexcept;
+
+  /// Asks `good` of each write that waits, oldest first, until it says no; whether it never did. What the writer applies meanwhile is asked of,
+  /// too: whoever reads values after this has seen each either here or there.
+  /// Realtime: blocks (as enqueue()). Thread: any but the cycle's.
+  [[nodiscard]] bool all_waiting(const std::function<bool(const ParameterWrite&)>& good);
 
   /// Batches waiting.  Realtime: wait-free. Thread: any.
   [[nodiscard]] std::size_t waiting() const noexcept {

@@ -53,6 +53,24 @@ TEST_F(WriteQueueOfTwo, AppliesAllOfABatchAtOnceAndNotBefore) {
   EXPECT_EQ(seen.second, 12u);
 }
 
+TEST_F(WriteQueueOfTwo, ShowsWhatWaitsUntilSomethingOfItIsFoundBad) {
+  const auto ten = octets(10), eleven = octets(11), twelve = octets(12);
+  ASSERT_TRUE(queue_.enqueue(dictionary_, {{{1, -1, ten}}}));
+  ASSERT_EQ(queue_.apply(dictionary_), 1u);
+  ASSERT_TRUE(queue_.enqueue(dictionary_, {{{0, 1, eleven}, {1, -1, twelve}}}));
+  std::vector<std::uint32_t> seen;
+  const auto look = [&](const ParameterWrite& write) {
+    seen.push_back(OctetReader{write.value}.get<std::uint32_t>());
+    return write.member < 0;
+  };
+  EXPECT_FALSE(queue_.all_waiting(look));
+  EXPECT_EQ(seen, std::vector<std::uint32_t>{11}) << "what was applied waits no more, and one is enough";
+  EXPECT_TRUE(queue_.all_waiting([](const ParameterWrite& write) { return write.value.size() == 4; }));
+  EXPECT_EQ(queue_.waiting(), 1u) << "nothing is taken";
+  ASSERT_EQ(queue_.apply(dictionary_), 1u);
+  EXPECT_TRUE(queue_.all_waiting([](const ParameterWrite&) { return false; }));
+}
+
 TEST_F(WriteQueueOfTwo, KeepsTheOrderOfBatches) {
   for (std::uint32_t round = 0; round < 9; ++round) {
     const auto older = octets(round), newer = octets(round + 100);

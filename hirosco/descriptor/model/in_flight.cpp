@@ -77,6 +77,18 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
 [[nodiscard]] bool same_loop(const ServiceLoop& a, const ServiceLoop& b) {
   return a.period == b.period && a.priority == b.priority && a.budget == b.budget && a.queue == b.queue;
 }
+[[nodiscard]] bool same_outputs(const Device& a, const Device& b) {
+  return std::ranges::equal(a.output, b.output, [](const Device::Output& x, const Device::Output& y) {
+    return x.safe == y.safe && x.field.minimum == y.field.minimum && x.field.maximum == y.field.maximum;
+  });
+}
+/// But for which device it is.
+[[nodiscard]] bool same_use(const DeviceUse& a, const DeviceUse& b) {
+  return same_limit(a.silence, b.silence) && a.every == b.every && a.watchdog_us == b.watchdog_us &&
+         a.watchdog_reduced_us == b.watchdog_reduced_us && same_address(a.endnode, b.endnode) &&
+         std::ranges::equal(a.fall_backs, b.fall_backs, same_address) &&
+         std::ranges::equal(a.settings, b.settings, {}, &Setting::value, &Setting::value);
+}
 [[nodiscard]] bool same_script(const ScriptFile& a, const ScriptFile& b) {
   return a.name == b.name && a.file == b.file;
 }
@@ -375,23 +387,17 @@ class Comparison {
     for (std::size_t i = 0; i < now.devices.size() && i < then.devices.size(); ++i) {
       const DeviceUse &a = now.devices[i], &b = then.devices[i];
       const Device &had = flown.devices[a.device], &has = fresh.devices[b.device];
-      const bool same = same_limit(a.silence, b.silence) && a.every == b.every && a.watchdog_us == b.watchdog_us &&
-                        a.watchdog_reduced_us == b.watchdog_reduced_us && same_end(a.endnode, b.endnode) &&
-                        std::ranges::equal(a.fall_backs, b.fall_backs, same_address) &&
-                        std::ranges::equal(a.settings, b.settings, {}, &Setting::value, &Setting::value);
-      unless(same, b.at, what + ": device " + has.name + ": its endnodes, limits or settings", force_why);
-      unless(std::ranges::equal(had.output, has.output,
-                                [](const Device::Output& x, const Device::Output& y) {
-                                  return x.safe == y.safe && x.field.minimum == y.field.minimum &&
-                                         x.field.maximum == y.field.maximum;
-                                }),
-             has.at, what + ": device " + has.name + ": what it may be told", force_why);
+      unless(same_use(a, b), b.at, what + ": device " + has.name + ": its endnodes, limits or settings", force_why);
+      unless(same_outputs(had, has), has.at, what + ": device " + has.name + ": what it may be told", force_why);
     }
   }
 
  private:
   std::vector<Obstacle> found_;
 };
+
+// What is the same is not touched: a cycle may be reading it, and what it reads and is different obstacles_in_force() has refused. Of ranges
+// and defaults of arguments it reads none: those are judged and filled in where a call is asked for.
 
 void take_field(Field& flown, const Field& fresh) {
   flown.minimum = fresh.minimum;
@@ -410,18 +416,35 @@ void take_functions(std::vector<Function>& flown, std::vector<Function>& fresh) 
   }
 }
 
+void take_structures(std::vector<HousekeepingStructure>& flown, std::vector<HousekeepingStructure>& fresh) {
+  if (!same_structures(flown, fresh)) flown = std::move(fresh);
+}
+
 void take_configuration(Configuration& flown, Configuration& fresh) {
   flown.power_w = fresh.power_w;
   flown.overruns = fresh.overruns;
   flown.self_test_within = fresh.self_test_within;
-  flown.housekeeping = std::move(fresh.housekeeping);
+  take_structures(flown.housekeeping, fresh.housekeeping);
   flown.initial = std::move(fresh.initial);
   flown.at = fresh.at;
   for (std::size_t i = 0; i < flown.requires_.size(); ++i) {
     flown.requires_[i].age = fresh.requires_[i].age;
     flown.requires_[i].at = fresh.requires_[i].at;
   }
-  for (std::size_t i = 0; i < flown.devices.size(); ++i) flown.devices[i] = std::move(fresh.devices[i]);
+  for (std::size_t i = 0; i < flown.devices.size(); ++i)
+    if (same_use(flown.devices[i], fresh.devices[i])) flown.devices[i].at = fresh.devices[i].at;
+    else flown.devices[i] = std::move(fresh.devices[i]);
+}
+
+void take_device(Device& flown, Device& fresh) {
+  flown.at = fresh.at;
+  const bool same = same_outputs(flown, fresh);
+  for (std::size_t i = 0; i < flown.output.size(); ++i) {
+    flown.output[i].field.at = fresh.output[i].field.at;
+    if (same) continue;
+    take_field(flown.output[i].field, fresh.output[i].field);
+    flown.output[i].safe = std::move(fresh.output[i].safe);
+  }
 }
 
 }  // namespace
@@ -456,14 +479,8 @@ void take_over(SubsystemDescriptor& flown, SubsystemDescriptor&& fresh) {
   take_functions(flown.functions, fresh.functions);
   for (std::size_t i = 0; i < flown.services.size(); ++i)
     take_functions(flown.services[i].requests, fresh.services[i].requests);
-  flown.housekeeping = std::move(fresh.housekeeping);
-  for (std::size_t i = 0; i < flown.devices.size(); ++i) {
-    flown.devices[i].at = fresh.devices[i].at;
-    for (std::size_t o = 0; o < flown.devices[i].output.size(); ++o) {
-      take_field(flown.devices[i].output[o].field, fresh.devices[i].output[o].field);
-      flown.devices[i].output[o].safe = std::move(fresh.devices[i].output[o].safe);
-    }
-  }
+  take_structures(flown.housekeeping, fresh.housekeeping);
+  for (std::size_t i = 0; i < flown.devices.size(); ++i) take_device(flown.devices[i], fresh.devices[i]);
   for (std::size_t i = 0; i < flown.configurations.size(); ++i)
     take_configuration(flown.configurations[i], fresh.configurations[i]);
 }

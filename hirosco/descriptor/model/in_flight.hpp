@@ -36,7 +36,7 @@ struct Obstacle {
                                                        const SubsystemDescriptor& fresh, std::uint8_t id);
 
 /// Takes what may change, obstacles() being empty. No parameter, function, event, device, configuration or real-time set moves in memory:
-/// who refers to one goes on doing so. Realtime: allocates.
+/// who refers to one goes on doing so. Nor is touched what is the same, for a cycle may be reading it. Realtime: allocates.
 void take_over(SubsystemDescriptor& flown, SubsystemDescriptor&& fresh);
 
 }  // namespace hirosco::descriptor

@@ -211,6 +211,20 @@ TEST(InFlight, WhoReferredToAPartRefersToItStill) {
   EXPECT_EQ(*flown.text, text);
 }
 
+/// A cycle may be reading it: where nothing of its configuration differs, nothing of that is written.
+TEST(InFlight, WhatIsTheSameIsNotTouched) {
+  SubsystemDescriptor flown = read(flown_text);
+  const Configuration& fast = flown.configurations.front();
+  const auto places = [&] {
+    return std::vector<const void*>{flown.devices[0].output[0].safe.data(), fast.devices[1].settings.data(),
+                                    fast.devices[1].endnode.address.data(), fast.housekeeping.data()};
+  };
+  const auto before = places();
+  take_over(flown, read(changed(R"(maximum="10")", R"(maximum="9")", flown_text)));
+  EXPECT_EQ(flown.find_parameter("GAIN")->field.maximum, Number{9.0});
+  EXPECT_EQ(places(), before);
+}
+
 // What take_over() leaves out would be accepted and have no effect.
 TEST(InFlight, WhatWasTakenIsAllThatWasDifferent) {
   SubsystemDescriptor flown = read(flown_text);

@@ -45,6 +45,8 @@ class ServiceHome {
   virtual ~ServiceHome() = default;
   [[nodiscard]] virtual const descriptor::SubsystemDescriptor& descriptor() const noexcept = 0;
   [[nodiscard]] virtual descriptor::State state() const noexcept = 0;
+  /// Whether the mode that permitted the request under way is in force still: in a loop of its own another may have come.
+  [[nodiscard]] virtual bool mode_in_force() const noexcept { return true; }
   [[nodiscard]] virtual Verification& verification() noexcept = 0;
   [[nodiscard]] virtual TelemetrySink& telemetry() noexcept = 0;
   [[nodiscard]] virtual SelfTest& self_test() noexcept = 0;

@@ -23,7 +23,7 @@ inline constexpr std::size_t max_instructions = 255;   ///< a count N is one oct
 /// (docs/failure-codes.md).
 [[nodiscard]] inline FailureNotice instruction_failure(FailureCode code, std::size_t index, std::uint32_t id) noexcept {
   FailureNotice notice{code};
-  if (code == FailureCode::Busy) return notice;
+  if (code == FailureCode::Busy || code == FailureCode::WrongMode) return notice;
   notice.with(static_cast<std::uint8_t>(index));
   using enum FailureCode;
   if (code == CapacityExceeded || code == InThePast || code == NotPermittedNow) return notice;

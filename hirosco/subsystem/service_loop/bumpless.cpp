@@ -46,9 +46,9 @@ std::expected<void, pus::FailureNotice> Bumpless::command(const descriptor::Conf
     } else parts_.housekeeping.prepare_nothing();
     prepared->sampler = parts_.housekeeping.prepared_sampler();
   }
-  change_ = std::move(prepared);
+  hold(std::move(prepared));
   if (!parts_.rings.command({.kind = CommandKind::Reconfigure, .request = request, .reconfiguration = change_.get()})) {
-    change_.reset();
+    hold(nullptr);
     const LoopsAtRest at_rest{parts_.loops.all()};
     parts_.housekeeping.drop_prepared();
     return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
@@ -65,6 +65,8 @@ void Bumpless::ended(std::uint8_t id, const std::optional<Failure>& why) {
   const bool taken = &parts_.cycle.in_force() == change_->to;
   {
     const LoopsAtRest at_rest{parts_.loops.all()};
+    // What ST[20] has set in one of them was set before this, and is told before it.
+    parts_.loops.tell(parts_.reports);
     if (taken) parts_.housekeeping.take_prepared();
     else parts_.housekeeping.drop_prepared();
   }
@@ -72,7 +74,7 @@ void Bumpless::ended(std::uint8_t id, const std::optional<Failure>& why) {
     parts_.at.configuration = change_->to;
     parts_.self_tests.applied(parts_.at.configuration->id);
   }
-  change_.reset();
+  hold(nullptr);
   if (why) {
     if (parts_.platform.explain)
       parts_.platform.explain(parts_.descriptor.name + ": CONFIGURE " + parts_.descriptor.find_configuration(id)->name +
@@ -84,6 +86,13 @@ void Bumpless::ended(std::uint8_t id, const std::optional<Failure>& why) {
   if (!why) return parts_.reports.verification().completed(*request);
   parts_.reports.verification().completion_failed(
       *request, pus::FailureNotice{pus::FailureCode::ExecutionError}.because({why->code, why->number, why->text}));
+}
+
+/// While there is one ST[20] sets nothing: nobody could say whether it was set before what the configuration sets or behind it.
+void Bumpless::hold(std::unique_ptr<Reconfiguration> change) noexcept {
+  const LockGuard lock{parts_.values.judging()};
+  change_ = std::move(change);
+  parts_.values.go_over(change_ != nullptr);
 }
 
 void Bumpless::step(TimePoint now) {

@@ -48,9 +48,11 @@ class Bumpless {
   void step(TimePoint now);
   void give_up(pus::FailureCode code);
   /// The cycle rests.
-  void release() noexcept { change_.reset(); }
+  void release() noexcept { hold(nullptr); }
 
  private:
+  void hold(std::unique_ptr<Reconfiguration> change) noexcept;
+
   Parts parts_;
   /// On its way to the cycle, or taken by one that has not said so; nobody waits for it any more without a request.
   std::unique_ptr<Reconfiguration> change_;

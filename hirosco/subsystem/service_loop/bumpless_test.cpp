@@ -21,7 +21,8 @@ using testing::Sent;
 constexpr double step_bound = 0.05;
 
 constexpr const char* joint_descriptor = R"(<Subsystem name="JOINT" id="10">
-  <ParamRef name="KP" id="0" type="DOUBLE" init="1"/>
+  <ParamRef name="KP" id="0" type="DOUBLE" init="1" minimum="0" maximum="100"
+            writable="PreOperational SafeOperational Operational"/>
   <ParamRef name="TITLE" id="1" type="TEXT" octets="8" init="none"/>
   <Device name="MOTOR" actuator="yes">
     <Input><Field name="ANGLE" type="DOUBLE"/></Input>
@@ -253,6 +254,37 @@ TEST_F(BumplessChange, GoesInSafeOperationalToo) {
   bring_up(State::SafeOperational);
   EXPECT_EQ(rig.configure_now(2), "1 3 7");
   EXPECT_EQ(in_force(), 2);
+}
+
+/// Else what is set could be told before a configuration whose value it has outlived, or behind one that has overwritten it.
+TEST_F(BumplessChange, LetsNoValueBeSetUntilItHasEnded) {
+  bring_up(State::SafeOperational);
+  const auto set = [&](double value) {
+    std::array<std::byte, 13> data;
+    OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{10, Type::Double, 0}.wire()).put(value);
+    return rig.send(20, 3, data);
+  };
+  const auto outcome_of = [&](Sent sent) {
+    rig.settle();
+    return rig.outcome(sent);
+  };
+  const Sent before = set(5), configured = rig.configure(2), behind = set(6);
+  rig.service();
+  EXPECT_EQ(rig.outcome(before), "1 3 7");
+  EXPECT_EQ(rig.outcome(behind), "1 4:0108");
+  cycle();
+  EXPECT_EQ(author.kp.load(), 9.0);
+  EXPECT_EQ(outcome_of(configured), "1 3 7");
+  EXPECT_EQ(outcome_of(set(7)), "1 3 7");
+  EXPECT_EQ(author.kp.load(), 7.0);
+  author.refuses = true;
+  EXPECT_THAT(rig.configure_now(1), HasSubstr("1 3 8:0202"));
+  EXPECT_EQ(outcome_of(set(8)), "1 3 7") << "one that was refused has ended, too";
+  static_cast<void>(rig.configure(1));
+  rig.service();
+  rig.set_state_now(State::PostOperational);
+  rig.set_state_now(State::PreOperational);
+  EXPECT_EQ(outcome_of(set(9)), "1 3 7") << "and one that a way down overtook";
 }
 
 TEST_F(BumplessChange, IsOneAtATimeAndEndsWhateverBecomesOfTheCycle) {

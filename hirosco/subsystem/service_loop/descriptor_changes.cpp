@@ -84,14 +84,16 @@ std::optional<FailureNotice> DescriptorChanges::against(const descriptor::Subsys
 
 /// A value that is there, and that a telecommand could not set any more: it is set first, or the range stays.
 std::optional<FailureNotice> DescriptorChanges::left_outside(const descriptor::SubsystemDescriptor& fresh) {
+  const auto outside = [&](const descriptor::Parameter& parameter) {
+    const std::string words = "the value of " + parameter.field.name + " is outside its new range: set it before";
+    return refuse(FailureCode::NotPermittedNow, words.c_str(), parameter.field.at.line);
+  };
+  // What a cycle that runs has not set yet is looked at before what it has.
+  if (const auto waits = values_.waits_outside(fresh.parameters)) return outside(fresh.parameters[*waits]);
   std::vector<std::byte> room;
   for (std::size_t index = 0; index < fresh.parameters.size(); ++index) {
     const descriptor::Parameter& parameter = fresh.parameters[index];
-    const auto outside = [&] {
-      const std::string words = "the value of " + parameter.field.name + " is outside its new range: set it before";
-      return refuse(FailureCode::NotPermittedNow, words.c_str(), parameter.field.at.line);
-    };
-    if (parameter.persistent && !within(parameter, values_.dictionary().spec(index).init)) return outside();
+    if (parameter.persistent && !within(parameter, values_.dictionary().spec(index).init)) return outside(parameter);
     if (!parameter.writable() || !values_.initialised()) continue;
     room.resize(parameter.octets());
     if (values_.dictionary().snapshot_encode(index, -1, room) != room.size()) return FailureNotice{FailureCode::Busy};
@@ -101,7 +103,7 @@ std::optional<FailureNotice> DescriptorChanges::left_outside(const descriptor::S
     };
     bool good = parameter.members.empty() ? fits(parameter.field) : true;
     for (const auto& member : parameter.members) good = fits(member.field) && good;
-    if (!good) return outside();
+    if (!good) return outside(parameter);
   }
   return std::nullopt;
 }

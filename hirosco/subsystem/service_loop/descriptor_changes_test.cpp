@@ -185,6 +185,22 @@ TEST_F(DescriptorChanges, AValueThatIsThereIsSetBeforeItsRangeLeavesIt) {
   EXPECT_EQ(reread(narrower), "1 3 7");
 }
 
+/// The text comes between what was told as set and the cycle that sets it.
+TEST_F(DescriptorChanges, AValueThatWaitsForTheCycleKeepsItsRangeToo) {
+  rig.set_state_now(State::PreOperational);
+  rig.configure_now(1);
+  ASSERT_EQ(judge(edited(R"(maximum="100" writable)", R"(maximum="50" writable)")), "1 3 7");
+  std::array<std::byte, 13> data;
+  OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{10, Type::Double, 2}.wire()).put(90.0);
+  const auto sent = rig.send(20, 3, data), taken = rig.send(130, DescriptorService::take_text, {});
+  rig.service();
+  EXPECT_EQ(rig.outcome(sent), "1 3 7");
+  EXPECT_THAT(rig.outcome(taken), StartsWith("1 4:0107"));
+  rig.cycle();
+  EXPECT_EQ(probe.kp.load(), 90.0);
+  EXPECT_EQ(set(2, 95), "1 3 7") << "the range before";
+}
+
 TEST_F(DescriptorChanges, WhichOneIsInForceIsHousekeeping) {
   rig.set_state_now(State::PreOperational);
   EXPECT_THAT(told(), ::testing::EndsWith(hash_of(probe_descriptor, 0)));

@@ -71,7 +71,8 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescr
               {author, descriptor_, platform_, cycle_, rings_, orders_, vital, permit_, values_, introduction_, links_,
                configurations_, self_tests_, reports_, cycle_reports_}},
       cycle_reports_{{rings_, reports_, calls_, states_, links_, bumpless_, self_tests_}},
-      incoming_{{author, descriptor_, channel_, at_, permit_, loops_, services_, requester_, subscriber_, reports_}} {
+      incoming_{{author, descriptor_, channel_, at_, permit_, loops_, values_, services_, requester_, subscriber_,
+                 reports_}} {
   for (const pus::ServiceKind* kind : pus::standard_services()) {
     if (kind->make == nullptr) continue;
     made_services_.push_back(kind->make(loops_.home_of(kind->type)));

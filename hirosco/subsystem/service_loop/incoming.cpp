@@ -3,6 +3,7 @@
 #include "hirosco/subsystem/service_loop/incoming.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace hirosco {
 namespace {
@@ -28,6 +29,14 @@ void Incoming::receive() {
   }
 }
 
+/// Before anything that a new mode permits is looked at: a loop of ST[20]'s own is done with what it judged by the one before, or judges
+/// it by the new one (docs/adr/0200).
+void Incoming::follow_mode() {
+  const std::uint32_t epoch = parts_.permit.page().mode_epoch.load(std::memory_order_acquire);
+  if (std::exchange(mode_epoch_, epoch) == epoch) return;
+  const LockGuard lock{parts_.values.judging()};
+}
+
 void Incoming::dispatch(const Message& message) {
   const auto header = pus::read_primary_header(message.packet);
   if (!header) return;
@@ -39,6 +48,7 @@ void Incoming::dispatch(const Message& message) {
     return parts_.author.telemetry(message.packet);
   }
   if (pus::to_be_discarded(message.packet)) return;
+  follow_mode();
   const auto telecommand = pus::TelecommandView::parse(message.packet);
   if (!telecommand) return parts_.reports.verification().rejected({header->request_id, 0, 0}, telecommand.error());
   const pus::Request request = pus::request_of(*telecommand);

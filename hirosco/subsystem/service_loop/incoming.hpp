@@ -6,6 +6,7 @@
 
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "hirosco/subsystem/service_loop/own_loops.hpp"
+#include "hirosco/subsystem/service_loop/parameter_values.hpp"
 #include "hirosco/subsystem/service_loop/permit_pages.hpp"
 #include "hirosco/subsystem/service_loop/reports.hpp"
 #include "hirosco/subsystem/service_loop/requester.hpp"
@@ -25,6 +26,7 @@ class Incoming {
     const Situation& at;
     PermitPages& permit;
     OwnLoops& loops;
+    ParameterValues& values;
     const std::vector<pus::Service*>& services;
     Requester& requester;
     Subscriber& subscriber;
@@ -37,8 +39,10 @@ class Incoming {
 
  private:
   void dispatch(const Message& message);
+  void follow_mode();
 
   Parts parts_;
+  std::uint32_t mode_epoch_{0};  ///< of the mode that was in force with the newest telecommand
 };
 
 }  // namespace hirosco

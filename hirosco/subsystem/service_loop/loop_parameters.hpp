@@ -8,8 +8,8 @@
 namespace hirosco {
 
 /// The parameters of a subsystem as ST[20] has them in a loop of its own (docs/adr/0200): read as whole snapshots, set by the queue of
-/// writes, judged by the state in which the loop handles the request, and once more where they are queued. It is never the writer, whether
-/// the cycle runs or rests.
+/// writes, judged by mode and state in which the loop handles the request, and once more where they are queued. It is never the writer,
+/// whether the cycle runs or rests.
 /// Thread: that loop's, under its lock: what the dictionary and the descriptor have does not change meanwhile.
 class LoopParameters final : public pus::ParameterAccess {
  public:
@@ -23,8 +23,10 @@ class LoopParameters final : public pus::ParameterAccess {
     return values_.check_write_in(home_.state(), parameter, value);
   }
   std::expected<void, pus::FailureCode> submit_write(std::span<const Write> writes, const pus::Request&) override {
-    // The service loop has gone on since: none is told to the cycle until these are queued, and one that was told has to permit them, too.
+    // The service loop has gone on since: nothing of another mode is looked at and no state is told to the cycle until these are queued,
+    // and one that was told has to permit them, too.
     const LockGuard lock{values_.judging()};
+    if (!home_.mode_in_force()) return std::unexpected{pus::FailureCode::WrongMode};
     for (const Write& write : writes) {
       if (auto still = check_write(write.id, write.value); !still) return still;
       if (!values_.sent_into()) continue;

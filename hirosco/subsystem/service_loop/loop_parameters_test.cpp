@@ -38,6 +38,7 @@ constexpr const char* shelf_descriptor = R"(<Subsystem name="SHELF" id="10">
   <Configuration name="FIRST" id="1" sampling_us="1000"/>
   <Configuration name="SECOND" id="2" sampling_us="1000"><Set parameter="FILES" value="3"/></Configuration>
   <Configuration name="BARE" id="3" sampling_us="1000"><Service name="ST20" offered="no"/></Configuration>
+  <Bumpless between="FIRST SECOND"/>
 </Subsystem>)";
 
 /// Its node counts its turns in Safe-Operational.
@@ -53,6 +54,10 @@ struct Shelf final : Subsystem {
   }
   Result<> safe_operational(const Cycle&) noexcept override {
     turns.store(turns.load() + 1);
+    return ok();
+  }
+  Result<> bumpless(const descriptor::Configuration&, const descriptor::Configuration&,
+                    const Cycle&) noexcept override {
     return ok();
   }
   Result<Step> post_operational() override {
@@ -232,6 +237,32 @@ TEST_F(ParametersOfALoop, ThatTheCycleWritesItselfAreRefused) {
   EXPECT_EQ(seen(author.files), 5U);
 }
 
+/// Whoever restores what was set goes by the order in which it was told.
+TEST_F(ParametersOfALoop, AreToldAsSetBeforeTheConfigurationThatFollowsThemWithoutABreak) {
+  rig.bring_to(State::SafeOperational);
+  const Sent sent = set({{files, 5}});
+  rig.service();
+  author.meanwhile = [this] { step_loop(); };
+  rig.answer(11, 200, 1, {});
+  const Sent configured = rig.configure(2), behind = set({{files, 6}});
+  rig.service();
+  author.meanwhile = nullptr;
+  EXPECT_EQ(rig.outcome(sent), "") << "it waits in the loop's ring";
+  step_loop();
+  rig.cycle();
+  EXPECT_EQ(seen(author.files), 3U);
+  rig.service();
+  std::vector<std::uint32_t> completed;
+  for (const auto& report : rig.telemetry)
+    if (report.service == 1 && report.subtype == 7) completed.push_back(OctetReader{report.data}.get<std::uint32_t>());
+  ASSERT_GE(completed.size(), 2U);
+  EXPECT_EQ(completed[completed.size() - 2], sent.id);
+  EXPECT_EQ(completed.back(), configured.id);
+  EXPECT_EQ(rig.outcome(behind), "1 4:0108");
+  EXPECT_EQ(outcome_of(set({{files, 6}})), "1 3 7");
+  EXPECT_EQ(seen(author.files), 6U);
+}
+
 TEST_F(ParametersOfALoop, AreUnknownBeforeTheyArePublished) {
   EXPECT_THAT(outcome_of(set({{files, 5}})), StartsWith("1 4:0101"));
   EXPECT_THAT(outcome_of(read(files)), StartsWith("1 4:0101"));
@@ -288,6 +319,15 @@ TEST_F(ParametersOfALoop, AreRefusedAsBusyWhileTheCycleTakesNoneOfThoseThatWait)
   EXPECT_EQ(outcome_of(set({{files, 8}})), "1 3 7");
 }
 
+TEST_F(ParametersOfALoop, AreRefusedWhereTheVitalPageSaysNoState) {
+  rig.bring_to(State::PreOperational);
+  rig.vital.state = 77;
+  EXPECT_THAT(outcome_of(set({{files, 5}})), StartsWith("2:000a"));
+  EXPECT_EQ(seen(author.files), 7U);
+  rig.vital.state = static_cast<std::uint32_t>(State::PreOperational);
+  EXPECT_EQ(outcome_of(set({{files, 5}})), "1 3 7");
+}
+
 /// A loop between its judgement and the queue, while the service loop goes on.
 struct Between final : pus::ServiceHome {
   explicit Between(const descriptor::SubsystemDescriptor& subsystem) : subsystem_{subsystem} {}
@@ -298,7 +338,10 @@ struct Between final : pus::ServiceHome {
   pus::SelfTest& self_test() noexcept override { return self_test_; }
   pus::FailureNotice refusal(pus::FailureCode code, const Error&) const override { return pus::FailureNotice{code}; }
 
+  bool mode_in_force() const noexcept override { return in_its_mode; }
+
   State is{State::PreOperational};
+  bool in_its_mode{true};
 
  private:
   const descriptor::SubsystemDescriptor& subsystem_;
@@ -324,7 +367,54 @@ TEST_F(ParametersOfALoop, AreNotQueuedByAStateThatIsNoMore) {
   const auto refused = parameters.submit_write({&write, 1}, {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error(), pus::FailureCode::NotPermittedNow);
+  between.is = State::PreOperational;
+  between.in_its_mode = false;
+  const auto of_old_mode = parameters.submit_write({&write, 1}, {});
+  ASSERT_FALSE(of_old_mode);
+  EXPECT_EQ(of_old_mode.error(), pus::FailureCode::WrongMode);
   EXPECT_EQ(values.writes().waiting(), 1U);
+}
+
+/// Takes as long as it takes.
+struct SlowService final : pus::Service {
+  const pus::ServiceKind& kind() const noexcept override { return pus::ParameterService::service_kind; }
+  void handle(const pus::TelecommandView&, const pus::Request&) override { during(); }
+  std::function<void()> during;
+};
+
+TEST_F(ParametersOfALoop, AreJudgedByTheModeInForceAsLongAsItTakes) {
+  Between subsystem{rig.descriptor()};
+  const Dictionary dictionary;
+  WriteQueue writes{1, 64};
+  LoopMeter meter{rig.descriptor().service_loops};
+  OwnLoop loop{OwnLoop::Parts{.declared = rig.descriptor().service_loops.front(),
+                              .subsystem = subsystem,
+                              .vital = rig.vital,
+                              .permit = rig.permit,
+                              .clock = rig.clock,
+                              .dictionary = dictionary,
+                              .writes = writes,
+                              .meter = meter,
+                              .place = 0}};
+  SlowService slow;
+  loop.host(slow);
+  std::vector<bool> in_force;
+  rig.permit.mode_epoch = 3;
+  slow.during = [&] {
+    in_force.push_back(loop.mode_in_force());
+    rig.permit.mode_epoch = 4;
+    in_force.push_back(loop.mode_in_force());
+    rig.permit.mode_epoch = 3;
+  };
+  std::array<std::byte, 32> buffer{};
+  const Octets packet = pus::write_telecommand(buffer, {.apid = 10, .service = 20, .subtype = 3}, {}).value();
+  EXPECT_TRUE(loop.offer(packet, 3));
+  EXPECT_TRUE(loop.offer(packet, 0));
+  static_cast<void>(loop.step(rig.clock.now()));
+  EXPECT_THAT(in_force, ElementsAre(true, false, true, true)) << "what no mode has permitted none takes back";
+  EXPECT_EQ(loop.state(), State::Offline);
+  rig.vital.state = 77;
+  EXPECT_EQ(loop.state(), State::Offline) << "a damaged page says none";
 }
 
 }  // namespace

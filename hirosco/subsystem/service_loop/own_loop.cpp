@@ -124,9 +124,8 @@ void OwnLoop::handle(Octets record) {
   if (!telecommand) return;  // the service loop has looked
   const pus::Request request = pus::request_of(*telecommand);
   // What an old mode permitted is not done under a new one, however long it has waited.
-  if (offered.mode_epoch != 0 &&
-      offered.mode_epoch != permit_.load(std::memory_order_acquire)->mode_epoch.load(std::memory_order_acquire))
-    return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::WrongMode});
+  permitted_by_ = offered.mode_epoch;
+  if (!mode_in_force()) return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::WrongMode});
   // Nor what a configuration leaves out that came into force meanwhile.
   const std::uint32_t configuration = parts_.vital.configuration.load(std::memory_order_acquire);
   if (!descriptor().offers(telecommand->service(),
@@ -134,17 +133,26 @@ void OwnLoop::handle(Octets record) {
     return verification_.rejected(request,
                                   pus::FailureNotice{pus::FailureCode::UnknownService}.with(telecommand->service()));
   const auto found = std::ranges::find(services_, telecommand->service(), &pus::Service::type);
-  if (found == services_.end() || !(*found)->in_force())
+  if (found == services_.end() || !(*found)->in_force() || !told_state())
     return verification_.rejected(
         request, pus::FailureNotice{pus::FailureCode::WrongState}.with(static_cast<std::uint8_t>(state())));
   (*found)->handle(*telecommand, request);
 }
 
-descriptor::State OwnLoop::state() const noexcept {
+bool OwnLoop::mode_in_force() const noexcept {
+  if (permitted_by_ == 0) return true;
+  const PermitPage& page = *permit_.load(std::memory_order_acquire);
+  return page.mode_epoch.load(std::memory_order_acquire) == permitted_by_;
+}
+
+/// Empty: the page was damaged, for which the guard ends the process.
+std::optional<descriptor::State> OwnLoop::told_state() const noexcept {
   const std::uint32_t state = parts_.vital.state.load(std::memory_order_acquire);
-  // Its own page: what it says is a state.
+  if (state > static_cast<std::uint32_t>(descriptor::State::SoftwareDeinit)) return std::nullopt;
   return static_cast<descriptor::State>(state);
 }
+
+descriptor::State OwnLoop::state() const noexcept { return told_state().value_or(descriptor::State::Offline); }
 
 /// Whoever asks is always answered: what a service says of its own accord leaves half of the way out to that.
 bool OwnLoop::has_room(std::size_t octets) const noexcept { return out_.used() + octets <= out_.capacity() / 2; }

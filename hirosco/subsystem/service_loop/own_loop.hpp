@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -84,7 +85,9 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   [[nodiscard]] const descriptor::SubsystemDescriptor& descriptor() const noexcept override {
     return parts_.subsystem.descriptor();
   }
+  /// Of the vital page; Offline where that was damaged.
   [[nodiscard]] descriptor::State state() const noexcept override;
+  [[nodiscard]] bool mode_in_force() const noexcept override;
   [[nodiscard]] pus::Verification& verification() noexcept override { return verification_; }
   [[nodiscard]] pus::TelemetrySink& telemetry() noexcept override { return *this; }
   /// Only ST[17] uses it, which stays in the service loop.
@@ -99,6 +102,7 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
  private:
   void report(std::uint8_t service, std::uint8_t subtype, std::uint16_t destination, Octets source_data) override;
   void handle(Octets record);
+  [[nodiscard]] std::optional<descriptor::State> told_state() const noexcept;
 
   Parts parts_;
   std::atomic<const PermitPage*> permit_;
@@ -109,6 +113,7 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   FillMark in_mark_, out_mark_;  ///< the service loop's
   bool refused_{false};  ///< since take_fills(), the service loop's
   pus::Verification verification_;
+  std::uint32_t permitted_by_{0};  ///< the epoch of the mode that the request under way was permitted by; 0: any
   std::atomic<std::uint32_t> waiting_{0};
   std::atomic<std::uint64_t> steps_{0};
   std::atomic<bool> in_step_{false};

@@ -103,7 +103,10 @@ std::size_t ParameterValues::size_of(std::uint32_t parameter) {
 }
 
 std::expected<void, pus::FailureCode> ParameterValues::check_write(std::uint32_t parameter, Octets value) {
-  return check_write_in(at_.state, parameter, value);
+  auto permitted = check_write_in(at_.state, parameter, value);
+  // What comes behind the order into another state is set behind its entry.
+  if (!permitted || !sent_into_) return permitted;
+  return check_write_in(*sent_into_, parameter, value);
 }
 
 std::expected<void, pus::FailureCode> ParameterValues::check_write_in(State state, std::uint32_t parameter,
@@ -129,6 +132,7 @@ std::expected<void, pus::FailureCode> ParameterValues::submit_write(std::span<co
 }
 
 std::expected<void, pus::FailureCode> ParameterValues::queue(std::span<const pus::ParameterAccess::Write> writes) {
+  if (goes_over_) return std::unexpected{pus::FailureCode::Busy};
   std::array<ParameterWrite, pus::max_instructions> batch;
   std::size_t count = 0;
   for (const auto& write : writes)
@@ -160,6 +164,18 @@ Result<> ParameterValues::store(const ParameterCell& parameter, Octets big_endia
 
 void ParameterValues::apply_at_rest() {
   if (orders_.rests() && writes_.waiting() != 0) apply();
+}
+
+std::optional<std::size_t> ParameterValues::waits_outside(const std::vector<descriptor::Parameter>& ranges) {
+  std::optional<std::size_t> found;
+  const auto fits = [&](const ParameterWrite& write) {
+    const descriptor::Parameter& declared = ranges[write.index];
+    if (!declared.writable() || in_range(declared, write.member, write.value)) return true;
+    found = write.index;
+    return false;
+  };
+  static_cast<void>(writes_.all_waiting(fits));
+  return found;
 }
 
 ForeignParameters::Home ParameterValues::foreign_home(std::function<void(std::uint16_t parameter)> tell) {

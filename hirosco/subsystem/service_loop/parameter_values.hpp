@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/dictionary.hpp"
@@ -46,6 +47,8 @@ class ParameterValues final : public pus::ParameterAccess {
   void apply() { writes_.apply(dictionary_); }
   /// What waits is set if the cycle rests.
   void apply_at_rest();
+  /// A writable parameter for which a value waits that is outside of the ranges that these give to it, which are as many as its own.
+  [[nodiscard]] std::optional<std::size_t> waits_outside(const std::vector<descriptor::Parameter>& ranges);
   /// What is heard of others comes into a parameter as what a telecommand sets, without asking whether one may.
   [[nodiscard]] ForeignParameters::Home foreign_home(std::function<void(std::uint16_t parameter)> tell);
 
@@ -55,13 +58,17 @@ class ParameterValues final : public pus::ParameterAccess {
                                                                      Octets value) const;
   /// As submit_write(), but whoever is the writer sets them: the cycle at its boundary, the service loop in its next step.
   [[nodiscard]] std::expected<void, pus::FailureCode> queue(std::span<const pus::ParameterAccess::Write> writes);
-  /// Held by that loop from its last look at the state until it has queued, and by the service loop where it tells the cycle of another
-  /// state and where it hears that it is there: what the state before alone permits is queued before that, or not at all. The cycle never
-  /// holds it.
+  /// Held by that loop from its last look at mode and state until it has queued, and by the service loop where it tells the cycle of
+  /// another state, where it hears that it is there, and before it looks at the first request under another mode: what mode and state
+  /// before alone permit is queued before that, or not at all. The cycle never holds it.
   [[nodiscard]] Mutex& judging() noexcept { return judging_; }
-  /// Under judging(): the state that the cycle was sent into and is not known to be in. Thread: set by the service loop.
+  /// Under judging(), or by the service loop, which alone sets it: the state that the cycle was sent into and is not known to be in, which
+  /// has to permit a write, too.
   void send_into(std::optional<State> state) noexcept { sent_into_ = state; }
   [[nodiscard]] std::optional<State> sent_into() const noexcept { return sent_into_; }
+
+  /// As send_into(): whether the cycle goes over to another configuration, or may; what is to be set meanwhile is refused as busy.
+  void go_over(bool under_way) noexcept { goes_over_ = under_way; }
 
   // ParameterAccess; the first two also for that loop.
   std::expected<std::size_t, ErrorCode> read(std::uint32_t parameter, MutableOctets big_endian) override;
@@ -79,7 +86,8 @@ class ParameterValues final : public pus::ParameterAccess {
   Dictionary dictionary_;
   WriteQueue writes_{32, 2048};
   Mutex judging_;
-  std::optional<State> sent_into_;  ///< under judging_
+  std::optional<State> sent_into_;  ///< changed under judging_, by the service loop
+  bool goes_over_{false};  ///< as sent_into_
   bool initialised_{false};
 };
 

@@ -197,6 +197,35 @@ TEST(ParameterWrites, InAStateThatTheDescriptorDoesNotNameAreRefused) {
   EXPECT_THAT(set(kp), StartsWith("1 4:0107"));
 }
 
+/// What the cycle would set behind the entry is judged by the state that is entered, too.
+TEST(ParameterWrites, BehindTheOrderIntoAStateThatDoesNotPermitThemAreRefused) {
+  Probe probe;
+  std::string text = probe_descriptor;
+  const std::string all = R"(writable="PreOperational SafeOperational Operational")";
+  text.replace(text.find(all), all.size(), R"(writable="PreOperational")");
+  Rig rig{probe, text};
+  const auto set = [&](std::uint8_t id) {
+    std::array<std::byte, 13> data;
+    OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{10, Type::Double, id}.wire()).put(7.0);
+    return rig.send(20, 3, data);
+  };
+  constexpr std::uint8_t of_before = 2, of_both = 3;
+  rig.bring_to(State::PreOperational);
+  const auto entered = rig.set_state(State::SafeOperational);
+  rig.service();
+  const auto before = set(of_before), both = set(of_both);
+  rig.settle();
+  EXPECT_EQ(rig.outcome(entered), "1 3 7");
+  EXPECT_THAT(rig.outcome(before), StartsWith("1 4:0107"));
+  EXPECT_EQ(rig.outcome(both), "1 3 7");
+  EXPECT_EQ(probe.kp.load(), 3.0);
+  EXPECT_EQ(probe.kd.load(), 7.0);
+  for (const State state : {State::PostOperational, State::PreOperational}) rig.set_state_now(state);
+  const auto again = set(of_before);
+  rig.settle();
+  EXPECT_EQ(rig.outcome(again), "1 3 7") << "it is there";
+}
+
 /// Nobody could tell whose request it was (docs/failure-codes.md, docs/interfaces/packets.md).
 TEST(WhatIsNoTelecommandAtAll, IsPassedOverInSilence) {
   Probe probe;
