@@ -16,8 +16,7 @@ using testing::data;
 using testing::overlay;
 using testing::rendered;
 
-const std::string good_call =
-    R"(<Do action="command" subsystem="FLYWHEEL" function="SET_FORCE_SCALE" arguments="0.1")";
+const std::string good_call = R"(<Do action="command" subsystem="FLYWHEEL" function="SET_FORCE_SCALE" arguments="0.1")";
 
 TEST(MissionRecovery, ARestartSaysAsFarAsItComesBack) {
   for (const auto& [word, state] :
@@ -86,10 +85,9 @@ TEST(MissionRecovery, StepsNameWhatIsLookedUpForThem) {
 
 TEST(MissionRecovery, ACommandSaysHowLongItMayTakeAndWhereItDoesNotItIsAsLongAsForAny) {
   const auto reading = read_mission(
-      data / "mission.xml",
-      overlay({{"mission.xml", changed(R"(<When severity="low info"/><Do action="log"/>)",
-                                       R"(<When severity="low info"/>)" + good_call + "/>" + good_call +
-                                           R"( done_within_s="120"/>)")}}));
+      data / "mission.xml", overlay({{"mission.xml", changed(R"(<When severity="low info"/><Do action="log"/>)",
+                                                             R"(<When severity="low info"/>)" + good_call + "/>" +
+                                                                 good_call + R"( done_within_s="120"/>)")}}));
   ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());
   const auto& steps = reading.value->plans.at(2).steps;
   EXPECT_EQ(steps.at(0).values.at(command_done_within_s), 15);

@@ -89,13 +89,12 @@ bool PlanRuns::makes_way(const PlanStart& plan) {
       // Each is told of once: an event may come again in every cycle.
       if (!first->refused.insert(plan.number).second) return false;
       const Occasion &refused = plan.occasion, &runs = first->plan.occasion;
-      means_.craft.tell(
-          first->plan.number == plan.number
-              ? fmt::format("{}: plan {} because of {} runs already, {} does not begin it anew",
-                            means_.craft.name_of(plan.subject), runs.plan, runs.event, refused.event)
-              : fmt::format("{}: plan {} because of {} is refused, plan {} runs", means_.craft.name_of(plan.subject),
-                            refused.plan, refused.event, runs.plan),
-          plan.subject);
+      means_.craft.tell(first->plan.number == plan.number
+                            ? fmt::format("{}: plan {} because of {} runs already, {} does not begin it anew",
+                                          means_.craft.name_of(plan.subject), runs.plan, runs.event, refused.event)
+                            : fmt::format("{}: plan {} because of {} is refused, plan {} runs",
+                                          means_.craft.name_of(plan.subject), refused.plan, refused.event, runs.plan),
+                        plan.subject);
       own_.announce("PLAN_REFUSED", {static_cast<double>(plan.subject), static_cast<double>(plan.number),
                                      static_cast<double>(first->plan.number)});
       return false;

@@ -195,10 +195,10 @@ bool Reactions::begin_anew(Member& subject) {
     start.steps.erase(start.steps.begin(), std::ranges::find_if_not(start.steps, is_there));
     const bool has_to_do = !start.steps.empty();
     if (!has_to_do || runs_.against(start).empty())
-      craft_.tell(fmt::format("{}: plan {} because of {} {}: the supervisor died in the midst of it",
-                              craft_.name_of(apid), start.occasion.plan, each.event,
-                              has_to_do ? "begins anew" : "has nothing left to do"),
-                  apid);
+      craft_.tell(
+          fmt::format("{}: plan {} because of {} {}: the supervisor died in the midst of it", craft_.name_of(apid),
+                      start.occasion.plan, each.event, has_to_do ? "begins anew" : "has nothing left to do"),
+          apid);
     if (has_to_do) runs_.begin(start);
   }
   return goes_on;
