@@ -76,7 +76,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const robotics::Model model = sliders();
   if (size == 0) return 0;
   const std::string_view text = fuzz::text_of(data, size);
-  tools::Batch batch{model, {joints - 1}};
+  tools::Batch batch{model, model.find_frame("tip").value()};
   const auto close = [](std::FILE* file) { std::fclose(file); };
   std::string octets{text};
   const std::unique_ptr<std::FILE, decltype(close)> file{::fmemopen(octets.data(), octets.size(), "r"), close};

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "supervisor/supervision/testing/adoption_rig.hpp"
@@ -20,11 +21,21 @@ using namespace hirosco::supervisor;
 using fuzz::expect;
 
 struct Flight final : supervisor::testing::AdoptionTest {
+  static constexpr std::array moved{supervisor::testing::arm, supervisor::testing::hand};
+
   Flight() {
     SetUp();
+    begin();
+  }
+  /// ASSERT_TRUE returns, which a constructor may not.
+  void begin() {
     start_all(descriptor::State::Operational);
     parts.own.start(craft.mode_epoch);
     parts.graph.set_up(1, true);
+    for (const std::uint16_t apid : moved) {
+      ASSERT_TRUE(guard.release(apid, guard.fences(apid)));
+      played[apid].vital->seen_epoch = played[apid].permit->epoch.load();
+    }
     // A telecommand of the ground that nobody has answered yet.
     const auto move =
         supervisor::testing::telecommand(supervisor::testing::arm, 8, 1, supervisor::testing::call_data("MOVE_TO"));
@@ -33,6 +44,10 @@ struct Flight final : supervisor::testing::AdoptionTest {
   }
   void TestBody() override {}
 
+  [[nodiscard]] bool moves(std::uint16_t apid) {
+    const PermitPage& page = *played[apid].permit;
+    return page.permits(page.epoch.load());
+  }
   /// Another supervisor goes on from this content; true: it understood it.
   bool goes_on_from(Octets content) {
     expect(journal.write(content), "a journal has room");
@@ -43,8 +58,8 @@ struct Flight final : supervisor::testing::AdoptionTest {
     SupervisorParts& next = go_on();
     const bool understood = !was_told("nothing tells what that knew");
     if (!understood)
-      for (const std::uint16_t apid : {supervisor::testing::arm, supervisor::testing::hand})
-        expect(next.craft.guard.fenced(apid), "where nothing is known what moves is stopped");
+      for (const std::uint16_t apid : moved)
+        expect(next.craft.guard.fenced(apid) && !moves(apid), "where nothing is known what moves is stopped");
     begins_to_hear(next);
     expect(next.memory.note(), "what is known has room");
     return understood;
@@ -98,7 +113,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   check_memory(octets);
   Flight flight;
   const bool understood = flight.goes_on_from(changed(content, octets));
-  if (size < 4) expect(understood, "what nobody has changed is understood");
+  if (size < 4)
+    expect(understood && std::ranges::all_of(Flight::moved, [&](std::uint16_t apid) { return flight.moves(apid); }),
+           "what nobody has changed is understood, and what moves moves on");
   if (understood) fuzz::taken();
   expect(flight.next_understands(), "what a supervisor notes the next one understands");
   return 0;

@@ -410,7 +410,11 @@ TEST(MissionErrors, NamesAndIdsOfSubsystemsAreUnique) {
     return reading.problems.empty() ? std::string{} : reading.problems[0].code;
   };
   EXPECT_EQ(code("id=\"11\"", "id=\"10\""), "E0302");
-  EXPECT_EQ(code("id=\"11\"", "id=\"1\""), "E0303");
+  EXPECT_EQ(code("id=\"11\"", "id=\"1\""), "E0332") << "who has its id is judged as the supervisor";
+  const auto numbered =
+      read_changed({{"mission.xml", R"(descriptor="flywheel.xml")", R"(descriptor="flywheel.xml" id="1")"}});
+  ASSERT_FALSE(numbered.problems.empty());
+  EXPECT_EQ(numbered.problems[0].code, "E0303");
   EXPECT_EQ(code("name=\"FLYWHEEL\"", "name=\"CORONAGRAPH\""), "E0301");
   const std::string supervisor = file_system()(data / "supervisor.xml").value();
   const auto reading =
