@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/guidance.hpp"
 
+#include <algorithm>
 #include <span>
 
 namespace hirosco::robot_arm {
@@ -14,6 +15,10 @@ constexpr double patience_s = 3;
 constexpr double longest_motion_s = 60;
 /// Of a line, before it is given up; of its end, where the tool has to be measured.
 constexpr double most_off_line_m = 0.002, most_off_end_m = 0.001;
+/// A way back from a contact takes 10 s at most, and whoever brakes is there sooner.
+constexpr double longest_wait_s = 12;
+/// A setpoint that is no farther from a posture has gone there.
+constexpr double at_posture = 1e-6;
 constexpr const char* would_last = "it would take longer, s";
 constexpr const char* ends_range = "on the line ends the range of joint";
 /// No longer: a failure carries 64 octets of words.
@@ -56,11 +61,19 @@ std::optional<double> Guidance::end_retract() noexcept {
 }
 
 void Guidance::tell() noexcept {
-  parts_.parameters.motion.store(
-      {static_cast<std::uint8_t>(setpoints_->kind()), setpoints_->duration_s(), setpoints_->progress()});
+  const double duration_s = abort_ && abort_->goes ? abort_->duration_s : setpoints_->duration_s();
+  parts_.parameters.motion.store({static_cast<std::uint8_t>(setpoints_->kind()), duration_s, progress()});
+}
+
+/// Of an abort path the whole, and not the way to a posture of it.
+double Guidance::progress() const noexcept {
+  if (!abort_ || !abort_->goes || abort_->duration_s <= 0) return setpoints_->progress();
+  return std::min(1.0, (abort_->gone_s + setpoints_->progress() * setpoints_->duration_s()) / abort_->duration_s);
 }
 
 Guidance::News Guidance::look(bool gives_way) noexcept {
+  if (waiting_) return wait();
+  if (abort_) return look_at_abort(gives_way);
   if (setpoints_->off_line_m() > most_off_line_m) return {.end = End::LineLost};
   if (searched_) {
     const std::optional<Reason> why = search();
@@ -71,7 +84,7 @@ Guidance::News Guidance::look(bool gives_way) noexcept {
     return why ? News{.end = End::NoWay, .why = *why} : News{};
   }
   News news;
-  if (arrives_ && !half_reported_ && setpoints_->progress() >= 0.5) half_reported_ = news.half_way = true;
+  if (arrives_ && !half_reported_ && progress() >= 0.5) half_reported_ = news.half_way = true;
   if (setpoints_->at_rest()) news.end = retreats_ && !setpoints_->retreated() ? End::NotReached : arrive(gives_way);
   return news;
 }
@@ -231,6 +244,93 @@ Outcome Guidance::retreat(const FunctionValues& values) noexcept {
   settled_s_ = waited_s_ = 0;
   retreats_ = retracting_ = true;
   return running;
+}
+
+// --- out, once it stands -------------------------------------------------------------------------------------------------
+
+/// Whatever takes the actuators away, stops the arm or lets it float meanwhile ends this as it ends a motion.
+Outcome Guidance::once_it_stands(WayOut way_out, const FunctionValues& values) noexcept {
+  end_motion();
+  waiting_ = Waiting{way_out, values, longest_wait_s};
+  return running;
+}
+
+Guidance::News Guidance::wait() noexcept {
+  waiting_->left_s -= cycle_s_;
+  if (!setpoints_->at_rest()) return {.end = waiting_->left_s > 0 ? End::None : End::NotReached};
+  const Waiting waited = *waiting_;
+  waiting_.reset();
+  const Outcome begun = (this->*waited.begin)(waited.values);
+  if (begun.kind != Outcome::Kind::Refused) return {.begun = true};
+  return {.end = End::NoWay, .why = {static_cast<Trouble>(begun.code), begun.reason.text, begun.reason.value}};
+}
+
+// --- the abort path ------------------------------------------------------------------------------------------------------
+
+Outcome Guidance::move_abort(const FunctionValues& values) noexcept {
+  return judge_abort(AbortWay::Judged::FromHere, values[0]);
+}
+
+Outcome Guidance::check_abort() noexcept { return judge_abort(AbortWay::Judged::PathAlone, 1); }
+
+Outcome Guidance::judge_abort(AbortWay::Judged what, double speed_share) noexcept {
+  const Outcome stored = parts_.abort_path.begin(setpoints_->now().position, what);
+  if (stored.kind == Outcome::Kind::Refused) return stored;
+  end_motion();
+  tool_to_.reset();
+  retreats_ = half_reported_ = false;
+  arrives_ = true;
+  settled_s_ = waited_s_ = 0;
+  abort_ = Abort{.what = what, .speed_share = speed_share};
+  return running;
+}
+
+Guidance::News Guidance::look_at_abort(bool gives_way) noexcept {
+  const AbortWay& way = parts_.abort_path.way();
+  if (!abort_->goes) {
+    const AbortWay::Found found = parts_.abort_path.judge();
+    if (found == AbortWay::Found::NotYet) return {};
+    if (found == AbortWay::Found::Nothing) {
+      const auto& near = way.in_the_way();
+      return {.end = End::NoWay, .why = {Trouble::too_near, near.names, millimetres(near.distance_m)}};
+    }
+    const std::optional<Reason> why = begin_abort();
+    if (why) return {.end = End::NoWay, .why = *why};
+    return {.end = abort_->what == AbortWay::Judged::PathAlone ? End::Judged : End::None};
+  }
+  News news;
+  if (!half_reported_ && progress() >= 0.5) half_reported_ = news.half_way = true;
+  if (!setpoints_->at_rest()) return news;
+  if (apart(setpoints_->now().position, way.posture(abort_->posture)) > at_posture) news.end = End::NotReached;
+  else if (abort_->posture + 1 == way.size()) news.end = arrive(gives_way);
+  else {
+    abort_->gone_s += setpoints_->duration_s();
+    ++abort_->posture;
+    if (!go_to_posture()) news.end = End::NotReached;
+  }
+  return news;
+}
+
+/// Of a path that is judged alone it is seen whether a telecommand could wait for it; the other one goes.
+std::optional<Guidance::Reason> Guidance::begin_abort() noexcept {
+  const AbortWay& way = parts_.abort_path.way();
+  const bool goes = abort_->what == AbortWay::Judged::FromHere;
+  const double share = abort_->speed_share;
+  abort_->posture = way.joined();
+  abort_->duration_s = goes ? setpoints_->duration_s(way.here(), way.posture(way.joined()), share) : 0;
+  for (std::size_t i = way.joined() + 1; i < way.size(); ++i)
+    abort_->duration_s += setpoints_->duration_s(way.posture(i - 1), way.posture(i), share);
+  if (abort_->duration_s > longest_motion_s)
+    return Reason{Trouble::too_slow, would_last, static_cast<std::int64_t>(longest_motion_s)};
+  if (!goes) return std::nullopt;
+  abort_->goes = true;
+  if (!go_to_posture()) return Reason{Trouble::no_goal, "it is no place"};
+  return std::nullopt;
+}
+
+bool Guidance::go_to_posture() noexcept {
+  parts_.abort_path.tell(abort_->posture + 1);
+  return setpoints_->go(parts_.abort_path.way().posture(abort_->posture), abort_->speed_share).has_value();
 }
 
 Outcome Guidance::jog_j(const FunctionValues& values) noexcept {

@@ -46,6 +46,7 @@ Result<Step> RobotArm::software_init() {
   HIROSCO_TRY(obstacles_.read(source, known_.model(), known_.tip()));
   HIROSCO_TRY(known_.take_bounds());
   bind_motions();
+  bind_abort_path();
   bind_settings();
   bind_laws();
   bind_lead();
@@ -54,6 +55,8 @@ Result<Step> RobotArm::software_init() {
 
 Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   HIROSCO_TRY(robot_arm::check_lengths(known_.joints(), own_descriptor(), parameters_, drives_));
+  if (robot_arm::AbortPath::declared(own_descriptor()) && !abort_path_.has_length(known_.joints()))
+    return fail(ErrorCode::Mismatch, "JOINTS of ABORT_PATH has another length than the robot has joints");
   const double cycle_s = seconds(configuration.sampling);
   known_.limit_motions(parameters_.acceleration.load(), parameters_.jerk.load());
   model_.begin(cycle_s);
@@ -72,6 +75,7 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
 
 Result<> RobotArm::pre_operational(const Cycle& cycle) noexcept {
   measure(cycle);
+  if (cycle.first && motion_) drop_calls(limits_.tripped());  // what was judged in Safe-Operational
   return ok();
 }
 
@@ -86,6 +90,7 @@ Result<> RobotArm::safe_operational(const Cycle& cycle) noexcept {
   yielding_.engage();
   control_.control();
   watch(false);
+  if (motion_) tell(guidance_.look(false));  // CHECK_ABORT moves nothing
   return ok();
 }
 
@@ -144,13 +149,15 @@ void RobotArm::advance() noexcept {
 }
 
 void RobotArm::tell(const Guidance::News& news) noexcept {
+  if (news.begun) count_contacts(Yielding::Before::Stands);
   if (news.half_way) progress(*motion_, 1);
   switch (news.end) {
     case Guidance::End::None: return;
-    case Guidance::End::Reached:
-      raise(motion_done_);
+    case Guidance::End::Reached: raise(motion_done_); [[fallthrough]];
+    case Guidance::End::Judged:
       finish(*motion_);
       motion_.reset();
+      guidance_.end_motion();
       return;
     case Guidance::End::NotReached: end_motion(Trouble::goal_not_reached); return;
     case Guidance::End::LineLost: lose_line(); return;
@@ -223,7 +230,9 @@ void RobotArm::watch_contact() noexcept {
   since_contact_ = std::min(since_contact_ + 1, one_contact);
   if (!met && !felt) return;
   // Whoever told of it first may tell of another one at any time.
-  if (guidance_.retracting() && since_contact_ < one_contact && felt.has_value() != felt_at_wrist_) return;
+  if ((guidance_.retracting() || guidance_.waits()) && since_contact_ < one_contact &&
+      felt.has_value() != felt_at_wrist_)
+    return;
   since_contact_ = 0;
   felt_at_wrist_ = felt.has_value();
   const bool stood = guidance_.at_rest() && !motion_;
@@ -258,6 +267,26 @@ Outcome RobotArm::move(Begin begin, const FunctionValues& values, const Call& ca
   if (begun.kind == Outcome::Kind::Refused) return begun;
   count_contacts(Yielding::Before::Stands);
   motion_ = call;
+  return begun;
+}
+
+/// Whoever wants the arm out of where it is need not wait until it stands, where it comes to rest by itself. A stop is none of that: it ends in brakes. Who is inhibited, or
+/// floats, is refused as for any motion.
+Outcome RobotArm::leave(Begin begin, const FunctionValues& values, const Call& call) noexcept {
+  const bool may_wait = moving_ && !control_.floats() && !motion_ && !stop_;
+  if (!may_wait || !(guidance_.comes_to_rest() || lead_.slows_down())) return move(begin, values, call);
+  motion_ = call;
+  return guidance_.once_it_stands(begin, values);
+}
+
+/// Nothing moves for it: in Safe-Operational it needs no actuators. In Operational without them nothing goes on that was begun.
+Outcome RobotArm::check_abort(const Call& call) noexcept {
+  if (!guidance_.begun()) return refused(pus::FailureCode::NotPermittedNow);
+  const bool operational = parameters_.current.load().state == static_cast<std::int32_t>(State::Operational);
+  if (operational && !moving_) return refused(Trouble::actuators_inhibited);
+  if (motion_ || stop_ || !guidance_.at_rest()) return refused(pus::FailureCode::Busy);
+  const Outcome begun = guidance_.check_abort();
+  if (begun.kind != Outcome::Kind::Refused) motion_ = call;
   return begun;
 }
 
@@ -340,8 +369,17 @@ void RobotArm::bind_motions() {
     return jog(&Guidance::jog_l, Kind::TipJog, values, call);
   });
   on_function("RETREAT",
-              [this](const FunctionValues& values, Call call) { return move(&Guidance::retreat, values, call); });
+              [this](const FunctionValues& values, Call call) { return leave(&Guidance::retreat, values, call); });
   bind_hold_and_stop();
+}
+
+/// Whose descriptor has no such path has no function of it.
+void RobotArm::bind_abort_path() {
+  if (!robot_arm::AbortPath::declared(own_descriptor())) return;
+  abort_path_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
+  on_function("MOVE_ABORT",
+              [this](const FunctionValues& values, Call call) { return leave(&Guidance::move_abort, values, call); });
+  on_function("CHECK_ABORT", [this](Call call) { return check_abort(call); });
 }
 
 void RobotArm::bind_settings() {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "robotics/subsystem/moving_subsystem.hpp"
+#include "subsystems/robot_arm/abort_path.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/force_sensor.hpp"
 #include "subsystems/robot_arm/guidance.hpp"
@@ -46,6 +47,7 @@ class RobotArm final : public robotics::MovingSubsystem {
   void motion_ended() noexcept override { torque_mode_.end(), guidance_.end_motion(); }
 
   void bind_motions();
+  void bind_abort_path();
   void bind_settings();
   void bind_laws();
   void bind_lead();
@@ -64,6 +66,8 @@ class RobotArm final : public robotics::MovingSubsystem {
   [[nodiscard]] Outcome may_move() const noexcept;
   [[nodiscard]] Outcome may_change_law() const noexcept;
   Outcome move(Begin begin, const FunctionValues& values, const Call& call) noexcept;
+  Outcome leave(Begin begin, const FunctionValues& values, const Call& call) noexcept;
+  Outcome check_abort(const Call& call) noexcept;
   Outcome drive(const FunctionValues& values, const Call& call) noexcept;
   Outcome jog(Begin begin, robot_arm::Setpoints::Kind kind, const FunctionValues& values, const Call& call) noexcept;
   [[nodiscard]] Outcome take_payload(double mass_kg, const std::array<double, 3>& place_m) noexcept;
@@ -102,7 +106,8 @@ class RobotArm final : public robotics::MovingSubsystem {
   bool felt_at_wrist_{false};  ///< that one, first
   robot_arm::ForceSensor force_sensor_{{known_, drives_, model_, parameters_}};
   robot_arm::Obstacles obstacles_{{parameters_.clearance_limit_m, parameters_.clearance_m, parameters_.keep_out}};
-  robot_arm::Guidance guidance_{{known_, drives_, obstacles_, parameters_}};
+  robot_arm::AbortPath abort_path_{{known_, obstacles_}};
+  robot_arm::Guidance guidance_{{known_, drives_, obstacles_, parameters_, abort_path_}};
   robot_arm::Lead lead_{{known_, guidance_}};
   robot_arm::TorqueControl control_{{known_, drives_, limits_, model_, guidance_, parameters_}};
   robot_arm::Yielding yielding_{{known_, drives_, model_, obstacles_, guidance_, control_, parameters_}};

@@ -61,16 +61,30 @@ void Setpoints::come_to_rest() noexcept {
   now_.acceleration.setZero(now_.position.size());
 }
 
-Result<> Setpoints::go(const JointVector& goal, double speed_share) noexcept {
+Result<robotics::PointToPoint> Setpoints::plan(const JointVector& from, const JointVector& goal,
+                                               double speed_share) const noexcept {
   std::array<robotics::MotionLimits, max_joints> limits;
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
     limits[i] = bounds_[i].motion;
     limits[i].velocity *= speed_share;
   }
-  HIROSCO_TRY_LET(path_,
-                  robotics::PointToPoint::plan_straight(now_.position, goal, std::span{limits}.first(bounds_.size())));
-  path_.at(path_.duration_s() / 2, sample_);
-  duration_s_ = path_.duration_s() / power_.share(sample_.velocity);
+  return robotics::PointToPoint::plan_straight(from, goal, std::span{limits}.first(bounds_.size()));
+}
+
+double Setpoints::with_power_s(const robotics::PointToPoint& path) const noexcept {
+  robotics::PointToPoint::Sample sample;
+  path.at(path.duration_s() / 2, sample);
+  return path.duration_s() / power_.share(sample.velocity);
+}
+
+double Setpoints::duration_s(const JointVector& from, const JointVector& goal, double speed_share) const noexcept {
+  const auto planned = plan(from, goal, speed_share);
+  return planned ? with_power_s(*planned) : HUGE_VAL;
+}
+
+Result<> Setpoints::go(const JointVector& goal, double speed_share) noexcept {
+  HIROSCO_TRY_LET(path_, plan(now_.position, goal, speed_share));
+  duration_s_ = with_power_s(path_);
   path_.at(0, sample_);
   kind_ = Kind::JointPath;
   braking_ = false;

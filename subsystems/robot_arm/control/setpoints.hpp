@@ -26,6 +26,8 @@ class Setpoints {
   void rest(const JointVector& position) noexcept;
   /// All joints at once, each by the same share of its way, jerk-limited, with this share of their velocities. InvalidArgument: as of PointToPoint.
   [[nodiscard]] Result<> go(const JointVector& goal, double speed_share) noexcept;
+  /// So long it would take from one place to the other; infinitely, where go() would refuse.
+  [[nodiscard]] double duration_s(const JointVector& from, const JointVector& goal, double speed_share) const noexcept;
   /// The tool on a straight line: it stands until line() has found whether it can, and rests where it cannot. InvalidArgument: as of Line.
   [[nodiscard]] Result<> go_straight(const robotics::Pose& goal, const Line::Speed& speed) noexcept;
   /// The last one.
@@ -86,6 +88,9 @@ class Setpoints {
   void set_tool(const robotics::Pose& in_tip) noexcept { tool_ = in_tip; }
 
  private:
+  [[nodiscard]] Result<robotics::PointToPoint> plan(const JointVector& from, const JointVector& goal,
+                                                    double speed_share) const noexcept;
+  [[nodiscard]] double with_power_s(const robotics::PointToPoint& path) const noexcept;
   void advance_path() noexcept;
   void advance_line() noexcept;
   void advance_jog(const JointVector& wanted) noexcept;
