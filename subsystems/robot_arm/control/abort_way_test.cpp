@@ -15,14 +15,14 @@
 namespace hirosco::robot_arm {
 namespace {
 
-using Found = AbortWay::Found;
-using Judged = AbortWay::Judged;
 using ::testing::StrEq;
 
 [[nodiscard]] JointVector at(double one, double other) { return vector_of(std::array{one, other}); }
 
 /// Of two joints, with something in the way wherever a test says so.
 struct AbortWayTest : ::testing::Test {
+  using Found = AbortWay::Found;
+  using Judged = AbortWay::Judged;
   AbortWay way;
   std::function<const char*(const JointVector&)> in_the_way = [](const JointVector&) { return ""; };
   std::vector<JointVector> looked_at;
