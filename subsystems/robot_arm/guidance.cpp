@@ -20,6 +20,9 @@ constexpr double longest_wait_s = 12;
 /// A setpoint that is no farther from a posture has gone there.
 constexpr double at_posture = 1e-6;
 constexpr const char* would_last = "it would take longer, s";
+/// With which MOVE_ABORT goes unless it is told another one: who says that a path is free says it of this.
+constexpr double usual_share = 0.25;
+constexpr const char* would_last_as_usual = "at a SPEED of 0.25 it would take longer, s";
 constexpr const char* ends_range = "on the line ends the range of joint";
 /// No longer: a failure carries 64 octets of words.
 constexpr const char* ends_reach = "a singular posture, or it leads out of reach, after mm";
@@ -271,7 +274,7 @@ Outcome Guidance::move_abort(const FunctionValues& values) noexcept {
   return judge_abort(AbortWay::Judged::FromHere, values[0]);
 }
 
-Outcome Guidance::check_abort() noexcept { return judge_abort(AbortWay::Judged::PathAlone, 1); }
+Outcome Guidance::check_abort() noexcept { return judge_abort(AbortWay::Judged::PathAlone, usual_share); }
 
 Outcome Guidance::judge_abort(AbortWay::Judged what, double speed_share) noexcept {
   const Outcome stored = parts_.abort_path.begin(setpoints_->now().position, what);
@@ -299,10 +302,13 @@ Guidance::News Guidance::look_at_abort(bool gives_way) noexcept {
     return {.end = abort_->what == AbortWay::Judged::PathAlone ? End::Judged : End::None};
   }
   News news;
-  if (!half_reported_ && progress() >= 0.5) half_reported_ = news.half_way = true;
-  if (!setpoints_->at_rest()) return news;
-  if (apart(setpoints_->now().position, way.posture(abort_->posture)) > at_posture) news.end = End::NotReached;
-  else if (abort_->posture + 1 == way.size()) news.end = arrive(gives_way);
+  const bool stands = setpoints_->at_rest(), last = abort_->posture + 1 == way.size();
+  const bool there = stands && apart(setpoints_->now().position, way.posture(abort_->posture)) <= at_posture;
+  // Its time was foreseen with the power of where it began: with more of it the whole way may be less than half of that.
+  if (!half_reported_ && (progress() >= 0.5 || (there && last))) half_reported_ = news.half_way = true;
+  if (!stands) return news;
+  if (!there) news.end = End::NotReached;
+  else if (last) news.end = arrive(gives_way);
   else {
     abort_->gone_s += setpoints_->duration_s();
     ++abort_->posture;
@@ -321,7 +327,8 @@ std::optional<Guidance::Reason> Guidance::begin_abort() noexcept {
   for (std::size_t i = way.joined() + 1; i < way.size(); ++i)
     abort_->duration_s += setpoints_->duration_s(way.posture(i - 1), way.posture(i), share);
   if (abort_->duration_s > longest_motion_s)
-    return Reason{Trouble::too_slow, would_last, static_cast<std::int64_t>(longest_motion_s)};
+    return Reason{Trouble::too_slow, goes ? would_last : would_last_as_usual,
+                  static_cast<std::int64_t>(longest_motion_s)};
   if (!goes) return std::nullopt;
   abort_->goes = true;
   if (!go_to_posture()) return Reason{Trouble::no_goal, "it is no place"};

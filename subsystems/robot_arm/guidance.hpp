@@ -75,6 +75,7 @@ class Guidance {
   [[nodiscard]] Outcome move_abort(const FunctionValues& values) noexcept;
   /// The stored path alone is judged; nothing moves.
   [[nodiscard]] Outcome check_abort() noexcept;
+  [[nodiscard]] bool only_judges() const noexcept { return abort_ && abort_->what == AbortWay::Judged::PathAlone; }
   using WayOut = Outcome (Guidance::*)(const FunctionValues&) noexcept;
   /// One of these, of who comes_to_rest(): it begins once it stands, unless end_motion() comes before.
   [[nodiscard]] Outcome once_it_stands(WayOut way_out, const FunctionValues& values) noexcept;

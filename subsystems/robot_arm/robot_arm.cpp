@@ -90,7 +90,9 @@ Result<> RobotArm::safe_operational(const Cycle& cycle) noexcept {
   yielding_.engage();
   control_.control();
   watch(false);
-  if (motion_) tell(guidance_.look(false));  // CHECK_ABORT moves nothing
+  if (!motion_) return ok();
+  guidance_.keep_power(model_.held(model_.payload()));  // how long the path would take depends on it
+  tell(guidance_.look(false));  // CHECK_ABORT moves nothing
   return ok();
 }
 
@@ -271,8 +273,9 @@ Outcome RobotArm::move(Begin begin, const FunctionValues& values, const Call& ca
 }
 
 /// Whoever wants the arm out of where it is need not wait until it stands, where it comes to rest by itself. A stop is none of that: it ends in brakes. Who is inhibited, or
-/// floats, is refused as for any motion.
+/// floats, is refused as for any motion. CHECK_ABORT, which moves nothing, keeps nobody in.
 Outcome RobotArm::leave(Begin begin, const FunctionValues& values, const Call& call) noexcept {
+  if (guidance_.only_judges()) end_motion(pus::FailureCode::Aborted);
   const bool may_wait = moving_ && !control_.floats() && !motion_ && !stop_;
   if (!may_wait || !(guidance_.comes_to_rest() || lead_.slows_down())) return move(begin, values, call);
   motion_ = call;
@@ -299,9 +302,10 @@ Outcome RobotArm::jog(Begin begin, robot_arm::Setpoints::Kind kind, const Functi
   return (guidance_.*begin)(values);
 }
 
-/// Who drives it on says so before the time of what he said last is over, as who jogs.
+/// Who drives it on says so before the time of what he said last is over, as who jogs. Behind a contact its law is that of torques for a cycle yet: whoever
+/// waits for its rest then is not driven on.
 Outcome RobotArm::drive(const FunctionValues& values, const Call& call) noexcept {
-  const bool goes_on = motion_ && !stop_ && torque_mode_.drives();
+  const bool goes_on = motion_ && !stop_ && torque_mode_.drives() && !guidance_.waits();
   if (const Outcome may = goes_on ? running : may_move(); may.kind == Outcome::Kind::Refused) return may;
   const Outcome driven = torque_mode_.drive(values);
   if (driven.kind == Outcome::Kind::Refused) return driven;

@@ -15,7 +15,6 @@ using robot_arm::testing::descriptor_for;
 using robot_arm::testing::Flown;
 using robot_arm::testing::folder;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using ::testing::StartsWith;
 
 const std::string arm_file = std::string{folder} + "robot_arm.urdf";
@@ -155,7 +154,7 @@ TEST_F(RobotArmAbort, MayHaveAPostureAtTheVeryEndOfARange) {
   end[1] = 2.2;
   ASSERT_GT(static_cast<double>(static_cast<float>(end[1])), 2.2) << "as it is stored";
   store({end});
-  EXPECT_THAT(check(), Not(HasSubstr("8002")));
+  EXPECT_THAT(check(), StartsWith("1 3 ")) << "it is judged, and not refused";
 }
 
 TEST_F(RobotArmAbort, PathIsWrittenWhileNothingCanMoveAndOutlivesTheProcess) {
@@ -166,6 +165,59 @@ TEST_F(RobotArmAbort, PathIsWrittenWhileNothingCanMoveAndOutlivesTheProcess) {
   EXPECT_TRUE(its->persistent);
   operate();
   EXPECT_NE(flown.rig.outcome(write_path({start})), "1 3 7");
+  const auto none = flown.ask("MOVE_ABORT", {0.5});
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(none), StartsWith("1 4:8009")) << "nothing of it was taken";
+}
+
+TEST_F(RobotArmAbort, PathThatTakesLongerThanATelecommandMayIsToldByItsCheck) {
+  store({turned(2.4), turned(-2.4), turned(2.4), turned(-2.4), turned(2.4), turned(-2.4), turned(2.4), turned(-2.4)});
+  EXPECT_THAT(check(), StartsWith("1 3 8:8007"));
+  operate();
+  const auto out = flown.ask("MOVE_ABORT", {0.25});
+  flown.finish(out);
+  EXPECT_THAT(flown.rig.outcome(out), StartsWith("1 3 8:8007")) << "as its check has said";
+  EXPECT_LT(flown.off(start), 1e-3);
+}
+
+TEST_F(RobotArmAbort, PathIsCheckedForThePowerThatItMayGoWith) {
+  store({turned(2.4), turned(-2.4), turned(2.4), turned(-2.4)});
+  EXPECT_EQ(check(), "1 3 7");
+  const auto set = flown.ask("SET_POWER_LIMIT", {10, 10'000});
+  flown.cycle(3);
+  ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
+  EXPECT_THAT(check(), StartsWith("1 3 8:8007"));
+}
+
+TEST_F(RobotArmAbort, PathThatIsCheckedKeepsNobodyIn) {
+  store({turned(0.8), turned(-0.6)});
+  operate();
+  for (const char* function : {"MOVE_ABORT", "RETREAT"}) {
+    const auto checked = flown.rig.call("CHECK_ABORT");
+    flown.cycle(5);
+    ASSERT_EQ(flown.rig.outcome(checked), "1 3") << "70 looks and more";
+    const auto out = flown.ask(function, {0.5});
+    flown.finish(out);
+    EXPECT_EQ(flown.rig.outcome(checked), aborted) << function;
+    EXPECT_THAT(flown.rig.outcome(out), ::testing::EndsWith(" 7")) << function;
+  }
+}
+
+TEST_F(RobotArmAbort, TellsHalfWayOnceThoughItHasMorePowerThanItBeganWith) {
+  store({turned(0.1), turned(2)});
+  operate();
+  const auto set_power = [&](double limit_w) {
+    const auto set = flown.ask("SET_POWER_LIMIT", {limit_w, 10'000});
+    flown.cycle(3);
+    ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
+  };
+  ASSERT_NO_FATAL_FAILURE(set_power(10));
+  const auto out = flown.ask("MOVE_ABORT", {1});
+  flown.cycle(300);
+  ASSERT_LT(flown.off(start), 0.09) << "on its way to the first of them";
+  ASSERT_NO_FATAL_FAILURE(set_power(10'000));
+  flown.finish(out);
+  EXPECT_EQ(flown.rig.outcome(out), done);
 }
 
 TEST_F(RobotArmAbort, PathIsCheckedBeforeAnythingMovesAndWhoIsInTheWayIsNamed) {
@@ -288,6 +340,23 @@ TEST_F(RobotArmAbort, AndRetreatBeginOnceTheArmStandsThatStillBrakes) {
   flown.finish(out);
   EXPECT_EQ(flown.rig.outcome(out), done);
   EXPECT_LE(flown.off(start), 1e-3);
+}
+
+/// A contact ends the torque, and its law is in force until the next cycle.
+TEST_F(RobotArmAbort, ThatWaitsIsNotTakenForATorqueThatIsSaidAnew) {
+  store({start});
+  operate();
+  const std::vector<double> torque{6, 0, 0, 0, 0, 0, 1};
+  const auto driven = flown.ask("TORQUE_J", torque);
+  flown.cycle(400);
+  flown.outside[0] = -60;
+  for (int i = 0; i < 100 && flown.rig.events(1025) == 0; ++i) flown.cycle();
+  flown.outside[0] = 0;
+  const auto out = flown.ask("MOVE_ABORT", {0.5}), again = flown.ask("TORQUE_J", torque);
+  flown.cycle(3);
+  EXPECT_EQ(flown.rig.outcome(driven), "1 3 8:8004");
+  EXPECT_EQ(flown.rig.outcome(out), "1 3") << "it waits";
+  EXPECT_THAT(flown.rig.outcome(again), StartsWith("1 4:0108")) << "who met somebody is not driven on";
 }
 
 TEST_F(RobotArmAbort, ThatWaitsIsRefusedInItsOwnWordsOnceTheArmStands) {
