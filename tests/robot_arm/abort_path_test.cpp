@@ -34,7 +34,7 @@ struct AbortPathFlown : ::testing::Test {
     for (std::size_t i = 0; i < last.size(); ++i) {
       const std::string name = fmt::format(" q{}=", i + 1);
       const auto at = words.find(name);
-      const double q = at == words.npos ? NAN : std::atof(words.c_str() + at + name.size());
+      const double q = at == words.npos ? HUGE_VAL : std::atof(words.c_str() + at + name.size());
       most = std::max(most, std::abs(q - last.at(i)));
     }
     return most;
