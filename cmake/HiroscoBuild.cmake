@@ -176,6 +176,7 @@ add_custom_target(flown)
 # One GoogleTest executable; ctest runs it once as a whole, which keeps the suite fast. Labels: unit (the default) beside
 # the code; concurrency: threads meet, so under TSan; figures: flies simulations, which takes minutes under a sanitizer; tools: of
 # what people use beside a flight, which reads nothing from outside a computer and guards nothing, so its libraries are built with sanitizers in ./check --all only;
+# stops (guard, permission, reactions): tests of a library a second time, optimised, so that every check has them;
 # allocations (whoever counts them): a sanitizer owns the heap functions; endtoend, realtime, fault: real processes, alone on
 # the machine; long: in ./check --all only. COST: of those that take longest, which begin first. SLICED: it takes a part of what it could
 # try (hirosco/utilities/testing/slice.hpp); NAME_whole takes all of it and is `long`.

@@ -67,7 +67,8 @@ function(hirosco_install)
     cmake/HiroscoAuthor.cmake cmake/hirosco_module.map DESTINATION ${package})
 
   set(share share/hirosco)
-  install(DIRECTORY subsystems supervisor DESTINATION ${share} FILES_MATCHING PATTERN *.xml PATTERN *.urdf PATTERN *.script)
+  install(DIRECTORY subsystems supervisor DESTINATION ${share} FILES_MATCHING PATTERN *.xml PATTERN *.urdf PATTERN *.script
+    PATTERN tests EXCLUDE)
   install(DIRECTORY hirosco/descriptor/ DESTINATION ${share}/schemas FILES_MATCHING PATTERN *.xsd PATTERN testdata EXCLUDE)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/${share}/page DESTINATION ${share} OPTIONAL)
   install(DIRECTORY templates DESTINATION ${share})

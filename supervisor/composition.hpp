@@ -52,7 +52,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
         descriptors{{craft, own, own_telecommands, under_way, stored, outside.readings}},
         memory{outside.journal,
                {&adoption, &modes, &links, &telecommands, &safe_all, &own, &commanded, &restarts, &power, &replacement,
-                &subscriptions, &stored, &ground_loss, &losses, &outside.observer}} {
+                &subscriptions, &stored, &ground_loss, &losses, &reactions, &outside.observer}} {
     if (outside.journal != nullptr) craft.remembers = [this] { memory.note(); };
     // No cycle, no queue and no state of the supervisor's own holds these up.
     telecommands.at_once("SAFE_ALL", [this](const pus::Request& request) { safe_all.carry_out(request); });

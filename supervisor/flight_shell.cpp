@@ -50,7 +50,7 @@ constexpr int exit_usage = 2;
 constexpr int exit_environment = 3;
 constexpr int exit_internal = 4;
 constexpr int exit_unprovoked = 5;
-/// Below every cycle, above ordinary work.
+/// Below the cycles of what moves, above ordinary work; the supervisor's descriptor says none (docs/adr/0203).
 constexpr int supervisor_priority = 30;
 constexpr Duration last_wait = 2s;
 static_assert(ending_patience > 3 * last_wait, "the keeper ends nobody who waits for a disk at its end");
@@ -317,8 +317,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
               kept ? keeper_descriptor : -1};
   Progress keeper_progress;
   bool keeper_still = false;
-  const TimePoint started = clock.now();
-  TimePoint next_status = started + console.period();
+  const TimePoint began = keeper.flight_began(clock.now());
+  TimePoint next_status = clock.now() + console.period();
   bool ends_as_a_whole = false, asked_to_end = false;
   const MemoryReserve reserve{memory_of_a_step};
   AskedStops stops{page};
@@ -394,7 +394,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
       epochs.keep_above(epoch_in_use);
       if (clock.now() < next_status) continue;
       next_status += console.period();
-      console.show(overview_of(mission, supervisor), clock.now() - started);
+      console.show(overview_of(mission, supervisor), clock.now() - began);
     }
   });
   console.ended();
@@ -420,8 +420,8 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   if (!without_cause.empty()) {
     errors.say(fmt::format(
         "hirosco: {} reaction{} of high severity that no fault, telecommand or scenario of this flight had caused, "
-        "the first {:.3f} s after the start: hirosco log --text plan\n",
-        without_cause.size(), without_cause.size() == 1 ? "" : "s", seconds(without_cause.front().at - started)));
+        "the first {:.3f} s after the start of the flight: hirosco log --text plan\n",
+        without_cause.size(), without_cause.size() == 1 ? "" : "s", seconds(without_cause.front().at - began)));
     return exit_unprovoked;
   }
   return supervisor.succeeded() ? 0 : exit_finding;

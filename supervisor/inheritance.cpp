@@ -30,6 +30,12 @@ Inheritance::Inheritance() {
 
 StoreClient Inheritance::store() const noexcept { return StoreClient{page_ != &own_ ? keeper_store_descriptor : -1}; }
 
+TimePoint Inheritance::flight_began(TimePoint now) noexcept {
+  std::int64_t none = 0;
+  page_->flight_began.compare_exchange_strong(none, now.time_since_epoch().count());
+  return TimePoint{Duration{page_->flight_began.load()}};
+}
+
 descriptor::FileSource Inheritance::source() const {
   auto texts = goes_on() && texts_ ? texts_->newest() : TextsInForce::Texts{};
   if (texts.empty()) return descriptor::file_system();

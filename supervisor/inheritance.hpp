@@ -31,6 +31,9 @@ class Inheritance {
   /// There was a supervisor before this one.
   [[nodiscard]] bool goes_on() const noexcept { return page_->starts.load() > 1; }
   [[nodiscard]] StoreClient store() const noexcept;
+  /// When the first supervisor of this flight began its steps: that is now where it is this one, or where none came so far. A flight is as old
+  /// as that, whichever of its supervisors tells it.
+  [[nodiscard]] TimePoint flight_began(TimePoint now) noexcept;
   /// Null: nobody would read it.
   [[nodiscard]] Journal* journal() noexcept { return journal_ ? &*journal_ : nullptr; }
   [[nodiscard]] InhibitNotes notes(const descriptor::Mission& mission) const { return InhibitNotes{mission, *page_}; }

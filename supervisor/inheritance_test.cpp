@@ -149,6 +149,19 @@ TEST_F(KeeperInheritance, ThePageIsTheKeepersAndTheSecondSupervisorGoesOn) {
   EXPECT_TRUE(inheritance.goes_on());
 }
 
+TEST_F(KeeperInheritance, AFlightIsAsOldAsItsFirstSupervisorWhicheverTellsIt) {
+  EXPECT_EQ(Inheritance{}.flight_began(TimePoint{10s}), TimePoint{10s});
+  EXPECT_EQ(Inheritance{}.flight_began(TimePoint{12s}), TimePoint{10s});
+  page->starts = 2;
+  EXPECT_EQ(Inheritance{}.flight_began(TimePoint{70s}), TimePoint{10s}) << "what the first one told is not before it";
+}
+
+TEST_F(InheritanceTest, WithoutAKeeperAFlightIsAsOldAsItsSupervisor) {
+  Inheritance alone;
+  EXPECT_EQ(alone.flight_began(TimePoint{10s}), TimePoint{10s});
+  EXPECT_EQ(alone.flight_began(TimePoint{11s}), TimePoint{10s});
+}
+
 TEST_F(KeeperInheritance, WhatIsHandedOverReachesTheKeepersStore) {
   auto ends = KeptStore::make_socket().value();
   ASSERT_EQ(::dup2(ends.second.get(), keeper_store_descriptor), keeper_store_descriptor);

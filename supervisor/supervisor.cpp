@@ -40,13 +40,15 @@ void Supervisor::adopt(bool stop_asked) {
   if (parts_->adoption.stop_asked()) parts_->commanded.all_stopped();
   parts_->own.enter_mode(craft.mode_epoch);
   parts_->subscriptions.go_on();
-  parts_->stored.begin();
+  values_to_read_ = true;
 }
 
 TimePoint Supervisor::step(TimePoint now) {
   Craft& craft = parts_->craft;
   craft.now = now;
   craft.guard.beat();
+  // A disk that stands still holds this loop up, as the guard then finds. Nobody is started, heard or brought back before it.
+  if (std::exchange(values_to_read_, false)) parts_->stored.begin();
   parts_->processes.take_guard_findings();
   const std::uint64_t beat = parts_->own.beats() + 1;
   parts_->own.beat(beat);

@@ -48,7 +48,7 @@ class Supervisor final {
   /// Starts the subsystems of the mission and begins commissioning.
   void start();
   /// Goes on for a supervisor that died, with what still runs, in the place of start(). `stop_asked`: somebody asked for a stop
-  /// meanwhile.
+  /// meanwhile. Waits for no disk: stored values are read in the first step, when the guard's thread runs.
   void adopt(bool stop_asked);
   /// One step; returns when the next is due at the latest. Messages should wake it earlier.
   TimePoint step(TimePoint now);
@@ -80,6 +80,7 @@ class Supervisor final {
 
   std::unique_ptr<SupervisorParts> parts_;
   TimePoint next_watch_{};
+  bool values_to_read_{false};
   bool noted_{false};
   bool not_noted_told_{false};
 };

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""Each folder of subsystems/ is flown twice: by a mission of missions/, and by a test mission, a file in tests/ that commissions it into Operational and
-that a test beside it flies or simulates. Who is flown by what is the table of subsystems/README.md. Prints who is not and what to do, and takes
+"""Each folder of subsystems/ is flown twice: by a mission of missions/, and by a test mission, a file in tests/, or in the tests/ of a folder of its
+own, that commissions it into Operational and that a test beside it flies or simulates. Who is flown by what is the table of subsystems/README.md. Prints who is not and what to do, and takes
 it away from a copy itself, to be caught. `--write` makes the table."""
 import pathlib
 import re
@@ -14,12 +14,27 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = re.compile(r"^\s*hirosco_(?:subsystem|executable)\((hirosco-[a-z0-9-]+)", re.M)
 BEGIN, END = "<!-- flown: made by tools/check_flown.py --write -->\n", "<!-- end -->\n"
 KINDS = ("missions", "tests")
+OWNERS = ("missions", "subsystems", "simulation/devices")
 SOURCES = (".py", ".cpp", ".hpp", ".mjs")
 
 
 def programs(folder):
     """What the build makes of a subsystem's folder."""
-    return [name for path in sorted(folder.rglob("CMakeLists.txt")) for name in PROGRAM.findall(path.read_text())]
+    return [name for path in sorted(folder.rglob("CMakeLists.txt")) if "tests" not in path.relative_to(folder).parts
+            for name in PROGRAM.findall(path.read_text())]
+
+
+def places(root, kind):
+    """The folders in which its missions are."""
+    if kind == "missions":
+        return sorted(folder for folder in (root / kind).iterdir() if folder.is_dir())
+    return [root / kind, *(folder for owner in OWNERS for folder in sorted((root / owner).glob("*/tests")))]
+
+
+def missions(root, kind):
+    """Files that may be one of this kind."""
+    for place in places(root, kind):
+        yield from (path for path in sorted(place.rglob("*.xml")) if kind == "tests" or "tests" not in path.relative_to(place).parts)
 
 
 def place(root, mission, named):
@@ -42,15 +57,17 @@ def commissioned(root, mission):
 
 
 def is_used(root, mission):
-    """A program in tests/ names it: by its way from the root, by its name from beside it, by the folder of a mission."""
+    """A test names it: by its way from the root, by its name from beside it or from the tests/ of its folder, by the folder of a mission."""
     words = [mission.relative_to(root).as_posix()]
     if mission.relative_to(root).parts[0] == "missions":
         words.append(mission.parent.relative_to(root).as_posix() + '"')
-    for path in sorted((root / "tests").rglob("*")):
-        if path.suffix in SOURCES and "node_modules" not in path.parts:
-            text = path.read_text()
-            if any(word in text for word in words) or (path.parent == mission.parent and f'"{mission.name}"' in text):
-                return True
+    for place in places(root, "tests"):
+        for path in sorted(place.rglob("*")):
+            if path.suffix in SOURCES and "node_modules" not in path.parts:
+                text = path.read_text()
+                beside = path.parent in (mission.parent, mission.parent / "tests")
+                if any(word in text for word in words) or (beside and f'"{mission.name}"' in text):
+                    return True
     return False
 
 
@@ -58,7 +75,7 @@ def flights(root):
     """By kind and program: the missions that fly it, each with the configurations."""
     found = {kind: {} for kind in KINDS}
     for kind in KINDS:
-        for mission in sorted((root / kind).rglob("*.xml")):
+        for mission in missions(root, kind):
             flown = list(commissioned(root, mission))
             if flown and is_used(root, mission):
                 for program, configuration in flown:
@@ -75,12 +92,12 @@ def cell(root, kind, flown, names):
     told = {}
     for name in names:
         for mission, configurations in flown[kind].get(name, {}).items():
-            told.setdefault(mission.relative_to(root / kind).as_posix().removesuffix("/mission.xml"), set()).update(configurations)
+            told.setdefault(mission.relative_to(root).as_posix().removeprefix(f"{kind}/").removesuffix("/mission.xml"), set()).update(configurations)
     return ", ".join(f"{mission} ({', '.join(sorted(configurations))})" for mission, configurations in sorted(told.items()))
 
 
 def table(root, flown):
-    text = "| subsystem | programs | flown by `missions/` | and by `tests/` |\n|---|---|---|---|\n"
+    text = "| subsystem | programs | flown by `missions/` | and by `tests/`, or those of a folder |\n|---|---|---|---|\n"
     for folder in folders(root):
         names = programs(folder)
         text += f"| [{folder.name}]({folder.name}/README.md) | {', '.join(f'`{name}`' for name in names)} |"
@@ -103,7 +120,7 @@ def problems(root):
         names = programs(folder)
         for kind in KINDS:
             if not any(flown[kind].get(name) for name in names):
-                yield f"subsystems/{folder.name}: no mission of {kind}/ flies {' or '.join(names)}: {mended_by[kind]}"
+                yield f"subsystems/{folder.name}: no mission of {kind}/{' or of a tests/ of its own' * (kind == 'tests')} flies {' or '.join(names)}: {mended_by[kind]}"
     if written(root, flown) != (root / "subsystems/README.md").read_text():
         yield "subsystems/README.md: its table is not what flies: tools/check_flown.py --write"
 
@@ -132,6 +149,13 @@ def self_test():
             assert list(problems(root)), wrong
             (root / path).write_text(files[path])
         assert not list(problems(root))
+        (root / "subsystems/lamp/tests").mkdir()
+        for path in ("dark.xml", "dark_test.cpp"):
+            (root / "subsystems/lamp/tests" / path).write_text(files["tests/dark/" + path].replace("../../subsystems/lamp", ".."))
+            (root / "tests/dark" / path).unlink()
+        (root / "subsystems/README.md").write_text(written(root, flights(root)))
+        assert "| light (NOMINAL) | subsystems/lamp/tests/dark.xml (NOMINAL) |" in (root / "subsystems/README.md").read_text()
+        assert not list(problems(root)), list(problems(root))
 
 
 def main():

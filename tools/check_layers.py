@@ -16,6 +16,7 @@ means = re.compile(r"hirosco/data_transfer/device/\w+_flow\.[ch]pp$")  # one eac
 system = re.compile(r"(sys|net|netinet|arpa|linux)/|(unistd|fcntl|pthread|poll|sched|spawn|signal|semaphore|mqueue|"
                     r"termios|dirent|netdb|dlfcn|ifaddrs)\.h$|csignal$")
 include = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.M)
+own_tests = re.compile(r"^(?:missions|subsystems|simulation/devices)/[^/]+/tests/")  # as those of tests/ (docs/adr/0198)
 def rank(path):
     return libraries.index(name) if (name := pathlib.Path(path).parts[1].split(".")[0]) in libraries else -1
 station = ["archive", "model", "downlink", "commands", "replay", "people", "api", "shell"]  # of ground/, lowest first
@@ -27,6 +28,7 @@ def level(path):
     name = pathlib.Path(path).parts[1]
     return station.index(name) if name in station else len(station)
 def wrong(path, to):
+    path, to = own_tests.sub("tests/", path), own_tests.sub("tests/", to)
     top, target = path.split("/")[0], to.split("/")[0]
     if system.match(to):
         asks = path.startswith(shells) or means.match(path) or path.endswith(("_test.cpp", "main.cpp", "run.cpp")) or "/testing/" in path or "/tcp_server." in path
@@ -55,7 +57,7 @@ planted = ["hirosco/xml/a.hpp hirosco/pus/b.hpp", "simulation/devices/a/a.cpp ro
            "subsystems/a/a.cpp supervisor/b.hpp", "hirosco/pus/a.cpp supervisor/b.hpp",
            "simulation/figures/a.cpp missions/b/b.hpp", "tools/hirosco/a.cpp missions/b/b.hpp",
            "ground/api/a.cpp boost/asio.hpp", "tools/ground/a.cpp boost/asio.hpp", "ground/model/a.cpp ground/api/b.hpp",
-           "ground/api/a.cpp ground/shell/b.hpp", "hirosco/subsystem/author/a.hpp hirosco/subsystem/service_loop/b.hpp", "ground/clients/python/a.cpp ground/replay/b.hpp"]
+           "subsystems/a/a.cpp subsystems/a/tests/b.hpp", "subsystems/a/testing/a.hpp simulation/world/b.hpp", "ground/api/a.cpp ground/shell/b.hpp", "hirosco/subsystem/author/a.hpp hirosco/subsystem/service_loop/b.hpp", "ground/clients/python/a.cpp ground/replay/b.hpp"]
 missed = [case for case in planted if not wrong(*case.split())]
 root = pathlib.Path(__file__).resolve().parent.parent
 files = [file for top in [*may, "missions", "tools", "tests", "bench"] for file in sorted((root / top).rglob("*.[hc]pp"))]

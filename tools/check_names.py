@@ -4,12 +4,14 @@
 """The framework knows no mission, no subsystem and no simulated device by name (adr 0054). Prints where it does, and says it of
 itself once for each kind of place, to be caught.
 
+Nor does a folder of tests/ bear one: tests of one mission, subsystem or device alone stand in its own folder, as tests/ (adr 0198).
+
 Names are those of the folders in missions/, subsystems/ and simulation/devices/, and of the programs that a folder further within makes of its module.cpp. One is found wherever it is a word of a path, an
 identifier, a text or a comment, however written: for a folder `lamp` these are lamp, LAMP_LOST, LampData and hirosco-lamp.
 A name that docs/glossary.md has under "Names that are words, too" may be said in prose and be part of an identifier. It is found
 where only the name can be meant: in capitals, as a program (hirosco-NAME, hirosco-sim-NAME), as a path (subsystems/NAME).
 The code of a subsystem or a simulated device names no mission, and no other of them either (its tests and descriptors may: who is flown with whom is theirs). Its descriptors,
-models and scripts, and what files of its folder are called, name no mission: who flies it says where its devices are. Nor does the folder of a mission name another one. What the
+models and scripts, what builds and helps its tests, and what files of its folder are called, name no mission: who flies it says where its devices are. Nor does the folder of a mission name another one. What the
 descriptors of its folder call its own devices, links and parameters are words of its own, whoever else is called so.
 Documentation (.md) may show the demonstrator, and so may what stands in tests/, bench/ or a folder of its own; tests beside the
 framework's code use names of nobody (ARM, LAMP, PROBE)."""
@@ -90,12 +92,12 @@ def homes(root=ROOT):
     """The code of each folder of its own, without its own name and words: (path, text)."""
     for home in HOMES[1:]:
         for folder in sorted(path for path in (root / home).iterdir() if path.is_dir()):
-            own = {word for path in folder.rglob("*.xml") for word in OWN_WORD.findall(path.read_text())}
+            own = {word for path in folder.rglob("*.xml") if "tests" not in path.relative_to(folder).parts for word in OWN_WORD.findall(path.read_text())}
             hidden = re.compile("|".join([rf"\b{re.escape(word)}\b" for word in sorted(own, key=len, reverse=True)] + [rf"\b(?:{home}|simulation|hirosco-sim-{folder.name}|hirosco-{folder.name.replace('_', '-')})\b"]))
             # A folder may have the name of one in another home: the robot's device and what a subsystem calls it.
             names_here = re.compile("|".join("[-_ ]?".join(name.split("_")) for name in [*within(folder), folder.name]), re.I)
             for path in sorted(folder.rglob("*")):
-                if path.suffix in CODE and path.is_file() and "_test." not in path.name and "testing" not in path.parts and not OUTSIDE & set(path.parts):
+                if path.suffix in CODE and path.is_file() and "_test." not in path.name and not (OUTSIDE | {"testing", "tests"}) & set(path.relative_to(root).parts):
                     yield path.relative_to(root).as_posix(), names_here.sub("", hidden.sub("", path.read_text()))
 
 
@@ -115,7 +117,8 @@ def naming_missions(root=ROOT):
         for path in sorted((root / home).rglob("*")):
             if not path.is_file() or OUTSIDE & set(path.parts) or "_test." in path.name or "testdata" in path.parts:
                 continue
-            text = path.read_text() if path.suffix in MISSIONLESS else ""
+            helps_tests = "tests" in path.relative_to(root).parts and path.suffix in CODE
+            text = path.read_text() if path.suffix in MISSIONLESS or helps_tests else ""
             yield from found({path.relative_to(root).as_posix(): text}, every, set())
 
 
@@ -126,6 +129,15 @@ def among_missions(root=ROOT):
         for path in sorted((root / HOMES[0] / name).rglob("*")):
             if path.is_file() and path.suffix in (*TEXTS, *MISSIONLESS, ".csv") and not OUTSIDE & set(path.relative_to(root).parts):
                 yield from found({path.relative_to(root).as_posix(): path.read_text()}, [other for other in every if other != name], set())
+
+
+def test_folders(every, words, root=ROOT):
+    """Folders of tests/ that bear a name."""
+    held = {folder for path in (root / "tests").rglob("*") if path.is_file() and not OUTSIDE & set(path.relative_to(root).parts)
+            for folder in path.relative_to(root).parents}
+    for folder in sorted(held):
+        if told := [name for name in every if folder.name == name or says(folder.name, name, name in words)]:
+            yield f"{folder.as_posix()}: {', '.join(told)}: what is of one alone stands in its own folder, as tests/"
 
 
 # `lamp` is a name, `beam` a word, too. The first must be found in each of these, the second in none.
@@ -146,11 +158,11 @@ if __name__ == "__main__":
             (pathlib.Path(made) / path).write_text(text)
         caught = {line.partition(":")[0] for line in in_homes(dict(homes(pathlib.Path(made))), ["lamp", "beam", "shed"], set())}
         for path, text in {"missions/shed/mission.xml": "<Mission/>", "subsystems/beam/shed.urdf": "", "subsystems/beam/more.xml": '<Endnode address="shed-beam"/>',
-                           "subsystems/beam/testdata/some.xml": "<!-- of the shed -->", "simulation/devices/lamp/lamp.xml": "<!-- nobody's -->"}.items():
+                           "subsystems/beam/testdata/some.xml": "<!-- of the shed -->", "subsystems/beam/tests/CMakeLists.txt": "hirosco_test(shed_flown)", "subsystems/beam/tests/lit_test.py": "shed", "simulation/devices/lamp/lamp.xml": "<!-- nobody's -->"}.items():
             (pathlib.Path(made) / path).parent.mkdir(parents=True, exist_ok=True)
             (pathlib.Path(made) / path).write_text(text)
         said = {line.partition(":")[0] for line in naming_missions(pathlib.Path(made))}
-        if said != {"subsystems/beam/shed.urdf", "subsystems/beam/more.xml"}:
+        if said != {"subsystems/beam/shed.urdf", "subsystems/beam/more.xml", "subsystems/beam/tests/CMakeLists.txt"}:
             wrong.append(f"missions planted in folders of their own, and seen in {sorted(said)}")
         for path, text in {"missions/hut/mission.xml": "<Mission/>", "missions/hut/flown.cpp": "as in the shed", "missions/hut/README.md": "as in the shed",
                            "subsystems/beam/CMakeLists.txt": "hirosco_subsystem(hirosco-wide-beam SOURCES wide/module.cpp DEPENDS a)\nhirosco_subsystem(hirosco-beam SOURCES module.cpp)"
@@ -161,7 +173,12 @@ if __name__ == "__main__":
             wrong.append(f"a mission planted in another one's folder, and seen in {sorted(others)}")
         if (planted_names := names(pathlib.Path(made))) != ["beam", "hut", "shed", "wide_beam"]:
             wrong.append(f"a module planted within a folder, and the names are {planted_names}")
+        for path in ("tests/beam/a.py", "tests/lit/lamp_in_sun/a.xml", "tests/beams/a.py", "tests/lit/lamp_test.py", "tests/lamp/__pycache__/a.pyc"):
+            (pathlib.Path(made) / path).parent.mkdir(parents=True, exist_ok=True)
+            (pathlib.Path(made) / path).write_text("")
+        if (bearing := {line.partition(":")[0] for line in test_folders(["lamp", "beam"], {"beam"}, pathlib.Path(made))}) != {"tests/beam", "tests/lit/lamp_in_sun"}:
+            wrong.append(f"names planted in folders of tests, and seen in {sorted(bearing)}")
         if caught != {"subsystems/beam/lit.cpp", "simulation/devices/lamp/lamp.cpp"}:
             wrong.append(f"planted in folders of their own, and seen in {sorted(caught)}")
     wrong += [f"the glossary has a word that is no name: {word}" for word in words - set(every) - {"word", "---"}]
-    sys.exit("\n".join([*found(ours, every, words), *in_homes(theirs, every, words), *naming_missions(), *among_missions(), *wrong]) or ("no files" if not ours or not every else None))
+    sys.exit("\n".join([*found(ours, every, words), *in_homes(theirs, every, words), *naming_missions(), *among_missions(), *test_folders(every, words), *wrong]) or ("no files" if not ours or not every else None))

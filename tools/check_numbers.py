@@ -23,7 +23,7 @@ def wrong(texts):
 def sources():
     for part in PARTS:
         for path in sorted((ROOT / part).rglob("*.[ch]pp")):
-            if not path.name.endswith("_test.cpp") and "testing" not in path.parts:
+            if not path.name.endswith("_test.cpp") and not {"testing", "tests"} & set(path.relative_to(ROOT).parts):
                 yield path.relative_to(ROOT).as_posix(), path.read_text()
 
 

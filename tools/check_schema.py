@@ -191,9 +191,9 @@ def self_test(texts):
     interval = re.search(r'<xs:attribute name="interval".*?</xs:attribute>', subsystem)[0]
     words = re.search(r"<xs:documentation>.*?</xs:documentation>", interval)[0]
     planted = [("interval has no xs:documentation", interval.replace(words, "")), ("interval is a number and has no unit", interval.replace("<xs:appinfo>cycles</xs:appinfo>", "")),
-               ("interval may be left out", interval.replace(' use="required"', "")), ("interval is a number without ends", interval.replace("xs:unsignedInt", "xs:positiveInteger")),
+               ("interval may be left out", interval.replace(' use="required"', "")), ("interval is a number without ends", interval.replace("IntervalCycles", "xs:positiveInteger")),
                ("interval_ms is called for ms and has the unit cycles", interval.replace('"interval"', '"interval_ms"')),
-               ("interval is no number and has the unit", interval.replace("xs:unsignedInt", "xs:string")),
+               ("interval is no number and has the unit", interval.replace("IntervalCycles", "xs:string")),
                ("colour has no xs:documentation", interval + '<xs:attribute name="colour" type="xs:string"/>'),
                ("schema.md is not what", interval.replace("Cycles of", "Turns of"))]
     written = page([Schema(text) for text in texts])

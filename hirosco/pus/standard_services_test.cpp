@@ -288,5 +288,14 @@ TEST(StandardServices, HaveAmongThemThoseThatADescriptorMayLeaveOut) {
   }
 }
 
+/// Which of them stay in the service loop is written where descriptors are read, below this library.
+TEST(StandardServices, AreWhatADescriptorIsToldOfThoseThatStayInTheServiceLoop) {
+  std::set<std::string> names;
+  for (const ServiceKind* kind : standard_services())
+    names.insert((kind->type < 10 ? "ST0" : "ST") + std::to_string(kind->type));
+  for (const auto& stays : descriptor::stays_in_service_loop)
+    EXPECT_TRUE(names.contains(std::string{stays.name})) << stays.name;
+}
+
 }  // namespace
 }  // namespace hirosco::pus

@@ -40,7 +40,7 @@ Dynamics::Dynamics(const Model& model, Base base)
       base_{base},
       first_joint_{base == Base::Free ? 6 : 0},
       bodies_(model.bodies().size()),
-      factors_{first_joint_ + model.joint_count()} {
+      by_matrix_{first_joint_ + model.joint_count()} {
   State at_rest;
   at_rest.q.setZero(model.joint_count());
   at_rest.qd.setZero(model.joint_count());
@@ -105,7 +105,7 @@ Vector6 Dynamics::felt_gravity() const noexcept {
 
 Result<> Dynamics::forward(const Coordinates& force, Coordinates& acceleration) noexcept {
   assert(force.size() == coordinate_count());
-  if (model_->has_mimic()) return forward_by_matrix(force, acceleration);
+  if (model_->has_mimic()) return by_matrix_.forward(*this, force, acceleration);
   acceleration.resize(coordinate_count());
   const auto bodies = model_->bodies();
   for (Moving& moving : bodies_) {
@@ -149,9 +149,9 @@ Result<> Dynamics::forward(const Coordinates& force, Coordinates& acceleration) 
   return ok();
 }
 
-Result<> Dynamics::forward_by_matrix(const Coordinates& force, Coordinates& acceleration) noexcept {
-  mass_matrix(matrix_);
-  bias(bias_);
+Result<> ByMassMatrix::forward(Dynamics& dynamics, const Coordinates& force, Coordinates& acceleration) noexcept {
+  dynamics.mass_matrix(matrix_);
+  dynamics.bias(bias_);
   factors_.compute(matrix_);
   if (factors_.info() != Eigen::Success) return fail(ErrorCode::OutOfRange, "the mass matrix is singular");
   acceleration = force - bias_;

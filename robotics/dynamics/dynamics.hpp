@@ -40,6 +40,21 @@ struct Momentum {
   Vector3 angular;  ///< kg m2/s, inertial axes, about the centre of mass of all
 };
 
+class Dynamics;
+
+/// Accelerations by the mass matrix, of a robot whose joints mimic others.
+class ByMassMatrix {
+ public:
+  explicit ByMassMatrix(int coordinates) : factors_{coordinates} {}
+  /// As Dynamics::forward(), in its state.
+  [[nodiscard]] Result<> forward(Dynamics& dynamics, const Coordinates& force, Coordinates& acceleration) noexcept;
+
+ private:
+  MassMatrix matrix_;
+  Coordinates bias_;
+  Eigen::LLT<MassMatrix> factors_;
+};
+
 /// The equations of motion of one robot and all that follows from them. update() takes a state, everything else is of that
 /// state. Vectors of coordinates, velocities and forces have, for a free base, first the base's [ω; v] and [n; f] (own axes, at its
 /// origin), then the joints; for a fixed one the joints alone. Accelerations of the base are the derivatives of the numbers of its twist.
@@ -108,7 +123,6 @@ class Dynamics {
   };
 
   [[nodiscard]] Vector6 felt_gravity() const noexcept;
-  [[nodiscard]] Result<> forward_by_matrix(const Coordinates& force, Coordinates& acceleration) noexcept;
   void compose() noexcept;
   void forces(const Vector6& base_acceleration, const Coordinates* acceleration, Coordinates& force) noexcept;
 
@@ -119,9 +133,7 @@ class Dynamics {
   Vector3 base_position_{Vector3::Zero()};
   Matrix3 base_rotation_{Matrix3::Identity()};
   std::vector<Moving> bodies_;
-  MassMatrix matrix_;
-  Coordinates bias_;
-  Eigen::LLT<MassMatrix> factors_;
+  ByMassMatrix by_matrix_;
 };
 
 }  // namespace hirosco::robotics

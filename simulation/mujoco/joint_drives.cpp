@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace hirosco::simulation {
 namespace {
 
@@ -12,6 +14,8 @@ constexpr double brake_share = 2;  ///< of a joint's effort
 constexpr double slowing_share = 0.3;
 /// Dry friction of MuJoCo gives way a little; this little: how near to rigid.
 constexpr double friction_rigid = 0.9999;
+/// Of a radian of its phase, how far a spring may swing in a sub-step: above it the integrator takes more than some ten-thousandths of it each time.
+constexpr double most_of_a_swing = 0.5;
 
 }  // namespace
 
@@ -64,16 +68,37 @@ double JointDrives::given_way(std::size_t joint, const MujocoWorld& world) const
   return spring ? world.data().qpos[spring->position] : 0;
 }
 
-std::optional<JointDrives::Swing> JointDrives::fastest_spring(const MujocoSpec::Robot& robot,
-                                                              const MujocoWorld& world) const noexcept {
-  std::optional<Swing> fastest;
+std::expected<std::vector<MujocoSpec::Spring>, std::string> JointDrives::springs(std::span<const double> stiffness,
+                                                                                 std::span<const double> damping,
+                                                                                 const MujocoSpec::Robot& robot,
+                                                                                 const MujocoWorld& world) const {
+  std::vector<MujocoSpec::Spring> springs;
+  for (std::size_t i = 0; i < std::min(stiffness.size(), robot.joints); ++i) {
+    const std::size_t joint = robot.first_joint + i;
+    if (position(joint, world) != 0)
+      return std::unexpected{"its joints are to give way before it is put into a posture"};
+    springs.push_back({.stiffness = stiffness[i],
+                       .damping = i < damping.size() ? damping[i] : 0,
+                       .rotor = world.model().dof_armature[joints_[joint].dof]});
+  }
+  return springs;
+}
+
+std::optional<std::string> JointDrives::too_fast(const MujocoSpec::Robot& robot, const MujocoWorld& world) const {
+  const Joint* fastest = nullptr;
+  double fastest_rad_s = 0;
   for (const Joint& joint : std::span{joints_.data() + robot.first_joint, robot.joints}) {
     if (!joint.spring) continue;
     // What resists it on both sides.
     const double rad_s = std::sqrt(joint.spring->stiffness * world.model().dof_invweight0[joint.spring->dof]);
-    if (!fastest || rad_s > fastest->rad_s) fastest = Swing{joint.name, rad_s};
+    if (fastest != nullptr && !(rad_s > fastest_rad_s)) continue;
+    fastest = &joint;
+    fastest_rad_s = rad_s;
   }
-  return fastest;
+  if (fastest == nullptr || fastest_rad_s * MujocoSpec::longest_sub_step_s <= most_of_a_swing) return std::nullopt;
+  return fmt::format("the spring at joint '{}' would swing with {:.0f} rad/s, and steps of {:g} ms tell apart {:.0f}",
+                     fastest->name, fastest_rad_s, 1e3 * MujocoSpec::longest_sub_step_s,
+                     most_of_a_swing / MujocoSpec::longest_sub_step_s);
 }
 
 void JointDrives::settle(const MujocoSpec::Robot& robot, MujocoWorld& world) const noexcept {

@@ -51,17 +51,15 @@ class JointDrives {
   [[nodiscard]] double effort(std::size_t joint) const noexcept { return joints_[joint].effort; }
   /// From the `first` on, as many as there are numbers, stand there.
   void place(std::span<const double> positions, std::size_t first, MujocoWorld& world) const noexcept;
-  /// What its drive moves besides links, behind its gear.
-  [[nodiscard]] double rotor(std::size_t joint, const MujocoWorld& world) const noexcept {
-    return world.model().dof_armature[joints_[joint].dof];
-  }
-  struct Swing {
-    std::string_view joint;
-    double rad_s{0};
-  };
-  /// The spring of this robot that swings fastest between its drive and its link, where all joints are at 0; empty: it has none.
-  [[nodiscard]] std::optional<Swing> fastest_spring(const MujocoSpec::Robot& robot,
-                                                    const MujocoWorld& world) const noexcept;
+  /// What is to be between the drives of this robot and their links, N m/rad and N m s/rad, or N/m and N s/m: of its first ones, as many as there are
+  /// numbers, with the rotors that they have. In words why not: they are to stand at 0.  Realtime: allocates.
+  [[nodiscard]] std::expected<std::vector<MujocoSpec::Spring>, std::string> springs(std::span<const double> stiffness,
+                                                                                    std::span<const double> damping,
+                                                                                    const MujocoSpec::Robot& robot,
+                                                                                    const MujocoWorld& world) const;
+  /// In words which spring of this robot would swing faster between its drive and its link, where all joints are at 0, than sub-steps can tell; empty: none
+  /// does.  Realtime: allocates.
+  [[nodiscard]] std::optional<std::string> too_fast(const MujocoSpec::Robot& robot, const MujocoWorld& world) const;
   /// Where this robot rests, its springs give way to what weighs on them.
   void settle(const MujocoSpec::Robot& robot, MujocoWorld& world) const noexcept;
   /// The first of them, as many as there are numbers, go on as fast as that.

@@ -11,6 +11,8 @@
 #include <numbers>
 
 #include "hirosco/data_transfer/device/local_flows.hpp"
+#include "simulation/mujoco/mujoco_scene.hpp"
+#include "simulation/mujoco/mujoco_urdf.hpp"
 #include "simulation/mujoco/part_device.hpp"
 
 /// Robots of several files in one world: what each is moved by, and how they meet.
@@ -48,7 +50,7 @@ std::expected<std::string, std::string> cube_of_obj(const std::string&) {
 const Mount opposite{.name = "left", .place_m = {0.5, 0, 0}, .turned_rad = {0, 0, std::numbers::pi}};
 
 MujocoSpec spec_of(const std::string& urdf, std::string_view mark = {}) {
-  return MujocoSpec::make(urdf, cube_of_obj, mark).value();
+  return spec_of_urdf(urdf, cube_of_obj, mark).value();
 }
 /// Two of them, without gravity.
 MujocoRobot world_of_two(const std::string& first, const std::string& second, const Mount& at = opposite) {
@@ -165,9 +167,9 @@ TEST(MountedRobot, IsNotPutIntoAnotherOneNorUnderANameThatIsTaken) {
 TEST(MountedRobot, OfAnMjcfFileMayFloatAndKeepsItsContacts) {
   auto robot = MujocoRobot::make(spec_of(cube_slider(1))).value();
   robot.set_gravity(0, 0, 0);
-  auto client = MujocoSpec::make_scene(R"(<mujoco><option gravity="0 0 -3"/><worldbody><body name="client"><freejoint/>
+  auto client = spec_of_scene(R"(<mujoco><option gravity="0 0 -3"/><worldbody><body name="client"><freejoint/>
     <geom type="sphere" size="0.1" mass="3" solref="0.01 1"/></body></worldbody></mujoco>)",
-                                       {}, {}, "client_");
+                              {}, {}, "client_");
   ASSERT_TRUE(client) << client.error();
   ASSERT_EQ(robot.mount(std::move(*client), {.name = "client", .place_m = {0.5, 0, 0}}), 1u);
   const int body = mj_name2id(&robot.model(), mjOBJ_BODY, "client/client");

@@ -17,7 +17,7 @@ namespace hirosco::simulation {
 
 /// The joints of any robot that has a URDF file, behind one bus. The file is the one that the setting MODEL_FILE of the device names
 /// in its subsystem's descriptor, or one that the mission names for the world alone; the world reads it by itself. WORLD_FILE of the
-/// mission names an MJCF file, which is the world then (mujoco_scene.cpp): it has the joints of the URDF file by their names. Joints that a device in its world has (part_device.hpp) are not in its frames.
+/// mission names an MJCF file, which is the world then (mujoco_scene.hpp): it has the joints of the URDF file by their names. Joints that a device in its world has (part_device.hpp) are not in its frames.
 /// To the subsystem: POSITION, VELOCITY, TORQUE DOUBLE[n], n joints in the order of the file (rad or m; behind gears, friction and
 /// brakes). From it: TORQUE DOUBLE[n] of the drives.
 /// Without a command the brakes are closed. A controlled stop slows down by brakes that give as much as the drives, then they hold

@@ -14,7 +14,7 @@
 namespace hirosco::simulation {
 namespace {
 
-/// Bits by which robots meet each other, one for each, beyond those by which a file or mujoco_spec.cpp says what of one robot meets what.
+/// Bits by which robots meet each other, one for each, beyond those by which a file or geoms.hpp says what of one robot meets what.
 constexpr int first_robot_bit = 16;
 static_assert(first_robot_bit + most_robots < 31);
 [[nodiscard]] int bit_of(std::size_t robot) { return 1 << (first_robot_bit + static_cast<int>(robot)); }
@@ -51,7 +51,7 @@ void let_meet(mjSpec& spec, std::size_t robot) {
 }  // namespace
 
 std::expected<MujocoSpec, std::string> MujocoSpec::copied() const {
-  MujocoSpec copy{mark_};
+  MujocoSpec copy;
   copy.spec_.reset(mj_copySpec(spec_.get()));
   if (copy.spec_ == nullptr) return std::unexpected{"MuJoCo does not copy its world"};
   copy.joints_ = joints_;
@@ -83,12 +83,8 @@ std::expected<MujocoSpec, std::string> MujocoSpec::with(MujocoSpec robot, const 
   mjsFrame* frame = mjs_addFrame(mjs_findBody(&spec, "world"), nullptr);
   std::ranges::copy(mount.place_m, frame->pos);
   mju_euler2Quat(frame->quat, mount.turned_rad.data(), "XYZ");
-  const auto told = [&] {
-    std::string text = mjs_getError(&spec);
-    std::ranges::replace(text, '\n', ' ');
-    return std::unexpected{"MuJoCo: " + text};
-  };
-  if (mjs_attach(frame->element, taken_of(*robot.spec_), prefix.c_str(), "") == nullptr) return told();
+  if (mjs_attach(frame->element, taken_of(*robot.spec_), prefix.c_str(), "") == nullptr)
+    return std::unexpected{error_of(spec)};
   for (const DrivenJoint& joint : robot.joints_) {
     whole.joints_.push_back(joint);
     whole.joints_.back().name = prefix + joint.name;
@@ -103,7 +99,7 @@ std::expected<MujocoSpec, std::string> MujocoSpec::with(MujocoSpec robot, const 
   added.prefix = prefix;
   added.first_joint = joints_.size();
   // Itself, no copy: a copy drops without a word what leads nowhere.
-  if (!MujocoModel{mj_compile(&spec, MujocoFiles{whole.octets_}.get())}) return told();
+  if (!MujocoModel{mj_compile(&spec, MujocoFiles{whole.octets_}.get())}) return std::unexpected{error_of(spec)};
   return copy;
 }
 

@@ -7,28 +7,25 @@
 
 #include <fmt/format.h>
 
+#include "simulation/mujoco/mujoco_scene.hpp"
+#include "simulation/mujoco/mujoco_urdf.hpp"
+
 namespace hirosco::simulation {
-namespace {
-
-/// Of a radian of its phase, how far a spring may swing in a sub-step: above it the integrator takes more than some ten-thousandths of it each time.
-constexpr double most_of_a_swing = 0.5;
-
-}  // namespace
 
 MujocoRobot::MujocoRobot(MujocoSpec spec)
     : world_{std::move(spec)}, drives_{world_.spec().joints()}, contacts_{world_.spec()} {}
 
 std::expected<MujocoRobot, std::string> MujocoRobot::make(std::string_view urdf, const MeshSource& meshes) {
-  auto spec = MujocoSpec::make(urdf, meshes);
+  auto spec = spec_of_urdf(urdf, meshes);
   if (!spec) return std::unexpected{std::move(spec.error())};
   return make(std::move(*spec));
 }
 
 std::expected<MujocoRobot, std::string> MujocoRobot::make_in_scene(std::string_view mjcf, std::string_view urdf,
                                                                    const MeshSource& files) {
-  auto joints = MujocoSpec::driven_joints(urdf);
+  auto joints = driven_joints(urdf);
   if (!joints) return std::unexpected{std::move(joints.error())};
-  auto spec = MujocoSpec::make_scene(mjcf, std::move(*joints), files);
+  auto spec = spec_of_scene(mjcf, std::move(*joints), files);
   if (!spec) return std::unexpected{std::move(spec.error())};
   return make(std::move(*spec));
 }
@@ -150,23 +147,11 @@ std::expected<void, std::string> MujocoRobot::give_way(std::span<const double> s
                                                        std::span<const double> damping, std::size_t robot) {
   // Its springs come between what is numbered already.
   if (robot + 1 != robots()) return std::unexpected{"its joints are to give way before another robot is mounted"};
-  const std::size_t first = first_joint(robot);
-  std::vector<MujocoSpec::Spring> springs;
-  for (std::size_t i = 0; i < std::min(stiffness.size(), joints(robot)); ++i) {
-    if (position(first + i) != 0) return std::unexpected{"its joints are to give way before it is put into a posture"};
-    springs.push_back({.stiffness = stiffness[i],
-                       .damping = i < damping.size() ? damping[i] : 0,
-                       .rotor = drives_.rotor(first + i, world_)});
-  }
-  auto with = world_.spec().giving_way(springs, robot);
+  const auto springs = drives_.springs(stiffness, damping, of(robot), world_);
+  if (!springs) return std::unexpected{springs.error()};
+  auto with = world_.spec().giving_way(*springs, robot);
   if (!with) return std::unexpected{std::move(with.error())};
-  return become(std::move(*with), [&]() -> std::optional<std::string> {
-    const auto fastest = drives_.fastest_spring(of(robot), world_);
-    if (!fastest || fastest->rad_s * MujocoSpec::longest_sub_step_s <= most_of_a_swing) return std::nullopt;
-    return fmt::format("the spring at joint '{}' would swing with {:.0f} rad/s, and steps of {:g} ms tell apart {:.0f}",
-                       fastest->joint, fastest->rad_s, 1e3 * MujocoSpec::longest_sub_step_s,
-                       most_of_a_swing / MujocoSpec::longest_sub_step_s);
-  });
+  return become(std::move(*with), [&] { return drives_.too_fast(of(robot), world_); });
 }
 
 std::expected<void, std::string> MujocoRobot::set_tip(const std::string& link, std::size_t robot) {

@@ -25,7 +25,7 @@
 namespace hirosco::simulation {
 
 /// A robot of a URDF file as MuJoCo moves it: rigid links on a base that stands or floats, joints with dry friction and brakes that slip. Its
-/// collision shapes touch each other (mujoco_spec.hpp), obstacles that stand around it and bodies that move by themselves. Other robots of other files are mounted in its
+/// collision shapes touch each other (mujoco_urdf.hpp), obstacles that stand around it and bodies that move by themselves. Other robots of other files are mounted in its
 /// world (mount()): they are number 1 and further, it is 0. Joints are numbered robot by robot as in their files, fixed
 /// ones left out. Whenever something comes to its world or goes, this is what moves it into another model.
 /// Runge-Kutta of 4th order with sub-steps of at most 0.5 ms: the same bits twice from one version of MuJoCo on one architecture.

@@ -1,9 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
+#include "simulation/mujoco/mujoco_scene.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -11,7 +15,6 @@
 
 #include "hirosco/xml/escaped.hpp"
 #include "simulation/mujoco/mujoco_files.hpp"
-#include "simulation/mujoco/mujoco_spec.hpp"
 
 /// A world of an MJCF file: what stands, lies and hangs in it is as the file says, the robot is its joints of certain names (docs/adr/0162).
 namespace hirosco::simulation {
@@ -158,8 +161,8 @@ struct Parsed {
 
 }  // namespace
 
-std::expected<MujocoSpec, std::string> MujocoSpec::make_scene(std::string_view mjcf, std::vector<DrivenJoint> joints,
-                                                              const MeshSource& files, std::string_view mark) {
+std::expected<MujocoSpec, std::string> spec_of_scene(std::string_view mjcf, std::vector<DrivenJoint> joints,
+                                                     const MeshSource& files, std::string_view mark) {
   const auto tree = xml::read_tree(mjcf);
   if (!tree) return std::unexpected{fmt::format("line {}: {}", tree.error().at.line, tree.error().reason)};
   if (tree->name != "mujoco")
@@ -180,25 +183,23 @@ std::expected<MujocoSpec, std::string> MujocoSpec::make_scene(std::string_view m
     joint.effort = effort_in(driven, id).value_or(joint.effort);
     joint.of_scene = true;
   }
-  MujocoSpec made{mark};
+  MujocoSpec::Content made;
   if (auto written = rewriting.write(*tree, false); !written) return std::unexpected{std::move(written.error())};
-  made.octets_ = rewriting.octets();
-  auto parsed = parse(rewriting.text(), made.octets_);
+  made.octets = rewriting.octets();
+  auto parsed = parse(rewriting.text(), made.octets);
   if (!parsed) return std::unexpected{std::move(parsed.error())};
   const mjModel& model = *parsed->model;
-  made.spec_ = std::move(parsed->spec);
-  made.robots_.front().joints = joints.size();
-  made.robots_.front().of_scene = true;
-  made.further_dofs_ = static_cast<std::size_t>(model.nv) - joints.size();
-  made.equalities_ = static_cast<std::size_t>(model.neq);
-  made.pairs_left_out_ = static_cast<std::size_t>(model.nexclude);
-  if (!joints.empty()) {
-    const int last = mj_name2id(&model, mjOBJ_JOINT, joints.back().name.c_str());
-    const char* carrier = mj_id2name(&model, mjOBJ_BODY, model.jnt_bodyid[last]);
-    if (carrier != nullptr && *carrier != '\0') static_cast<void>(made.hang_payload_on(carrier));
-  }
-  made.joints_ = std::move(joints);
-  return made;
+  made.spec = std::move(parsed->spec);
+  made.of_scene = true;
+  made.further_dofs = static_cast<std::size_t>(model.nv) - joints.size();
+  made.equalities = static_cast<std::size_t>(model.neq);
+  made.pairs_left_out = static_cast<std::size_t>(model.nexclude);
+  const int last = joints.empty() ? -1 : mj_name2id(&model, mjOBJ_JOINT, joints.back().name.c_str());
+  const char* carrier = last < 0 ? nullptr : mj_id2name(&model, mjOBJ_BODY, model.jnt_bodyid[last]);
+  made.joints = std::move(joints);
+  MujocoSpec whole{std::move(made)};
+  if (carrier != nullptr && *carrier != '\0') static_cast<void>(whole.hang_payload_on(carrier));
+  return whole;
 }
 
 }  // namespace hirosco::simulation

@@ -3,142 +3,28 @@
 #include "simulation/mujoco/mujoco_spec.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <set>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "hirosco/xml/escaped.hpp"
+#include "simulation/mujoco/geoms.hpp"
 #include "simulation/mujoco/mujoco_files.hpp"
-#include "simulation/mujoco/rigid_links.hpp"
 
 namespace hirosco::simulation {
 namespace {
 
-using xml::Element;
-
-/// Of a joint whose file says nothing.
-constexpr double default_effort = 100;
-/// How much stiffer friction of a contact is than its normal direction: what stands on a slope creeps by less.
-constexpr double friction_stiffness = 10;
 /// Where bodies are held by friction alone: without these what is held creeps by tenths of a millimetre a second.
 constexpr int no_slip_iterations = 10;
-/// Links that are nearer to each other where all joints are at 0 are built that way.
-constexpr double near_m = 0.01;
-/// Of link on link. What touches an obstacle has the obstacle's.
-constexpr double link_friction = 0.5;
-/// Bits of who meets whom. The hull of a link's mesh is larger than the link, centimetres between two that are bent around each other: it meets
-/// what is no link.
-constexpr int of_links = 1, of_meshes = 2, of_others = 4;
 constexpr const char* obstacle_mark = "obstacle ";
 constexpr const char* loose_mark = "loose ";
 
-/// What MuJoCo's reader is given of a file: what moves and has mass. Shapes are read by ourselves: it takes or leaves them in silence.
-constexpr std::array known{"robot", "link",   "inertial", "origin", "mass",  "inertia",
-                           "joint", "parent", "child",    "axis",   "limit", "dynamics"};
-// A link of this name would be MuJoCo's own world.
-[[nodiscard]] std::string body_name(const std::string& link) { return link == "world" ? "world_link" : link; }
-
-void write(const Element& element, std::string& text) {
-  if (std::ranges::find(known, element.name) == known.end()) return;
-  text += "<" + element.name;
-  for (const auto& [name, value, at, value_at] : element.attributes) {
-    if (name.find(':') != std::string::npos) continue;
-    text += " " + name + "=\"" + xml::escaped(body_name(value)) + "\"";
-  }
-  text += ">";
-  if (element.name == "robot")
-    text += R"(<mujoco><compiler fusestatic="false" balanceinertia="false" boundmass="0" boundinertia="0"/></mujoco>)";
-  for (const Element& child : element.children) write(child, text);
-  text += "</" + element.name + ">";
-}
-
-[[nodiscard]] std::string attribute(const Element& element, std::string_view name) {
-  const auto* found = element.find(name);
-  return found != nullptr ? found->value : std::string{};
-}
-
-[[nodiscard]] double number(const Element& element, std::string_view name, double otherwise) {
-  const std::string text = attribute(element, name);
-  double value = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return problem == std::errc{} && std::isfinite(value) ? value : otherwise;
-}
-
-[[nodiscard]] double effort_of(const Element& joint) {
-  const Element* limit = child_of(joint, "limit");
-  const double effort = limit != nullptr ? number(*limit, "effort", 0) : 0;
-  return effort > 0 ? effort : default_effort;
-}
-
-/// In the order of the file.
-[[nodiscard]] std::vector<DrivenJoint> driven_joints_of(const Element& robot) {
-  std::vector<DrivenJoint> joints;
-  for (const Element& element : robot.children)
-    if (element.name == "joint" && attribute(element, "type") != "fixed" && child_of(element, "mimic") == nullptr)
-      joints.push_back({.name = attribute(element, "name"), .effort = effort_of(element)});
-  return joints;
-}
-
-/// Who follows whom. It has no drive and no brake of its own.
-struct Mimic {
-  std::string joint;
-  std::string followed;
-  double multiplier{1};
-  double offset{0};
-};
-
-/// As a constraint: MuJoCo knows such joints in no URDF file.
-void add(const Mimic& mimic, mjSpec& spec) {
-  mjsEquality& equal = *mjs_addEquality(&spec, nullptr);
-  equal.type = mjEQ_JOINT;
-  equal.objtype = mjOBJ_JOINT;
-  mjs_setString(equal.name1, mimic.joint.c_str());
-  mjs_setString(equal.name2, mimic.followed.c_str());
-  equal.data[0] = mimic.offset;
-  equal.data[1] = mimic.multiplier;
-  equal.solref[0] = MujocoSpec::friction_s;
-}
-
-mjsGeom& add(const Shape& shape, double friction, int priority, mjsBody& body, const std::string& name = {}) {
-  mjsGeom& geom = *mjs_addGeom(&body, nullptr);
-  if (!name.empty()) mjs_setName(geom.element, name.c_str());
-  const auto& sizes = shape.sizes;
-  const auto take = [&](mjtGeom type, std::array<double, 3> size) {
-    geom.type = type;
-    std::ranges::copy(size, geom.size);
-  };
-  switch (shape.kind) {
-    case ShapeKind::Box: take(mjGEOM_BOX, {sizes[0] / 2, sizes[1] / 2, sizes[2] / 2}); break;
-    case ShapeKind::Cylinder: take(mjGEOM_CYLINDER, {sizes[0], sizes[1] / 2, 0}); break;
-    case ShapeKind::Sphere: take(mjGEOM_SPHERE, {sizes[0], 0, 0}); break;
-    case ShapeKind::Plane: take(mjGEOM_PLANE, {0, 0, 1}); break;
-    case ShapeKind::Mesh:
-      geom.type = mjGEOM_MESH;
-      mjs_setString(geom.meshname, shape.mesh.c_str());
-      break;
-  }
-  std::ranges::copy(shape.place_m, geom.pos);
-  mju_euler2Quat(geom.quat, shape.turned_rad.data(), "XYZ");
-  geom.mass = 0;  // what a link weighs its <inertial> says
-  // Without friction it is no cone of almost none, which shakes the solver.
-  geom.condim = friction > 0 ? 3 : 1;
-  geom.priority = priority;
-  geom.friction[0] = friction;
-  return geom;
-}
 mjsGeom& add_other(const Shape& shape, double friction, int priority, mjsBody& body, const std::string& name) {
-  mjsGeom& geom = add(shape, friction, priority, body, name);
+  mjsGeom& geom = add_geom(shape, friction, priority, body, name);
   geom.contype = of_links | of_others;
   geom.conaffinity = of_links | of_meshes;
   return geom;
 }
 
 /// Its friction goes before that of whatever it touches.
-void add(const LooseBody& loose, mjSpec& spec) {
+void add_loose(const LooseBody& loose, mjSpec& spec) {
   const Obstacle& standing = loose.standing;
   mjsBody& body = *mjs_addBody(mjs_findBody(&spec, "world"), nullptr);
   std::ranges::copy(standing.shape.place_m, body.pos);
@@ -150,90 +36,45 @@ void add(const LooseBody& loose, mjSpec& spec) {
   geom.mass = loose.mass_kg;
 }
 
-void add_mesh(const std::string& name, const std::array<double, 3>& scale, mjSpec& spec) {
-  mjsMesh& mesh = *mjs_addMesh(&spec, nullptr);
-  mjs_setName(mesh.element, name.c_str());
-  mjs_setString(mesh.file, name.c_str());
-  std::ranges::copy(scale, mesh.scale);
-  mesh.inertia = mjMESH_INERTIA_CONVEX;
-}
-
-[[nodiscard]] std::string name_of(const mjModel& model, int body) {
-  const char* name = mj_id2name(&model, mjOBJ_BODY, body);
-  return name != nullptr ? name : "";
-}
-
-[[nodiscard]] std::string one_line(std::string text) {
-  std::ranges::replace(text, '\n', ' ');
-  return text;
-}
-
 }  // namespace
 
-std::expected<MujocoSpec, std::string> MujocoSpec::make(std::string_view urdf, const MeshSource& meshes,
-                                                        std::string_view mark) {
-  const auto tree = xml::read_tree(urdf);
-  if (!tree) return std::unexpected{"the URDF file: " + tree.error().reason};
-  MujocoSpec made{mark};
-  made.joints_ = driven_joints_of(*tree);
-  made.robots_.front().joints = made.joints_.size();
-  std::vector<std::string> carried, carrying;
-  std::vector<Mimic> mimics;
-  for (const Element& element : tree->children) {
-    if (element.name != "joint") continue;
-    if (const Element* parent = child_of(element, "parent")) carrying.push_back(attribute(*parent, "link"));
-    if (const Element* carries = child_of(element, "child")) carried.push_back(attribute(*carries, "link"));
-    const Element* mimic = child_of(element, "mimic");
-    if (mimic == nullptr || attribute(element, "type") == "fixed") continue;
-    mimics.push_back({attribute(element, "name"), attribute(*mimic, "joint"), number(*mimic, "multiplier", 1),
-                      number(*mimic, "offset", 0)});
-  }
-  const auto leaf = std::ranges::find_if(
-      carried, [&](const std::string& link) { return std::ranges::find(carrying, link) == carrying.end(); });
-  for (const Element& element : tree->children)
-    if (const std::string link = attribute(element, "name");
-        element.name == "link" && std::ranges::find(carried, link) == carried.end())
-      made.root_ = body_name(link);
-  std::string text;
-  Element joined = *tree;
-  join_impossible_links(joined);
-  write(joined, text);
-  std::array<char, 1000> why{};
-  made.spec_.reset(mj_parseXMLString(text.c_str(), nullptr, why.data(), why.size()));
-  if (made.spec_ == nullptr) return std::unexpected{std::string{"MuJoCo: "} + why.data()};
-  mjSpec& spec = *made.spec_;
-  spec.option.integrator = mjINT_RK4;
-  spec.option.timestep = longest_sub_step_s;
-  spec.option.cone = mjCONE_ELLIPTIC;
-  spec.option.impratio = friction_stiffness;
-  spec.compiler.usethread = 0;
-  if (leaf != carried.end()) static_cast<void>(made.hang_payload_on(*leaf));
-  for (const Mimic& mimic : mimics) add(mimic, spec);
-  made.further_dofs_ = made.equalities_ = mimics.size();
-  made.add_shapes(*tree, meshes);
-  if (auto done = made.leave_out_pairs(); !done) return std::unexpected{std::move(done.error())};
-  return made;
+std::string body_name(const std::string& link) { return link == "world" ? "world_link" : link; }
+
+std::string error_of(mjSpec& spec) {
+  std::string text = mjs_getError(&spec);
+  std::ranges::replace(text, '\n', ' ');
+  return "MuJoCo: " + text;
 }
 
-std::expected<std::vector<DrivenJoint>, std::string> MujocoSpec::driven_joints(std::string_view urdf) {
-  const auto tree = xml::read_tree(urdf);
-  if (!tree) return std::unexpected{"the URDF file: " + tree.error().reason};
-  return driven_joints_of(*tree);
+bool hang_payload(mjSpec& spec, const std::string& carrier, const std::string& name) {
+  mjsBody* body = mjs_findBody(&spec, carrier.c_str());
+  if (body == nullptr) return false;
+  if (mjsBody* before = mjs_findBody(&spec, name.c_str())) mjs_delete(&spec, before->element);
+  mjsBody* payload = mjs_addBody(body, nullptr);
+  if (payload == nullptr) return false;
+  mjs_setName(payload->element, name.c_str());
+  payload->explicitinertial = 1;
+  return true;
+}
+
+MujocoSpec::MujocoSpec(Content content)
+    : spec_{std::move(content.spec)},
+      joints_{std::move(content.joints)},
+      root_{std::move(content.root)},
+      further_dofs_{content.further_dofs},
+      equalities_{content.equalities},
+      pairs_left_out_{content.pairs_left_out},
+      octets_{std::move(content.octets)} {
+  robots_.front().joints = joints_.size();
+  robots_.front().of_scene = content.of_scene;
+  robots_.front().left_out = std::move(content.left_out);
 }
 
 bool MujocoSpec::hang_payload_on(const std::string& link, std::size_t robot) {
   const auto of_another = [&](const Robot& each) { return !each.prefix.empty() && link.starts_with(each.prefix); };
   if (link == payload_body || std::ranges::any_of(robots_, of_another)) return false;
   const std::string& prefix = robots_[robot].prefix;
-  const std::string name = prefix + payload_body;
-  mjsBody* carrier = mjs_findBody(spec_.get(), (prefix + body_name(link)).c_str());
-  if (carrier == nullptr) return false;
-  if (mjsBody* before = mjs_findBody(spec_.get(), name.c_str())) mjs_delete(spec_.get(), before->element);
-  mjsBody* payload = mjs_addBody(carrier, nullptr);
-  if (payload == nullptr) return false;
-  mjs_setName(payload->element, name.c_str());
-  payload->explicitinertial = 1;
-  return true;
+  return hang_payload(*spec_, prefix + body_name(link), prefix + payload_body);
 }
 
 std::expected<void, std::string> MujocoSpec::let_float() {
@@ -245,109 +86,6 @@ std::expected<void, std::string> MujocoSpec::let_float() {
   return {};
 }
 
-void MujocoSpec::add_shapes(const Element& robot, const MeshSource& meshes) {
-  LinkShapes shapes = link_shapes(robot);
-  robots_.front().left_out = std::move(shapes.left_out);
-  for (auto& [link, shape] : shapes.taken) {
-    const auto leave_out = [&](const std::string& why) {
-      robots_.front().left_out.push_back(fmt::format("a shape of link '{}': {}", link, why));
-    };
-    mjsBody* body = mjs_findBody(spec_.get(), body_name(link).c_str());
-    if (body == nullptr) {
-      leave_out("MuJoCo has no such link");
-      continue;
-    }
-    if (shape.kind == ShapeKind::Mesh) {
-      auto name = take_mesh(shape, meshes);
-      if (!name) {
-        leave_out(name.error());
-        continue;
-      }
-      shape.mesh = std::move(*name);
-    }
-    mjsGeom& geom = add(shape, link_friction, 0, *body);
-    if (shape.kind != ShapeKind::Mesh) continue;
-    geom.contype = of_meshes;
-    geom.conaffinity = of_others;
-  }
-}
-
-/// The name by which MuJoCo knows it then. Tried by itself: one that cannot be read would cost the whole robot.
-std::expected<std::string, std::string> MujocoSpec::take_mesh(const Shape& shape, const MeshSource& meshes) {
-  const auto file = mesh_file(shape.mesh);
-  if (!file) return std::unexpected{file.error()};
-  if (!meshes) return std::unexpected{shape.mesh + ": nobody reads files here"};
-  auto octets = meshes(*file);
-  if (!octets) return std::unexpected{shape.mesh + " " + octets.error()};
-  const std::string name = fmt::format("{}mesh_{}{}", mark_, octets_.size(), file->substr(file->size() - 4));
-  const std::map<std::string, std::string> alone{{name, *octets}};
-  const std::unique_ptr<mjSpec, MujocoFree> trial{mj_makeSpec()};
-  add_mesh(name, shape.sizes, *trial);
-  add({.kind = ShapeKind::Mesh, .mesh = name}, link_friction, 0, *mjs_findBody(trial.get(), "world"));
-  if (!MujocoModel{mj_compile(trial.get(), MujocoFiles{alone}.get())})
-    return std::unexpected{fmt::format("{}: MuJoCo: {}", shape.mesh, one_line(mjs_getError(trial.get())))};
-  add_mesh(name, shape.sizes, *spec_);
-  octets_.emplace(name, std::move(*octets));
-  return name;
-}
-
-/// MuJoCo leaves out neighbours by itself, but for those of what stands.
-std::expected<void, std::string> MujocoSpec::leave_out_pairs() {
-  // Itself, no copy: a copy drops without a word what leads nowhere.
-  const MujocoModel compiled{mj_compile(spec_.get(), MujocoFiles{octets_}.get())};
-  if (compiled == nullptr) return std::unexpected{std::string{"MuJoCo: "} + one_line(mjs_getError(spec_.get()))};
-  const mjModel& model = *compiled;
-  const MujocoData data{mj_makeData(&model)};
-  if (data == nullptr) return std::unexpected{"MuJoCo has no memory for it"};
-  for (int joint = 0; joint < model.njnt; ++joint) {
-    const double low = model.jnt_range[2 * joint], high = model.jnt_range[2 * joint + 1];
-    data->qpos[model.jnt_qposadr[joint]] =
-        model.jnt_limited[joint] != 0 && low <= high ? std::clamp(0.0, low, high) : 0;
-  }
-  mj_kinematics(&model, data.get());
-  std::set<std::pair<int, int>> pairs;
-  for (int i = 1; i < model.nbody; ++i) {
-    const int moved = model.body_weldid[i];
-    if (moved == 0 || model.body_weldid[model.body_parentid[moved]] != 0) continue;
-    for (int j = 1; j < model.nbody; ++j)
-      if (model.body_weldid[j] == 0) pairs.insert(std::minmax({i, j}));
-  }
-  const auto meet = [&](int one, int other) {
-    return (model.geom_contype[one] & model.geom_conaffinity[other]) != 0 ||
-           (model.geom_contype[other] & model.geom_conaffinity[one]) != 0;
-  };
-  bool hulls = false;
-  for (int i = 0; i < model.ngeom; ++i)
-    for (int j = i + 1; j < model.ngeom; ++j) {
-      const std::pair pair{model.geom_bodyid[i], model.geom_bodyid[j]};
-      const int one = model.body_weldid[pair.first], other = model.body_weldid[pair.second];
-      const auto carries = [&](int carrier, int carried) {
-        return model.body_weldid[model.body_parentid[carried]] == carrier;
-      };
-      if (one == other || carries(one, other) || carries(other, one)) continue;
-      if (!meet(i, j)) {
-        hulls = true;
-        continue;
-      }
-      if (pairs.contains(pair) || mj_geomDistance(&model, data.get(), i, j, 2 * near_m, nullptr) > near_m) continue;
-      pairs.insert(pair);
-      robots_.front().left_out.push_back(
-          fmt::format("contact of links '{}' and '{}', which are at each other where all joints are at 0",
-                      name_of(model, pair.first), name_of(model, pair.second)));
-    }
-  if (hulls)
-    robots_.front().left_out.emplace_back(
-        "contact of links with each other where one is a mesh: hulls are larger than links");
-  for (const auto& [one, other] : pairs) {
-    if (model.body_geomnum[one] == 0 || model.body_geomnum[other] == 0) continue;
-    mjsExclude& exclude = *mjs_addExclude(spec_.get());
-    mjs_setString(exclude.bodyname1, name_of(model, one).c_str());
-    mjs_setString(exclude.bodyname2, name_of(model, other).c_str());
-    ++pairs_left_out_;
-  }
-  return {};
-}
-
 std::expected<MujocoModel, std::string> MujocoSpec::compile(std::span<const Obstacle> obstacles,
                                                             std::span<const LooseBody> bodies) const {
   const std::unique_ptr<mjSpec, MujocoFree> spec{mj_copySpec(spec_.get())};
@@ -356,10 +94,10 @@ std::expected<MujocoModel, std::string> MujocoSpec::compile(std::span<const Obst
   for (const Obstacle& obstacle : obstacles)
     add_other(obstacle.shape, obstacle.friction, 1, *mjs_addBody(mjs_findBody(spec.get(), "world"), nullptr),
               obstacle_mark + obstacle.name);
-  for (const LooseBody& body : bodies) add(body, *spec);
+  for (const LooseBody& body : bodies) add_loose(body, *spec);
   if (!bodies.empty()) spec->option.noslip_iterations = no_slip_iterations;
   MujocoModel model{mj_compile(spec.get(), MujocoFiles{octets_}.get())};
-  if (model == nullptr) return std::unexpected{std::string{"MuJoCo: "} + one_line(mjs_getError(spec.get()))};
+  if (model == nullptr) return std::unexpected{error_of(*spec)};
   if (static_cast<std::size_t>(model->neq) != equalities_ ||
       static_cast<std::size_t>(model->nexclude) != pairs_left_out_)
     return std::unexpected{"MuJoCo lost some of the robot"};

@@ -33,10 +33,15 @@ struct DrivenJoint {
   bool of_scene{false};  ///< how the ends of its range give way its file says
 };
 
-/// What MuJoCo is told of a URDF file: links, inertias, joints, what mimics them, and the shapes that touch. Compiled anew whenever
-/// an obstacle, a loose body or another robot comes to it or goes.
-/// Neighbours, which one joint holds together, and links that are at each other where all joints are at 0 (or as near as their ranges let
-/// them) pass through each other; the latter are told.  Realtime: allocates. Thread: one.
+/// As MuJoCo calls a link: one of the name of MuJoCo's own world has another one.
+[[nodiscard]] std::string body_name(const std::string& link);
+/// What MuJoCo has said against it, in one line.
+[[nodiscard]] std::string error_of(mjSpec& spec);
+/// A body without mass at the origin of this one, by this name, in place of the one that has it. False: there is no such body.
+[[nodiscard]] bool hang_payload(mjSpec& spec, const std::string& carrier, const std::string& name);
+
+/// What MuJoCo is told of a world: of its robots, each as its file says (mujoco_urdf.hpp, mujoco_scene.hpp). Compiled anew whenever
+/// an obstacle, a loose body or another robot comes to it or goes.  Realtime: allocates. Thread: one.
 class MujocoSpec {
  public:
   static constexpr double longest_sub_step_s = 0.0005;
@@ -45,18 +50,19 @@ class MujocoSpec {
       0.002;  ///< by which the ends of ranges do: MuJoCo's own lets light fingers millimetres beyond theirs
   static constexpr const char* payload_body = "hirosco_payload";
 
-  /// In words why there is none. `mark`: begin of the names by which MuJoCo is told of its files, another one for each robot of a world.
-  [[nodiscard]] static std::expected<MujocoSpec, std::string> make(std::string_view urdf, const MeshSource& meshes,
-                                                                   std::string_view mark = {});
-
-  /// Of an MJCF file, which says what stands, lies and hangs in the world (mujoco_scene.cpp). The robot is its joints of these names, each with what its
-  /// drive in the scene can do, or else with its `effort` here; tip is the body that the last of them moves. In words why there is none.
-  [[nodiscard]] static std::expected<MujocoSpec, std::string> make_scene(std::string_view mjcf,
-                                                                         std::vector<DrivenJoint> joints,
-                                                                         const MeshSource& files,
-                                                                         std::string_view mark = {});
-  /// Those of a URDF file, in its order. In words why there are none.
-  [[nodiscard]] static std::expected<std::vector<DrivenJoint>, std::string> driven_joints(std::string_view urdf);
+  /// What a file says.
+  struct Content {
+    std::unique_ptr<mjSpec, MujocoFree> spec{};
+    std::vector<DrivenJoint> joints{};
+    std::string root{};  ///< as MuJoCo calls it
+    bool of_scene{false};
+    std::size_t further_dofs{0};
+    std::size_t equalities{0};
+    std::size_t pairs_left_out{0};  ///< of bodies that pass through each other
+    std::map<std::string, std::string> octets{};  ///< of files, by the names that MuJoCo is told
+    std::vector<std::string> left_out{};  ///< what of its shapes does not touch, each in words
+  };
+  explicit MujocoSpec(Content content);
 
   /// One of those that are in it: the first one is that whose world it is, the others are mounted there.
   struct Robot {
@@ -108,11 +114,8 @@ class MujocoSpec {
   [[nodiscard]] static std::string_view loose_body_of(const mjModel& model, int geom) noexcept;
 
  private:
-  explicit MujocoSpec(std::string_view mark) : mark_{mark} {}
+  MujocoSpec() = default;
   [[nodiscard]] std::expected<MujocoSpec, std::string> copied() const;
-  void add_shapes(const xml::Element& robot, const MeshSource& meshes);
-  [[nodiscard]] std::expected<std::string, std::string> take_mesh(const Shape& shape, const MeshSource& meshes);
-  [[nodiscard]] std::expected<void, std::string> leave_out_pairs();
 
   std::unique_ptr<mjSpec, MujocoFree> spec_;
   std::vector<DrivenJoint> joints_;
@@ -121,7 +124,6 @@ class MujocoSpec {
   std::size_t further_dofs_{0};
   std::size_t equalities_{0};
   std::size_t pairs_left_out_{0};
-  std::string mark_;
   std::map<std::string, std::string> octets_;  ///< of files, by the names that MuJoCo is told
   std::vector<Robot> robots_{1};
 };

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "hirosco/descriptor/read/read.hpp"
+#include "simulation/mujoco/mujoco_scene.hpp"
+#include "simulation/mujoco/mujoco_urdf.hpp"
 
 namespace hirosco::simulation {
 
@@ -34,15 +36,15 @@ std::expected<MujocoSpec, NoRobot> read_robot(const std::map<std::string, std::s
   const auto urdf = read(robot->second);
   if (!urdf) return not_there(robot->second, urdf.error());
   if (scene == files.end()) {
-    auto spec = MujocoSpec::make(*urdf, beside, mark);
+    auto spec = spec_of_urdf(*urdf, beside, mark);
     if (!spec) return malformed(spec.error());
     return std::move(*spec);
   }
   const auto mjcf = read(scene->second);
   if (!mjcf) return not_there(scene->second, mjcf.error());
-  auto joints = MujocoSpec::driven_joints(*urdf);
+  auto joints = driven_joints(*urdf);
   if (!joints) return malformed(joints.error());
-  auto spec = MujocoSpec::make_scene(*mjcf, std::move(*joints), beside, mark);
+  auto spec = spec_of_scene(*mjcf, std::move(*joints), beside, mark);
   if (!spec) return malformed(spec.error());
   return std::move(*spec);
 }

@@ -23,7 +23,7 @@ struct NoRobot {
   ErrorCode code{};
   std::string why;
 };
-/// What MuJoCo is told of these files, each by its setting's name; `mark` as of MujocoSpec::make().  Realtime: allocates, reads files.
+/// What MuJoCo is told of these files, each by its setting's name; `mark` as of spec_of_urdf().  Realtime: allocates, reads files.
 [[nodiscard]] std::expected<MujocoSpec, NoRobot> read_robot(const std::map<std::string, std::string>& files,
                                                             std::string_view mark = {});
 

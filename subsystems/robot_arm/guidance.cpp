@@ -77,7 +77,7 @@ double Guidance::progress() const noexcept {
 Guidance::News Guidance::look(bool gives_way) noexcept {
   if (waiting_) return wait();
   if (abort_) return look_at_abort(gives_way);
-  if (setpoints_->off_line_m() > most_off_line_m) return {.end = End::LineLost};
+  if (setpoints_->off_line_m() > most_off_line_m) return lose_line();
   if (searched_) {
     const std::optional<Reason> why = search();
     return why ? News{.end = End::NoWay, .why = *why} : News{};
@@ -90,6 +90,17 @@ Guidance::News Guidance::look(bool gives_way) noexcept {
   if (arrives_ && !half_reported_ && progress() >= 0.5) half_reported_ = news.half_way = true;
   if (setpoints_->at_rest()) news.end = retreats_ && !setpoints_->retreated() ? End::NotReached : arrive(gives_way);
   return news;
+}
+
+/// What is in the way can be seen from here alone: where it would be, a line needs another posture.
+Guidance::News Guidance::lose_line() noexcept {
+  News lost{.end = End::LineLost};
+  if (const auto joint = setpoints_->joint_in_the_way())
+    lost.why = {Trouble::line_lost, ends_range, static_cast<std::int64_t>(*joint + 1)};
+  else
+    lost.why = {Trouble::line_lost, "on the line is a singular posture, after mm", millimetres(setpoints_->gone_m())};
+  setpoints_->brake();
+  return lost;
 }
 
 /// The end of a path is not yet the goal: a motion is done when it is measured there, and rests.

@@ -32,7 +32,7 @@ class Guidance {
     None,  ///< not yet
     Reached,
     NotReached,  ///< its path has ended, and it is not there
-    LineLost,  ///< the joints cannot follow
+    LineLost,  ///< the joints cannot follow: it brakes
     NoWay,  ///< it was judged before it went, and stands
     Judged,  ///< nothing was to move, and nothing is in the way
   };
@@ -47,7 +47,7 @@ class Guidance {
     bool begun{false};  ///< it stands, and what waited for that moves it from now on
     bool half_way{false};  ///< once in a motion that has a goal
     End end{End::None};
-    Reason why{};  ///< of NoWay
+    Reason why{};  ///< of LineLost and NoWay
   };
   explicit Guidance(const Parts& parts) noexcept : parts_{parts} {}
 
@@ -117,6 +117,7 @@ class Guidance {
   [[nodiscard]] std::optional<Reason> search() noexcept;
   [[nodiscard]] std::optional<Reason> no_posture() noexcept;
   [[nodiscard]] std::optional<Reason> judge_line() noexcept;
+  [[nodiscard]] News lose_line() noexcept;
   [[nodiscard]] News wait() noexcept;
   [[nodiscard]] Outcome judge_abort(AbortWay::Judged what, double speed_share) noexcept;
   [[nodiscard]] News look_at_abort(bool gives_way) noexcept;

@@ -2,32 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/robot_arm.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstdint>
-#include <initializer_list>
-#include <numeric>
 #include <string_view>
 
 #include "subsystems/robot_arm/lengths.hpp"
 
 namespace hirosco {
-namespace {
 
-/// Joints and wrist feel one contact at different times: cycles in which it is the same one, five times those of the observer at 1 kHz.
-constexpr std::uint32_t one_contact = 100;
-
-}  // namespace
-
-using robot_arm::Excess;
+using robot_arm::Events;
 using robot_arm::ForceSensor;
 using robot_arm::Guidance;
-using robot_arm::JointVector;
 using robot_arm::Lead;
 using robot_arm::millimetres;
 using robot_arm::Trouble;
 using robot_arm::UrdfArm;
-using robot_arm::Work;
 using robot_arm::Yielding;
 
 std::unique_ptr<Subsystem> make_robot_arm() { return std::make_unique<RobotArm>(); }
@@ -37,11 +26,7 @@ Result<Step> RobotArm::software_init() {
   using namespace robotics::urdf;
   bind_force_sensor();
   use_device(UrdfArm::device, drives_.port(), {model_setting, tip_setting, fixed_setting});
-  for (EventPort* event :
-       std::initializer_list<EventPort*>{&motion_done_, &position_exceeded_, &speed_exceeded_, &torque_exceeded_,
-                                         &torque_hard_exceeded_, &following_exceeded_, &contact_, &retracted_,
-                                         &too_near_, &force_exceeded_, &power_exceeded_, &tool_power_exceeded_})
-    use_event(*event);
+  events_.each([this](EventPort& event) { use_event(event); });
   HIROSCO_TRY_LET(const UrdfArm::Source source, known_.read(own_descriptor()));
   HIROSCO_TRY(obstacles_.read(source, known_.model(), known_.tip()));
   HIROSCO_TRY(known_.take_bounds());
@@ -64,8 +49,7 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   guidance_.begin(cycle_s);
   HIROSCO_TRY(lead_.begin(configuration, cycle_s));
   static_cast<void>(obstacles_.keep_out(parameters_.keep_out.load()));
-  place_tool(parameters_.tool_place.load());
-  shape_carried();
+  at_tip_.begin();
   torque_mode_.begin(cycle_s);
   limits_.begin(cycle_s);
   limits_.arm();
@@ -85,7 +69,7 @@ Result<> RobotArm::safe_operational(const Cycle& cycle) noexcept {
   if (cycle.first) {
     drop_calls(limits_.tripped());
     obstacles_.take_limit();  // it may have been written since CONFIGURE
-    shape_carried();
+    at_tip_.shape();
   }
   yielding_.engage();
   control_.control();
@@ -130,7 +114,7 @@ void RobotArm::measure(const Cycle& cycle) noexcept {
   parameters_.active.store(0);
   moving_ = false;
   model_.update();
-  if (const auto age_ms = force_sensor_.update()) raise(force_sensor_lost_, *age_ms);
+  if (const auto age_ms = force_sensor_.update()) raise(events_.force_sensor_lost, *age_ms);
   lead_.tell();
 }
 
@@ -144,117 +128,82 @@ void RobotArm::advance() noexcept {
   if (drove && !torque_mode_.drives()) force_sensor_.arm(true);
   guidance_.advance(control_.led());
   watch_clearance();
-  if (const auto gone = guidance_.end_retract()) raise(retracted_, *gone);
+  if (const auto gone = guidance_.end_retract()) raise(events_.retracted, *gone);
   guidance_.tell();
   if (guidance_.at_rest()) at_rest_for_stop();
   if (motion_ && !torque_mode_.drives()) tell(guidance_.look(control_.gives_way()));
 }
 
 void RobotArm::tell(const Guidance::News& news) noexcept {
-  if (news.begun) count_contacts(Yielding::Before::Stands);
+  if (news.begun) contact_watch_.arm(Yielding::Before::Stands);
   if (news.half_way) progress(*motion_, 1);
   switch (news.end) {
     case Guidance::End::None: return;
-    case Guidance::End::Reached: raise(motion_done_); [[fallthrough]];
+    case Guidance::End::Reached: raise(events_.motion_done); [[fallthrough]];
     case Guidance::End::Judged:
       finish(*motion_);
       motion_.reset();
       guidance_.end_motion();
       return;
     case Guidance::End::NotReached: end_motion(Trouble::goal_not_reached); return;
-    case Guidance::End::LineLost: lose_line(); return;
+    case Guidance::End::LineLost:
     case Guidance::End::NoWay: end_motion(news.why.trouble, news.why.text, news.why.number); return;
   }
 }
 
 /// From this cycle on it slows down, and stands: each end of following that whoever leads has brought about is told once.
 void RobotArm::tell(const Lead::End& end) noexcept {
-  if (end.why == Lead::Why::Lost) raise(lead_lost_, static_cast<std::uint32_t>(end.value));
-  else if (end.why == Lead::Why::LetGo) raise(lead_let_go_);
-  else raise(lead_unfit_, end.joint, end.value, end.limit, static_cast<std::uint8_t>(end.why));
-}
-
-/// What is in the way can be seen from here alone: where it would be, a line needs another posture.
-void RobotArm::lose_line() noexcept {
-  robot_arm::Setpoints& setpoints = guidance_.setpoints();
-  if (const auto joint = setpoints.joint_in_the_way())
-    end_motion(Trouble::line_lost, "on the line ends the range of joint", static_cast<std::int64_t>(*joint + 1));
-  else end_motion(Trouble::line_lost, "on the line is a singular posture, after mm", millimetres(setpoints.gone_m()));
-  setpoints.brake();
+  if (end.why == Lead::Why::Lost) raise(events_.lead_lost, static_cast<std::uint32_t>(end.value));
+  else if (end.why == Lead::Why::LetGo) raise(events_.lead_let_go);
+  else raise(events_.lead_unfit, end.joint, end.value, end.limit, static_cast<std::uint8_t>(end.why));
 }
 
 /// Each limit is told once until the next entry into Operational; it stays in force when the actuators are inhibited.
 void RobotArm::watch(bool follows) noexcept {
-  watch_work(follows);
+  const auto worked = limits_.update_work(follows);
+  if (limits_.lets_go()) model_.forget_brakes();
+  if (worked) raise(events_.of(worked->what), worked->value, worked->limit);
   const auto* setpoint = follows && !control_.gives_way() ? &guidance_.setpoints().now().position : nullptr;
   const auto found = limits_.update(setpoint);
   if (limits_.tripped()) inhibit_actuators();
-  if (!found) return;
-  const auto& event = found->what == Excess::Position     ? position_exceeded_
-                      : found->what == Excess::Speed      ? speed_exceeded_
-                      : found->what == Excess::Torque     ? torque_exceeded_
-                      : found->what == Excess::TorqueHard ? torque_hard_exceeded_
-                                                          : following_exceeded_;
-  raise(event, static_cast<std::uint8_t>(found->joint + 1), found->value, found->limit);
-}
-
-void RobotArm::watch_work(bool free) noexcept {
-  const auto found = limits_.update_work(free);
-  if (limits_.lets_go()) model_.forget_brakes();
-  if (!found) return;
-  raise(found->what == Work::ToolForce ? force_exceeded_
-        : found->what == Work::Power   ? power_exceeded_
-                                       : tool_power_exceeded_,
-        found->value, found->limit);
+  if (found) raise(events_.of(found->what), static_cast<std::uint8_t>(found->joint + 1), found->value, found->limit);
 }
 
 /// Comes to rest before links meet, or one of them what it is to keep out of; who is led stands there.
 void RobotArm::watch_clearance() noexcept {
+  const auto end = [this](const robot_arm::Obstacles::Nearest& ahead) {
+    raise(events_.too_near, ahead.distance_m, Events::PairNames{std::string_view{ahead.names}});
+    end_motion(Trouble::too_near, ahead.names, millimetres(ahead.distance_m));
+  };
   if (const auto ahead = obstacles_.watch(guidance_.setpoints())) {
-    raise(too_near_, ahead->distance_m, PairNames{std::string_view{ahead->names}});
-    end_motion(Trouble::too_near, ahead->names, millimetres(ahead->distance_m));
+    end(*ahead);
     guidance_.setpoints().brake();
   }
   if (!control_.gives_way()) return;
   if (const auto ahead = obstacles_.watch_led(drives_.measured())) {
-    raise(too_near_, ahead->distance_m, PairNames{std::string_view{ahead->names}});
-    end_motion(Trouble::too_near, ahead->names, millimetres(ahead->distance_m));
+    end(*ahead);
     yielding_.stand_apart();
   }
 }
 
 /// Whoever asked for a motion is told that it ended.
 void RobotArm::watch_contact() noexcept {
-  const auto met = yielding_.meet();
-  if (met) raise(contact_, static_cast<std::uint8_t>(met->joint + 1), met->torque, met->limit, met->reaction);
-  const auto felt = force_sensor_.meet(control_.floats());
-  if (felt) raise(wrist_contact_, felt->force_n, felt->moment_n_m, static_cast<std::uint8_t>(yielding_.reaction()));
-  since_contact_ = std::min(since_contact_ + 1, one_contact);
-  if (!met && !felt) return;
-  // Whoever told of it first may tell of another one at any time.
-  if ((guidance_.retracting() || guidance_.waits()) && since_contact_ < one_contact &&
-      felt.has_value() != felt_at_wrist_)
-    return;
-  since_contact_ = 0;
-  felt_at_wrist_ = felt.has_value();
+  const robot_arm::ContactWatch::Met met = contact_watch_.meet();
+  if (const auto& its = met.by_joints)
+    raise(events_.contact, static_cast<std::uint8_t>(its->joint + 1), its->torque, its->limit, its->reaction);
+  if (const auto& its = met.at_wrist)
+    raise(events_.wrist_contact, its->force_n, its->moment_n_m, static_cast<std::uint8_t>(yielding_.reaction()));
+  if (!met.counts) return;
   const bool stood = guidance_.at_rest() && !motion_;
   end_motion(Trouble::contact);
   yielding_.react({.stood = stood, .stopping = stop_.has_value()});
 }
 
-void RobotArm::count_contacts(Yielding::Before load) noexcept {
-  yielding_.arm(load);
-  force_sensor_.arm(load == Yielding::Before::Stands);
-  since_contact_ = one_contact;
-}
-
 // --- functions -----------------------------------------------------------------------------------------------------------
 
 Outcome RobotArm::may_move() const noexcept {
-  if (!moving_) return refused(Trouble::actuators_inhibited);
-  if (control_.floats()) return refused(Trouble::led, "HOLD first");
-  if (motion_ || stop_ || !guidance_.at_rest()) return refused(pus::FailureCode::Busy);
-  return running;
+  if (moving_ && control_.floats()) return refused(Trouble::led, "HOLD first");
+  return may_change_law();
 }
 
 Outcome RobotArm::may_change_law() const noexcept {
@@ -267,7 +216,7 @@ Outcome RobotArm::move(Begin begin, const FunctionValues& values, const Call& ca
   if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
   const Outcome begun = (guidance_.*begin)(values);
   if (begun.kind == Outcome::Kind::Refused) return begun;
-  count_contacts(Yielding::Before::Stands);
+  contact_watch_.arm(Yielding::Before::Stands);
   motion_ = call;
   return begun;
 }
@@ -315,49 +264,6 @@ Outcome RobotArm::drive(const FunctionValues& values, const Call& call) noexcept
   return driven;
 }
 
-/// A load that is not there would lift who is led or soft; the law of positions keeps its place whatever is declared.
-Outcome RobotArm::take_payload(double mass_kg, const std::array<double, 3>& place_m) noexcept {
-  if (!model_.updated()) return refused(pus::FailureCode::NotPermittedNow);
-  if (control_.floats()) return refused(Trouble::led, "HOLD first");
-  if (motion_ || stop_ || !guidance_.at_rest()) return refused(pus::FailureCode::Busy);
-  if (control_.gives_way()) return refused(Trouble::soft, "POSITION_CONTROL first");
-  const JointVector held = model_.held({mass_kg, {place_m[0], place_m[1], place_m[2]}});
-  if (const Outcome may = limits_.may_hold(held); may.kind == Outcome::Kind::Refused) return may;
-  control_.take_load(held - model_.held(model_.payload()));
-  parameters_.payload.store({mass_kg, place_m});
-  shape_carried();
-  model_.forget_external();
-  return ok();
-}
-
-/// Springs are the same along and about all axes: for them it is no matter how the tool is turned.
-void RobotArm::place_tool(const robot_arm::ToolValues& in_tip) noexcept {
-  const robotics::Pose place = robot_arm::pose_of(in_tip);
-  guidance_.setpoints().set_tool(place);
-  control_.laws().set_tool(place.position);
-}
-
-Outcome RobotArm::take_tool(const robot_arm::ToolValues& in_tip) noexcept {
-  if (!guidance_.begun()) return refused(pus::FailureCode::NotPermittedNow);
-  if (motion_ || stop_ || !guidance_.at_rest()) return refused(pus::FailureCode::Busy);
-  const double norm = std::sqrt(std::inner_product(in_tip.orientation_wxyz.begin(), in_tip.orientation_wxyz.end(),
-                                                   in_tip.orientation_wxyz.begin(), 0.0));
-  if (norm != 0 && !(norm > 0.5 && norm < 1.5)) return refused(Trouble::no_goal, "no orientation");
-  const robot_arm::ToolValues taken = robot_arm::values_of(robot_arm::pose_of(in_tip));
-  parameters_.tool_place.store(taken);
-  place_tool(taken);
-  shape_carried();
-  return ok();
-}
-
-/// By what was said of tool and payload last, and TOOL_RADIUS as it was written last.
-void RobotArm::shape_carried() noexcept {
-  const robot_arm::Payload payload = model_.payload();
-  obstacles_.carry(robot_arm::pose_of(parameters_.tool_place.load()).position,
-                   payload.mass_kg > 0 ? payload.place_m : robot_arm::Vector3{robot_arm::Vector3::Zero()},
-                   parameters_.tool_radius_m.load());
-}
-
 void RobotArm::bind_motions() {
   on_function("MOVE_J",
               [this](const FunctionValues& values, Call call) { return move(&Guidance::move_j, values, call); });
@@ -394,14 +300,14 @@ void RobotArm::bind_settings() {
   on_function("KEEP_OUT", [this](const robot_arm::KeepOut& numbers) { return obstacles_.keep_out(numbers); });
   on_function("SET_CONTACT", [this](std::uint8_t reaction, double limit) -> Outcome {
     parameters_.contact.store({reaction, limit});
-    count_contacts(Yielding::Before::Counts);
+    contact_watch_.arm(Yielding::Before::Counts);
     return ok();
   });
   on_function("SET_PAYLOAD", [this](double mass_kg, std::array<double, 3> place_m) -> Outcome {
-    return take_payload(mass_kg, place_m);
+    return at_tip_.take_payload(mass_kg, place_m, motion_ || stop_);
   });
   on_function("SET_TOOL", [this](std::array<double, 3> place_m, std::array<double, 4> wxyz) -> Outcome {
-    return take_tool({place_m, wxyz});
+    return at_tip_.take_tool({place_m, wxyz}, motion_ || stop_);
   });
 }
 
@@ -435,7 +341,7 @@ void RobotArm::bind_force_sensor() {
   if (!ForceSensor::declared(own_descriptor())) return;
   drives_.take_force();
   force_sensor_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
-  for (EventPort* event : std::initializer_list<EventPort*>{&wrist_contact_, &force_sensor_lost_}) use_event(*event);
+  events_.each_of_force_sensor([this](EventPort& event) { use_event(event); });
 }
 
 /// An arm of whose configurations none has a set that leads follows nobody, and knows nothing of it.
@@ -446,12 +352,11 @@ void RobotArm::bind_lead() {
   if (by_positions) require_link(Lead::positions_set, lead_.positions());
   if (by_speeds) require_link(Lead::speeds_set, lead_.speeds());
   lead_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
-  for (EventPort* event : std::initializer_list<EventPort*>{&lead_lost_, &lead_let_go_, &lead_unfit_})
-    use_event(*event);
+  events_.each_of_lead([this](EventPort& event) { use_event(event); });
   on_function("FOLLOW", [this]() -> Outcome {
     if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
     const Outcome begun = lead_.follow();
-    if (begun.kind != Outcome::Kind::Refused) count_contacts(Yielding::Before::Stands);
+    if (begun.kind != Outcome::Kind::Refused) contact_watch_.arm(Yielding::Before::Stands);
     return begun;
   });
 }

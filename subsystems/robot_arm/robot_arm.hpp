@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 
 #include "robotics/subsystem/moving_subsystem.hpp"
 #include "subsystems/robot_arm/abort_path.hpp"
+#include "subsystems/robot_arm/at_tip.hpp"
+#include "subsystems/robot_arm/contact_watch.hpp"
 #include "subsystems/robot_arm/drives.hpp"
+#include "subsystems/robot_arm/events.hpp"
 #include "subsystems/robot_arm/force_sensor.hpp"
 #include "subsystems/robot_arm/guidance.hpp"
 #include "subsystems/robot_arm/lead.hpp"
@@ -56,13 +58,10 @@ class RobotArm final : public robotics::MovingSubsystem {
   void measure(const Cycle& cycle) noexcept;
   void advance() noexcept;
   void tell(const robot_arm::Guidance::News& news) noexcept;
-  void lose_line() noexcept;
   void tell(const robot_arm::Lead::End& end) noexcept;
   void watch(bool follows) noexcept;
-  void watch_work(bool free) noexcept;
   void watch_clearance() noexcept;
   void watch_contact() noexcept;
-  void count_contacts(robot_arm::Yielding::Before load) noexcept;
   [[nodiscard]] Outcome may_move() const noexcept;
   [[nodiscard]] Outcome may_change_law() const noexcept;
   Outcome move(Begin begin, const FunctionValues& values, const Call& call) noexcept;
@@ -70,40 +69,15 @@ class RobotArm final : public robotics::MovingSubsystem {
   Outcome check_abort(const Call& call) noexcept;
   Outcome drive(const FunctionValues& values, const Call& call) noexcept;
   Outcome jog(Begin begin, robot_arm::Setpoints::Kind kind, const FunctionValues& values, const Call& call) noexcept;
-  [[nodiscard]] Outcome take_payload(double mass_kg, const std::array<double, 3>& place_m) noexcept;
-  [[nodiscard]] Outcome take_tool(const robot_arm::ToolValues& in_tip) noexcept;
-  void place_tool(const robot_arm::ToolValues& in_tip) noexcept;
-  void shape_carried() noexcept;
 
   robot_arm::Parameters parameters_;
-  Event<> motion_done_{"MOTION_DONE"};
-  /// Joint from 1, what was measured, the limit.
-  Event<std::uint8_t, double, double> position_exceeded_{"POSITION_LIMIT_EXCEEDED"},
-      speed_exceeded_{"SPEED_LIMIT_EXCEEDED"}, torque_exceeded_{"TORQUE_LIMIT_EXCEEDED"},
-      torque_hard_exceeded_{"TORQUE_HARD_EXCEEDED"}, following_exceeded_{"FOLLOWING_LIMIT_EXCEEDED"};
-  /// Besides, how it reacts.
-  Event<std::uint8_t, double, double, std::uint8_t> contact_{"CONTACT"};
-  /// What was measured, the limit, N or W.
-  Event<double, double> force_exceeded_{"TOOL_FORCE_EXCEEDED"}, power_exceeded_{"POWER_LIMIT_EXCEEDED"},
-      tool_power_exceeded_{"TOOL_POWER_EXCEEDED"};
-  Event<double, double, std::uint8_t> wrist_contact_{"WRIST_CONTACT"};  ///< N, N m, how it reacts
-  Event<std::uint32_t> force_sensor_lost_{"FORCE_SENSOR_LOST"};  ///< ms
-  Event<double> retracted_{"RETRACTED"};  ///< how far, rad or m
-  using PairNames = Text<64>;
-  Event<double, PairNames> too_near_{"TOO_NEAR"};  ///< m, and who
-
-  Event<std::uint32_t> lead_lost_{"LEAD_LOST"};  ///< cycles
-  Event<> lead_let_go_{"LEAD_LET_GO"};
-  /// Joint from 1, what was asked, the limit, and which.
-  Event<std::uint8_t, double, double, std::uint8_t> lead_unfit_{"LEAD_UNFIT"};
+  robot_arm::Events events_;
 
   // Each refers to some of those before it.
   robot_arm::UrdfArm known_;
   robot_arm::Drives drives_{parameters_.current};
   robot_arm::LimitWatch limits_{{known_, drives_, parameters_}};
   robot_arm::OnBoardModel model_{{known_, drives_, parameters_}};
-  std::uint32_t since_contact_{0};  ///< cycles, of the last one that was answered
-  bool felt_at_wrist_{false};  ///< that one, first
   robot_arm::ForceSensor force_sensor_{{known_, drives_, model_, parameters_}};
   robot_arm::Obstacles obstacles_{{parameters_.clearance_limit_m, parameters_.clearance_m, parameters_.keep_out}};
   robot_arm::AbortPath abort_path_{{known_, obstacles_}};
@@ -111,6 +85,8 @@ class RobotArm final : public robotics::MovingSubsystem {
   robot_arm::Lead lead_{{known_, guidance_}};
   robot_arm::TorqueControl control_{{known_, drives_, limits_, model_, guidance_, parameters_}};
   robot_arm::Yielding yielding_{{known_, drives_, model_, obstacles_, guidance_, control_, parameters_}};
+  robot_arm::ContactWatch contact_watch_{{guidance_, control_, yielding_, force_sensor_}};
+  robot_arm::AtTip at_tip_{{limits_, model_, obstacles_, guidance_, control_, parameters_}};
   robot_arm::TorqueMode torque_mode_{
       {known_, drives_, limits_, model_, obstacles_, guidance_, control_, yielding_, parameters_}};
   robot_arm::SelfCheck self_check_{{known_, drives_, guidance_, control_, yielding_, parameters_}};

@@ -145,7 +145,7 @@ struct Shared {
   ::new (shared.mapped.octets().data()) KeeperPage;
   auto socket = KeptStore::make_socket();
   if (!socket) return refused(errors, "no socket to keep the flight by", socket.error().value);
-  shared.store.emplace(std::move(socket->first));
+  shared.store.emplace(std::move(socket->first), &shared.page());
   shared.to_store = std::move(socket->second);
   return 0;
 }

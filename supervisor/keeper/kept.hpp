@@ -74,7 +74,7 @@ inline constexpr std::size_t most_ends = 64;
 struct KeeperPage {
   /// Of this layout. Keeper and supervisor of one flight are of one build; whoever finds another number knows nothing of what is there, not
   /// even whether a craft flies already.
-  static constexpr std::uint64_t layout_now = 0x484B'5047'0000'0003;  // "HKPG"
+  static constexpr std::uint64_t layout_now = 0x484B'5047'0000'0004;  // "HKPG"
   std::atomic<std::uint64_t> layout{layout_now};
   std::atomic<std::uint64_t> keeper{0};
   std::atomic<std::uint64_t> supervisor{0};
@@ -102,6 +102,11 @@ struct KeeperPage {
   std::array<KeptInhibit, most_inhibits> inhibits;  ///< in the order of kept_endnodes()
   std::atomic<std::uint32_t> ends_told{0};
   std::array<KeptEnd, most_ends> ends;  ///< the newest
+  /// By slot, 1: of what the supervisor handed over last the keeper had no descriptor free to take all. The supervisor clears it before it
+  /// hands over, the keeper when it has taken a later one.
+  std::array<std::atomic<std::uint8_t>, most_kept> not_taken{};
+  /// When the first supervisor of the flight began its steps, as monotonic time in ns, which is every later one's too; 0: not yet.
+  std::atomic<std::int64_t> flight_began{0};
 
   void tell_end(std::uint32_t pid, std::uint32_t how) noexcept {
     KeptEnd& place = ends[ends_told.load(std::memory_order_relaxed) % most_ends];
@@ -152,8 +157,8 @@ inline constexpr Duration keeper_patience = std::chrono::seconds{3};
 inline constexpr Duration ending_patience = std::chrono::seconds{10};
 /// The supervisor: less than its own guard grants it before all is fenced, so that another one can go on with what moves.
 inline constexpr Duration supervisor_patience = std::chrono::milliseconds{800};
-/// The same until its first step: it waits for nobody's write on the way there. It reads (epochs, values, programs of a manifest): a disk
-/// that stands still holds it up, and keeps the one before from being reaped in the first place (docs/adr/0192).
+/// The same until its first step: it waits for no disk on the way there, and in that step it reads stored values, beside its guard. A disk that
+/// stands still may hold it up in that, and keeps the one before from being reaped in the first place (docs/adr/0192).
 inline constexpr Duration successor_patience = std::chrono::seconds{5};
 
 /// Looks at one counter of the page from time to time.

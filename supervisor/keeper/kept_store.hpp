@@ -25,19 +25,26 @@ class KeptStore {
  public:
   /// Both ends: the store's and the supervisor's. SystemFailure: no socket.
   [[nodiscard]] static Result<std::pair<FileDescriptor, FileDescriptor>> make_socket();
-  explicit KeptStore(FileDescriptor socket) noexcept : socket_{std::move(socket)} {}
+  /// \param page Where the supervisor is told of what could not be taken, and outlives this; null: nowhere.
+  explicit KeptStore(FileDescriptor socket, KeeperPage* page = nullptr) noexcept
+      : socket_{std::move(socket)}, page_{page} {}
 
-  /// Takes what has come. What is no message of ours is closed. Does not wait.
+  /// Takes what has come. What is no message of ours is closed. Of a slot of which not all came nothing counts any more but the handle that was
+  /// there: what else was held is of another permit page, and who goes on would believe that. Does not wait.
   void take() noexcept;
-  /// For a supervisor that is started: what it finds where.
+  /// For a supervisor that is started: what it finds where. Of whom the handle alone is held it finds that in each place, and can end it.
   void pass_on(std::vector<ProcessStart::Inherited>& inherited) const;
   /// Nobody goes on: who still runs finds its channel closed.
   void clear() noexcept { slots_ = {}; }
+  /// All of it.
   [[nodiscard]] bool holds(std::size_t slot) const noexcept { return slots_[slot].front().valid(); }
 
  private:
   using Slot = std::array<FileDescriptor, kept_roles>;
+  void not_taken(std::size_t slot) noexcept;
+
   FileDescriptor socket_;
+  KeeperPage* page_;
   std::array<Slot, most_kept> slots_;
 };
 
@@ -47,7 +54,8 @@ class StoreClient {
   /// -1: there is no keeper, nothing is kept.
   explicit StoreClient(int socket) noexcept : socket_{socket} {}
   [[nodiscard]] bool has_keeper() const noexcept { return socket_ >= 0; }
-  /// Unavailable: the keeper is gone or takes nothing; OutOfRange: there is no such slot.
+  /// Unavailable: the keeper is gone or takes nothing; OutOfRange: there is no such slot. Whether it had room for them it tells later
+  /// (KeeperPage::not_taken).
   [[nodiscard]] Result<> keep(std::size_t slot, const std::array<int, kept_roles>& descriptors) noexcept;
   /// It has ended.
   void forget(std::size_t slot) noexcept;

@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,7 +20,8 @@ namespace {
 struct Stored : ::testing::Test {
   std::pair<FileDescriptor, FileDescriptor> ends = std::move(*KeptStore::make_socket());
   int to_store = ends.second.get();
-  KeptStore store{std::move(ends.first)};
+  KeeperPage page;
+  KeptStore store{std::move(ends.first), &page};
   StoreClient client{to_store};
 
   [[nodiscard]] static FileDescriptor file() { return FileDescriptor{::open("/dev/null", O_RDONLY | O_CLOEXEC)}; }
@@ -183,8 +185,8 @@ TEST_F(Stored, OfNoSlotThatThereIsNothingIsSaidNorForgotten) {
 TEST_F(Stored, ASupervisorWaitsForNoKeeperThatTakesNothing) {
   const FileDescriptor one = file();
   const std::array<int, kept_roles> numbers{one.get(), one.get(), one.get(), one.get(), one.get()};
-  Result<> kept = ok();
-  while (kept) kept = client.keep(0, numbers);
+  Result<> kept = client.keep(0, numbers);
+  while (kept) kept = client.keep(2, numbers);
   EXPECT_EQ(kept.error().code, ErrorCode::Unavailable);
   store.take();
   EXPECT_TRUE(store.holds(0)) << "what found room";
@@ -200,6 +202,77 @@ TEST(StoreClient, OfAKeeperThatIsGoneIsToldSoAndLivesOn) {
   ASSERT_FALSE(kept);
   EXPECT_EQ(kept.error().code, ErrorCode::Unavailable);
   client.forget(0);
+}
+
+/// So many more descriptors may this process open, at most, as long as this lives.
+class FewDescriptors {
+ public:
+  explicit FewDescriptors(int left) {
+    EXPECT_EQ(::getrlimit(RLIMIT_NOFILE, &all_), 0);
+    const int first_free = FileDescriptor{::open("/dev/null", O_RDONLY | O_CLOEXEC)}.get();
+    const rlimit few{.rlim_cur = static_cast<rlim_t>(first_free + left), .rlim_max = all_.rlim_max};
+    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+  }
+  ~FewDescriptors() { ::setrlimit(RLIMIT_NOFILE, &all_); }
+  FewDescriptors(const FewDescriptors&) = delete;
+  FewDescriptors& operator=(const FewDescriptors&) = delete;
+
+ private:
+  rlimit all_{};
+};
+
+TEST_F(Stored, ForWhomTheKeeperHasNoDescriptorsFreeTheSupervisorIsToldInThePageUntilItTakesALaterOne) {
+  const FileDescriptor one = file();
+  const std::array<int, kept_roles> numbers{one.get(), one.get(), one.get(), one.get(), one.get()};
+  const auto before = open_descriptors();
+  for (int left = 0; left < static_cast<int>(kept_roles); ++left) {
+    ASSERT_TRUE(client.keep(3, numbers)) << "the supervisor sees nothing of it";
+    {
+      const FewDescriptors few{left};
+      store.take();
+    }
+    EXPECT_EQ(page.not_taken[3].load(), 1) << left;
+    EXPECT_FALSE(store.holds(3)) << left;
+    client.forget(3);
+    store.take();
+    EXPECT_EQ(open_descriptors(), before) << left;
+    EXPECT_EQ(page.not_taken[3].load(), 0) << left;
+  }
+  ASSERT_TRUE(client.keep(3, numbers));
+  store.take();
+  EXPECT_EQ(page.not_taken[3].load(), 0);
+  EXPECT_TRUE(store.holds(3));
+  for (std::size_t slot = 0; slot < most_kept; ++slot) EXPECT_EQ(page.not_taken[slot].load(), 0) << slot;
+}
+
+/// A later permit page stops what the one that is held permits.
+TEST_F(Stored, OfWhatIsHandedOverAnewAndCannotBeTakenNothingOfBeforeCountsButItsHandle) {
+  const FileDescriptor process = file(), other = file();
+  std::array<int, kept_roles> numbers{other.get(), other.get(), other.get(), other.get(), other.get()};
+  numbers[static_cast<std::size_t>(KeptRole::Process)] = process.get();
+  const auto before = open_descriptors();
+  for (const bool sent : {true, false}) {
+    ASSERT_TRUE(client.keep(6, numbers));
+    store.take();
+    ASSERT_TRUE(store.holds(6));
+    if (sent) {
+      ASSERT_TRUE(client.keep(6, numbers));
+      const FewDescriptors few{0};
+      store.take();
+    } else {
+      ASSERT_FALSE(client.keep(6, {-1, -1, -1, -1, -1})) << "the system refuses what is none";
+      store.take();
+    }
+    EXPECT_FALSE(store.holds(6)) << sent;
+    EXPECT_EQ(open_descriptors(), before + 1) << sent;
+    std::vector<ProcessStart::Inherited> inherited;
+    store.pass_on(inherited);
+    ASSERT_EQ(inherited.size(), kept_roles) << "whoever goes on finds it, without its pages, and ends it: " << sent;
+    for (const auto& each : inherited) EXPECT_EQ(each.ours, inherited.front().ours);
+    client.forget(6);
+    store.take();
+    EXPECT_EQ(open_descriptors(), before);
+  }
 }
 
 /// In a process of its own, whose numbers are its own. 0: all is as it should be.

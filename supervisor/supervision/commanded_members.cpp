@@ -50,15 +50,16 @@ bool CommandedMembers::in_use() const {
 }
 
 void CommandedMembers::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand, const Origin& origin) {
-  const auto* member = craft_.mission.find_subsystem(apid);
-  if (member == nullptr || !CommandedState::concerns(telecommand, member->subsystem) || !in_use()) return;
+  const auto* subsystem = craft_.mission.find_member(apid);
+  if (subsystem == nullptr || !CommandedState::concerns(telecommand, *subsystem)) return;
+  if (apid != supervisor_apid && !in_use()) return;
   const auto call = called_function(telecommand);
   const bool steers = call && (call->name == "SET_STATE" || call->name == "CONFIGURE");
   if (steers && !origin.is_supervisor()) overrule(apid);
   if (const auto state = state_asked(telecommand)) lower_record(apid, *state);
   if ((telecommand.ack() & pus::ack_completion) == 0 || !has_room_for(telecommand.packet().size())) {
-    members_[apid].commanded.may_have_set(telecommand, member->subsystem);
-    return tell_not_kept(apid, telecommand);
+    members_[apid].commanded.may_have_set(telecommand, *subsystem);
+    return tell_not_kept(apid, telecommand.service(), telecommand.subtype());
   }
   open_.push_back({apid, pus::request_of(telecommand), {telecommand.packet().begin(), telecommand.packet().end()}});
 }
@@ -82,13 +83,15 @@ void CommandedMembers::hear(std::uint16_t from, const pus::TelemetryView& report
   const Open ended = std::move(*found);
   open_.erase(found);
   const auto telecommand = *pus::TelecommandView::parse(ended.packet);
-  const auto& subsystem = craft_.mission.find_subsystem(from)->subsystem;
+  const auto& subsystem = *craft_.mission.find_member(from);
+  bool kept = true;
   if (!failed) {
-    if (members_[from].commanded.completed(telecommand, subsystem) == Kept::NoRoom) tell_not_kept(from, telecommand);
+    kept = members_[from].commanded.completed(telecommand, subsystem) != Kept::NoRoom;
   } else if (report.subtype() == 8) {  // part of it may be in force
     members_[from].commanded.may_have_set(telecommand, subsystem);
-    if (telecommand.service() != 8) tell_not_kept(from, telecommand);
+    kept = telecommand.service() == 8;
   }
+  if (!kept) tell_not_kept(from, telecommand.service(), telecommand.subtype());
 }
 
 void CommandedMembers::lower(std::uint16_t apid, State most, std::string_view event) {
@@ -127,15 +130,22 @@ void CommandedMembers::note(OctetWriter& writer) const {
   writer.put(static_cast<std::uint16_t>(members_.size()));
   for (const auto& [apid, member] : members_) {
     writer.put(apid);
-    member.commanded.note(writer);
+    // Whoever goes on for one that has not done so yet begins where that did.
+    if (own_before_ && apid == supervisor_apid) own_before_->commanded.note(writer);
+    else member.commanded.note(writer);
   }
-  writer.put(static_cast<std::uint16_t>(open_.size()));
-  for (const Open& each : open_) {
+  const std::size_t before = own_before_ ? own_before_->open.size() : 0;
+  const auto since = static_cast<std::size_t>(std::ranges::count_if(open_, is_handed_on));
+  writer.put(static_cast<std::uint16_t>(before + since));
+  const auto put = [&writer](const Open& each) {
     writer.put(each.apid)
         .put(each.refused)
         .put(static_cast<std::uint16_t>(each.packet.size()))
         .put(Octets{each.packet});
-  }
+  };
+  if (own_before_) std::ranges::for_each(own_before_->open, put);
+  for (const Open& each : open_)
+    if (is_handed_on(each)) put(each);
 }
 
 void CommandedMembers::recall(OctetReader& reader) {
@@ -152,6 +162,32 @@ void CommandedMembers::recall(OctetReader& reader) {
     each.packet.assign(packet.begin(), packet.end());
     open_.push_back(std::move(each));
   }
+  take_own_before();
+  // What is not whole says nothing for certain of the supervisor itself.
+  if (!reader.exhausted()) own_before_.reset();
+  if (own_before_) own_.keep_silent(own_before_->commanded.silent_events());
+}
+
+/// The record of this supervisor itself begins with its own way up.
+void CommandedMembers::take_own_before() {
+  OwnBefore& before = own_before_.emplace();
+  before.commanded = std::exchange(members_[supervisor_apid].commanded, {});
+  for (Open& each : open_)
+    if (each.apid == supervisor_apid) before.open.push_back(std::move(each));
+  std::erase_if(open_, [](const Open& each) { return each.apid == supervisor_apid; });
+}
+
+std::vector<SettingCommand> CommandedMembers::own_settings(State in) const {
+  if (!own_before_) return {};
+  auto all = own_before_->commanded.settings_for(in, craft_.mission.supervisor);
+  if (in != State::PreOperational) return all;
+  for (const Open& each : own_before_->open) {
+    const auto telecommand = *pus::TelecommandView::parse(each.packet);
+    const Octets data = telecommand.application_data();
+    const bool sets = telecommand.service() != 8;  // a function is done once or not at all
+    if (sets) all.push_back({telecommand.service(), telecommand.subtype(), {data.begin(), data.end()}});
+  }
+  return all;
 }
 
 CommandedState CommandedMembers::of(std::uint16_t apid) const {
@@ -182,9 +218,19 @@ const CommandedState* CommandedMembers::wanted(std::uint16_t apid) const {
   return found != wanted_.end() ? &found->second : nullptr;
 }
 
-void CommandedMembers::tell_not_kept(std::uint16_t apid, const pus::TelecommandView& telecommand) {
-  own_.announce("COMMAND_NOT_KEPT", {static_cast<double>(apid), static_cast<double>(telecommand.service()),
-                                     static_cast<double>(telecommand.subtype())});
+void CommandedMembers::tell_not_kept(std::uint16_t apid, std::uint8_t service, std::uint8_t subtype) {
+  own_.announce("COMMAND_NOT_KEPT",
+                {static_cast<double>(apid), static_cast<double>(service), static_cast<double>(subtype)});
+}
+
+void CommandedMembers::tell_own_not_kept(const SettingCommand& command) {
+  tell_not_kept(supervisor_apid, command.service, command.subtype);
+}
+
+void CommandedMembers::tell_own_lost() {
+  craft_.tell("what ground had set of the supervisor itself is not known: it is as its descriptor says",
+              supervisor_apid);
+  own_.announce("NOT_RESTORED", {static_cast<double>(supervisor_apid)});
 }
 
 }  // namespace hirosco::supervisor

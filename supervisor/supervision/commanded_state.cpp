@@ -194,12 +194,19 @@ Kept CommandedState::define(std::uint8_t subtype, Octets data, const descriptor:
   return all ? Kept::Yes : Kept::NoRoom;
 }
 
-bool CommandedState::is_defined(std::uint16_t id, const descriptor::SubsystemDescriptor& subsystem) const {
-  const auto has = [id](const std::vector<descriptor::HousekeepingStructure>& all) {
-    return std::ranges::find(all, id, &descriptor::HousekeepingStructure::id) != all.end();
+const descriptor::HousekeepingStructure* CommandedState::declared(
+    std::uint16_t id, const descriptor::SubsystemDescriptor& subsystem) const {
+  const auto in = [id](const std::vector<descriptor::HousekeepingStructure>& all) {
+    const auto found = std::ranges::find(all, id, &descriptor::HousekeepingStructure::id);
+    return found != all.end() ? &*found : nullptr;
   };
   const auto* configuration = subsystem.find_configuration(configuration_);
-  if (has(subsystem.housekeeping) || (configuration != nullptr && has(configuration->housekeeping))) return true;
+  const auto* own = configuration != nullptr ? in(configuration->housekeeping) : nullptr;
+  return own != nullptr ? own : in(subsystem.housekeeping);
+}
+
+bool CommandedState::is_defined(std::uint16_t id, const descriptor::SubsystemDescriptor& subsystem) const {
+  if (declared(id, subsystem) != nullptr) return true;
   return std::ranges::any_of(structures_,
                              [id](const Structure& each) { return each.id == id && !each.created.empty(); });
 }
@@ -246,9 +253,11 @@ std::vector<SettingCommand> CommandedState::settings_for(State state,
     all.push_back({Structures::service_type, subtype, std::move(data)});
   };
   for (const Structure& each : structures_) {
+    const auto* as_declared = each.created.empty() ? declared(each.id, subsystem) : nullptr;
     if (!each.created.empty()) say(Structures::create_structure, each.created);
-    // What is on is not lengthened; its interval is one that all it will have can keep.
-    else if (!each.appended.empty()) say(Structures::disable_periodic, list_of_one(each.id));
+    // What is on is not lengthened, and first ends the interval that it is in; its interval is one that all it will have
+    // can keep.
+    else if (!each.appended.empty() || each.interval) say(Structures::disable_periodic, list_of_one(each.id));
     if (each.interval) {
       std::vector<std::byte> data = list_of_one(each.id);
       data.resize(7);
@@ -256,8 +265,10 @@ std::vector<SettingCommand> CommandedState::settings_for(State state,
       say(Structures::modify_interval, std::move(data));
     }
     for (const auto& part : each.appended) say(Structures::append_parameters, part);
-    if (each.periodic)
-      say(*each.periodic ? Structures::enable_periodic : Structures::disable_periodic, list_of_one(each.id));
+    const bool on_as_declared = as_declared != nullptr && as_declared->enabled;
+    if (each.periodic || (each.interval && on_as_declared))
+      say(each.periodic.value_or(on_as_declared) ? Structures::enable_periodic : Structures::disable_periodic,
+          list_of_one(each.id));
   }
   return all;
 }

@@ -48,6 +48,9 @@ class CommandedState {
   /// Nothing above this. Of what is neither on the way up nor at its end, Error-Operational say, Pre-Operational is left.
   void lower(State most) noexcept;
 
+  /// Whose reports are off.
+  [[nodiscard]] const std::set<std::uint16_t>& silent_events() const noexcept { return silent_events_; }
+
   /// A request that this looks at at all: worth to be remembered until it is completed.
   [[nodiscard]] static bool concerns(const pus::TelecommandView& telecommand,
                                      const descriptor::SubsystemDescriptor& subsystem);
@@ -82,6 +85,9 @@ class CommandedState {
   void set_parameters(Octets data, const descriptor::SubsystemDescriptor& subsystem);
   void switch_events(Octets data, bool enabled);
   Kept define(std::uint8_t subtype, Octets data, const descriptor::SubsystemDescriptor& subsystem);
+  /// Null: none of its descriptor's, in the configuration in force.
+  [[nodiscard]] const descriptor::HousekeepingStructure* declared(
+      std::uint16_t structure, const descriptor::SubsystemDescriptor& subsystem) const;
   [[nodiscard]] bool is_defined(std::uint16_t structure, const descriptor::SubsystemDescriptor& subsystem) const;
   [[nodiscard]] Structure& structure(std::uint16_t id);
   [[nodiscard]] std::size_t definition_octets() const noexcept;

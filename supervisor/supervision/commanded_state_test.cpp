@@ -225,6 +225,16 @@ TEST_F(CommandedStateTest, OfWhatIsDefinedNowhereNothingIsKept) {
   EXPECT_THAT(settings(commanded), ElementsAre("3,6 010064")) << "the one that there is";
 }
 
+TEST_F(CommandedStateTest, AnIntervalCountsFromTheFirstReportOnWhereItWasOn) {
+  up();
+  completed(3, 31, data_of(single, known_structure, std::uint32_t{20}));
+  EXPECT_THAT(settings(commanded), ElementsAre("3,6 010064", "3,31 01006400000014", "3,5 010064")) << "on by itself";
+  subsystem.housekeeping.front().enabled = false;
+  EXPECT_THAT(settings(commanded), ElementsAre("3,6 010064", "3,31 01006400000014"));
+  completed(3, 5, data_of(single, known_structure));
+  EXPECT_THAT(settings(commanded), ElementsAre("3,6 010064", "3,31 01006400000014", "3,5 010064"));
+}
+
 TEST_F(CommandedStateTest, OnlyWhatASettingOrAStateIsIsLookedAt) {
   EXPECT_TRUE(concerns(8, 1, call_data("SET_STATE", 3)));
   EXPECT_TRUE(concerns(8, 1, call_data("CONFIGURE", 2)));

@@ -33,6 +33,11 @@ void OwnSubsystem::recall(OctetReader& reader) {
   if (reader.good()) std::memcpy(&vital_->counters, counters.data(), counters.size());
 }
 
+void OwnSubsystem::keep_silent(const std::set<std::uint16_t>& events) {
+  for (const descriptor::Event& event : runner_.descriptor().events)
+    if (!event.safety && events.contains(event.id)) runner_.reports().event_service().set_reported(event.id, false);
+}
+
 TimePoint OwnSubsystem::step(TimePoint now) {
   const TimePoint wake = runner_.service_step(now);
   const auto demand = runner_.cycle_demand();

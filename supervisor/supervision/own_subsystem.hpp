@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
+#include <set>
 #include <string_view>
 
 #include "hirosco/data_transfer/channel/channel_pair.hpp"
@@ -48,6 +49,8 @@ class OwnSubsystem final : public Remembered, private Subsystem {
   void announce(std::string_view event, std::initializer_list<double> arguments = {}) {
     runner_.reports().announce(event, arguments);
   }
+  /// Those of these events that no safety rests on are not reported any more, from now on; whoever reacts to them hears them as ever.
+  void keep_silent(const std::set<std::uint16_t>& events);
   [[nodiscard]] pus::Verification& verification() noexcept { return runner_.verification(); }
   [[nodiscard]] pus::TelemetrySink& telemetry() noexcept { return runner_.telemetry(); }
   /// The end of its channel at which the supervisor sends telecommands and takes reports.
@@ -57,7 +60,7 @@ class OwnSubsystem final : public Remembered, private Subsystem {
     return static_cast<std::uint8_t>(vital_->configuration.load(std::memory_order_relaxed));
   }
   [[nodiscard]] MemberStatistics statistics() const noexcept { return statistics_of(*vital_); }
-  /// The counts of its packets (decision 8b).
+  /// The counts of its packets (decision 8b). What ground has set of it is noted by CommandedMembers (docs/adr/0205).
   void note(OctetWriter& writer) const override;
   void recall(OctetReader& reader) override;
 

@@ -11,7 +11,8 @@ from of_mission import NOTHING_SAID, OfMission  # noqa: E402
 from descriptors import OPERATIONAL, read_mission  # noqa: E402
 
 # Every mission that lies in a folder of its own and that the judge's own reader takes.
-MISSIONS = sorted(file.parent for place in ("missions/*", "tests/*", "tests/author/*") for file in ROOT.glob(f"{place}/mission.xml"))
+PLACES = ("missions/*", "missions/*/tests", "subsystems/*/tests", "tests/*", "tests/author/*")
+MISSIONS = sorted(file.parent for place in PLACES for file in ROOT.glob(f"{place}/mission.xml"))
 
 
 def driven(draw, mode):

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """Who asks `hirosco` wrongly is told what there is, and which name is near."""
+import json
 import os
 import pathlib
 import subprocess
@@ -68,6 +69,18 @@ class AskedWrongly(unittest.TestCase):
                 self.assertEqual(told(*words)[0], 3, words)
             self.assertEqual(sorted(path.name for path in (here / "log").iterdir()), ["hello.db", "rokviss.db"],
                              "who asks why makes no file")
+
+    def test_who_asks_for_json_gets_nothing_else(self):
+        done = self.hirosco("mode", "--mission", "rokviss", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        modes = {line["mode"]: line for line in map(json.loads, done.stdout.splitlines())}
+        self.assertEqual(set(modes), {"commissioning", "standalone", "remote", "feel", "automatic", "telepresence", "safe"})
+        self.assertIn({"subsystem": "MANIPULATOR", "configuration": "SCRIPT", "state": "Operational"}, modes["automatic"]["commission"])
+        done = self.hirosco("plan", "manipulator:torque_hard_exceeded", "--descriptors", "--mission", "rokviss", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual({each["severity"] for each in json.loads(done.stdout)}, {"high"})
+        for what in ("--show", "--recovery"):
+            self.refused(["check", "rokviss", "--json", what], " excludes ", what, "--json")
 
     def test_status_of_nobody_is_no_answer(self):
         done = self.hirosco("status", "--port", "9")

@@ -14,9 +14,9 @@ REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 HIROSCO = pathlib.Path(os.environ["HIROSCO_BIN"]) / "hirosco"
 
 
-def hirosco(*words):
+def hirosco(*words, **environment):
     done = subprocess.run([HIROSCO, *map(str, words)], capture_output=True, text=True, check=False,
-                          env={**os.environ, "NO_COLOR": "1"})
+                          env={**os.environ, "NO_COLOR": "1", **environment})
     return done.returncode, done.stdout + done.stderr
 
 
@@ -59,6 +59,20 @@ class Check(unittest.TestCase):
             code, told = hirosco(command, mission, "--for", "1s")
             self.assertEqual(code, 3, told)
             self.assertIn(f"no {what} hirosco-hallo", told)
+
+    def test_a_script_is_told_to_fly_in_no_sandbox_and_is_an_error_where_each_must_have_one(self):
+        script = self.folder / "hallo.py"
+        script.write_text("#!/usr/bin/env python3\n")
+        script.chmod(0o755)
+        path = f"{self.folder}:{os.environ['PATH']}"
+        mission = self.mission("hello", old='"hirosco-hello"', new='"hallo.py"')
+        code, told = hirosco("check", mission, PATH=path)
+        self.assertEqual(code, 0, told)
+        self.assertIn("mission.xml:10:3: warning: E0411: hallo.py of subsystem HELLO is a script: it flies in no sandbox", told)
+        mission = self.mission("hello", old='<Modes', new='<Isolation required="yes"/>\n  <Modes')
+        code, told = hirosco("check", mission, PATH=path)
+        self.assertEqual(code, 1, told)
+        self.assertIn('error: E0411: hallo.py of subsystem HELLO is a script, which <Isolation required="yes"/> does not let fly', told)
 
     def test_a_device_is_asked_for_its_settings(self):
         mission = self.mission("rokviss", old='value="wander"', new='value="hold"')

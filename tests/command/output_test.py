@@ -83,6 +83,19 @@ class Output(unittest.TestCase):
         for line, text in (("0.1 kill NOBODY", "no subsystem 'NOBODY'"), ("0.1 nobody unplug", "no device 'nobody'")):
             self.refused(USAGE, text, "simulate", ROKVISS, "--for", "0.2s", "--at", line)
 
+    def test_a_fault_that_would_come_when_the_flight_is_over_is_named_and_none_is_flown(self):
+        for at in ("5 robot unplug", "0.2 robot unplug", "5 kill MANIPULATOR"):
+            self.refused(USAGE, f"--at '{at}' would come when the flight is over: it takes 0.2 s",
+                         "simulate", ROKVISS, "--for", "0.2s", "--at", at)
+
+    def test_faults_come_at_their_times_in_whatever_order_they_are_typed(self):
+        faults = ("--at", "1.5 robot unplug"), ("--at", "1.2 joystick hand cartesian 0.01 0 1")
+        def flown(*words):
+            return subprocess.run([HIROSCO, "simulate", ROKVISS, "--for", "2s", "--octets", *words], capture_output=True, check=False).stdout
+        in_turn = flown(*faults[0], *faults[1])
+        self.assertEqual(in_turn, flown(*faults[1], *faults[0]))
+        self.assertNotEqual(in_turn, flown(*faults[0]), "the hand has moved something before")
+
     def test_a_fault_beyond_its_length_is_named(self):
         self.refused(USAGE, "at most 255 characters, not 100000", "fault", "robot", "x" * 100_000, "--mission", ROKVISS)
 

@@ -121,7 +121,7 @@ def expected(sender, addressee, mode, service, subtype, request, supervisor):
     called = "SET_STATE" if target is not None else plain
     opened = any(str(service) in words(p, "services") or (called and {"*", called} & set(words(p, "functions"))) for p in ours)
     if parameter is not None:
-        opened = opened and any({"*", parameter} & set(words(p, "parameters")) for p in ours)
+        opened = any({"*", parameter} & set(words(p, "parameters")) for p in ours)
     bound = states if opened else NEVER
     acts = service == 8 or service >= 192 or parameter is not None or states != ALWAYS
     return bound | essential, essential, (NEVER if acts else bound) | essential

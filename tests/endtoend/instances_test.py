@@ -92,8 +92,11 @@ class Instances(unittest.TestCase):
             self.assertIn("one flies already", self.refused(one, one.mission, "--instance", "one"))
             self.assertIn("'a/b' is no name of a flight", one.hirosco("run", one.mission, "--instance", "a/b").stderr)
             status = one.hirosco("status", "--json", "--instance", "two")
-            heard = {line["subsystem"]: line["packets"] for line in map(json.loads, status.stdout.splitlines())}
+            *lines, verdict = map(json.loads, status.stdout.splitlines())
+            heard = {line["subsystem"]: line["packets"] for line in lines}
             self.assertGreater(heard["MANIPULATOR"], 0, "status listens to the one that is named")
+            self.assertEqual((verdict["mission"], verdict["verdict"], status.returncode), ("ROKVISS", "well", 0))
+            self.assertRegex(verdict["line"], "^well: mode ")
             # Which one it is does not depend on where and with which runtime folder it is asked.
             with tempfile.TemporaryDirectory(prefix="hirosco-elsewhere-") as elsewhere:
                 done = subprocess.run([str(flight.BINARIES / "hirosco"), "log", "--instance", "two", "--last", "1"],

@@ -13,7 +13,7 @@ import unittest
 import flight
 from holding import Holding
 
-IMAGER = flight.REPOSITORY / "tests/imager/mission.xml"
+IMAGER = flight.REPOSITORY / "tests/endnodes/mission.xml"
 OFFLINE, PRE_OPERATIONAL, SAFE_OPERATIONAL, OPERATIONAL, POST_OPERATIONAL = 0, 3, 4, 5, 7
 ROUNDS = 10
 # What may grow is a page here and there of the allocator's own; what a state takes is far more than that.

@@ -52,7 +52,7 @@ class Terminal(emulated.Emulated):
     def cycles(self):
         """Of everybody, as the ground hears it."""
         for line in self.hirosco("status", "--json").stdout.splitlines():
-            if json.loads(line)["subsystem"] == "SUPERVISOR":
+            if json.loads(line).get("subsystem") == "SUPERVISOR":
                 return sum(json.loads(line)["values"]["SUBSYSTEMS.CYCLES"])
         raise AssertionError("the supervisor tells nothing")
 

@@ -24,7 +24,7 @@ import flat
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 ROKVISS = REPOSITORY / "missions/rokviss/mission.xml"
 # Missions of every kind: arrays, words and switches, own services, images, loops of services.
-MISSIONS = ["missions/rokviss", "missions/hello", "tests/typed", "tests/imager", "tests/loops", "tests/author/lamp"]
+MISSIONS = ["missions/rokviss", "missions/hello", "tests/typed", "tests/endnodes", "tests/loops", "tests/author/lamp"]
 # What the flight has to tell, or it proves little: services with subtypes.
 KINDS = {(1, 1), (1, 2), (1, 3), (1, 4), (1, 5), (1, 7), (1, 8), (1, 10), (3, 10), (3, 25), (3, 35), (5, 1), (5, 2), (5, 4), (5, 8),
          (17, 2), (17, 129), (20, 2), (129, 2), (129, 5), (129, 7)}
@@ -83,7 +83,7 @@ class TheDocument(unittest.TestCase):
 
 
     def test_every_packet_of_every_mission_is_read_to_its_last_bit(self):
-        for mission in ("missions/hello", "tests/typed", "tests/imager", "tests/loops"):
+        for mission in ("missions/hello", "tests/typed", "tests/endnodes", "tests/loops"):
             with self.subTest(mission), tempfile.TemporaryDirectory() as folder:
                 export("xtce", REPOSITORY / mission / "mission.xml", folder)
                 (path,) = pathlib.Path(folder).glob("*.xml")

@@ -4,17 +4,22 @@
 """The supervisor dies or hangs while the robot is coupled: cycles and links run on, the robot pushes on, and another supervisor
 goes on within a second (docs/adr/0093)."""
 import signal
+import struct
 import threading
 import time
 import unittest
 
 import flight
+import operators
 import supervisors
 
 ADOPTED_S = 1.0
 PATIENCE_S = 0.8                  # supervisor/keeper/kept.hpp
 # The structures of both machines come every so often, by their cycles' count.
 SAMPLES_S = {4713: 0.05, 4721: 0.25}
+# Of the supervisor itself: its structure of all subsystems, by its descriptor every 20 cycles, and an event that each begin raises.
+ROWS, ROWS_INTERVAL = 4702, 50
+STATE_CHANGED = 0xF000
 
 
 class Adoption(unittest.TestCase):
@@ -36,17 +41,32 @@ class Adoption(unittest.TestCase):
         self.assertNotIn("stopped", adopted.told)
         return adopted.received - lost_at
 
+    def ground_sets_the_supervisor(self, ground):
+        self.assertEqual(ground.send(3, 31, struct.pack(">BHI", 1, ROWS, ROWS_INTERVAL)), 7)
+        self.assertEqual(ground.send(5, 6, struct.pack(">BH", 1, STATE_CHANGED)), 7)
+        ground.forget()
+
+    def the_supervisor_is_as_ground_set_it(self, ground):
+        """And was so before it said anything (docs/adr/0205)."""
+        self.assertNotIn(STATE_CHANGED, ground.events())
+        self.assertEqual(ground.send(3, 33, struct.pack(">BH", 1, ROWS)), 7)
+        self.assertEqual(ground.newest(3, 35), struct.pack(">BHBI", 1, ROWS, 1, ROWS_INTERVAL))
+        self.assertEqual(ground.send(5, 7, b""), 7)
+        self.assertEqual(ground.newest(5, 8), struct.pack(">BH", 1, STATE_CHANGED))
+
     def test_kill_9_of_the_supervisor_while_coupled(self):
         with flight.Flight() as rokviss:
             rokviss.wait_commissioned()
             self.push(rokviss)
-            with flight.Telemetry() as telemetry:
+            with flight.Telemetry() as telemetry, operators.Operator(operators.SUPERVISOR) as ground:
+                self.ground_sets_the_supervisor(ground)
                 time.sleep(0.5)
                 took = []
                 for _ in range(2):
                     begin = rokviss.count()
                     took.append(self.is_adopted(rokviss, begin, rokviss.kill("hirosco-supervisor")))
                     self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0)
+                    self.the_supervisor_is_as_ground_set_it(ground)
                     time.sleep(2.5)
                     truth = rokviss.truth("robot")
                     self.assertGreater(truth["force"], 20.0, "it pushes on when nobody would any more without a supervisor")

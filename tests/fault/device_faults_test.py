@@ -14,16 +14,17 @@ class TorqueLimit(unittest.TestCase):
             rokviss.fault("joystick", "hand", "hold", 0, 0)
             time.sleep(2.0)
             begin = rokviss.count()
-            before, stolen = time.monotonic(), flight.stolen_s()
+            before = time.monotonic()
             rokviss.fault("joystick", "hand", "ramp", 0.065, 0, 0.04)
-            asked = time.monotonic()
+            asked = rokviss.truth("joystick")["world_s"]
             event = rokviss.wait_told("MANIPULATOR medium TORQUE_LIMIT_EXCEEDED", 5.0, begin)
+            # In the time of the hand's world, which stands still while the host keeps the processor or the memory of who moves it.
+            took = rokviss.truth("joystick")["world_s"] - asked
             safe = rokviss.wait_told("MANIPULATOR info STATE_CHANGED STATE=SafeOperational", 2.0, begin)
-            flight.measure(f"RO8: {event.told} {event.received - asked:.3f} s after the ramp (0.740 expected), "
+            flight.measure(f"RO8: {event.told} {took:.3f} s after the ramp (0.740 expected), "
                            f"SafeOperational {1e3 * (safe.at_s - event.at_s):.1f} ms later")
-            # The ramp began between the two; its world stands still while a host keeps the processor.
             self.assertGreater(event.received - before, 0.740 - 0.1)
-            self.assertLess(event.received - asked, 0.740 + 0.1 + flight.stolen_s() - stolen)
+            self.assertLess(took, 0.740 + 0.1)
             value = float(event.told.split("VALUE=")[1].split()[0])
             self.assertGreater(abs(value), 12.0)
             self.assertLess(abs(value), 12.5)

@@ -4,12 +4,12 @@
 """kill -9 of real processes in a mission whose plan brings them back to the commanded state (docs/adr/0076): state, configuration,
 a parameter set by telecommand, a housekeeping interval, an event that is not reported, links; and of the ground link, which changes
 nothing of theirs. `--kills N` of each of the three."""
-import binascii
 import struct
 import sys
 import time
 
 import flight
+from operators import Operator
 
 KILLS = int(sys.argv.pop(sys.argv.index("--kills") + 1)) if "--kills" in sys.argv else 3
 if "--kills" in sys.argv:
@@ -19,33 +19,6 @@ PLAN = {"60": '1" pause_ms="20" to="commanded'}
 POS_SCALE = flight.MANIPULATOR << 16 | 10 << 8 | 8     # its id on the wire: subsystem, layout DOUBLE, number
 STATE_CHANGED = 0xF000
 COUPLED = 2
-
-
-class Operator(flight.Telemetry):
-    """Telecommands besides, on the same connection."""
-
-    count = 0
-
-    def send(self, service, subtype, data):
-        """Sends it to the manipulator and waits for its end: the subtype of the last report of service 1 on it."""
-        self.count += 1
-        sequence = 0xC000 | self.count % (1 << 14)
-        body = struct.pack(">BBBH", 0x2F, service, subtype, 0x4711) + data
-        packet = struct.pack(">HHH", 0x1800 | flight.MANIPULATOR, sequence, len(body) + 1) + body
-        self._socket.sendall(packet + struct.pack(">H", binascii.crc_hqx(packet, 0xFFFF)))
-        end = time.monotonic() + 5.0
-        while time.monotonic() < end:
-            with self._mutex:
-                ends = [r.subtype for r in self.reports if r.service == 1 and r.subtype in (2, 4, 7, 8, 10) and
-                        r.data[:4] == packet[:4]]
-            if ends:
-                return ends[-1]
-            time.sleep(0.01)
-        raise AssertionError(f"no end of TC[{service},{subtype}]")
-
-    def newest(self, service, subtype):
-        with self._mutex:
-            return [r.data for r in self.reports if (r.apid, r.service, r.subtype) == (flight.MANIPULATOR, service, subtype)][-1]
 
 
 class Restoration(flight.unittest.TestCase):

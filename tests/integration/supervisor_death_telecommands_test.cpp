@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "tests/integration/late_log.hpp"
 #include "tests/integration/mortal_flight.hpp"
 
-/// The supervisor dies while telecommands wait for a disk that takes its time, leave, and are answered (docs/adr/0190).
+/// The supervisor dies while telecommands wait for a disk that takes its time, leave, and are answered (docs/adr/0190), and while it is
+/// set itself (docs/adr/0205).
 namespace hirosco::testing {
 namespace {
 
@@ -60,6 +62,62 @@ TEST(SupervisorDeath, AtEveryMomentOfTelecommandsThatWaitForADiskNoneIsRefusedTh
   EXPECT_GT(unknown, 0) << "what was about to leave and did not";
   EXPECT_GT(carried_out, 0);
   std::printf("%d flights, refused: %d, unknown: %d, carried out: %d\n", flights, refused, unknown, carried_out);
+}
+
+/// TC[3,subtype] to the supervisor itself.
+[[nodiscard]] std::vector<std::byte> own_housekeeping(std::uint16_t count, std::uint8_t subtype,
+                                                      const std::function<void(OctetWriter&)>& put) {
+  std::vector<std::byte> data(64), buffer(pus::max_telecommand_octets);
+  OctetWriter writer{data};
+  put(writer);
+  const auto packet = pus::write_telecommand(buffer,
+                                             {.apid = pus::supervisor_apid,
+                                              .sequence_count = count,
+                                              .ack = pus::ack_all,
+                                              .service = 3,
+                                              .subtype = subtype,
+                                              .source = 0},
+                                             writer.written());
+  return {packet->begin(), packet->end()};
+}
+
+/// docs/adr/0205
+TEST(SupervisorDeath, AtEveryMomentOfAnIntervalThatGroundSetsOfTheSupervisorItIsSetWhereThatWasTold) {
+  constexpr std::uint8_t single = 1;
+  constexpr std::uint16_t rows = 4702;
+  constexpr std::uint32_t by_its_descriptor = 20, by_ground = 50;
+  int set = 0;
+  const int flights = at_every_moment(
+      [](MortalFlight& mortal) {
+        mortal.flight.craft().ground().send(
+            own_housekeeping(4000, 31, [](OctetWriter& data) { data.put(single).put(rows).put(by_ground); }));
+      },
+      [&](MortalFlight& mortal) {
+        Flight& flight = mortal.flight;
+        const auto verdicts = mortal.verdicts.of;
+        std::uint32_t interval = 0;
+        flight.story().on_telemetry = [&interval](const pus::TelemetryView& report) {
+          if (report.apid() != pus::supervisor_apid || report.service() != 3 || report.subtype() != 35) return;
+          OctetReader reader{report.source_data()};
+          static_cast<void>(reader.get(1 + 2 + 1));
+          interval = reader.get<std::uint32_t>();
+        };
+        const auto asked = own_housekeeping(4001, 33, [](OctetWriter& data) { data.put(single).put(rows); });
+        EXPECT_EQ(flight.send(asked).subtype, 7) << mortal.text();
+        flight.story().on_telemetry = nullptr;
+        EXPECT_TRUE(interval == by_its_descriptor || interval == by_ground) << interval << "\n" << mortal.text();
+        for (const auto& [id, verdict] : verdicts) {
+          const bool completed = verdict.final > verdict.unknown + verdict.refused;
+          if (completed || verdict.refused > 0) {
+            EXPECT_EQ(interval, completed ? by_ground : by_its_descriptor) << mortal.text();
+          }
+          set += completed && flight.craft().supervisor_deaths() > 0 ? 1 : 0;
+        }
+      },
+      1, hand_at_rest, 20ms);
+  EXPECT_GT(flights, 5);
+  EXPECT_GT(set, 0) << "told, and then it died";
+  std::printf("%d flights, set before the death: %d\n", flights, set);
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ class Catalogue final : public Subsystem {
     publish("SEEN", seen_);
     publish("SORTED", shown_);
     publish("RATE_HZ", rate_hz_);
+    publish("PAGE", page_);
     return done;
   }
 
@@ -44,15 +45,17 @@ class Catalogue final : public Subsystem {
     return ok();
   }
 
-  /// In the archive's loop: the cycle's value as a snapshot, its own by store().
+  /// In the archive's loop, whole pages: the cycle's values as snapshots, its own by store().
   void sort() {
-    std::uint32_t seen = 0;
-    if (!seen_.snapshot(seen) || seen == sorted_) return;
-    if (archive_.store(shown_, seen)) sorted_ = seen;
+    std::uint32_t seen = 0, page = 1;
+    if (!seen_.snapshot(seen) || !page_.snapshot(page)) return;
+    seen -= seen % page;
+    if (seen != sorted_ && archive_.store(shown_, seen)) sorted_ = seen;
   }
 
   CustomService archive_{"ARCHIVE"};
   Parameter<std::uint32_t> seen_, shown_;
+  Parameter<std::uint32_t> page_;  ///< so many are sorted at once; ST[20] sets it, in a loop of its own
   Parameter<double> rate_hz_;
   std::uint32_t sorted_{0};  ///< of the archive's loop alone
 };

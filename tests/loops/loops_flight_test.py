@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """The catalogue with real processes: the threads that its descriptor says, period and priority that follow the configuration
-without a restart, a loop of services that hangs, seen by the guard."""
+without a restart, values set in a loop of their own, a loop of services that hangs, seen by the guard."""
 import pathlib
 import struct
 import threading
@@ -29,9 +29,10 @@ class Loops(unittest.TestCase):
         with flight.Flight(MISSION) as craft:
             craft.wait_told("commissioned: mode operation", 20.0)
             pid, realtime = craft.pid_of(PROGRAM), self.threads(craft)["cycle"][0] == 1
-            self.assertIn("loop.PAGES", self.threads(craft))
+            self.assertLessEqual({"loop.PAGES", "loop.VALUES"}, set(self.threads(craft)))
             if realtime:
                 self.assertEqual(self.threads(craft)["loop.PAGES"], (1, 12))
+                self.assertEqual(self.threads(craft)["loop.VALUES"], (1, 8))
             measured = []
             for configuration, sampling_s, priority in ((2, 0.002, 50), (1, 0.004, 30), (2, 0.002, 50)):
                 code, reports = craft.tc("CATALOGUE", "CONFIGURE", configuration)
@@ -61,16 +62,20 @@ class Loops(unittest.TestCase):
         time.sleep(span_s)
         return (woken() - first) / (time.monotonic() - begin)
 
-    def told(self, telemetry, since):
-        """CYCLE_SPIN and LOOP_STATS of the newest report of structure 2 after `since`; each with the numbers of loop 0."""
+    def newest(self, telemetry, structure, since):
+        """The values of the newest report of the catalogue's structure after `since`, as they came."""
         end = time.monotonic() + 10.0
         while time.monotonic() < end:
             for report in reversed(list(telemetry.reports)):
-                if report.received > since and (report.service, report.subtype) == (3, 25) and report.data[:2] == b"\0\2" and report.apid == 24:
-                    spin_us, longest_us, exceeded, *loops = struct.unpack(">ffQ8f8f8Q8Q", report.data[2:2 + 208])
-                    return (spin_us, longest_us, exceeded), (loops[0], loops[8], loops[16], loops[24])
+                if report.received > since and (report.service, report.subtype) == (3, 25) and report.data[:2] == bytes((0, structure)) and report.apid == 24:
+                    return report.data[2:]
             time.sleep(0.05)
-        raise AssertionError("structure 2 is not reported")
+        raise AssertionError(f"structure {structure} is not reported")
+
+    def told(self, telemetry, since, loop=0):
+        """CYCLE_SPIN and LOOP_STATS of the newest report of structure 2 after `since`; the latter of one loop."""
+        spin_us, longest_us, exceeded, *loops = struct.unpack(">ffQ8f8f8Q8Q", self.newest(telemetry, 2, since)[:208])
+        return (spin_us, longest_us, exceeded), tuple(loops[loop::8])
 
     def test_a_precise_configuration_spins_and_its_loop_says_what_its_steps_take(self):
         with flight.Flight(MISSION) as craft:
@@ -92,6 +97,28 @@ class Loops(unittest.TestCase):
                 self.assertEqual(craft.tc("CATALOGUE", "CONFIGURE", calm)[0], 0)
                 time.sleep(pause_s)
                 self.assertEqual(self.told(telemetry, time.monotonic())[0], (0.0, 0.0, 0))
+            craft.end()
+
+    def test_values_are_set_and_told_in_a_loop_of_their_own_beside_those_of_the_archive(self):
+        with flight.Flight(MISSION) as craft:
+            craft.wait_told("commissioned: mode operation", 20.0)
+            begin = craft.count()
+            for configuration, page in ((2, 100), (1, 50), (2, 100)):
+                code, reports = craft.tc("CATALOGUE", "SET:PAGE", page)
+                self.assertEqual((code, reports[-1]), (0, "1,7"))
+                self.assertEqual(craft.tc("CATALOGUE", "CONFIGURE", configuration)[0], 0)
+            self.assertNotEqual(craft.tc("CATALOGUE", "SET:PAGE", 0)[0], 0)
+            with flight.Telemetry() as telemetry:
+                _, sorted_first = struct.unpack(">II", self.newest(telemetry, 1, time.monotonic())[:8])
+                time.sleep(1.5)
+                _, sorted_then = struct.unpack(">II", self.newest(telemetry, 1, time.monotonic())[:8])
+                loop = self.told(telemetry, time.monotonic(), 1)[1]
+            flight.measure(f"sorted: {sorted_first}, {sorted_then}; VALUES: budget, longest / us, exceeded, missed: {loop}")
+            self.assertGreater(sorted_then, sorted_first)
+            self.assertEqual(sorted_then % 100, 0, "in whole pages, as ST[20] has set it")
+            self.assertEqual(loop[0], 500.0)
+            self.assertGreater(loop[1], 0.0)
+            self.assertFalse([line for line in craft.told(begin) if "SERVICE_LOOP_HANGS" in line.told])
             craft.end()
 
     def test_a_loop_that_hangs_is_seen_by_the_guard_and_its_process_ended(self):

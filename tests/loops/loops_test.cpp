@@ -3,7 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <vector>
 
+#include "hirosco/parameter/type.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 #include "simulation/spacecraft/observed_flight.hpp"
 #include "supervisor/supervision/data_handling/permission_table.hpp"
 
@@ -21,6 +26,27 @@ struct Loops : ::testing::Test {
   void SetUp() override { ASSERT_TRUE(flight.commission()) << flight.story().text(); }
   simulation::CommandOutcome count() { return flight.craft().command("CATALOGUE", "COUNT", {}); }
   simulation::CommandOutcome configure(std::string_view name) { return flight.configure("CATALOGUE", name); }
+  /// `data` of TC[20,subtype]; how it ended.
+  simulation::Flight::Verdict values(std::uint8_t subtype, std::initializer_list<std::uint32_t> words) {
+    std::array<std::byte, 64> data;
+    OctetWriter writer{data};
+    writer.put(std::uint8_t{1});
+    for (const std::uint32_t word : words) writer.put(word);
+    std::array<std::byte, pus::max_telecommand_octets> packet;
+    const auto written = pus::write_telecommand(packet,
+                                                {.apid = catalogue,
+                                                 .sequence_count = ++sent,
+                                                 .ack = pus::ack_all,
+                                                 .service = 20,
+                                                 .subtype = subtype,
+                                                 .source = 7},
+                                                writer.written());
+    return flight.send(written.value());
+  }
+  static constexpr std::uint16_t catalogue = 24;
+  static constexpr std::uint32_t page = ParameterId{catalogue, Type::Uint32, 2}.wire();
+  std::uint16_t sent{0};
+
   std::uint64_t cycles_in(Duration span) {
     const std::uint64_t before = flight.cycles("CATALOGUE");
     flight.craft().run(span);
@@ -42,6 +68,43 @@ TEST_F(Loops, AServiceAnswersFromItsOwnLoopWhatTheCycleSaw) {
   ASSERT_EQ(counted.size(), 2U);
   EXPECT_GT(counted[0], 200U);
   EXPECT_NEAR(counted[1] - counted[0], 250, 10) << "a second at 4 ms, as its loop had it 20 ms ago at most";
+}
+
+/// Set in one loop, at a boundary of the cycle, and in force in the other loop.
+TEST_F(Loops, ValuesAreSetInALoopOfTheirOwnForTheArchiveInItsLoop) {
+  std::vector<std::uint32_t> counted;
+  flight.story().on_telemetry = [&](const pus::TelemetryView& report) {
+    if (report.service() != 200 || report.subtype() != 3) return;
+    OctetReader reader{report.source_data()};
+    counted.push_back(reader.get<std::uint32_t>());
+  };
+  EXPECT_EQ(values(3, {page, 100}).subtype, 7) << flight.story().text();
+  flight.craft().run(1s);
+  EXPECT_TRUE(count().completed);
+  EXPECT_NE(values(3, {page, 101}).subtype, 7) << "outside of its range";
+  ASSERT_EQ(counted.size(), 1U);
+  EXPECT_GT(counted[0], 0U);
+  EXPECT_EQ(counted[0] % 100, 0U) << "in whole pages";
+  EXPECT_FALSE(flight.story().has("CATALOGUE medium")) << flight.story().text();
+}
+
+/// At the period that the descriptor gives to their loop, whenever they are asked for.
+TEST_F(Loops, ValuesAreToldAtThePeriodOfTheirLoop) {
+  constexpr Duration period = 50ms, on_the_way = 12ms;
+  std::vector<TimePoint> told;
+  flight.story().on_telemetry = [&](const pus::TelemetryView& report) {
+    if (report.service() == 20 && report.subtype() == 2) told.push_back(flight.craft().now());
+  };
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(values(1, {page}).subtype, 7) << flight.story().text();
+    flight.craft().run(17ms);
+  }
+  ASSERT_EQ(told.size(), 10U);
+  for (const TimePoint each : told) {
+    const Duration beside = (each - told.front()) % period;
+    EXPECT_LT(std::min(beside, period - beside), on_the_way);
+  }
+  for (std::size_t i = 1; i < told.size(); ++i) EXPECT_GT(told[i] - told[i - 1], period - on_the_way);
 }
 
 TEST_F(Loops, GoesTenTimesFromOneConfigurationToAnotherInOperationalWithoutALateOrMissingCycle) {

@@ -15,6 +15,7 @@
 #include "supervisor/supervision/event_handling/planned_reactions.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/json_line.hpp"
+#include "tools/hirosco/permits.hpp"
 #include "tools/hirosco/readiness.hpp"
 #include "tools/hirosco/scripts.hpp"
 
@@ -186,6 +187,7 @@ void check_file(const std::filesystem::path& file, const CheckOptions& options, 
   findings.add(std::move(reading.problems));
   findings.add(std::move(reading.warnings));
   if (!reading.value) return;
+  findings.add(permit_problems(*reading.value));
   for (const auto& member : reading.value->subsystems) findings.add(script_problems(member.subsystem, source));
   auto missing = unready(*reading.value, FlownAs::Processes);
   for (auto& problem : missing)
@@ -193,6 +195,7 @@ void check_file(const std::filesystem::path& file, const CheckOptions& options, 
         !options.fly)
       problem.grade = descriptor::Grade::Warning;
   findings.add(std::move(missing));
+  findings.add(unisolated(*reading.value));
   if (options.fly) findings.add(unintroduced(*reading.value));
 }
 

@@ -24,14 +24,15 @@ void add_instance(CLI::App& command, std::string& instance) {
   command.add_option("--instance", instance, "Which flight, where several are in the air");
 }
 
-void add_connection(CLI::App& command, Connection& connection) {
+/// `json`: what comes in place of text.
+void add_connection(CLI::App& command, Connection& connection, const std::string& json) {
   command.add_option(
       "--mission", connection.mission,
       "Mission whose descriptors decode the packets; by default the one that flies, else that of this folder");
   add_instance(command, connection.instance);
   command.add_option("--host", connection.host, "Address of the ground link; by default the flight's");
   command.add_option("--port", connection.port, "Port of the ground link; by default the flight's");
-  command.add_flag("--json", connection.json, "One JSON object instead of text");
+  command.add_flag("--json", connection.json, json);
 }
 
 /// A first word that is no command: says which there are.
@@ -101,10 +102,14 @@ int read_and_do(int argc, char** argv) {
   CheckOptions check_options;
   auto* check_command = app.add_subcommand("check", "Check descriptors and missions, all problems at once");
   check_command->add_option("files", check_options.files, "Descriptor or mission files")->required();
-  check_command->add_flag("--show", check_options.show, "Print what was read");
-  check_command->add_flag("--recovery", check_options.recovery,
-                          "Print which plan each event would get in which mode, and which gives way to which");
-  check_command->add_flag("--json", check_options.json, "Problems as JSON, one a line");
+  auto* show = check_command->add_flag("--show", check_options.show, "Print what was read");
+  auto* recovery =
+      check_command->add_flag("--recovery", check_options.recovery,
+                              "Print which plan each event would get in which mode, and which gives way to which");
+  // What those two print is for people.
+  check_command->add_flag("--json", check_options.json, "Problems as JSON, one a line")
+      ->excludes(show)
+      ->excludes(recovery);
   check_command->add_flag("--fly", check_options.fly, "Also all programs that a mission needs must be here");
 
   DoctorOptions doctor_options;
@@ -113,7 +118,7 @@ int read_and_do(int argc, char** argv) {
       "What this computer has and lacks for a flight, with the line that mends it; ends with 1 when it matters");
   doctor_command->add_option("mission", doctor_options.mission,
                              "Name or path of the mission that is to fly; by default the usual one");
-  doctor_command->add_flag("--json", doctor_options.json, "One JSON object a line");
+  doctor_command->add_flag("--json", doctor_options.json, "One JSON object a line, for each row");
 
   NewOptions new_options;
   std::vector<std::string> kinds;
@@ -150,8 +155,9 @@ int read_and_do(int argc, char** argv) {
   simulate_command->add_option(
       "--trace", simulate_options.trace,
       "Write the truth of the simulated world as CSV, at cycle rate; each 10 ms while there is no cycle");
-  simulate_command->add_option("--at", simulate_options.at,
-                               "Injection \"SECONDS DEVICE LINE\" or \"SECONDS kill SUBSYSTEM\"");
+  simulate_command->add_option(
+      "--at", simulate_options.at,
+      "Injection \"SECONDS DEVICE LINE\" or \"SECONDS kill SUBSYSTEM\", before the end, in any order");
   simulate_command->add_option(
       "--values", simulate_options.values,
       "Folder of persistent parameters' values, read and written; by default there are none before");
@@ -172,7 +178,7 @@ int read_and_do(int argc, char** argv) {
                          "Name of the function, or ping; without one, those that it has are listed");
   tc_command->add_option("arguments", tc_options.arguments, "Values in order, or NAME=VALUE")->allow_extra_args();
   tc_command->add_option("--limit", tc_limit, "How long to wait for the end")->capture_default_str();
-  add_connection(*tc_command, tc_options.connection);
+  add_connection(*tc_command, tc_options.connection, "One JSON object a line, for each report");
 
   PermissionsOptions permissions_options;
   auto* permissions_command = app.add_subcommand(
@@ -203,7 +209,9 @@ int read_and_do(int argc, char** argv) {
   mode_command->add_flag("--preview", mode_options.preview,
                          "Only tell the steps that it would take, or all that is against it");
   mode_command->add_option("--limit", mode_limit, "How long to wait for the end")->capture_default_str();
-  add_connection(*mode_command, mode_options.connection);
+  add_connection(
+      *mode_command, mode_options.connection,
+      "One JSON object a line: for each report; with --preview one for all, without a name one for each mode");
 
   PlanOptions plan_options;
   std::string plan_limit = "10s";
@@ -213,7 +221,7 @@ int read_and_do(int argc, char** argv) {
   plan_command->add_flag("--descriptors", plan_options.from_descriptors,
                          "In each mode, as the descriptors say it: needs no flight");
   plan_command->add_option("--limit", plan_limit, "How long to wait for the answer")->capture_default_str();
-  add_connection(*plan_command, plan_options.connection);
+  add_connection(*plan_command, plan_options.connection, "One JSON object; with --descriptors a list of them");
 
   StatusOptions status_options;
   auto* status_command =
@@ -221,7 +229,8 @@ int read_and_do(int argc, char** argv) {
   status_command->add_option("subsystem", status_options.of,
                              "The newest housekeeping of this subsystem, and the verdict in one line");
   status_command->add_flag("--all", status_options.all, "The newest housekeeping of every subsystem besides");
-  add_connection(*status_command, status_options.connection);
+  add_connection(*status_command, status_options.connection,
+                 "One JSON object a line: for each subsystem, last the verdict with its findings and the way up");
 
   LogOptions log_options;
   auto* log_command = app.add_subcommand("log", "Read the supervisor's log; its times are UTC");
@@ -284,14 +293,14 @@ int read_and_do(int argc, char** argv) {
   ground_command->add_option("--telemetry", ground_options.telemetry, "ADDRESS:PORT of the spacecraft");
   ground_command->add_option("--archive", ground_options.archive, "File of the archive");
   ground_command->add_option("--page", ground_options.page, "Folder with another page");
-  ground_command->add_flag("--json", ground_options.json, "The URL as JSON");
+  ground_command->add_flag("--json", ground_options.json, "One JSON object: the URLs");
   auto* why_command = app.add_subcommand("why", "The chain of causes of the last stop");
   why_command->add_option("mission", ground_options.mission, whose);
   why_command->add_option("--mission", ground_options.mission, whose);
   why_command->add_option("--instance", ground_options.instance,
                           "Which one, of those that fly or have flown from here");
   why_command->add_option("--archive", ground_options.archive, "File of the ground station's archive");
-  why_command->add_flag("--json", ground_options.json, "As JSON");
+  why_command->add_flag("--json", ground_options.json, "One JSON object, as GET /api/why of the page answers");
   why_command->add_flag("--md", ground_options.markdown, "As a report in Markdown");
   ExportOptions export_options;
   auto* export_command = app.add_subcommand("export", "What other programs need of a mission");

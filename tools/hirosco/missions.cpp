@@ -12,6 +12,7 @@
 #include "hirosco/utilities/nearest.hpp"
 #include "hirosco/utilities/os/installation.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/permits.hpp"
 
 namespace hirosco::tools {
 
@@ -106,8 +107,9 @@ std::optional<descriptor::Mission> load_mission(const std::string& name_or_path)
   const auto source = descriptor::file_system();
   auto reading = descriptor::read_mission(file, source);
   const bool colour = ::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+  if (reading.value) reading.problems = permit_problems(*reading.value);
   for (const auto& problem : reading.problems) fmt::print(stderr, "{}", descriptor::render(problem, source, colour));
-  return std::move(reading.value);
+  return reading.problems.empty() ? std::move(reading.value) : std::nullopt;
 }
 
 fs::path runtime_root() {

@@ -22,6 +22,17 @@ void print_modes(const descriptor::Mission& mission, std::FILE* to) {
   }
 }
 
+/// A line each, as `hirosco status` has its subsystems.
+void print_modes_json(const descriptor::Mission& mission) {
+  for (const auto& mode : mission.modes) {
+    auto steps = nlohmann::ordered_json::array();
+    for (const auto& step : mode.commission)
+      steps.push_back(
+          {{"subsystem", step.subsystem}, {"configuration", step.configuration}, {"state", to_text(step.state)}});
+    fmt::print("{}\n", json_line({{"mode", mode.name}, {"number", mode.id}, {"commission", std::move(steps)}}));
+  }
+}
+
 void print_preview(const pus::st129::ModePreview& preview, const descriptor::Mission& mission, const std::string& mode,
                    bool json) {
   const pus::PacketDescriber describer{mission};
@@ -49,7 +60,8 @@ int mode(const ModeOptions& options) {
   if (wanted == mission.modes.end()) {
     const bool asked = options.name.empty();
     if (!asked) fmt::print(stderr, "hirosco mode: no mode '{}'; the mission has\n", options.name);
-    print_modes(mission, asked ? stdout : stderr);
+    if (asked && options.connection.json) print_modes_json(mission);
+    else print_modes(mission, asked ? stdout : stderr);
     return asked ? exit_ok : exit_usage;
   }
   if (!options.preview)

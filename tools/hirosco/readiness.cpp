@@ -16,6 +16,7 @@
 #include "simulation/spacecraft/modules.hpp"
 #include "supervisor/platform/launch/own_users.hpp"
 #include "supervisor/platform/launch/program_image.hpp"
+#include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -180,6 +181,24 @@ std::vector<Diagnostic> unintroduced(const descriptor::Mission& mission) {
       if (made.at) found.push_back({member.subsystem.file, *made.at, made.code, made.text, made.remedy, 1});
       else
         found.push_back({mission.file, member.at, made.code, member.subsystem.name + ": " + made.text, made.remedy, 1});
+  }
+  return found;
+}
+
+std::vector<Diagnostic> unisolated(const descriptor::Mission& mission) {
+  std::vector<Diagnostic> found;
+  const auto grade = mission.isolation_required ? descriptor::Grade::Error : descriptor::Grade::Warning;
+  for (const auto& member : mission.subsystems) {
+    const auto program = find_program(member.executable);
+    if (program.empty() || !supervisor::is_script(program)) continue;
+    found.push_back(
+        {mission.file, member.at, "E0411",
+         fmt::format("{} of subsystem {} is a script{}", member.executable, member.subsystem.name,
+                     mission.isolation_required ? ", which <Isolation required=\"yes\"/> does not let fly"
+                                                : ": it flies in no sandbox"),
+         "what its interpreter needs nobody declares: files, calls and processes of others are open to it; a compiled "
+         "program has a sandbox",
+         1, grade});
   }
   return found;
 }

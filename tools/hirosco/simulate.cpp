@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "simulation/spacecraft/flight_origin.hpp"
 #include "simulation/spacecraft/modules.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/injection_plan.hpp"
 #include "tools/hirosco/readiness.hpp"
 
 namespace hirosco::tools {
@@ -26,22 +26,6 @@ struct Nobody final : supervisor::Observer {
       fmt::print(stderr, "hirosco simulate: {}\n", line);
   }
 };
-
-struct Injection {
-  TimePoint at{};
-  std::string device;
-  std::string line;
-};
-
-[[nodiscard]] std::optional<Injection> read_injection(const std::string& text) {
-  std::istringstream words{text};
-  double at_s = 0.0;
-  Injection injection;
-  if (!(words >> at_s >> injection.device) || !(at_s >= 0.0)) return std::nullopt;
-  std::getline(words >> std::ws, injection.line);
-  injection.at = TimePoint{1s} + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(at_s));
-  return injection;
-}
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
@@ -115,17 +99,12 @@ int simulate(const SimulateOptions& options) {
       return exit_usage;
     }
   if (!ready(*mission, FlownAs::Simulation)) return exit_environment;
-  std::vector<Injection> injections;
-  for (const std::string& text : options.at) {
-    const auto injection = read_injection(text);
-    if (!injection) {
-      fmt::print(stderr, "hirosco simulate: --at '{}' is not \"SECONDS DEVICE LINE\", for example \"5 arm unplug\"\n",
-                 text);
-      return exit_usage;
-    }
-    injections.push_back(*injection);
+  const auto injections = plan_injections(options.at, options.run_for);
+  if (!injections) {
+    fmt::print(stderr, "hirosco simulate: {}\n", injections.error());
+    return exit_usage;
   }
-  for (const Injection& injection : injections) {
+  for (const Injection& injection : *injections) {
     if (injection.device != "kill" && std::ranges::find(mission->devices, injection.device,
                                                         &descriptor::SimulatedDevice::name) == mission->devices.end()) {
       fmt::print(stderr, "hirosco simulate: no device '{}'; the mission has", injection.device);
@@ -165,17 +144,17 @@ int simulate(const SimulateOptions& options) {
     if (trace) trace->fly(craft, until);
     else if (craft.now() < until) craft.run(until - craft.now());
   };
-  const TimePoint end = craft.now() + options.run_for;
+  const TimePoint begin = craft.now();
   bool all_taken = true;
-  for (const Injection& injection : injections) {
-    if (injection.at < end) fly_until(injection.at);
+  for (const Injection& injection : *injections) {
+    fly_until(begin + injection.after);
     if (injection.device == "kill") craft.kill(injection.line);
     else if (auto* device = craft.device(injection.device); device == nullptr || !device->fault(injection.line)) {
       fmt::print(stderr, "hirosco simulate: device '{}' does not take '{}'\n", injection.device, injection.line);
       all_taken = false;
     }
   }
-  fly_until(end);
+  fly_until(begin + options.run_for);
 
   const auto page = log.read({.last = SIZE_MAX});
   if (!page) return exit_internal;

@@ -145,17 +145,19 @@ int status(const StatusOptions& options) {
       if (only == nullptr || only == member) print(*member, listened);
   }
   const auto overview = known();
-  if (!overview) {
-    if (!connection.json)
-      print_line(fmt::format("NOT WELL: {} answers, and its supervisor has told nothing for {} s", mission.name,
-                             seconds(listening)),
-                 look_of(descriptor::Severity::High));
-    return exit_finding;
-  }
-  const terminal::Judgement judged = terminal::judge(*overview);
-  if (only != nullptr && !connection.json) print_line(judged.line, "");
-  else if (!connection.json) print_verdict(mission, *overview, judged);
-  return judged.verdict == terminal::Verdict::Well ? exit_ok : exit_finding;
+  const terminal::Judgement judged =
+      overview ? terminal::judge(*overview)
+               : terminal::Judgement{terminal::Verdict::NotWell,
+                                     fmt::format("NOT WELL: {} answers, and its supervisor has told nothing for {} s",
+                                                 mission.name, seconds(listening))};
+  const bool well = judged.verdict == terminal::Verdict::Well;
+  if (connection.json) {
+    const auto way_up = overview && !well ? terminal::way_up(*overview, mission) : std::vector<std::string>{};
+    fmt::print("{}\n", json_line(terminal::verdict_json(mission.name, judged, way_up)));
+  } else if (!overview) print_line(judged.line, look_of(descriptor::Severity::High));
+  else if (only != nullptr) print_line(judged.line, "");
+  else print_verdict(mission, *overview, judged);
+  return well ? exit_ok : exit_finding;
 }
 
 }  // namespace hirosco::tools

@@ -124,6 +124,8 @@ struct Encoded {
   OctetReader reader{report.source_data()};
   static_cast<void>(reader.get<std::uint32_t>());
   const auto code = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
+  // A success has no code there, and that of a failed step stands behind the step's number.
+  if (report.subtype() % 2 != 0 || report.subtype() == 6) return {};
   std::string request = encoded.request.name;
   if (code == pus::FailureCode::NotPermittedNow && request.starts_with(pus::setting_prefix))
     return terminal::while_in(encoded.request.states);
@@ -134,9 +136,9 @@ struct Encoded {
   return where.empty() ? where : "in " + where;
 }
 
-/// Prints one verification report; true when it was the last of the request.
+/// Prints one verification report, with `where` the request would be permitted if that is known; true when it was the last of the request.
 [[nodiscard]] bool print_report(const pus::TelemetryView& report, const descriptor::SubsystemDescriptor& subsystem,
-                                double after_ms, bool json, bool& success) {
+                                double after_ms, const std::string& where, bool json, bool& success) {
   OctetReader reader{report.source_data()};
   static_cast<void>(reader.get<std::uint32_t>());
   constexpr std::array names{"",          "accepted", "refused", "started",   "start failed", "step", "step failed",
@@ -150,12 +152,17 @@ struct Encoded {
     detail += ": " + failure_text(reader.get<std::uint16_t>(), subsystem);
     if (const auto reason = pus::reason_in(reader.rest())) detail += ": " + words_of(*reason);
   }
-  if (json)
-    fmt::print("{}\n", json_line({{"report", fmt::format("1,{}", subtype)},
+  if (json) {
+    nlohmann::ordered_json object{{"report", fmt::format("1,{}", subtype)},
                                   {"text", names[subtype] + detail},
                                   {"from", report.apid()},
-                                  {"after_ms", std::round(100 * after_ms) / 100}}));
-  else fmt::print("{:9.2f} ms  TM[1,{}] {}{}\n", after_ms, subtype, names[subtype], detail);
+                                  {"after_ms", std::round(100 * after_ms) / 100}};
+    if (!where.empty()) object["permitted"] = where;
+    fmt::print("{}\n", json_line(object));
+  } else {
+    fmt::print("{:9.2f} ms  TM[1,{}] {}{}\n", after_ms, subtype, names[subtype], detail);
+    if (!where.empty()) fmt::print("              permitted {}\n", where);
+  }
   success = subtype == 7;
   return subtype == 7 || (failure && subtype != 6);
 }
@@ -242,9 +249,8 @@ int telecommand(const TelecommandOptions& options) {
     if (OctetReader{report->source_data()}.get<std::uint32_t>() != id) continue;
     const double after_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     bool success = false;
-    if (!print_report(*report, *subsystem, after_ms, options.connection.json, success)) continue;
-    if (const auto where = way_out(*report, mission, *subsystem, *encoded); !where.empty() && !options.connection.json)
-      fmt::print("              permitted {}\n", where);
+    const std::string where = way_out(*report, mission, *subsystem, *encoded);
+    if (!print_report(*report, *subsystem, after_ms, where, options.connection.json, success)) continue;
     return success ? exit_ok : exit_finding;
   }
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 
 namespace hirosco::terminal {
 namespace {
@@ -85,6 +86,18 @@ std::vector<std::string> way_up(const Overview& overview, const descriptor::Miss
   }
   commands.push_back("hirosco mode " + name);
   return commands;
+}
+
+nlohmann::ordered_json verdict_json(const std::string& mission, const Judgement& judged,
+                                    const std::vector<std::string>& commands) {
+  auto findings = nlohmann::ordered_json::array();
+  for (const Finding& finding : judged.findings)
+    findings.push_back({{"severity", to_text(finding.severity)}, {"subject", finding.subject}, {"text", finding.text}});
+  return {{"mission", mission},
+          {"verdict", to_text(judged.verdict)},
+          {"line", judged.line},
+          {"findings", std::move(findings)},
+          {"way_up", commands}};
 }
 
 Judgement judge(const Overview& overview) {

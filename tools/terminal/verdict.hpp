@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "hirosco/descriptor/model/mission.hpp"
+#include "hirosco/utilities/enum_text.hpp"
 #include "supervisor/overview.hpp"
 
 /// Is it well? The same answer for `hirosco status` and for the screen of `hirosco run`.
@@ -38,9 +40,27 @@ struct Judgement {
 /// The commands that bring up again what is down, in turn: who does not run is started before the mode comes up. Empty: there is no such mode.
 [[nodiscard]] std::vector<std::string> way_up(const Overview& overview, const descriptor::Mission& mission);
 
+/// The same for programs: {"mission", "verdict", "line", "findings": [{"severity", "subject", "text"}], "way_up": `commands`}, the verdict by the
+/// words of its table.
+[[nodiscard]] nlohmann::ordered_json verdict_json(const std::string& mission, const Judgement& judged,
+                                                  const std::vector<std::string>& commands);
+
 /// Why actuators are inhibited, in the words of the page; empty when they are not.
 [[nodiscard]] std::string inhibition_words(std::uint32_t inhibited);
 /// "Safe-Operational", as the paper writes the states.
 [[nodiscard]] std::string state_words(std::string_view state);
 
 }  // namespace hirosco::terminal
+
+namespace hirosco {
+
+template <>
+struct EnumTexts<terminal::Verdict> {
+  static constexpr auto table = enum_table<terminal::Verdict>({
+      {terminal::Verdict::Well, "well"},
+      {terminal::Verdict::OnTheWay, "on the way"},
+      {terminal::Verdict::NotWell, "not well"},
+  });
+};
+
+}  // namespace hirosco

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "supervisor/testing/pair_overview.hpp"
 
@@ -116,6 +117,21 @@ TEST(VerdictTest, CountsAreSaidAndMakeNobodyUnwell) {
   EXPECT_EQ(judged.verdict, Verdict::Well);
   EXPECT_THAT(texts(judged), ElementsAre("ARM missed 3 of 1000 cycles", "HAND: 2 cycles took longer than they may",
                                          "no real-time scheduling: the reduced limits hold"));
+}
+
+TEST(VerdictTest, ProgramsReadTheSameVerdictFindingsAndWayUp) {
+  const auto well = verdict_json("PAIR", judge(supervisor::testing::pair()), {});
+  EXPECT_EQ(well.dump(),
+            R"({"mission":"PAIR","verdict":"well","line":"well: mode coupled, 2 subsystems as it has them, )"
+            R"(2 links up","findings":[],"way_up":[]})");
+  Overview craft = supervisor::testing::pair();
+  craft.members[0].state = "Offline";
+  const auto unwell = verdict_json("PAIR", judge(craft), {"hirosco mode coupled"});
+  EXPECT_EQ(unwell["verdict"], "not well");
+  EXPECT_EQ(unwell["line"], "NOT WELL: 1 of 2 subsystems not as mode coupled has it");
+  EXPECT_EQ(unwell["findings"].dump(), R"([{"severity":"high","subject":"ARM","text":"ARM is Offline, the mode has it )"
+                                       R"(Operational"}])");
+  EXPECT_EQ(unwell["way_up"].dump(), R"(["hirosco mode coupled"])");
 }
 
 TEST(VerdictTest, OnTheWayNothingIsAFaultYet) {

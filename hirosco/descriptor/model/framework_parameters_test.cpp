@@ -122,7 +122,7 @@ TEST(FrameworkParameters, AddedTwiceAreThereOnce) {
 // --- outputs of actuators ----------------------------------------------------------------------------------------------
 
 const std::string two_actuators = R"(
-    <Device name="LAMP"><Output><Field name="LIT" type="UINT8" safe="0"/></Output></Device>
+    <Device name="LAMP"><Output><Field name="LIT" type="UINT8"/></Output></Device>
     <Device name="ARM" actuator="yes"><Output><Field name="TORQUE" type="DOUBLE" count="2" unit="N m" minimum="-5" maximum="5" safe="0 0"/>
       <Field name="BRAKE" type="UINT8" safe="1"/></Output></Device>
     <Device name="left-hand.1" actuator="yes"><Output><Field name="FORCE" type="DOUBLE" safe="0"/></Output></Device>)";

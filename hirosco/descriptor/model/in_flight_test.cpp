@@ -40,7 +40,7 @@ const std::string flown_text = R"(<Subsystem name="PAN" id="9">
     <Output><Field name="TORQUE" type="DOUBLE" safe="0" minimum="-5" maximum="5"/></Output>
     <Enable transfer="udp" address="127.0.0.1:4001"/>
   </Device>
-  <Device name="LAMP"><Output><Field name="LIT" type="UINT8" safe="0" maximum="1"/></Output></Device>
+  <Device name="LAMP"><Output><Field name="LIT" type="UINT8" minimum="0" maximum="1"/></Output></Device>
   <Configuration name="FAST" id="1" priority="50" sampling_us="1000" power_W="5">
     <HKService id="11" interval="10"><SampledOnce><ParamRef name="GAIN"/></SampledOnce></HKService>
     <RealTimeLinkService>
@@ -93,7 +93,7 @@ TEST(InFlight, WhatIsNotBuiltInMayChange) {
            {R"(address="lamp")", R"(address="lamp-2")"},
            {R"(<Device name="LAMP" silence="3">)", R"(<Device name="LAMP" silence="9" every="2">)"},
            {R"(value="red")", R"(value="blue")"},
-           {R"(safe="0" maximum="1")", R"(safe="1" maximum="2")"},
+           {R"("UINT8" minimum="0" maximum="1")", R"("UINT8" minimum="1" maximum="2")"},
            {R"(power_W="5")", R"(power_W="6" overruns="9")"},
            {R"(age="3")", R"(age="5")"},
            {R"(<Set parameter="GAIN" value="4"/>)", R"(<Set parameter="GAIN" value="6"/>)"}})
@@ -176,7 +176,8 @@ TEST(InFlight, WhatTheConfigurationInForceWasMadeOfWaits) {
            {R"(<HKService id="11" interval="10">)", R"(<HKService id="11" interval="20">)", "its housekeeping"},
            {"127.0.0.1:4000", "127.0.0.1:4002", "device MOTOR: its endnodes"},
            {R"(value="red")", R"(value="blue")", "device LAMP: its endnodes, limits or settings"},
-           {R"(safe="0" maximum="1")", R"(safe="0" maximum="2")", "device LAMP: what it may be told"},
+           {R"("UINT8" minimum="0" maximum="1")", R"("UINT8" minimum="0" maximum="2")",
+            "device LAMP: what it may be told"},
            {R"(age="3")", R"(age="5")", "required set IN: its age"},
            {R"(power_W="5")", R"(power_W="6")", "its limits or power"}}) {
     const SubsystemDescriptor fresh = read(changed(edit.from, edit.to, flown_text));
@@ -217,7 +218,7 @@ TEST(InFlight, WhatWasTakenIsAllThatWasDifferent) {
       changed(R"(<Device name="LAMP" silence="3">)", R"(<Device name="LAMP" silence="9" every="2">)", flown_text);
   text = changed(R"(power_W="5")", R"(power_W="6" overruns="9")", text);
   text = changed(R"(age="3")", R"(age="5")", text);
-  text = changed(R"(safe="0" maximum="1")", R"(safe="1" maximum="2")", text);
+  text = changed(R"("UINT8" minimum="0" maximum="1")", R"("UINT8" minimum="1" maximum="2")", text);
   text = changed(R"(value="red")", R"(value="blue")", text);
   text = changed(R"(interval="10")", R"(interval="20")", text);
   const SubsystemDescriptor fresh = read(text);

@@ -116,7 +116,7 @@ struct Permit {
   std::string subsystem;
   std::vector<std::string> functions;  ///< "*" = all
   std::vector<std::uint8_t> services;
-  std::vector<std::string> parameters;  ///< that TC[20,3] may set, besides service 20; "*" = all writable ones
+  std::vector<std::string> parameters;  ///< that TC[20,3] may set, whatever `services` says; "*" = all writable ones
   Location at;
 };
 

@@ -170,7 +170,7 @@ struct Device {
   std::vector<Field> input;  ///< device -> subsystem
   struct Output {
     Field field;
-    std::vector<double> safe;  ///< value in every state but Operational; `count` values
+    std::vector<double> safe;  ///< of an actuator: value in every state but Operational; `count` values
   };
   std::vector<Output> output;  ///< subsystem -> device
   StopKind stop{StopKind::Drop};

@@ -10,7 +10,6 @@
 namespace hirosco::descriptor::detail {
 namespace {
 
-constexpr std::uint8_t first_custom_service = 192;
 constexpr std::size_t max_subtypes = 255;
 constexpr std::size_t max_fields = 64;
 /// Octets of a request's or report's data: a packet of 4096 less headers and checksum.

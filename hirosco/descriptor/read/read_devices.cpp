@@ -187,7 +187,14 @@ void DeviceReader::read_output(const xml::Element& element, Device& device, Uniq
   output.field = fields_.read(attributes, Says::Range);
   output.safe = read_numbers(problems_, attributes, "safe", output.field);
   no_children(element, problems_);
-  if (device.actuator && element.find("safe") == nullptr)
+  const xml::Attribute* const safe = element.find("safe");
+  // Who writes it believes that the output is taken away in some state.
+  if (!device.actuator && safe != nullptr)
+    problems_.add(
+        *safe, "E0223",
+        fmt::format("'{}' is no actuator: its output '{}' goes out in every state", device.name, output.field.name),
+        "actuator=\"yes\", or leave it out");
+  if (device.actuator && safe == nullptr)
     problems_.add(element, "E0218", fmt::format("output '{}' of an actuator needs its safe value", output.field.name),
                   "add the attribute safe: it is sent in every state but Operational");
   if (!output.field.name.empty()) names.add(output.field.name, place(element.at), problems_, element.name.size() + 1);

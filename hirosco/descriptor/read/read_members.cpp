@@ -134,14 +134,6 @@ void MemberReader::read_supervisor(Attributes& attributes) {
           fmt::format("the supervisor has id {}, '{}' has {}", supervisor_apid, subsystem->name, subsystem->id));
     subsystem_names_.add(subsystem->name, place(at.value_at), problems_, at.value.size());
     addresses_.check_endnodes(*subsystem);
-    const bool spins = std::ranges::any_of(subsystem->configurations,
-                                           [](const Configuration& each) { return each.spin > Duration{}; });
-    if (!subsystem->service_loops.empty() || !subsystem->bumpless.empty() || spins)
-      problems_.add(at, "E0332",
-                    fmt::format("'{}' is the supervisor: its services run in its own loop, its configuration stays, "
-                                "its cycle spins for nobody",
-                                subsystem->name),
-                    "leave <ServiceLoop>, <Bumpless> and spin_us out of its descriptor");
     draft_.mission.supervisor = std::move(*subsystem);
   }
 }

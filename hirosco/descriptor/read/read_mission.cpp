@@ -59,6 +59,12 @@ void read_database(const xml::Element& element, DatabaseUse& database, Problems&
     if (database.rotate_mb == 0 || database.keep_mb / 2 < database.rotate_mb)
       problems.add(*keep, "E0342", "a bounded log needs pieces, of which the newest two have room",
                    "give 'rotate_MB', at most half of 'keep_MB'");
+  // Not refused: a telecommand may take the log into files, where they hold.
+  for (const char* const bound : {"rotate_MB", "rotate_h", "keep_MB"})
+    if (const auto* said = attributes.optional(bound); said != nullptr && database.strategy == "postgresql")
+      problems.warn(place(said->at), "E0353", fmt::format("'{}' bounds files, and this log is in a server", bound),
+                    "its owner bounds what a server keeps; in force only where SET_DATABASE goes on in files",
+                    said->name.size());
   const auto* path = attributes.optional("path");
   if (path == nullptr) return;
   database.path = path->value;

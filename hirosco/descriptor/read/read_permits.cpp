@@ -44,6 +44,33 @@ void check_functions(const xml::Attribute& at, const Permit& permit, MissionDraf
                          did_you_mean(function, known));
 }
 
+/// The framework's own (below 192) are known above the descriptors: here only whether somebody leaves such a one out for good.
+[[nodiscard]] bool has_service(const SubsystemDescriptor& subsystem, std::uint8_t service) {
+  if (service >= first_custom_service && subsystem.find_service(service) == nullptr) return false;
+  return subsystem.offers(service, nullptr) ||
+         std::ranges::any_of(subsystem.configurations,
+                             [&](const Configuration& each) { return subsystem.offers(service, &each); });
+}
+
+/// A number that nobody has opens nothing: it is another one that is meant.
+void check_services(const xml::Attribute& at, const Permit& permit, MissionDraft& draft) {
+  if (!draft.whole) return;
+  std::vector<const SubsystemDescriptor*> meant;
+  std::string own;
+  for (const SubsystemDescriptor* member : draft.mission.everybody()) {
+    if (permit.subsystem != "*" && permit.subsystem != member->name) continue;
+    meant.push_back(member);
+    for (const CustomService& each : member->services) own += fmt::format(" {} ({})", each.type, each.name);
+  }
+  for (const std::uint8_t service : permit.services)
+    if (std::ranges::none_of(meant, [&](const auto* each) { return has_service(*each, service); }))
+      draft.problems.add(
+          at, "E0352",
+          permit.subsystem == "*" ? fmt::format("no subsystem has a service {}", service)
+                                  : fmt::format("'{}' has no service {}", permit.subsystem, service),
+          own.empty() ? "services of its own stand in its descriptor: <CustomService>" : "services of its own:" + own);
+}
+
 void check_parameters(const xml::Attribute& at, const Permit& permit, MissionDraft& draft) {
   if (!draft.whole) return;
   std::vector<std::string_view> known{"*"}, fixed;
@@ -100,6 +127,7 @@ void read_permit(const xml::Element& element, Mode& mode, MissionDraft& draft) {
   permit.subsystem = subsystem->value;
   const bool known = permit.subsystem == "*" || draft.find(*subsystem, permit.subsystem, true) != nullptr;
   if (known && functions != nullptr) check_functions(*functions, permit, draft);
+  if (known && services != nullptr) check_services(*services, permit, draft);
   if (known && parameters != nullptr) check_parameters(*parameters, permit, draft);
   mode.permits.push_back(std::move(permit));
 }

@@ -53,9 +53,10 @@ void ServiceListReader::read_service(const xml::Element& element, std::vector<Se
   const bool listed = own != nullptr || standard != standard_services_by_name.end();
   if (!listed && is_standard_service_name(name)) {
     const xml::Attribute* const offered = element.find("offered");
-    const xml::Attribute& said = offered != nullptr ? *offered : loop != nullptr ? *loop : *element.find("name");
+    if (loop != nullptr && offered == nullptr) return refuse_loop(*loop, name);
     return problems_.add(
-        said, "E0243", fmt::format("{} is offered by every subsystem or by none, and has no loop of its own", name),
+        offered != nullptr ? *offered : *element.find("name"), "E0243",
+        fmt::format("{} is offered by every subsystem or by none", name),
         "states, links and the test of it rest on it; ST03, ST05, ST20 and services of its own may be left out");
   }
   if (!listed) {
@@ -68,9 +69,7 @@ void ServiceListReader::read_service(const xml::Element& element, std::vector<Se
   use.type = own != nullptr ? own->type : standard->type;
   if (loop != nullptr) {
     const auto found = std::ranges::find(subsystem_.service_loops, loop->value, &ServiceLoop::name);
-    if (own == nullptr && !standard->may_have_loop)
-      problems_.add(*loop, "E0243", fmt::format("{} has no loop of its own: it speaks with the cycle", name),
-                    "ST03 and services of its own may");
+    if (own == nullptr && !standard->may_have_loop) refuse_loop(*loop, name);
     else if (found == subsystem_.service_loops.end()) {
       std::vector<std::string_view> known;
       for (const ServiceLoop& each : subsystem_.service_loops) known.push_back(each.name);
@@ -79,6 +78,11 @@ void ServiceListReader::read_service(const xml::Element& element, std::vector<Se
     } else use.loop = static_cast<int>(found - subsystem_.service_loops.begin());
   }
   uses.push_back(use);
+}
+
+void ServiceListReader::refuse_loop(const xml::Attribute& loop, std::string_view name) {
+  problems_.add(loop, "E0243", fmt::format("{} has no loop of its own: {}", name, why_no_loop(name)),
+                "ST03, ST20 and services of its own may have one");
 }
 
 void ServiceListReader::check(const xml::Element& root) {

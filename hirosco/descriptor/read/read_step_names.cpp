@@ -31,11 +31,12 @@ void StepNames::resolve_name(const Plan& plan, PlanStep& step, const NamedInStep
       return;
     }
     case Link: {
-      std::uint8_t id = 0;
-      const auto read = std::from_chars(at.value.data(), at.value.data() + at.value.size(), id);
-      if (read.ec != std::errc{} || mission_.find_link(id) == nullptr)
+      const auto id = to_integer(at.value);
+      if (id && (*id < 1 || *id > 255))
+        problems_.add(at, "E0112", fmt::format("link {} is out of range", *id), "1 to 255");
+      else if (!id || mission_.find_link(static_cast<std::uint8_t>(*id)) == nullptr)
         problems_.add(at, "E0309", fmt::format("link {} is not defined", in_quotes(at.value)));
-      value = id;
+      value = id.value_or(0);
       return;
     }
     case Plan: return;  // when all are read

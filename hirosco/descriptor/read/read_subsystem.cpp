@@ -4,6 +4,7 @@
 #include <charconv>
 #include <utility>
 
+#include "hirosco/descriptor/model/supervisor_apid.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 
@@ -77,6 +78,7 @@ SubsystemDescriptor SubsystemReader::read(const xml::Element& root) {
   fields_.check_enumerations();
   check_addresses(subsystem_, problems_);
   fit_queues(root, subsystem_, problems_);
+  if (subsystem_.id == supervisor_apid) check_supervisor(root, problems_);
   return std::move(subsystem_);
 }
 

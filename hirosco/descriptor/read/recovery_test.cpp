@@ -98,6 +98,8 @@ TEST(MissionRecovery, AStepThatNamesWhatThereIsNotOrDoesNotFitIsRefused) {
             R"(<Do action="configure" subsystem="FLYWHEEL" configuration="COUPLE"/>)"},
            {"E0309", R"(<Do action="log"/>)", R"(<Do action="link" link="99"/>)"},
            {"E0309", R"(<Do action="log"/>)", R"(<Do action="unlink" link="a"/>)"},
+           {"E0309", R"(<Do action="log"/>)", R"(<Do action="unlink" link="1 "/>)"},
+           {"E0112", R"(<Do action="log"/>)", R"(<Do action="link" link="257"/>)"},
            {"E0304", R"(<Do action="log"/>)", R"(<Do action="wait_for" state="Offline" of="FLYWHEELS"/>)"},
            {"E0306", R"(<Do action="log"/>)", R"(<Do action="wait_for" state="SoftwareInit"/>)"},
            {"E0304", R"(<Do action="log"/>)", R"(<Do action="hand_over" receiver="FLYWHEELS" configuration="SPUN"/>)"},

@@ -33,7 +33,7 @@ TEST(Schema, AcceptsWhatTheRepositoryShips) {
   ASSERT_TRUE(run("xmllint --version")) << "libxml2-utils is not installed";
   for (const char* part : {"missions", "subsystems", "supervisor"})
     for (const auto& entry : std::filesystem::recursive_directory_iterator{folder / "../.." / part})
-      if (entry.path().extension() == ".xml") {
+      if (entry.path().extension() == ".xml" && entry.path().parent_path().filename() != "tests") {
         const bool mission = entry.path().filename() == "mission.xml";
         EXPECT_TRUE(validates(mission ? "mission.xsd" : "subsystem.xsd", entry.path())) << entry.path();
       }

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "hirosco/descriptor/testing.hpp"
 
 /// Which services a subsystem offers and in which loops they run, as its descriptor says it.
@@ -42,7 +45,9 @@ void expect_one_in_list(const std::string& text, const std::string& code, const 
 }
 
 TEST(ServiceList, SaysWhichLoopAServiceHasWithItsPeriodPriorityBudgetAndQueue) {
-  const SubsystemDescriptor read = read_text(library_with(R"(<Service name="ST03" loop="SLOW"/>)")).value.value();
+  const SubsystemDescriptor read =
+      read_text(library_with(R"(<Service name="ST03" loop="SLOW"/><Service name="ST20" loop="SLOW" offered="no"/>)"))
+          .value.value();
   ASSERT_EQ(read.service_loops.size(), 1U);
   EXPECT_EQ(read.service_loops[0].period, 20ms);
   EXPECT_EQ(read.service_loops[0].priority, 12);
@@ -50,7 +55,8 @@ TEST(ServiceList, SaysWhichLoopAServiceHasWithItsPeriodPriorityBudgetAndQueue) {
   EXPECT_EQ(read.service_loops[0].queue, 3U);
   EXPECT_EQ(read.loop_of(200), 0);
   EXPECT_EQ(read.loop_of(3), 0);
-  EXPECT_EQ(read.loop_of(20), -1);
+  EXPECT_EQ(read.loop_of(20), 0) << "for a configuration that offers it";
+  EXPECT_EQ(read.loop_of(17), -1);
   EXPECT_NE(read.find_event("SERVICE_LOOP_HANGS"), nullptr);
   EXPECT_EQ(read_text(R"(<Subsystem name="A" id="10"/>)").value.value().find_event("SERVICE_LOOP_HANGS"), nullptr);
 }
@@ -82,9 +88,7 @@ TEST(ServiceList, RefusesWhatCannotBeSo) {
   expect_one_in_list(library_with("", R"(<Service name="ST17" offered="@no"/>)"), "E0243",
                      "ST17 is offered by every subsystem");
   expect_one_in_list(library_with(R"(<Service name="@ST17"/>)"), "E0243", "ST17 is offered by every subsystem");
-  expect_one_in_list(library_with(R"(<Service name="ST128" loop="@SLOW"/>)"), "E0243", "has no loop of its own");
   expect_one_in_list(library_with(R"(<Service name="@ST3"/>)"), "E0242", "the subsystem has no service 'ST3'");
-  expect_one_in_list(library_with(R"(<Service name="ST20" loop="@SLOW"/>)"), "E0243", "it speaks with the cycle");
   expect_one_in_list(library_with(R"(<Service name="ST03" loop="@SLOWER"/>)"), "E0244",
                      "no <ServiceLoop> has the name 'SLOWER'");
   expect_one_in_list(library_with(R"(@<ServiceLoop name="IDLE" period_us="1000"/>)"), "E0244",
@@ -101,6 +105,26 @@ TEST(ServiceList, RefusesWhatCannotBeSo) {
       "E0227", "does not end before the next");
 }
 
+TEST(ServiceList, SaysOfEachServiceOfTheFrameworkThatHasNoLoopOfItsOwnWhy) {
+  for (const auto& [name, because] : {std::pair{"ST01", "nobody asks it anything"},
+                                      {"ST05", "every event of every loop is told by the service loop"},
+                                      {"ST08", "states and calls reach the cycle in their order"},
+                                      {"ST17", "its answer says that the service loop lives"},
+                                      {"ST128", "the cycle is given its links"},
+                                      {"ST129", "the supervisor alone answers it"},
+                                      {"ST130", "it changes what all loops read"},
+                                      {"ST30", "it is made for the service loop"}}) {
+    SCOPED_TRACE(name);
+    const std::string service = std::string{R"(<Service name=")"} + name + R"(" loop="@SLOW"/>)";
+    expect_one_in_list(library_with(service), "E0243", std::string{name} + " has no loop of its own: " + because);
+    expect_one_in_list(library_with(service), "E0243", "ST03, ST20 and services of its own may have one");
+  }
+  for (const StandardService& each : standard_services_by_name) {
+    const auto why = std::ranges::find(stays_in_service_loop, each.name, &StaysInServiceLoop::name);
+    EXPECT_NE(each.may_have_loop, why != stays_in_service_loop.end()) << each.name;
+  }
+}
+
 /// So a service that comes to the framework needs no row beside its folder's.
 TEST(ServiceList, OfWhichServicesOfTheFrameworkADescriptorHasNothingToSayTheReaderNeedNotKnow) {
   for (const char* name : {"ST08", "ST17", "ST30", "ST128", "ST130"})
@@ -109,23 +133,6 @@ TEST(ServiceList, OfWhichServicesOfTheFrameworkADescriptorHasNothingToSayTheRead
     EXPECT_FALSE(is_standard_service_name(name)) << name;
   expect_one_in_list(library_with(R"(<Service name="ST30" offered="@no"/>)"), "E0243",
                      "ST30 is offered by every subsystem or by none");
-}
-
-TEST(ServiceList, IsNoMatterOfTheSupervisorsLoop) {
-  const std::string supervisor = changed(
-      "</Subsystem>", R"(<ServiceLoop name="SLOW" period_us="1000"/><Service name="ST03" loop="SLOW"/></Subsystem>)",
-      file_system()(data / "supervisor.xml").value());
-  const auto reading = read_mission(data / "mission.xml", overlay({{"supervisor.xml", supervisor}}));
-  ASSERT_EQ(reading.problems.size(), 1U);
-  EXPECT_EQ(reading.problems[0].code, "E0332");
-}
-
-TEST(ServiceList, TheSupervisorsCycleSpinsForNobody) {
-  const auto supervisor = changed(R"(sampling_us=")", R"(priority="10" budget_us="10" spin_us="10" sampling_us=")",
-                                  file_system()(data / "supervisor.xml").value());
-  const auto reading = read_mission(data / "mission.xml", overlay({{"supervisor.xml", supervisor}}));
-  ASSERT_EQ(reading.problems.size(), 1U) << rendered(reading.problems, {});
-  EXPECT_EQ(reading.problems[0].code, "E0332");
 }
 
 }  // namespace

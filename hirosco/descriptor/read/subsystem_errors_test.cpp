@@ -111,7 +111,7 @@ constexpr Bad bad_values[] = {
     {"E0208", R"(<ParamRef name="X" id="2" type="INT8" minimum="@-129"/>)"},
     {"E0208", "<Enumeration name=\"A\"><Text value=\"1\">a</Text></Enumeration>\n<ParamRef name=\"X\" id=\"2\" type=\"DOUBLE\" enumeration=\"@A\"/>"},
     {"E0209", R"(<ParamRef name="X" id="2" type="DOUBLE" count="2" init="@1"/>)"},
-    {"E0209", R"(<Device name="X"><Output><Field name="Y" type="DOUBLE" safe="@0 0"/></Output></Device>)"},
+    {"E0209", R"(<Device name="X" actuator="yes"><Output><Field name="Y" type="DOUBLE" safe="@0 0"/></Output></Device>)"},
     {"E0209", R"(<Configuration name="C" id="1" sampling_us="100"><Set parameter="CUR_VALUES" value="@1 2"/></Configuration>)"},
 };
 constexpr Bad bad_meaning[] = {
@@ -344,6 +344,8 @@ constexpr Bad bad_meaning[] = {
     {"E0112", R"(<Configuration name="C" id="1" sampling_us="1000"><Device name="PLATE" every="@0"><Endnode transfer="unix" address="x"/></Device></Configuration>)"},
     {"E0223", R"(<Device name="L" stop="@drop"><Input><Field name="Q" type="INT8"/></Input></Device>)", "actuator"},
     {"E0223", R"(<Device name="L" stop_within_ms="@5"><Input><Field name="Q" type="INT8"/></Input></Device>)"},
+    {"E0223", R"(<Device name="L"><Output><Field name="Q" type="INT8" safe="@0"/></Output></Device>)", "actuator=\"yes\""},
+    {"E0223", R"(<Device name="L"><Endnode name="A"><Output><Field name="Q" type="INT8" safe="@0"/></Output></Endnode></Device>)", "leave it out"},
     {"E0223", R"(<Device name="L"><Input><Field name="Q" type="INT8"/></Input>@<Enable transfer="unix" address="x"/></Device>)"},
     {"E0103", R"(<Device name="L" actuator="yes"><Output><Field name="Q" type="INT8" safe="0"/></Output><Enable transfer="unix" address="x" @byte_order="big"/></Device>)"},
     {"E0105", R"(@<Device name="L" actuator="yes" stop="controlled"><Output><Field name="Q" type="INT8" safe="0"/></Output></Device>)", "rest"},

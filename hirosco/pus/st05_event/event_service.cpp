@@ -55,6 +55,10 @@ bool EventService::report_enabled(std::uint16_t event_id) const noexcept {
   return std::ranges::any_of(events_, [event_id](const Definition& e) { return e.id == event_id && e.enabled; });
 }
 
+void EventService::set_reported(std::uint16_t event_id, bool reported) noexcept {
+  if (Definition* event = find(event_id); event != nullptr) event->enabled = reported;
+}
+
 EventService::Definition* EventService::find(std::uint16_t event_id) noexcept {
   const auto found = std::ranges::find(events_, event_id, &Definition::id);
   return found == events_.end() ? nullptr : &*found;

@@ -25,6 +25,8 @@ class EventService final : public Service {
   [[nodiscard]] Result<> raise(std::uint16_t event_id, Octets auxiliary_data);
   /// False also for an unknown event.
   [[nodiscard]] bool report_enabled(std::uint16_t event_id) const noexcept;
+  /// Without a telecommand: as it was switched in a process before this one. Nothing for an unknown event.
+  void set_reported(std::uint16_t event_id, bool reported) noexcept;
 
   static const ServiceKind service_kind;
   [[nodiscard]] const ServiceKind& kind() const noexcept override { return service_kind; }

@@ -61,6 +61,16 @@ TEST_F(Events, AreSilentWhileDisabledAndSpeakAgainWhenEnabled) {
   EXPECT_THAT(sink.take(), ElementsAre("5.1 0011"));
 }
 
+TEST_F(Events, AreSwitchedWithoutATelecommandAndAReport) {
+  service.set_reported(17, false);
+  service.set_reported(99, false);
+  EXPECT_THAT(sink.take(), IsEmpty());
+  EXPECT_FALSE(service.report_enabled(17));
+  EXPECT_TRUE(service.report_enabled(18));
+  service.set_reported(17, true);
+  EXPECT_TRUE(service.report_enabled(17));
+}
+
 TEST_F(Events, ListTheDisabledOnesAsInTheVector) {
   send(service, 7, "", 0);
   EXPECT_THAT(sink.take(), ElementsAre("5.8 00"));

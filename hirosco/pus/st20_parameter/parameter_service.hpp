@@ -13,7 +13,7 @@
 namespace hirosco::pus {
 
 /// What ST[20] needs of the parameters; ranges, states and protections are judged by who implements it (`ParameterValues::check_write()`). Ids are ParameterId::wire(); values are big-endian as on the wire.
-/// Thread: the service loop.
+/// Thread: that of the service's loop.
 struct ParameterAccess {
   struct Write {
     std::uint32_t id{};
@@ -34,7 +34,8 @@ struct ParameterAccess {
                                                                       const Request& request) = 0;
 };
 
-/// ST[20]: reports and sets parameter values (pus-c 11.4); of one request all are set, or none.  Thread: the service loop.
+/// ST[20]: reports and sets parameter values (pus-c 11.4); of one request all are set, or none.
+/// Thread: the service loop, or a loop of its own (docs/adr/0200).
 class ParameterService final : public Service {
  public:
   static constexpr std::uint8_t service_type = 20;

@@ -17,7 +17,7 @@ void ActuatorGate::begin() noexcept {
   for (const auto& output : outputs_) {
     output->clear();
     for (DeviceSlot& slot : parts_.plan.devices)
-      if (&slot.device() == &output->device()) slot.show_in(output.get());
+      if (&slot.device() == &output->device()) slot.output().show_in(output.get());
   }
 }
 
@@ -36,10 +36,10 @@ void ActuatorGate::write_devices() noexcept {
   // The epoch that was checked in this cycle: an output under an older permission must not carry a newer one.
   const std::uint32_t epoch = parts_.permit.checked_epoch();
   const auto telling =
-      parts_.control.state() == State::Operational ? DeviceSlot::Telling::PutOut : DeviceSlot::Telling::Wish;
+      parts_.control.state() == State::Operational ? OutputPayload::Telling::PutOut : OutputPayload::Telling::Wish;
   for (DeviceSlot& device : parts_.plan.devices) {
     device.write(epoch, active, stopping);
-    device.tell(telling);
+    device.output().tell(telling);
   }
 }
 

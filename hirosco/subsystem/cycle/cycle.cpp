@@ -79,9 +79,10 @@ TimePoint CycleLoop::step(TimePoint planned, std::optional<Duration> spun_from) 
 }
 
 void CycleLoop::take_commands(TimePoint planned) noexcept {
+  // Bounded by the ring: at most what was there when the cycle began. Counted first: what was queued before one of them is set before it.
+  std::size_t left = parts_.rings.commands.size();
   parts_.writes.apply(parts_.dictionary);
-  // Bounded by the ring: at most what was there when the cycle began.
-  for (std::size_t left = parts_.rings.commands.size(); left > 0; --left) {
+  for (; left > 0; --left) {
     const auto command = parts_.rings.commands.try_pop();
     if (!command) return;
     switch (command->kind) {

@@ -4,11 +4,9 @@
 #include "hirosco/subsystem/cycle/device_slot.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
-#include "hirosco/parameter/number.hpp"
 #include "hirosco/subsystem/cycle/layout_difference.hpp"
 
 namespace hirosco {
@@ -23,39 +21,6 @@ constexpr std::uint32_t longest_introduction = 40;
   return order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
 }
 
-[[nodiscard]] std::vector<LayoutField> layout_fields(std::span<const NativeField> native) {
-  std::vector<LayoutField> fields;
-  for (const NativeField& field : native) fields.push_back({field.type, field.count, field.offset});
-  return fields;
-}
-
-[[nodiscard]] std::vector<descriptor::Field> outputs_of(const descriptor::Device& device) {
-  std::vector<descriptor::Field> fields;
-  for (const auto& output : device.output) fields.push_back(output.field);
-  return fields;
-}
-
-/// The fields of an object that agrees with its declaration, with the lengths that this gives.
-[[nodiscard]] std::span<const NativeField> with_lengths(ObjectFields& fields,
-                                                        const std::vector<descriptor::Field>& declared,
-                                                        MutableOctets object) noexcept {
-  for (std::size_t i = 0; i < declared.size(); ++i) fields.set_length(i, declared[i].count, object);
-  return fields.all();
-}
-
-/// Declared safe values in wire form.
-[[nodiscard]] std::vector<std::byte> safe_payload(const descriptor::Device& device, std::endian order) {
-  std::vector<std::byte> payload;
-  for (const auto& output : device.output) {
-    const std::size_t start = payload.size();
-    payload.resize(start + output.field.octets());
-    OctetWriter writer{MutableOctets{payload}.subspan(start), order};
-    for (std::uint32_t i = 0; i < output.field.count; ++i)
-      put_number(writer, output.field.type, i < output.safe.size() ? output.safe[i] : 0.0);
-  }
-  return payload;
-}
-
 }  // namespace
 
 DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::DeviceUse& use, DevicePortBase& port,
@@ -67,11 +32,8 @@ DeviceSlot::DeviceSlot(const descriptor::Device& device, const descriptor::Devic
       silence_limit_{realtime ? use.silence.realtime : use.silence.reduced},
       every_{use.every},
       watchdog_us_{realtime ? use.watchdog_us : use.watchdog_reduced_us},
-      input_layout_{layout_fields(with_lengths(port.input_layout_, device.input, port.input_))},
-      output_layout_{layout_fields(with_lengths(port.output_layout_, outputs_of(device), port.output_))},
-      safe_payload_{safe_payload(device, order_)},
-      payload_(std::max(wire_octets(input_layout_), safe_payload_.size())),
-      next_payload_(safe_payload_.size()),
+      input_layout_{agreed_layout(port.input_layout_, device.input, port.input_)},
+      output_{device, port.output_layout_, port.output_, order_},
       frame_(max_device_frame_octets) {
   port_->alive_ = false;
   port_->fresh_ = false;
@@ -145,7 +107,7 @@ void DeviceSlot::read(bool count_silence, bool counts) noexcept {
 /// From here on nothing counts but what answers a command that goes out by the new way.
 void DeviceSlot::fall_back() noexcept {
   // What still listens there is told to let go; what does not has its watchdog.
-  send(DeviceMode::Off, safe_payload_);
+  send(DeviceMode::Off, output_.safe());
   left_ = taken();
   ++way_;
   just_fell_back_ = true;
@@ -211,64 +173,14 @@ DeviceSlot::Loss DeviceSlot::loss() const noexcept {
   return loss;
 }
 
-void DeviceSlot::keep_in_range(MutableOctets payload) noexcept {
-  std::size_t at = 0;
-  for (const auto& output : device_->output) {
-    const descriptor::Field& field = output.field;
-    const std::size_t octets = octets_of(field.type);
-    for (std::size_t i = 0; i < field.count; ++i, at += octets) {
-      const MutableOctets place = payload.subspan(at, octets);
-      OctetReader reader{place, order_};
-      const double wanted = get_number(reader, field.type);
-      double held = wanted;
-      // Also where no range is declared: an actuator is told a quantity or nothing.
-      if (!std::isfinite(wanted)) held = i < output.safe.size() ? output.safe[i] : 0.0;
-      if (field.minimum) held = std::max(held, field.minimum->real());
-      if (field.maximum) held = std::min(held, field.maximum->real());
-      if (held == wanted) continue;
-      OctetWriter writer{place, order_};
-      put_number(writer, field.type, held);
-    }
-  }
-}
-
 void DeviceSlot::write(std::uint32_t epoch, bool active, bool stopping) noexcept {
   const bool pass = active || !device_->actuator;
   if (!active) active_cycles_ = 0;
   else if (counts_) count(active_cycles_);
   const std::uint32_t before = std::exchange(epoch_, epoch);
-  if (pass || told_ != nullptr) {
-    port_->output_layout_.fit(port_->output_);
-    const MutableOctets room = MutableOctets{payload_}.first(safe_payload_.size());
-    encode(output_layout_, port_->output_, room, order_);
-    keep_in_range(room);
-  }
-  passed_ = pass;
-  const Octets payload = pass ? Octets{payload_}.first(safe_payload_.size()) : Octets{safe_payload_};
+  const Octets payload = output_.put_out(pass);
   const DeviceMode mode = pass ? DeviceMode::Active : stopping ? DeviceMode::Stop : DeviceMode::Off;
   if (due(mode, before)) send(mode, payload);
-}
-
-bool DeviceSlot::would_jump(const descriptor::SubsystemDescriptor& subsystem,
-                            const descriptor::Bumpless& terms) noexcept {
-  if (!device_->actuator || !passed_) return false;
-  port_->output_layout_.fit(port_->output_);
-  encode(output_layout_, port_->output_, next_payload_, order_);
-  keep_in_range(next_payload_);
-  OctetReader before{Octets{payload_}, order_}, next{Octets{next_payload_}, order_};
-  const auto index = static_cast<std::uint16_t>(device_ - subsystem.devices.data());
-  for (std::size_t output = 0; output < device_->output.size(); ++output) {
-    const descriptor::Field& field = device_->output[output].field;
-    const auto step = std::ranges::find_if(terms.steps, [&](const descriptor::Bumpless::Step& each) {
-      return each.device == index && each.output == output;
-    });
-    for (std::uint32_t i = 0; i < field.count; ++i) {
-      const double was = get_number(before, field.type), is = get_number(next, field.type);
-      // What is no number is within no bound.
-      if (step != terms.steps.end() && !(std::abs(is - was) <= step->most)) return true;
-    }
-  }
-  return false;
 }
 
 /// Every so many cycles; what it may do is said at once.
@@ -289,12 +201,6 @@ void DeviceSlot::send(DeviceMode mode, Octets payload) noexcept {
   if (mode == DeviceMode::Active) since_active_ = 0;
   // A device that does not listen is found by its silence, one cycle later: nothing to do here.
   if (frame) static_cast<void>(ways_[way_].flow->send(*frame));
-}
-
-void DeviceSlot::tell(Telling what) noexcept {
-  if (told_ == nullptr) return;
-  const bool authors = passed_ || what == Telling::Wish;
-  told_->show(Octets{authors ? payload_ : safe_payload_}.first(safe_payload_.size()), order_);
 }
 
 }  // namespace hirosco

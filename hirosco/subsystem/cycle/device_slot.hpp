@@ -15,7 +15,7 @@
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/resource/quota.hpp"
 #include "hirosco/subsystem/author/ports.hpp"
-#include "hirosco/subsystem/cycle/output_parameter.hpp"
+#include "hirosco/subsystem/cycle/output_payload.hpp"
 
 /// What the cycle moves between the author's ports and devices: one slot per device of the chosen configuration. Slots are
 /// built by the service loop while the cycle rests; step functions run in the cycle and are bounded.
@@ -75,19 +75,10 @@ class DeviceSlot {
   void read(bool count_silence, bool counts = true) noexcept;
   /// Sends the author's output if `active`, else the declared safe values.
   void write(std::uint32_t epoch, bool active, bool stopping) noexcept;
-  /// Where tell() shows; null: nowhere.  Thread: the service loop, while the cycle rests.
-  void show_in(OutputParameter* told) noexcept { told_ = told; }
-  enum class Telling : std::uint8_t {
-    PutOut,  ///< what write() has sent
-    Wish,  ///< what it would have sent in Operational
-  };
-  void tell(Telling what) noexcept;
+  /// What write() sends.
+  [[nodiscard]] OutputPayload& output() noexcept { return output_; }
   /// The cycle has another period from now on.
   void follow(Duration sampling) noexcept;
-  /// Whether the author's output is further from what was put out in the cycle before than its step is wide. False where nothing of
-  /// the author's was put out.
-  [[nodiscard]] bool would_jump(const descriptor::SubsystemDescriptor& subsystem,
-                                const descriptor::Bumpless& terms) noexcept;
 
  private:
   static constexpr std::uint32_t never = 1'000'000'000;
@@ -95,8 +86,6 @@ class DeviceSlot {
   void fall_back() noexcept;
   [[nodiscard]] bool due(DeviceMode mode, std::uint32_t epoch_before) noexcept;
   void send(DeviceMode mode, Octets payload) noexcept;
-  /// No output leaves its declared range.
-  void keep_in_range(MutableOctets payload) noexcept;
   static void count(std::uint32_t& cycles) noexcept;
 
   const descriptor::Device* device_;
@@ -115,12 +104,7 @@ class DeviceSlot {
   Duration sampling_{};
   std::uint32_t watchdog_us_;
   std::vector<LayoutField> input_layout_;
-  std::vector<LayoutField> output_layout_;
-  std::vector<std::byte> safe_payload_;
-  std::vector<std::byte> payload_;  ///< of the author's output, within its ranges
-  std::vector<std::byte> next_payload_;  ///< room for the same, to be compared with it
-  OutputParameter* told_{nullptr};
-  bool passed_{false};  ///< what was sent is the author's
+  OutputPayload output_;
   std::vector<std::byte> frame_;
   std::uint32_t sequence_{0};
   Loss since_good_;

@@ -22,4 +22,12 @@ std::string layout_difference(std::span<const NativeField> native, const std::ve
   return differences;
 }
 
+std::vector<LayoutField> agreed_layout(ObjectFields& fields, const std::vector<descriptor::Field>& declared,
+                                       MutableOctets object) {
+  for (std::size_t i = 0; i < declared.size(); ++i) fields.set_length(i, declared[i].count, object);
+  std::vector<LayoutField> layout;
+  for (const NativeField& field : fields.all()) layout.push_back({field.type, field.count, field.offset});
+  return layout;
+}
+
 }  // namespace hirosco

@@ -28,7 +28,7 @@ constexpr std::array cyclic_states{State::PreOperational, State::SafeOperational
                                    State::ErrorOperational};
 constexpr const char* motor_and_lamp = R"(<Subsystem name="ARM" id="10">
   <Device name="MOTOR" actuator="yes"><Input><Field name="ANGLE" type="UINT16"/></Input><Output><Field name="CURRENT" type="UINT16" safe="0"/></Output></Device>
-  <Device name="LAMP"><Input><Field name="LIT" type="UINT16"/></Input><Output><Field name="LIT" type="UINT16" safe="0"/></Output></Device>
+  <Device name="LAMP"><Input><Field name="LIT" type="UINT16"/></Input><Output><Field name="LIT" type="UINT16"/></Output></Device>
   <Configuration name="ONE" id="1" sampling_us="1000">
     <Device name="MOTOR" silence="3"><Endnode transfer="shared_memory" address="motor"><FallBack transfer="shared_memory" address="motor-b"/></Endnode></Device>
     <Device name="LAMP" silence="3"><Endnode transfer="shared_memory" address="lamp"/></Device>

@@ -231,8 +231,8 @@ struct Talker final : Subsystem {
 
 std::string talker(const std::string& resources) {
   return R"(<Subsystem name="TALKER" id="21">)" + resources + R"(
-    <Device name="LEFT"><Input><Field name="ANGLE" type="DOUBLE"/></Input><Output><Field name="NO" type="UINT8" safe="0"/></Output></Device>
-    <Device name="RIGHT"><Input><Field name="ANGLE" type="DOUBLE"/></Input><Output><Field name="NO" type="UINT8" safe="0"/></Output></Device>
+    <Device name="LEFT"><Input><Field name="ANGLE" type="DOUBLE"/></Input><Output><Field name="NO" type="UINT8"/></Output></Device>
+    <Device name="RIGHT"><Input><Field name="ANGLE" type="DOUBLE"/></Input><Output><Field name="NO" type="UINT8"/></Output></Device>
     <Configuration name="C" id="1" sampling_us="1000">
       <Device name="LEFT"><Endnode transfer="udp" address="127.0.0.1:20101"/></Device>
       <Device name="RIGHT"><Endnode transfer="udp" address="127.0.0.1:20102"/></Device>

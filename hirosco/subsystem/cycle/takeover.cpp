@@ -48,7 +48,7 @@ void Takeover::end() noexcept {
   if (taken == nullptr) return;
   const bool active = parts_.control.active();
   for (DeviceSlot& device : parts_.plan.devices) {
-    if (!active || !device.would_jump(parts_.descriptor, *taken->terms)) continue;
+    if (!active || !device.output().would_jump(parts_.descriptor, *taken->terms)) continue;
     parts_.control.inhibit(inhibited_by_failure);
     const Error why{ErrorCode::OutOfRange, "an output jumps where the configuration changes"};
     parts_.reports.explain({.kind = ReportKind::NotReconfigured, .index = taken->to->id}, why);

@@ -4,12 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
+#include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/subsystem/author/custom_service.hpp"
 #include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/told.hpp"
@@ -32,7 +35,11 @@ class Driven {
                    .realtime = false,
                    .precise = precise,
                    .wakes = true,
-                   .explain = {}},
+                   .explain = {},
+                   .read_again =
+                       [this](std::string_view text) {
+                         return descriptor::read_again(subsystem.descriptor(), text, {});
+                       }},
                   channels.subsystem_end(),
                   vital,
                   permit},
@@ -208,7 +215,7 @@ TEST(CycleThreads, SpinBeforeEachCycleWhereTheConfigurationAsksForItAndTheComput
 // --- loops of services beside it ---------------------------------------------------------------------------------------
 
 constexpr const char* archive_descriptor = R"(<Subsystem name="ARCHIVE" id="10">
-  <ParamRef name="FILES" id="0" type="UINT32" init="7"/>
+  <ParamRef name="FILES" id="0" type="UINT32" init="7" minimum="0" maximum="1000" writable="PreOperational SafeOperational Operational"/>
   <ParamRef name="LOOKED" id="1" type="UINT32"/>
   <EventService><Event name="FULL" id="5" severity="low"><Argument name="FILES" type="UINT32"/></Event></EventService>
   <CustomService name="STORE" type="200">
@@ -218,7 +225,7 @@ constexpr const char* archive_descriptor = R"(<Subsystem name="ARCHIVE" id="10">
   <CustomService name="LOOK" type="201"><Request name="AT" subtype="1"/></CustomService>
   <ServiceLoop name="SLOW" period_us="1000" queue="8" budget_us="1"/>
   <ServiceLoop name="OTHER" period_us="2000" queue="8"/>
-  <Service name="STORE" loop="SLOW"/><Service name="ST03" loop="SLOW"/><Service name="LOOK" loop="OTHER"/>
+  <Service name="STORE" loop="SLOW"/><Service name="ST03" loop="SLOW"/><Service name="LOOK" loop="OTHER"/><Service name="ST20" loop="OTHER"/>
   <HKService id="9" interval="5"><SampledOnce><ParamRef name="FILES"/><ParamRef name="LOOP_STATS"/></SampledOnce></HKService>
   <Configuration name="FIRST" id="1" sampling_us="500"/>
   <Configuration name="SECOND" id="2" sampling_us="300"><Set parameter="FILES" value="3"/></Configuration>
@@ -229,10 +236,12 @@ struct Archive final : Subsystem {
   CustomService store{"STORE"}, look{"LOOK"};
   Parameter<std::uint32_t> files, looked;
   Event<std::uint32_t> full{"FULL"};
+  std::atomic<bool> stands{false};  ///< KEEP does not return
 
  protected:
   Result<> offline() override {
     store.on_request("KEEP", [this](std::uint32_t number, Call call) -> Result<> {
+      while (stands) std::this_thread::yield();
       std::uint32_t seen = 0;
       static_cast<void>(looked.snapshot(seen));
       if (auto set = store.store(files, number); !set) return set;
@@ -269,6 +278,20 @@ struct Archive final : Subsystem {
   }
 };
 
+std::uint32_t files_id() { return ParameterId{10, Type::Uint32, 0}.wire(); }
+
+void set_files(Driven& driven, std::uint32_t number) {
+  std::array<std::byte, 9> data;
+  OctetWriter{data}.put(std::uint8_t{1}).put(files_id()).put(number);
+  driven.send(20, 3, data);
+}
+
+void read_files(Driven& driven) {
+  std::array<std::byte, 5> data;
+  OctetWriter{data}.put(std::uint8_t{1}).put(files_id());
+  driven.send(20, 1, data);
+}
+
 /// Up, through requests to both loops while the cycle changes its configuration, and down again: each request has exactly one end.
 TEST(OwnLoopThreads, AnswerBesideTheCycleThroughTwentyRoundsOfStartReconfigureAndStop) {
   Archive archive;
@@ -284,6 +307,8 @@ TEST(OwnLoopThreads, AnswerBesideTheCycleThroughTwentyRoundsOfStartReconfigureAn
       OctetWriter{number}.put(i);
       driven.send(200, 1, number);
       driven.send(201, 1, {});
+      set_files(driven, i);
+      read_files(driven);
       driven.call("CONFIGURE", 1 + (i + 1) % 2);
       // Housekeeping is busy until the cycle has taken what was asked of it before.
       driven.done();
@@ -300,6 +325,65 @@ TEST(OwnLoopThreads, AnswerBesideTheCycleThroughTwentyRoundsOfStartReconfigureAn
   EXPECT_EQ(driven.told.failures, 0);
   EXPECT_EQ(driven.told.completions, driven.sent);
   EXPECT_EQ(driven.told.reports, 20 * 6);
+}
+
+/// What a loop of its own is for: who asks ST[20] waits for no other service.
+TEST(OwnLoopThreads, SetAndReportValuesWhileAServiceInAnotherLoopStands) {
+  Archive archive;
+  Driven driven{archive, archive_descriptor};
+  driven.go(State::PreOperational);
+  driven.call("CONFIGURE", 1);
+  driven.cycle_on(1);
+  driven.done();
+  archive.stands = true;
+  std::array<std::byte, 4> number;
+  OctetWriter{number}.put(std::uint32_t{4});
+  driven.send(200, 1, number);
+  const int before = driven.told.completions;
+  set_files(driven, 9);
+  read_files(driven);
+  driven.until([&] { return driven.told.completions == before + 2; });
+  std::uint32_t files = 0;
+  driven.until([&] { return archive.files.snapshot(files) && files == 9; });
+  EXPECT_EQ(driven.told.reports, 0) << "the other one stands still";
+  archive.stands = false;
+  driven.done();
+  EXPECT_EQ(driven.told.failures, 0);
+}
+
+/// Another text of the descriptor, with another range, while they judge by the one before (docs/adr/0200): whether they rest is what the
+/// thread sanitizer sees.
+TEST(OwnLoopThreads, RestWhileWhatTheyJudgeByChanges) {
+  Archive archive;
+  Driven driven{archive, archive_descriptor};
+  driven.go(State::PreOperational);
+  for (int round = 0; round < 50; ++round) {
+    std::string text{archive_descriptor};
+    const std::string was = R"(maximum="1000" writable)";
+    text.replace(text.find(was), was.size(), R"(maximum=")" + std::to_string(2000 + round) + R"(" writable)");
+    const MemoryHandle memory = driven.memory.create("text", text.size()).value();
+    std::ranges::copy(std::as_bytes(std::span{text}),
+                      driven.memory.map(memory, Access::ReadWrite).value().octets.begin());
+    ASSERT_TRUE(driven.memory.seal_writers(memory));
+    std::array<std::byte, 4> octets;
+    OctetWriter{octets}.put(static_cast<std::uint32_t>(text.size()));
+    std::array<std::byte, 4> number;
+    OctetWriter{number}.put(std::uint32_t{4});
+    driven.send(130, 1, octets, memory);
+    set_files(driven, 3);
+    driven.send(200, 1, number);
+    driven.send(130, 2, {});
+    set_files(driven, 1000);
+    driven.send(200, 1, number);
+    driven.done();
+  }
+  EXPECT_EQ(driven.told.failures, 0);
+  set_files(driven, 2049);
+  driven.done();
+  EXPECT_EQ(driven.told.failures, 0) << "the newest range";
+  set_files(driven, 2050);
+  driven.done();
+  EXPECT_EQ(driven.told.failures, 1);
 }
 
 /// What their steps take stands in housekeeping; a budget of a microsecond is exceeded by whoever does anything.

@@ -110,8 +110,13 @@ std::optional<FailureNotice> DescriptorChanges::take() {
   if (!coming_) return FailureNotice{FailureCode::WrongStatus};
   descriptor::SubsystemDescriptor fresh = std::move(*coming_);
   coming_.reset();
-  if (auto refused = against(fresh)) return refused;
-  descriptor::take_over(descriptor_, std::move(fresh));
+  {
+    // Ranges, and what may be written when, are read in the threads of these. What they have told as set is looked at.
+    const LoopsAtRest at_rest{loops_.all()};
+    values_.apply_at_rest();
+    if (auto refused = against(fresh)) return refused;
+    descriptor::take_over(descriptor_, std::move(fresh));
+  }
   ++changes_;
   // What a persistent parameter was left with outlives its descriptor.
   for (std::size_t index = 0; index < descriptor_.parameters.size(); ++index)

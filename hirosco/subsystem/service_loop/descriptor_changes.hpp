@@ -9,6 +9,7 @@
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/parameter.hpp"
 #include "hirosco/pus/st130_descriptor/descriptor_service.hpp"
+#include "hirosco/subsystem/service_loop/own_loops.hpp"
 #include "hirosco/subsystem/service_loop/parameter_values.hpp"
 #include "hirosco/subsystem/service_loop/platform.hpp"
 #include "hirosco/subsystem/service_loop/situation.hpp"
@@ -26,8 +27,8 @@ struct DescriptorInForce {
 class DescriptorChanges final : public pus::DescriptorOwner {
  public:
   DescriptorChanges(descriptor::SubsystemDescriptor& descriptor, const Platform& platform, const Situation& at,
-                    ParameterValues& values)
-      : descriptor_{descriptor}, platform_{platform}, at_{at}, values_{values} {}
+                    ParameterValues& values, const OwnLoops& loops)
+      : descriptor_{descriptor}, platform_{platform}, at_{at}, values_{values}, loops_{loops} {}
 
   /// Which text is in force, as housekeeping: from Software-Init on, and at once where that was already.
   void tell();
@@ -45,6 +46,7 @@ class DescriptorChanges final : public pus::DescriptorOwner {
   const Platform& platform_;
   const Situation& at_;
   ParameterValues& values_;
+  const OwnLoops& loops_;
   std::optional<descriptor::SubsystemDescriptor> coming_;  ///< judged, and not taken yet
   Parameter<DescriptorInForce> in_force_;
   std::uint16_t changes_{0};

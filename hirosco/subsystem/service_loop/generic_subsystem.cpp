@@ -41,13 +41,14 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescr
       values_{descriptor_, at_, orders_, cycle_},
       loop_meter_{descriptor_.service_loops},
       loops_{{descriptor_, *this, vital, permit, platform_.clock, values_, loop_meter_}},
+      loop_parameters_{values_, loops_.home_of(20)},
       cycle_{{author, descriptor_, platform_.clock, values_.dictionary(), values_.writes(), rings_, vital, permit,
               platform_.realtime, platform_.precise, resources_, loop_meter_}},
       links_{{platform_, at_, cycle_, rings_, resources_, reports_}},
-      descriptor_changes_{descriptor_, platform_, at_, values_},
+      descriptor_changes_{descriptor_, platform_, at_, values_, loops_},
       self_tests_{verification(), reports_, platform_.clock},
       function_service_{descriptor_.functions, pus::common_functions(), *this, verification()},
-      parameter_service_{values_, verification(), reports_},
+      parameter_service_{parameters_for_its_loop(), loops_.home_of(20).verification(), loops_.home_of(20).telemetry()},
       housekeeping_service_{descriptor_, loops_.home_of(3).verification(), loops_.home_of(3).telemetry()},
       descriptor_service_{verification(), descriptor_changes_},
       services_{&housekeeping_service_, &reports_.event_service(), &function_service_,
@@ -73,11 +74,12 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescr
       incoming_{{author, descriptor_, channel_, at_, permit_, loops_, services_, requester_, subscriber_, reports_}} {
   for (const pus::ServiceKind* kind : pus::standard_services()) {
     if (kind->make == nullptr) continue;
-    made_services_.push_back(kind->make(*this));
+    made_services_.push_back(kind->make(loops_.home_of(kind->type)));
     services_.push_back(made_services_.back().get());
   }
   descriptor_changes_.tell();
-  if (OwnLoop* const loop = loops_.of(housekeeping_service_.type())) loop->host(housekeeping_service_);
+  for (pus::Service* service : services_)
+    if (OwnLoop* const loop = loops_.of(service->type())) loop->host(*service);
   author_.framework_ = this;
   cycle_.functions().resize(descriptor_.functions.size());
   vital_.realtime.store(platform_.realtime ? 1 : 0, std::memory_order_relaxed);
@@ -124,6 +126,8 @@ TimePoint GenericSubsystem::step_services(TimePoint now) {
   known_stop_ = newest_stop();
   cycle_reports_.take();
   loops_.tell(reports_);
+  // Set before the next request is looked at: whoever is told that ST[20] has done it in its loop may ask for more.
+  values_.apply_at_rest();
   incoming_.receive();
   permit_.confirm();
   permit_.watch(now);
@@ -168,6 +172,12 @@ void GenericSubsystem::look_at_resources(TimePoint now) {
                                           static_cast<double>(found.times)};
     reports_.raise(descriptor::framework_event::resource_warning, arguments);
   });
+}
+
+/// A loop is never the writer of a parameter; the service loop is while the cycle rests.
+pus::ParameterAccess& GenericSubsystem::parameters_for_its_loop() noexcept {
+  if (loops_.of(pus::ParameterService::service_type) != nullptr) return loop_parameters_;
+  return values_;
 }
 
 /// Those that are in no loop of their own. Asked in each step: of which each is, is asked once.

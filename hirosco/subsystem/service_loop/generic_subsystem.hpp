@@ -16,6 +16,7 @@
 #include "hirosco/subsystem/service_loop/cycle_reports.hpp"
 #include "hirosco/subsystem/service_loop/descriptor_changes.hpp"
 #include "hirosco/subsystem/service_loop/incoming.hpp"
+#include "hirosco/subsystem/service_loop/loop_parameters.hpp"
 #include "hirosco/subsystem/service_loop/state_machine.hpp"
 
 namespace hirosco {
@@ -109,6 +110,7 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
   [[nodiscard]] bool commissioned() const noexcept;
   TimePoint step_services(TimePoint now);
   const std::vector<pus::Service*>& stepped_here();
+  pus::ParameterAccess& parameters_for_its_loop() noexcept;
   void look_at_resources(TimePoint now);
 
   Subsystem& author_;
@@ -126,6 +128,7 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
   ParameterValues values_;
   LoopMeter loop_meter_;
   OwnLoops loops_;
+  LoopParameters loop_parameters_;  ///< where ST[20] is in one of them
   CycleLoop cycle_;
   LinkEnds links_;
   DescriptorChanges descriptor_changes_;

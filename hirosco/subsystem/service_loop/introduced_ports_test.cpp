@@ -17,7 +17,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 constexpr const char* holding_descriptor = R"(<Subsystem name="ARM" id="10">
-  <Device name="MOTOR"><Input><Field name="Q" type="DOUBLE"/></Input><Output><Field name="TORQUE" type="DOUBLE" safe="0"/></Output></Device>
+  <Device name="MOTOR"><Input><Field name="Q" type="DOUBLE"/></Input><Output><Field name="TORQUE" type="DOUBLE"/></Output></Device>
   <Configuration name="NOMINAL" id="1" sampling_us="1000"/>
   <Configuration name="HOLD" id="2" sampling_us="1000">
     <RealTimeLinkService>

@@ -95,7 +95,7 @@ std::string configuration_mistake(Subsystem& author, std::uint8_t id) {
 }
 
 constexpr const char* set_descriptor = R"(<Subsystem name="S" id="10">
-  <Device name="MOTOR"><Input><Field name="Q" type="DOUBLE"/></Input><Output><Field name="Q" type="DOUBLE" safe="0"/></Output></Device>
+  <Device name="MOTOR"><Input><Field name="Q" type="DOUBLE"/></Input><Output><Field name="Q" type="DOUBLE"/></Output></Device>
   <Configuration name="SOFT" id="1" sampling_us="1000">
     <Device name="MOTOR">
       <Setting name="STIFFNESS" value="4000"/>

@@ -127,6 +127,12 @@ void OwnLoop::handle(Octets record) {
   if (offered.mode_epoch != 0 &&
       offered.mode_epoch != permit_.load(std::memory_order_acquire)->mode_epoch.load(std::memory_order_acquire))
     return verification_.rejected(request, pus::FailureNotice{pus::FailureCode::WrongMode});
+  // Nor what a configuration leaves out that came into force meanwhile.
+  const std::uint32_t configuration = parts_.vital.configuration.load(std::memory_order_acquire);
+  if (!descriptor().offers(telecommand->service(),
+                           descriptor().find_configuration(static_cast<std::uint8_t>(configuration))))
+    return verification_.rejected(request,
+                                  pus::FailureNotice{pus::FailureCode::UnknownService}.with(telecommand->service()));
   const auto found = std::ranges::find(services_, telecommand->service(), &pus::Service::type);
   if (found == services_.end() || !(*found)->in_force())
     return verification_.rejected(

@@ -87,7 +87,7 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   [[nodiscard]] descriptor::State state() const noexcept override;
   [[nodiscard]] pus::Verification& verification() noexcept override { return verification_; }
   [[nodiscard]] pus::TelemetrySink& telemetry() noexcept override { return *this; }
-  /// Only ST[17] uses it, which has no loop of its own.
+  /// Only ST[17] uses it, which stays in the service loop.
   [[nodiscard]] pus::SelfTest& self_test() noexcept override { return parts_.subsystem.self_test(); }
   [[nodiscard]] pus::FailureNotice refusal(pus::FailureCode code, const Error& why) const override {
     return parts_.subsystem.refusal(code, why);

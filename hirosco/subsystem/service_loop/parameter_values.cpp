@@ -73,6 +73,11 @@ Result<> ParameterValues::initialise() {
 /// A process that goes through Offline loses no more than one that ends (docs/adr/0087). What could not be set is not taken along.
 void ParameterValues::remember_persistent() {
   if (!std::exchange(initialised_, false)) return;
+  {
+    // A loop of ST[20]'s own is by here done with what it judged by the states before, and has told it as set (docs/adr/0200).
+    const LockGuard lock{judging_};
+    apply_at_rest();
+  }
   std::array<std::byte, descriptor::max_persistent_octets> room;
   for (std::size_t index = 0; index < descriptor_.parameters.size(); ++index) {
     const descriptor::Parameter& parameter = descriptor_.parameters[index];
@@ -98,10 +103,15 @@ std::size_t ParameterValues::size_of(std::uint32_t parameter) {
 }
 
 std::expected<void, pus::FailureCode> ParameterValues::check_write(std::uint32_t parameter, Octets value) {
+  return check_write_in(at_.state, parameter, value);
+}
+
+std::expected<void, pus::FailureCode> ParameterValues::check_write_in(State state, std::uint32_t parameter,
+                                                                      Octets value) const {
   const auto place = dictionary_.place_of(parameter);
   if (!place) return std::unexpected{pus::FailureCode::UnknownIdentifier};
   const descriptor::Parameter& declared = descriptor_.parameters[place->index];
-  if (!declared.writable_in(at_.state)) return std::unexpected{pus::FailureCode::NotPermittedNow};
+  if (!declared.writable_in(state)) return std::unexpected{pus::FailureCode::NotPermittedNow};
   // A value that the next cycle overwrites was not set, whatever a report said.
   if (orders_.wanted() && cycle_.writes_itself(place->index)) return std::unexpected{pus::FailureCode::NotPermittedNow};
   if (!dictionary_.accepts(place->index, place->member, value))
@@ -112,6 +122,13 @@ std::expected<void, pus::FailureCode> ParameterValues::check_write(std::uint32_t
 
 std::expected<void, pus::FailureCode> ParameterValues::submit_write(std::span<const pus::ParameterAccess::Write> writes,
                                                                     const pus::Request&) {
+  if (auto queued = queue(writes); !queued) return queued;
+  // While the cycle rests the service loop is the writer; one that is still coming to rest is applied for when it has.
+  if (orders_.rests()) apply();
+  return {};
+}
+
+std::expected<void, pus::FailureCode> ParameterValues::queue(std::span<const pus::ParameterAccess::Write> writes) {
   std::array<ParameterWrite, pus::max_instructions> batch;
   std::size_t count = 0;
   for (const auto& write : writes)
@@ -120,8 +137,6 @@ std::expected<void, pus::FailureCode> ParameterValues::submit_write(std::span<co
   if (const auto queued = writes_.enqueue(dictionary_, std::span{batch}.first(count)); !queued)
     return std::unexpected{queued.error().code == ErrorCode::OutOfRange ? pus::FailureCode::CapacityExceeded
                                                                         : pus::FailureCode::Busy};
-  // While the cycle rests the service loop is the writer; one that is still coming to rest is applied for when it has.
-  if (orders_.rests()) apply();
   return {};
 }
 

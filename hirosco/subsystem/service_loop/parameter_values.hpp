@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -14,6 +15,7 @@
 #include "hirosco/subsystem/service_loop/cycle_orders.hpp"
 #include "hirosco/subsystem/service_loop/foreign_parameters.hpp"
 #include "hirosco/subsystem/service_loop/situation.hpp"
+#include "hirosco/utilities/os/mutex.hpp"
 
 namespace hirosco {
 
@@ -47,7 +49,21 @@ class ParameterValues final : public pus::ParameterAccess {
   /// What is heard of others comes into a parameter as what a telecommand sets, without asking whether one may.
   [[nodiscard]] ForeignParameters::Home foreign_home(std::function<void(std::uint16_t parameter)> tell);
 
-  // ParameterAccess
+  // --- for ST[20] in a loop of its own (docs/adr/0200), under that loop's lock: also its thread -----------------------
+  /// As check_write(), by the state that the loop knows.
+  [[nodiscard]] std::expected<void, pus::FailureCode> check_write_in(State state, std::uint32_t parameter,
+                                                                     Octets value) const;
+  /// As submit_write(), but whoever is the writer sets them: the cycle at its boundary, the service loop in its next step.
+  [[nodiscard]] std::expected<void, pus::FailureCode> queue(std::span<const pus::ParameterAccess::Write> writes);
+  /// Held by that loop from its last look at the state until it has queued, and by the service loop where it tells the cycle of another
+  /// state and where it hears that it is there: what the state before alone permits is queued before that, or not at all. The cycle never
+  /// holds it.
+  [[nodiscard]] Mutex& judging() noexcept { return judging_; }
+  /// Under judging(): the state that the cycle was sent into and is not known to be in. Thread: set by the service loop.
+  void send_into(std::optional<State> state) noexcept { sent_into_ = state; }
+  [[nodiscard]] std::optional<State> sent_into() const noexcept { return sent_into_; }
+
+  // ParameterAccess; the first two also for that loop.
   std::expected<std::size_t, ErrorCode> read(std::uint32_t parameter, MutableOctets big_endian) override;
   std::size_t size_of(std::uint32_t parameter) override;
   std::expected<void, pus::FailureCode> check_write(std::uint32_t parameter, Octets value) override;
@@ -62,6 +78,8 @@ class ParameterValues final : public pus::ParameterAccess {
   std::string problem_;  ///< before the dictionary, whose making may fill it
   Dictionary dictionary_;
   WriteQueue writes_{32, 2048};
+  Mutex judging_;
+  std::optional<State> sent_into_;  ///< under judging_
   bool initialised_{false};
 };
 

@@ -94,6 +94,9 @@ bool StateMachine::run_phase(State next, TimePoint now) {
         parts_.cycle.lost_devices().awaits_first_answer() &&
         now <= phase_deadline_ - transient_limit + first_answer_limit)
       return false;
+    // What ST[20] has found permitted in a loop of its own is queued before this, or judged once more (docs/adr/0200).
+    const LockGuard lock{parts_.values.judging()};
+    parts_.values.send_into(next);
     awaiting_cycle_ =
         parts_.rings.command({.kind = CommandKind::EnterState, .index = static_cast<std::uint16_t>(next)});
     return false;
@@ -177,7 +180,11 @@ void StateMachine::release_late() {
 
 void StateMachine::be_in(State state) {
   at_.state = state;
-  parts_.vital.state.store(static_cast<std::uint32_t>(state), std::memory_order_release);
+  {
+    const LockGuard lock{parts_.values.judging()};
+    parts_.values.send_into(std::nullopt);
+    parts_.vital.state.store(static_cast<std::uint32_t>(state), std::memory_order_release);
+  }
   const double entered = static_cast<double>(state);
   parts_.reports.raise(descriptor::framework_event::state_changed, {&entered, 1});
 }

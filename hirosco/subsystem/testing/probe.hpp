@@ -46,7 +46,7 @@ inline const std::string probe_descriptor = R"(<Subsystem name="PROBE" id="10">
   </Device>
   <Device name="LAMP">
     <Input><Field name="LIT" type="UINT8"/></Input>
-    <Output><Field name="LIT" type="UINT8" safe="0"/></Output>
+    <Output><Field name="LIT" type="UINT8"/></Output>
   </Device>
   <Configuration name="ALONE" id="1" priority="80" sampling_us="500">
 <HKService id="4711" interval="500">

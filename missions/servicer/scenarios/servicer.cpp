@@ -165,8 +165,9 @@ struct Moved {
   Curve error;
 };
 
-[[nodiscard]] Moved move(const ServicerSettings& settings, const std::string& mode, const Direction& direction) {
-  ServicerCraft craft{{.mission = settings.mission, .seed = settings.seed, .mode = mode}};
+[[nodiscard]] Moved move(const ServicerSettings& settings, const std::string& mode, const Direction& direction,
+                         Noise noise) {
+  ServicerCraft craft{{.mission = settings.mission, .seed = settings.seed, .mode = mode, .noise = noise}};
   const Place from = craft.tool_m();
   const double begun_s = craft.begin("MOVE_TOOL", move_tool(direction.offset_m));
   Moved seen{.error = Curve{fmt::format("{} {}", mode, direction.name)}};
@@ -188,25 +189,29 @@ struct Moved {
 Findings fly_moves(const ServicerSettings& settings) {
   Findings findings;
   for (const auto& [mode, name] : {std::pair{"joints", "without-link"}, {"track", "track"}, {"approach", "hold"}}) {
-    double least_m = never, most_m = 0, least_deg = never, most_deg = 0, fastest = 0;
+    double least_m = never, most_m = 0, least_deg = never, most_deg = 0, fastest = 0, fastest_quiet = 0;
+    const bool by_pose = mode != std::string_view{"joints"};
     Plot plot{.name = fmt::format("sv3-{}", name),
               .title = fmt::format("Distance of the tool from where it is to be, mode {}", mode),
               .x_label = "time, s",
               .y_label = "mm"};
     for (const Direction& direction : flown(settings)) {
-      Moved seen = move(settings, mode, direction);
+      Moved seen = move(settings, mode, direction, Noise::AsDeclared);
       least_m = std::min(least_m, seen.largest_error_m);
       most_m = std::max(most_m, seen.largest_error_m);
       least_deg = std::min(least_deg, seen.largest_turn_deg);
       most_deg = std::max(most_deg, seen.largest_turn_deg);
       fastest = std::max(fastest, seen.fastest_rad_s);
+      // Of many noisy values the largest lies above the one that the design tells, which has no noise.
+      if (by_pose) fastest_quiet = std::max(fastest_quiet, move(settings, mode, direction, Noise::None).fastest_rad_s);
       plot.curves.push_back(std::move(seen.error));
     }
     findings.figures[fmt::format("SV3-{}-least-mm", name)] = 1e3 * least_m;
     findings.figures[fmt::format("SV3-{}-most-mm", name)] = 1e3 * most_m;
     findings.figures[fmt::format("SV3-{}-least-deg", name)] = least_deg;
     findings.figures[fmt::format("SV3-{}-most-deg", name)] = most_deg;
-    findings.figures[fmt::format("SV3-{}-fastest", name)] = fastest;
+    findings.figures[fmt::format("SV3-{}-fastest", name)] = by_pose ? fastest_quiet : fastest;
+    if (by_pose) findings.figures[fmt::format("SV3-{}-fastest-with-noise", name)] = fastest;
     findings.plots.push_back(std::move(plot));
   }
   return findings;
@@ -327,7 +332,8 @@ constexpr std::array runs{
     ServicerRun{
         "SV3", "The tool by 0.2 m",
         "from ready along x, y and z both ways in 20 s, sensors with noise: without the pose of the base (joints), in "
-        "inertial axes (track), with the base unturned (approach)",
+        "inertial axes (track), with the base unturned (approach); with the pose a second time without noise, for the "
+        "fastest joint",
         fly_moves},
     ServicerRun{"SV4", "Pose lost", "track, 0.2 m along x: after 8 s the AOCS stands still", fly_cut},
     ServicerRun{"SV8", "Station keeping handed over", "track, 0.2 m in 20 s: after 10 s the arm's control is killed",

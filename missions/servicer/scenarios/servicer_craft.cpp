@@ -33,8 +33,10 @@ Plan ServicerCraft::plan_of(const ServicerOptions& options) {
   plan.edit = [&options](descriptor::Mission& mission) {
     mission.start_mode = options.mode;
     for (auto& device : mission.devices)
-      for (auto& setting : device.settings)
+      for (auto& setting : device.settings) {
         if (setting.name == "posture" && !options.posture.empty()) setting.value = options.posture;
+        if (setting.name.ends_with("_noise") && options.noise == Noise::None) setting.value = "0";
+      }
   };
   plan.devices["hirosco-sim-mujoco"] =
       [](FlowFactory& flows, const FlowAddress& address,

@@ -13,11 +13,15 @@
 
 namespace hirosco::simulation {
 
+/// Of what measures where the base is.
+enum class Noise : std::uint8_t { AsDeclared, None };
+
 struct ServicerOptions {
   std::filesystem::path mission;  ///< the mission file
   std::uint64_t seed{1};
   std::string mode{"track"};
   std::string posture{};  ///< empty: the mission's
+  Noise noise{Noise::AsDeclared};
 };
 
 /// The servicer in a mode, with what its world tells.

@@ -206,8 +206,9 @@ def permitted(mission, record, source, mode, state):
     for subject, functions, services, parameters in mission.modes[mode]:
         if subject not in ("*", addressee.name):
             continue
-        if str(tc.service) in services or (tc.service == 8 and functions & {"*", tc.function}):
-            if tc.service == 20 and tc.subtype == 3 and not may_write(mission, addressee, tc, mode, state):
+        writes = tc.service == 20 and tc.subtype == 3
+        if str(tc.service) in services or (tc.service == 8 and functions & {"*", tc.function}) or (writes and parameters):
+            if writes and not may_write(mission, addressee, tc, mode, state):
                 continue
             if function is None or state in function.states:
                 return True

@@ -24,6 +24,10 @@ constexpr double no_motion = 1e-9;
 
 }  // namespace
 
+double progress_on(const robotics::PointToPoint& path, const OnWay& on) noexcept {
+  return path.duration_s() > 0 ? std::clamp(on.at_s / path.duration_s(), 0.0, 1.0) : 1.0;
+}
+
 double slowing(const robotics::PointToPoint& path, Bounds bounds, const OnWay& on, double span_s) noexcept {
   double most = on.pace / span_s;
   robotics::PointToPoint::Sample sample;
@@ -53,7 +57,7 @@ double rest_on(const robotics::PointToPoint& path, Bounds bounds, OnWay on, doub
   return std::min(on.at_s + on.pace * longest_s, path.duration_s());
 }
 
-/// As Setpoints goes along it: its pace falls within `Line::ramp_s`, no faster than the joints' accelerations let it, and not above that of the survey.
+/// As LineMotion goes along it: its pace falls within `Line::ramp_s`, no faster than the joints' accelerations let it, and not above that of the survey.
 double rest_on(const Line& line, Bounds bounds, OnWay on) noexcept {
   const double end_s = line.path().duration_s();
   JointVector before = line.onward(on.at_s);

@@ -20,6 +20,9 @@ struct OnWay {
   double pace{1};
 };
 
+/// How much of a path is behind him, 0 to 1; all of one that has no length.
+[[nodiscard]] double progress_on(const robotics::PointToPoint& path, const OnWay& on) noexcept;
+
 /// How fast the time of a path may go slower in that time, 1/s: where the joints are braked on it already, by what is left of their accelerations.
 [[nodiscard]] double slowing(const robotics::PointToPoint& path, Bounds bounds, const OnWay& on,
                              double span_s) noexcept;

@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 
 #include "robotics/motion/inverse_kinematics.hpp"
 #include "subsystems/robot_arm/control/joints.hpp"
-#include "subsystems/robot_arm/control/line.hpp"
+#include "subsystems/robot_arm/control/line_motion.hpp"
+#include "subsystems/robot_arm/control/path_motion.hpp"
 #include "subsystems/robot_arm/control/power_pace.hpp"
+#include "subsystems/robot_arm/control/tool_kinematics.hpp"
 #include "subsystems/robot_arm/control/trail.hpp"
 
 namespace hirosco::robot_arm {
@@ -27,11 +28,13 @@ class Setpoints {
   /// All joints at once, each by the same share of its way, jerk-limited, with this share of their velocities. InvalidArgument: as of PointToPoint.
   [[nodiscard]] Result<> go(const JointVector& goal, double speed_share) noexcept;
   /// So long it would take from one place to the other; infinitely, where go() would refuse.
-  [[nodiscard]] double duration_s(const JointVector& from, const JointVector& goal, double speed_share) const noexcept;
+  [[nodiscard]] double duration_s(const JointVector& from, const JointVector& goal, double speed_share) const noexcept {
+    return path_.foreseen_s(from, goal, speed_share, power_);
+  }
   /// The tool on a straight line: it stands until line() has found whether it can, and rests where it cannot. InvalidArgument: as of Line.
   [[nodiscard]] Result<> go_straight(const robotics::Pose& goal, const Line::Speed& speed) noexcept;
   /// The last one.
-  [[nodiscard]] const Line& line() const noexcept { return line_; }
+  [[nodiscard]] const Line& line() const noexcept { return line_.line(); }
   /// With these velocities from now on, until brake(); of the joints, or a twist [ω; v] of the tool in the axes of the base.
   void jog(const JointVector& velocity) noexcept;
   void jog(const Vector6& twist) noexcept;
@@ -63,65 +66,45 @@ class Setpoints {
   /// Where it would come to rest if it went on for a cycle and braked then: who brakes as soon as that is too far rests where it was not. Never nearer, but for the
   /// last digits of a line and what bends between two steps of its survey; on a path or a line a little farther (braking.hpp).
   [[nodiscard]] JointVector braked() const noexcept;
-  /// Of a path: 0 to 1.
-  [[nodiscard]] double progress() const noexcept;
+  /// Of the last path, or line: 0 to 1.
+  [[nodiscard]] double progress() const noexcept { return on_line_ ? line_.progress() : path_.progress(); }
   /// The last retreat went as far as it was to, before its time was over.
   [[nodiscard]] bool retreated() const noexcept { return retract_left_s_ > 0; }
   /// Of the last retreat: how far it went, rad or m.
   [[nodiscard]] double retracted_by() const noexcept { return apart(now_.position, met_); }
-  [[nodiscard]] double duration_s() const noexcept { return duration_s_; }
+  [[nodiscard]] double duration_s() const noexcept { return on_line_ ? line_.duration_s() : path_.duration_s(); }
   /// How far the setpoint's tool is from where its line has it, m; 0 without one.
-  [[nodiscard]] double off_line_m() const noexcept { return off_line_m_; }
+  [[nodiscard]] double off_line_m() const noexcept { return kind_ == Kind::Line ? line_.off_m() : 0; }
   /// How far its line has led it.
-  [[nodiscard]] double gone_m() const noexcept {
-    return kind_ == Kind::Line ? sample_.position[0] * line_.length_m() : 0;
-  }
+  [[nodiscard]] double gone_m() const noexcept { return kind_ == Kind::Line ? line_.gone_m() : 0; }
   /// Of a line that cannot be followed: who is near an end of its range and on the way there; nobody: a singular posture is in the way.
   [[nodiscard]] std::optional<std::size_t> joint_in_the_way() const noexcept;
   /// Where the tool of the setpoint is.
-  [[nodiscard]] robotics::Pose tool() noexcept;
+  [[nodiscard]] robotics::Pose tool() noexcept { return tool_.pose(now_.position); }
   /// Where the tip is when the tool is there.
-  [[nodiscard]] robotics::Pose tip_with(const robotics::Pose& tool) const noexcept {
-    return tool * robotics::inverse(tool_);
-  }
+  [[nodiscard]] robotics::Pose tip_with(const robotics::Pose& tool) const noexcept { return tool_.tip_with(tool); }
   /// Where the tool is in the tip's frame; while nothing moves.
-  void set_tool(const robotics::Pose& in_tip) noexcept { tool_ = in_tip; }
+  void set_tool(const robotics::Pose& in_tip) noexcept { tool_.set_in_tip(in_tip); }
 
  private:
-  [[nodiscard]] Result<robotics::PointToPoint> plan(const JointVector& from, const JointVector& goal,
-                                                    double speed_share) const noexcept;
-  [[nodiscard]] double with_power_s(const robotics::PointToPoint& path) const noexcept;
-  void advance_path() noexcept;
   void advance_line() noexcept;
   void advance_jog(const JointVector& wanted) noexcept;
   [[nodiscard]] JointVector way_back() noexcept;
-  [[nodiscard]] JointVector tip_rates(const robotics::InverseKinematics& kinematics, const Vector6& twist,
-                                      const JointVector& posture) noexcept;
   void follow(const JointVector& velocity) noexcept;
-  [[nodiscard]] double quickening() const noexcept;
-  void keep_pace(const JointVector& onward, const JointVector& back) noexcept;
-  void keep_limits(JointVector& rates) noexcept;
   void come_to_rest() noexcept;
 
-  robotics::FrameId tip_;
   Bounds bounds_;
   double cycle_s_;
-  robotics::Dynamics dynamics_;
+  ToolKinematics tool_;
   robotics::InverseKinematics kinematics_;
-  Line line_;
-  robotics::State state_;
+  PathMotion path_;
+  LineMotion line_;
   Setpoint now_;
   Kind kind_{Kind::Rest};
   bool braking_{false};
   bool tells_acceleration_{true};
   double urgency_{1};  ///< factor of accelerations while it halts
-  robotics::PointToPoint path_{};
-  robotics::PointToPoint::Sample sample_{};
-  double duration_s_{0};
-  double path_s_{0};  ///< how far on its path, in its own time
-  double pace_{1};  ///< of that time
-  robotics::Pose tool_{};
-  double off_line_m_{0};
+  bool on_line_{false};  ///< its last path is a line
   JointVector posture_;
   JointVector jog_;
   PowerPace power_;

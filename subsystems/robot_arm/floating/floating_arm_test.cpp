@@ -9,7 +9,7 @@
 #include "subsystems/robot_arm/testing/plant.hpp"
 
 /// The floating arm as its subsystem, in JOINTS, where it takes its base as standing: here it does, and the test is its device. On a base that gives way
-/// it is flown in tests/servicer.
+/// it is flown in missions/servicer/tests.
 namespace hirosco {
 namespace {
 

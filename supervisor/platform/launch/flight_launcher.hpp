@@ -15,13 +15,13 @@ namespace hirosco::supervisor {
 /// Thread: the supervisor's.
 class FlightLauncher : public ProcessLauncher {
  public:
-  /// Before the first launch. What it tells of that for the story of the flight; empty: nothing. Error in words: no flight.
+  /// Before the first launch, behind keep_with(). What it tells of that for the story of the flight; empty: nothing. Error in words: no flight.
   [[nodiscard]] virtual std::expected<std::string, std::string> begin(const descriptor::Mission& mission) = 0;
   /// From now on the keeper holds what it launches, slot by slot in the order of this mission, and adopt() finds what it held. `page`: the
-  /// keeper's, which tells how those ended whose parent was a supervisor before; null: nobody does.
+  /// keeper's, which tells how those ended whose parent was a supervisor before, and whom it had no room for; null: nobody does.
   /// False: what it launches does not outlive this process, and nothing is held.
   [[nodiscard]] virtual bool keep_with(StoreClient /*store*/, const descriptor::Mission& /*mission*/,
-                                       InheritedParts /*inherited*/, const KeeperPage* /*page*/) {
+                                       InheritedParts /*inherited*/, KeeperPage* /*page*/) {
     return false;
   }
   /// Ends what still runs, as far as that is possible: nobody would be left to do it.

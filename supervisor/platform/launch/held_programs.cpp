@@ -8,6 +8,7 @@
 #include <system_error>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/utilities/os/installation.hpp"
@@ -82,6 +83,23 @@ void HeldPrograms::read_all(const descriptor::Mission& mission) {
     const auto listed = wanted(member.executable);
     if (!listed || held_.contains(member.executable)) continue;
     if (auto image = check(read_, *listed)) held_.emplace(member.executable, std::move(*image));
+  }
+}
+
+void HeldPrograms::read_all_beside(const descriptor::Mission& mission) {
+  std::vector<std::packaged_task<Outcome()>> tasks;
+  for (const descriptor::MissionSubsystem& member : mission.subsystems) {
+    auto listed = wanted(member.executable);
+    if (!listed || held_.contains(member.executable) || read_now_.contains(member.executable)) continue;
+    tasks.emplace_back([read = read_, listed = std::move(*listed)] { return check(read, listed); });
+    read_now_.emplace(member.executable, tasks.back().get_future());
+  }
+  try {
+    std::thread{[tasks = std::move(tasks)]() mutable {
+      for (auto& task : tasks) task();
+    }}.detach();
+  } catch (const std::system_error&) {
+    read_now_.clear();
   }
 }
 

@@ -18,7 +18,7 @@ namespace hirosco::supervisor {
 
 /// The executables of a mission that has a manifest, in memory, each with the digest that stands there for its name. They are
 /// read before the flight; who crashed is started anew from memory, and waits for no
-/// disk and no hash. A supervisor that goes on for another one reads them anew, from the disk (docs/adr/0192).
+/// disk and no hash. A supervisor that goes on for another one reads them anew, from the disk, beside the flight (docs/adr/0192).
 /// Thread: the supervisor's; a file is read by a thread of its own, for which nobody waits longer than longest_wait.
 class HeldPrograms {
  public:
@@ -33,6 +33,9 @@ class HeldPrograms {
 
   /// Reads those of all subsystems, before the flight: it takes as long as the disk takes. What is refused is so by find().
   void read_all(const descriptor::Mission& mission);
+  /// The same beside a flight: one after the other, in one thread of ordinary priority, for which nobody waits here. Until one is there find()
+  /// says that it is still being read. Where no thread is left each is read when it is asked for.
+  void read_all_beside(const descriptor::Mission& mission);
   /// One that is not held is read anew: its file or the disk may be in order by now. The image stays for the flight.
   /// A version of one, "arm@2", may have come in flight: with it the manifest is read anew.
   [[nodiscard]] std::expected<const ProgramImage*, StartRefusal> find(const std::string& name,

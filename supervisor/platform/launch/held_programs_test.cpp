@@ -94,6 +94,29 @@ TEST_F(HeldProgramsTest, AFileThatCannotBeReadIsRefusedWithTheReason) {
   EXPECT_EQ(programs.find("arm").error().why.code, ErrorCode::NotFound);
 }
 
+TEST_F(HeldProgramsTest, BesideAFlightThatGoesOnADiskThatHangsHoldsNobodyUpAndAllIsReadOnce) {
+  held_disk().hangs = true;
+  HeldPrograms programs{mission, read_held_disk};
+  programs.read_all_beside(mission);
+  EXPECT_EQ(programs.count(), 0U);
+  EXPECT_EQ(programs.find("arm", Duration{0}).error().why.code, ErrorCode::Unavailable);
+  held_disk().goes_on.release();
+  while (!programs.find("arm")) {}
+  EXPECT_EQ(held_disk().reads, 1);
+  EXPECT_EQ((*programs.find("arm"))->digest(), mission.manifest->listed[0].digest);
+}
+
+TEST_F(HeldProgramsTest, BesideAFlightThatGoesOnAnotherFileIsRefusedAsBeforeIt) {
+  held_disk().file = "/bin/false";
+  HeldPrograms programs{mission, read_held_disk};
+  programs.read_all_beside(mission);
+  const auto refused = programs.find("arm", std::chrono::hours{1});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().why.code, ErrorCode::Mismatch);
+  held_disk().file = "/bin/true";
+  EXPECT_TRUE(programs.find("arm", std::chrono::hours{1}));
+}
+
 TEST_F(HeldProgramsTest, ADiskThatHangsHoldsNobodyUpAndIsReadOnceItGoesOn) {
   HeldPrograms programs{mission, read_held_disk};
   held_disk().hangs = true;

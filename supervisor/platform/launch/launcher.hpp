@@ -123,6 +123,9 @@ class ProcessLauncher {
   /// Empty while it runs.
   [[nodiscard]] virtual std::optional<ProcessEnd> ended(std::uint32_t process) = 0;
   virtual void kill(std::uint32_t process) = 0;
+  /// Why it would end with this supervisor though that has handed it over to the keeper; empty: it would not. Told once for each process, a
+  /// moment after it was launched or adopted.
+  [[nodiscard]] virtual std::string_view take_not_kept(std::uint32_t /*process*/) { return {}; }
   /// What those that it starts are not kept from, in words; empty: they are isolated (docs/adr/0081).
   [[nodiscard]] virtual std::vector<std::string> isolation_lacks() const { return {}; }
   /// What would isolate them more and the mission does not ask for, in words; empty: nothing (docs/adr/0177).

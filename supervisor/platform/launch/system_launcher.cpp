@@ -124,6 +124,11 @@ std::expected<std::string, std::string> SystemLauncher::begin(const descriptor::
   for (const auto& subsystem : mission.subsystems)
     if (subsystem.user) user_of_[subsystem.subsystem.name] = *subsystem.user;
   if (!mission.manifest) return std::string{};
+  if (page_ != nullptr && page_->starts.load() > 1) {
+    held_ = std::make_unique<HeldPrograms>(mission);
+    held_->read_all_beside(mission);
+    return std::string{"executables of the manifest are read anew, beside the flight"};
+  }
   const SystemClock clock;
   const TimePoint begun = clock.now();
   const HeldPrograms& held = hold_to(mission);
@@ -305,7 +310,7 @@ Result<LaunchedSubsystem> SystemLauncher::hold(Process& process, FileDescriptor 
 }
 
 bool SystemLauncher::keep_with(StoreClient store, const descriptor::Mission& mission, InheritedParts inherited,
-                               const KeeperPage* page) {
+                               KeeperPage* page) {
   store_ = store;
   inherited_ = std::move(inherited);
   page_ = page;
@@ -320,11 +325,19 @@ void SystemLauncher::keep(const std::string& name, LaunchedSubsystem& launched, 
   const auto process = processes_.find(launched.process);
   if (slot == slots_.end() || process == processes_.end()) return;
   const int handle = process->second.handle().get();
+  if (page_ != nullptr && slot->second < most_kept) page_->not_taken[slot->second].store(0, std::memory_order_release);
   const auto taken =
       store_.keep(slot->second, {launched.port->channel().wait_descriptor(), SealedMemory::descriptor(vital),
                                  SealedMemory::descriptor(permit), handle, errors ? errors.get() : handle});
   if (taken) kept_[launched.process] = slot->second;
   else if (store_.has_keeper()) launched.not_kept = taken.error().text;
+}
+
+std::string_view SystemLauncher::take_not_kept(std::uint32_t process) {
+  const auto slot = kept_.find(process);
+  if (page_ == nullptr || slot == kept_.end() || slot->second >= most_kept) return {};
+  const bool taken = page_->not_taken[slot->second].exchange(0) == 0;
+  return taken ? std::string_view{} : "the keeper has no descriptors left to hold it by";
 }
 
 std::expected<AdoptedSubsystem, NotAdopted> SystemLauncher::adopt(const descriptor::MissionSubsystem& subsystem) {

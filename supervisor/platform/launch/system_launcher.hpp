@@ -29,13 +29,13 @@ class SystemLauncher final : public FlightLauncher {
   /// \param own_users Who started the flight may end users of their own (docs/adr/0177): they are what it starts where the mission and our
   /// rights have it so.
   explicit SystemLauncher(bool own_users = false) : own_users_granted_{own_users} {}
-  /// Holds to the mission's manifest where it has one.
+  /// Holds to the mission's manifest where it has one. Behind keep_with(): who goes on for another supervisor waits for no disk here.
   [[nodiscard]] std::expected<std::string, std::string> begin(const descriptor::Mission& mission) override;
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::expected<AdoptedSubsystem, NotAdopted> adopt(
       const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] bool keep_with(StoreClient store, const descriptor::Mission& mission, InheritedParts inherited,
-                               const KeeperPage* page) override;
+                               KeeperPage* page) override;
   [[nodiscard]] std::optional<StartRefusal> refuse(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::expected<bool, StartRefusal> prepare(const descriptor::MissionSubsystem& subsystem,
                                                           const std::string& version) override;
@@ -48,6 +48,7 @@ class SystemLauncher final : public FlightLauncher {
   const HeldPrograms& hold_to(const descriptor::Mission& mission);
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
+  [[nodiscard]] std::string_view take_not_kept(std::uint32_t process) override;
   [[nodiscard]] std::vector<std::string> isolation_lacks() const override;
   [[nodiscard]] std::string isolation_not_asked() const override;
   [[nodiscard]] std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override;
@@ -96,7 +97,7 @@ class SystemLauncher final : public FlightLauncher {
   StoreClient store_{-1};
   std::map<std::string, std::size_t, std::less<>> slots_;
   InheritedParts inherited_;
-  const KeeperPage* page_{nullptr};
+  KeeperPage* page_{nullptr};
   std::map<std::uint32_t, TimePoint> end_asked_;  ///< of processes that have ended, and nobody has said how
   std::map<std::uint32_t, std::size_t> kept_;  ///< slot of each process
   std::uint32_t next_{1};

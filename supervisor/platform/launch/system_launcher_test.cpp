@@ -194,6 +194,16 @@ TEST_F(ManifestStart, IsOfWhatWasReadBeforeTheFlightWhateverBecomesOfTheFile) {
   EXPECT_EQ(run(), 0);
 }
 
+TEST_F(ManifestStart, UnderWhoGoesOnIsReadBesideTheFlightAndHeldAllTheSame) {
+  KeeperPage page;
+  page.starts = 2;
+  ASSERT_TRUE(launcher.keep_with(StoreClient{-1}, mission, {}, &page));
+  EXPECT_EQ(launcher.begin(mission).value(), "executables of the manifest are read anew, beside the flight");
+  while (launcher.refuse(mission.subsystems[0])) {}
+  is_now("/bin/false");
+  EXPECT_EQ(run(), 0);
+}
+
 TEST_F(ManifestStart, OfAnotherFileIsRefused) {
   is_now("/bin/false");
   EXPECT_EQ(run(), 1) << "without a manifest it is the name that counts";
@@ -273,12 +283,59 @@ std::array<FileDescriptor, kept_roles> kept_of(pid_t process, SealedMemory& memo
   return kept;
 }
 
-TEST(SystemLauncherAdoption, ThePageThatItMakesSaysWhatItFoundBeforeAnyGuardHasWrittenOnIt) {
+pid_t start_one_that_rests() {
   const pid_t child = ::fork();
   if (child == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     for (;;) ::pause();
   }
+  return child;
+}
+
+TEST(SystemLauncherAdoption, WhomTheKeeperCouldNotTakeIsToldOnceWhenItSaysSo) {
+  const pid_t child = start_one_that_rests();
+  descriptor::Mission mission;
+  mission.subsystems.emplace_back().subsystem.name = "ARM";
+  SealedMemory memory;
+  InheritedParts inherited;
+  inherited.emplace(0, kept_of(child, memory, PermitPage{}));
+  auto ends = std::move(*KeptStore::make_socket());
+  KeeperPage page;
+  page.not_taken[0] = 1;  // of what a supervisor before had handed over
+  SystemLauncher launcher;
+  ASSERT_TRUE(launcher.keep_with(StoreClient{ends.second.get()}, mission, std::move(inherited), &page));
+  const auto adopted = launcher.adopt(mission.subsystems[0]);
+  ASSERT_TRUE(adopted);
+  EXPECT_EQ(launcher.take_not_kept(adopted->launched.process), "") << "of this one it has said nothing yet";
+  page.not_taken[0] = 1;
+  EXPECT_NE(launcher.take_not_kept(adopted->launched.process), "");
+  EXPECT_EQ(launcher.take_not_kept(adopted->launched.process), "") << "once";
+  EXPECT_EQ(launcher.take_not_kept(adopted->launched.process + 1), "") << "there is no such process";
+  launcher.kill_all();
+  ::waitpid(child, nullptr, 0);
+}
+
+TEST(SystemLauncherAdoption, OfWhomTheKeeperHeldTheHandleAloneIsEndedByIt) {
+  const pid_t child = start_one_that_rests();
+  descriptor::Mission mission;
+  mission.subsystems.emplace_back().subsystem.name = "ARM";
+  const auto handle = [&] { return FileDescriptor{static_cast<int>(::syscall(SYS_pidfd_open, child, 0))}; };
+  const FileDescriptor ours = handle();
+  InheritedParts inherited;
+  for (FileDescriptor& each : inherited[0]) each = handle();
+  SystemLauncher launcher;
+  ASSERT_TRUE(launcher.keep_with(StoreClient{-1}, mission, std::move(inherited), nullptr));
+  const auto adopted = launcher.adopt(mission.subsystems[0]);
+  ASSERT_FALSE(adopted);
+  EXPECT_NE(adopted.error().why, "") << "it lived";
+  pollfd ended{ours.get(), POLLIN, 0};
+  constexpr int without_limit = -1;
+  EXPECT_EQ(::poll(&ended, 1, without_limit), 1);
+  ::waitpid(child, nullptr, 0);
+}
+
+TEST(SystemLauncherAdoption, ThePageThatItMakesSaysWhatItFoundBeforeAnyGuardHasWrittenOnIt) {
+  const pid_t child = start_one_that_rests();
   descriptor::Mission mission;
   mission.subsystems.emplace_back().subsystem.name = "ARM";
   SealedMemory memory;

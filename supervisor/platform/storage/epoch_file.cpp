@@ -9,10 +9,12 @@
 #include <algorithm>
 #include <atomic>
 #include <fstream>
+#include <future>
 #include <limits>
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
 
@@ -30,6 +32,13 @@ constexpr std::uint64_t most_unnoted = 4096;
 constexpr std::uint32_t last_first = std::numeric_limits<std::uint32_t>::max() - 1'000'000;
 /// 2020-01-01 after 1958-01-01, the epoch of on-board time (TAI, without leap seconds).
 constexpr std::int64_t year_2020_s = 1'956'528'000;
+
+/// 0: there is none, or none that can be read.
+[[nodiscard]] std::uint64_t read_file(const std::filesystem::path& path) {
+  std::uint64_t kept = 0;
+  std::ifstream{path} >> kept;
+  return kept;
+}
 
 /// On the disk when this is true: file, name and folder.
 [[nodiscard]] bool write(const std::filesystem::path& path, std::uint32_t reserved) {
@@ -63,9 +72,18 @@ EpochFile::EpochFile(std::filesystem::path path) : file_{std::make_shared<File>(
 const std::filesystem::path& EpochFile::path() const noexcept { return file_->path; }
 std::uint32_t EpochFile::kept() const noexcept { return file_->kept.load(std::memory_order_acquire); }
 
-Result<std::uint32_t> EpochFile::above_kept(OnboardTime now, std::uint64_t used) const {
-  std::uint64_t kept = 0;
-  std::ifstream{path()} >> kept;
+std::uint64_t EpochFile::read_within(Duration patience) const {
+  std::packaged_task<std::uint64_t()> task{[file = file_] { return read_file(file->path); }};
+  std::future<std::uint64_t> read = task.get_future();
+  try {
+    std::thread{std::move(task)}.detach();
+  } catch (const std::system_error&) {  // no thread is left
+    return 0;
+  }
+  return read.wait_for(patience) == std::future_status::ready ? read.get() : 0;
+}
+
+Result<std::uint32_t> EpochFile::above(std::uint64_t kept, OnboardTime now, std::uint64_t used) const {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now.time_since_epoch()).count() - year_2020_s;
   const std::uint64_t first =
       std::max({kept + 1, used + 1, static_cast<std::uint64_t>(std::max<std::int64_t>(seconds, 1))});
@@ -76,14 +94,15 @@ Result<std::uint32_t> EpochFile::above_kept(OnboardTime now, std::uint64_t used)
 }
 
 Result<std::uint32_t> EpochFile::first(OnboardTime now) {
-  HIROSCO_TRY_LET(const std::uint32_t number, above_kept(now));
+  HIROSCO_TRY_LET(const std::uint32_t number, above(read_file(path()), now));
   if (write(path(), number + block)) file_->kept = number + block;
   else next_try_ = number + pause;
   return number;
 }
 
-Result<std::uint32_t> EpochFile::next(OnboardTime now, std::uint32_t noted) {
-  HIROSCO_TRY_LET(const std::uint32_t number, above_kept(now, noted != 0 ? noted + most_unnoted : 0));
+Result<std::uint32_t> EpochFile::next(OnboardTime now, std::uint32_t noted, Duration patience) {
+  const std::uint64_t kept = noted != 0 ? read_within(patience) : read_file(path());
+  HIROSCO_TRY_LET(const std::uint32_t number, above(kept, now, noted != 0 ? noted + most_unnoted : 0));
   next_try_ = number + pause;
   keep_in_a_thread(number + block);
   return number;

@@ -20,10 +20,12 @@ class EpochFile {
   /// Epoch that a flight begins with: above all that were kept, and not below the seconds since 2020. Blocks until the disk has it.
   /// OutOfRange: the numbers have run out. A file that cannot be read or written leaves the clock's number.
   [[nodiscard]] Result<std::uint32_t> first(OnboardTime now);
+  /// A disk that works has read a file of one line by far before that.
+  static constexpr Duration longest_wait = std::chrono::milliseconds{100};
   /// The same for whoever goes on with a flight, also above what supervisors before it have used without a disk that kept it. Waits for no
-  /// write, a thread of its own writes; the file is read, which only a disk that stands still altogether holds up.
-  /// \param noted The highest in use that they had noted (KeeperPage::epoch_in_use); 0: none.
-  [[nodiscard]] Result<std::uint32_t> next(OnboardTime now, std::uint32_t noted);
+  /// write, and no longer than `patience` for what the file says: a thread of its own reads, another writes. What was noted suffices.
+  /// \param noted The highest in use that they had noted (KeeperPage::epoch_in_use); 0: none, so that nobody flies and the file is waited for.
+  [[nodiscard]] Result<std::uint32_t> next(OnboardTime now, std::uint32_t noted, Duration patience = longest_wait);
   /// Reserves further epochs before they are used up, which no ordinary flight comes to. Waits for no disk: a thread of its own writes,
   /// and one that cannot is tried again later.
   void keep_above(std::uint32_t used);
@@ -33,9 +35,11 @@ class EpochFile {
 
  private:
   struct File;
-  [[nodiscard]] Result<std::uint32_t> above_kept(OnboardTime now, std::uint64_t used = 0) const;
+  [[nodiscard]] Result<std::uint32_t> above(std::uint64_t kept, OnboardTime now, std::uint64_t used = 0) const;
+  /// What the file says; 0 where it does not within this time.
+  [[nodiscard]] std::uint64_t read_within(Duration patience) const;
   void keep_in_a_thread(std::uint32_t reserved);
-  std::shared_ptr<File> file_;  ///< a write that the disk holds up outlives the flight's own end
+  std::shared_ptr<File> file_;  ///< what the disk holds up outlives the flight's own end
   std::uint32_t next_try_{0};
 };
 

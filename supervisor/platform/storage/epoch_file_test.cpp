@@ -76,7 +76,7 @@ TEST_F(EpochFileTest, WhoGoesOnIsHeldUpByNoDiskAndIsAboveWhatWasKept) {
   beside += ".new";
   ASSERT_EQ(::mkfifo(beside.c_str(), 0600), 0);
   EpochFile file{path};
-  const auto next = file.next(seconds_after_2020(11), first);
+  const auto next = file.next(seconds_after_2020(11), first, std::chrono::hours{1});
   ASSERT_TRUE(next);
   EXPECT_GT(*next, first + 60'000);
   std::string text;
@@ -98,6 +98,20 @@ TEST_F(EpochFileTest, SupervisorsThatFollowEachOtherWhileNothingCanBeKeptNeverUs
     EXPECT_GT(*next, in_use + 4'000) << "what its guard has used since that was noted, too";
     in_use = *next + 100;
   }
+}
+
+TEST_F(EpochFileTest, WhoGoesOnIsAboveWhatWasNotedThoughTheDiskDoesNotSayWhatItHas) {
+  std::filesystem::create_directories(path.parent_path());
+  auto beside = path;
+  beside += ".new";
+  std::filesystem::create_directory(beside);  // nothing takes the place of what follows
+  // Whoever reads a pipe waits for a writer.
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  constexpr std::uint32_t noted = 5'000;
+  const auto next = EpochFile{path}.next(seconds_after_2020(10), noted, Duration{0});
+  ASSERT_TRUE(next);
+  EXPECT_GT(*next, noted + 4'000) << "what its guard has used since that was noted, too";
+  std::ofstream{path} << "7\n";  // its thread is still at it
 }
 
 TEST_F(EpochFileTest, WhoGoesOnAfterOneThatHadNotedNothingIsAboveTheFile) {

@@ -55,6 +55,11 @@ using Notice = std::optional<FailureNotice>;
   return FailureNotice{FailureCode::WrongMode}.with(asked.situation.mode.id);
 }
 
+[[nodiscard]] bool is_a_write(const Asked& asked) {
+  return asked.telecommand.service() == pus::ParameterService::service_type &&
+         asked.telecommand.subtype() == pus::ParameterService::set_values;
+}
+
 /// Why a parameter write may not pass (hazard SF20): each parameter must be writable in this state by its descriptor,
 /// and opened by this mode. Whether the values fit is the addressee's matter.
 [[nodiscard]] Notice write_refused(const Asked& asked) {
@@ -326,10 +331,8 @@ constexpr unsigned all_states = 0x03FF;
 /// More than a look. What a service itself permits in some states only is that, too, as a self test.
 [[nodiscard]] bool acts(const Asked& asked) {
   const std::uint8_t service = asked.telecommand.service();
-  const bool sets = service == pus::ParameterService::service_type &&
-                    asked.telecommand.subtype() == pus::ParameterService::set_values;
-  return service == pus::FunctionService::service_type || pus::standard_service(service) == nullptr || sets ||
-         states_of(asked) != all_states;
+  return service == pus::FunctionService::service_type || pus::standard_service(service) == nullptr ||
+         is_a_write(asked) || states_of(asked) != all_states;
 }
 
 /// What the old mode permitted and the new one may not would cross the change: until it has ended the craft is looked at, and taken
@@ -347,13 +350,15 @@ constexpr unsigned all_states = 0x03FF;
 [[nodiscard]] Notice is_in_mode(const Asked& asked) {
   if (!is_bound(asked)) return std::nullopt;
   const std::uint8_t service = asked.telecommand.service();
-  constexpr std::uint8_t parameters = pus::ParameterService::service_type;
-  if (service == parameters && asked.telecommand.subtype() == pus::ParameterService::set_values)
+  const bool sets = is_a_write(asked);
+  if (sets)
     if (const auto refused = write_refused(asked)) return refused;
   const std::string_view name = asked.name();
   const bool opened = std::ranges::any_of(asked.situation.mode.permits, [&](const descriptor::Permit& permit) {
     if (permit.subsystem != "*" && permit.subsystem != asked.subsystem.name) return false;
     if (std::ranges::find(permit.services, service) != permit.services.end()) return true;
+    // Each parameter that it sets is opened, else it were refused by now; of one that is unknown the addressee refuses the whole.
+    if (sets) return !permit.parameters.empty();
     return (asked.request != nullptr || service == pus::FunctionService::service_type) &&
            listed(permit.functions, name);
   });

@@ -398,10 +398,8 @@ std::optional<FailureNotice> Telecommands::send(const Outgoing& outgoing) {
   }
   if (const auto telecommand = pus::TelecommandView::parse(packet)) {
     parts_.unanswered.forwarded(apid, *telecommand, craft_.now);
-    if (!to_itself) {
-      parts_.commanded.forwarded(apid, *telecommand, origin);
-      parts_.stored.forwarded(apid, *telecommand);
-    }
+    parts_.commanded.forwarded(apid, *telecommand, origin);
+    if (!to_itself) parts_.stored.forwarded(apid, *telecommand);
   }
   log_forwarded(outgoing);
   return std::nullopt;

@@ -52,6 +52,14 @@ std::string PlanRuns::against(const PlanStart& plan) const {
   return run != runs_.end() ? "plan " + run->plan.occasion.plan + " runs" : std::string{};
 }
 
+std::vector<PlanUnderWay> PlanRuns::under_way() const {
+  std::vector<PlanUnderWay> found;
+  for (const Run& run : runs_)
+    if (run.runner.running() && holds(run.plan))
+      found.push_back({run.plan.subject, run.plan.origin, run.plan.severity, run.plan.anew, run.plan.event});
+  return found;
+}
+
 bool PlanRuns::makes_way(const PlanStart& plan) {
   // The way down is the safest there is: nothing pre-empts it, and nothing is to be told of who is on it.
   if (recovery_of(plan.subject).going_down() && !plan.of_loss) return false;

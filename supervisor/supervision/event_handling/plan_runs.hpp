@@ -7,6 +7,7 @@
 #include <list>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "supervisor/supervision/event_handling/plan_rank.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
@@ -23,6 +24,18 @@ struct PlanStart {
   descriptor::Severity severity{};
   Stage steps{};  ///< at least one, taken one after the other
   bool of_loss{false};  ///< whoever is gone is stopped and taken down whatever else runs for it (hazard SF5)
+  std::uint16_t origin{};  ///< whose event it answers
+  std::string event{};
+  bool anew{false};  ///< a supervisor before this one had begun it and died over it
+};
+
+/// A plan that is under way for a member, as far as whoever goes on for this supervisor has to know of it: what it answers.
+struct PlanUnderWay {
+  std::uint16_t subject{};
+  std::uint16_t origin{};
+  descriptor::Severity severity{};
+  bool anew{false};
+  std::string event{};
 };
 
 /// The plans that run, and which gives way to which (docs/adr/0090): one at a time for a member, and beside it only what answers its
@@ -42,6 +55,8 @@ class PlanRuns {
   void begin(const PlanStart& plan);
   /// Why begin() would refuse it now, in words; empty: it would not.
   [[nodiscard]] std::string against(const PlanStart& plan) const;
+  /// Those that hold their subject.
+  [[nodiscard]] std::vector<PlanUnderWay> under_way() const;
 
  private:
   struct Run {

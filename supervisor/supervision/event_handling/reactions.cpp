@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/event_handling/reactions.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
@@ -89,7 +92,9 @@ PlanStart Reactions::start_for(const Member& subject, const Member* whose, const
                   .number = reaction.number,
                   .priority = reaction.priority,
                   .severity = severity,
-                  .of_loss = &subject == whose && is_loss(event)};
+                  .of_loss = &subject == whose && is_loss(event),
+                  .origin = whose != nullptr ? whose->apid() : supervisor_apid,
+                  .event = std::string{event}};
   for (const descriptor::PlanStep& planned : reaction.steps) {
     const bool for_it = planned.subsystem.empty() ? whose == nullptr || whose == &subject
                                                   : planned.subsystem == subject.descriptor().name;
@@ -150,6 +155,65 @@ void Reactions::react_to_own(std::string_view event, Severity severity) {
               supervisor_apid);
   if (means_.under_way.cancel("plan " + std::string{reaction.plan})) craft_.fail();
   for (const PlanStart& start : answer_to_own(reaction, event, severity)) runs_.begin(start);
+}
+
+// --- under another supervisor --------------------------------------------------------------------------------------------
+
+bool Reactions::begins_anew(std::uint16_t apid) const {
+  const auto of_it = [apid](const PlanUnderWay& each) { return each.subject == apid; };
+  return std::ranges::any_of(before_, of_it) &&
+         std::ranges::none_of(before_, [&](const PlanUnderWay& each) { return of_it(each) && each.anew; });
+}
+
+bool Reactions::begin_anew(Member& subject) {
+  const std::uint16_t apid = subject.apid();
+  const bool may = begins_anew(apid);
+  std::vector<PlanUnderWay> those;
+  std::erase_if(before_, [&](const PlanUnderWay& each) {
+    if (each.subject == apid) those.push_back(each);
+    return each.subject == apid;
+  });
+  bool begun = false;
+  for (const PlanUnderWay& each : those) {
+    const Member* origin = std::as_const(craft_).member(each.origin);
+    if (!may || (origin == nullptr && each.origin != supervisor_apid)) continue;
+    auto starts = origin != nullptr
+                      ? answer_to(*origin, each.event, each.severity)
+                      : answer_to_own(reaction_to_own(each.event, each.severity), each.event, each.severity);
+    for (PlanStart& start : starts) {
+      if (start.subject != apid) continue;
+      craft_.tell(fmt::format("{}: plan {} because of {} begins anew: the supervisor died in the midst of it",
+                              craft_.name_of(apid), start.occasion.plan, each.event),
+                  apid);
+      start.anew = begun = true;
+      runs_.begin(start);
+    }
+  }
+  return begun;
+}
+
+void Reactions::note(OctetWriter& writer) const {
+  std::vector<PlanUnderWay> all = runs_.under_way();
+  all.insert(all.end(), before_.begin(), before_.end());
+  writer.put(static_cast<std::uint16_t>(all.size()));
+  for (const PlanUnderWay& each : all) {
+    writer.put(each.subject).put(each.origin).put(static_cast<std::uint8_t>(each.severity));
+    writer.put(static_cast<std::uint8_t>(each.anew ? 1 : 0)).put(static_cast<std::uint16_t>(each.event.size()));
+    writer.put(std::as_bytes(std::span{each.event}));
+  }
+}
+
+void Reactions::recall(OctetReader& reader) {
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    PlanUnderWay each;
+    each.subject = reader.get<std::uint16_t>();
+    each.origin = reader.get<std::uint16_t>();
+    each.severity = static_cast<Severity>(reader.get<std::uint8_t>());
+    each.anew = reader.get<std::uint8_t>() != 0;
+    const Octets event = reader.get(reader.get<std::uint16_t>());
+    each.event.assign(reinterpret_cast<const char*>(event.data()), event.size());
+    if (reader.good()) before_.push_back(std::move(each));
+  }
 }
 
 /// What would be done now, by the code that does it, up to where it would begin.

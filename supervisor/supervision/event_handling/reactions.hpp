@@ -14,6 +14,7 @@
 #include "supervisor/supervision/event_handling/plan_runs.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/procedures/procedure_runner.hpp"
+#include "supervisor/supervision/succession/journal.hpp"
 
 namespace hirosco::supervisor {
 
@@ -21,7 +22,7 @@ namespace hirosco::supervisor {
 /// ST[05] reports one to ground is no matter of recovery (adr 0020). Which plan: `plan_choice.hpp`; what its steps do:
 /// `procedures/steps/`, which of two is followed: `plan_runs.hpp`; what a member is in the middle of by that:
 /// `subsystem_handling/member_recovery.hpp`. Thread: the supervisor's.
-class Reactions {
+class Reactions final : public Remembered {
  public:
   Reactions(const Means& means, OwnSubsystem& own)
       : craft_{means.craft},
@@ -43,6 +44,17 @@ class Reactions {
                                                      descriptor::Severity severity) const;
   /// TC[129,6]: what it would do about an event now, and what is against it. Nothing is moved, kept or sent but the answer.
   void preview(const pus::Request& asked, Octets data);
+
+  /// A plan was under way for it when the supervisor before this one died, and begins anew (docs/adr/0201). Not one that had been begun anew
+  /// already: over it two have died.
+  [[nodiscard]] bool begins_anew(std::uint16_t apid) const;
+  /// It does, as if its event were told now: by the plan that answers that now, for this one. False: nothing is begun.
+  bool begin_anew(Member& subject);
+  /// What has not begun anew by now does not any more.
+  void forget_what_was_under_way() noexcept { before_.clear(); }
+  /// What is under way, or was under the supervisor before.
+  void note(OctetWriter& writer) const override;
+  void recall(OctetReader& reader) override;
 
  private:
   /// For each whom the plan moves, with what there is to do for it: the one whose event it is first.
@@ -84,6 +96,7 @@ class Reactions {
   Desk desk_;
   Means means_;
   PlanRuns runs_;
+  std::vector<PlanUnderWay> before_;  ///< under the supervisor before
   pus::PacketDescriber describer_;
 };
 

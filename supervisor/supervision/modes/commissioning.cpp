@@ -25,6 +25,7 @@ void Commissioning::start_itself(std::function<void(bool)> done) {
   const descriptor::SubsystemDescriptor& own = craft_.mission.supervisor;
   WayThere way;
   way.add(own, own.configurations.front(), {State::Offline}, State::Operational);
+  way.recall(own.id, State::Operational);  // where it goes on for another one
   itself_.start({.stages = way.stages(), .finished = [this, done = std::move(done)](const ProcedureEnd& end) {
                    if (!end.success) craft_.tell("supervisor cannot start: " + end.text(), supervisor_apid);
                    if (!end.success) craft_.fail();

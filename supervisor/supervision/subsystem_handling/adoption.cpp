@@ -75,7 +75,8 @@ void Adoption::begin(bool stop_asked) {
           : "this supervisor goes on for one that died, and nothing tells what that knew: what moves is stopped",
       supervisor_apid);
   for (const auto& [apid, before] : before_)
-    if (before.recovering)
+    // Whom its plan stops stands fenced by that already; nobody else of its network is to lose what the plan leaves, or gives, it.
+    if (before.recovering && !(before.alive && parts_.reactions.begins_anew(apid)))
       for (const std::uint16_t each : parts_.links.graph().network_of(apid)) stopped_.insert(each);
   waits_ = owes_ = true;
   waits_until_ = craft_.now + longest_start;
@@ -134,7 +135,10 @@ void Adoption::hand_over(Member& member, Page& page) {
 void Adoption::finish_what_was_begun() {
   parts_.telecommands.end_what_was_begun();
   parts_.links.end_what_was_begun();
-  if (shutting_down_) return parts_.shutdown.request("the supervisor before this one");
+  if (shutting_down_) {
+    parts_.reactions.forget_what_was_under_way();
+    return parts_.shutdown.request("the supervisor before this one");
+  }
   // Of whoever was dead already and is being recovered from that the plan begins anew: nobody else knows how far it was.
   for (Member& member : craft_.members)
     if (const Before known = before(member); !member.alive() && (known.alive || known.recovering))
@@ -144,14 +148,36 @@ void Adoption::finish_what_was_begun() {
     craft_.fail();
   }
   parts_.modes.end_change("the supervisor died");
-  for (Member& member : craft_.members)
-    if (member.alive() && before(member).recovering) parts_.reactions.react(member, "RECOVERY_FAILED", Severity::High);
+  recover_the_living();
   parts_.losses.end_what_was_begun();
   if (stop_asked_) return parts_.safe_all.again();
   for (Member& member : craft_.members)
     if (member.alive() && !craft_.is_ground_link(member) && member.state() == State::Operational &&
         craft_.guard.fenced(member.apid()) && !member.recovery.running() && !parts_.losses.leads(member.apid()))
       parts_.desk.command(member.apid(), "SET_STATE", static_cast<double>(State::SafeOperational), nullptr);
+}
+
+/// The plan that was under way for each begins anew, or counts as one that failed. Behind a stop of everything nothing is begun.
+void Adoption::recover_the_living() {
+  std::vector<Member*> failed;
+  for (Member& member : craft_.members)
+    if (member.alive() && before(member).recovering && (stop_asked_ || !parts_.reactions.begin_anew(member)))
+      failed.push_back(&member);
+  parts_.reactions.forget_what_was_under_way();
+  // After all that begin anew, which nobody takes down meanwhile; whom one of those takes down goes down already.
+  for (Member* member : failed)
+    if (!member->recovery.going_down()) fail_plan_of(*member);
+}
+
+void Adoption::fail_plan_of(Member& member) {
+  craft_.tell(member.descriptor().name + ": the supervisor died in the midst of a plan, which counts as failed",
+              member.apid());
+  // That it would begin anew is why they were let go on.
+  if (!stopped_.contains(member.apid()))
+    for (const std::uint16_t each : parts_.links.graph().network_of(member.apid()))
+      if (const Member* other = craft_.member(each); other != nullptr && !craft_.is_ground_link(*other))
+        craft_.guard.fence(each);
+  parts_.reactions.react(member, "RECOVERY_FAILED", Severity::High);
 }
 
 /// The enable of a device may have run out before anybody could go on telling it: it has stopped and stays so, and its subsystem

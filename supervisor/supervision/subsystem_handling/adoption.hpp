@@ -89,6 +89,8 @@ class Adoption final : public Watch, public Remembered, public Succession {
   void go_on();
   void ask_devices();
   void finish_what_was_begun();
+  void recover_the_living();
+  void fail_plan_of(Member& member);
 
   Parts parts_;
   Craft& craft_;
@@ -99,7 +101,7 @@ class Adoption final : public Watch, public Remembered, public Succession {
   TimePoint waits_until_{};
   // Of the supervisor before.
   std::map<std::uint16_t, Before> before_;
-  std::set<std::uint16_t> stopped_;  ///< with the networks of those that were being recovered
+  std::set<std::uint16_t> stopped_;  ///< with the networks of those that were being recovered, unless that begins anew
   bool commissioning_{false};
   bool shutting_down_{false};
   bool stop_asked_{false};

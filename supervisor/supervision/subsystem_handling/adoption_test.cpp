@@ -205,6 +205,50 @@ TEST_F(OverAFullDisk, ASupervisorThatGoesOnIsOperationalAndReadsWhatIsSaid) {
   EXPECT_FALSE(next.craft.taking_over) << "what it says of itself from now on waits for the disk as ever";
 }
 
+/// How often it was read.
+struct CountedReads final : ValueStore {
+  explicit CountedReads(ValueStore& store) : inner{store} {}
+  TwoCopies read(std::string_view subsystem) override {
+    ++reads;
+    return inner.read(subsystem);
+  }
+  void keep(std::string_view subsystem, ValueCopy copy) override { inner.keep(subsystem, std::move(copy)); }
+  std::vector<KeptOutcome> take_outcomes() override { return inner.take_outcomes(); }
+  ValueStore& inner;
+  int reads{0};
+};
+
+TEST_F(AdoptionTest, WhoGoesOnReadsStoredValuesInItsFirstStepWhenItsGuardRunsAndNotBefore) {
+  descriptor::Parameter gain;
+  gain.field.name = "GAIN";
+  gain.field.type = Type::Uint16;
+  gain.id = 1;
+  gain.init = {Number{5}};
+  gain.persistent = true;
+  next_mission.subsystems[0].subsystem.parameters.push_back(gain);
+  start_all(SafeOperational);
+  ASSERT_TRUE(notes.note());
+  CountedReads counted{values};
+  Guard next_guard{{.clock = clock, .flows = flows, .first_epoch = 9000, .on_finding = {}}};
+  Supervisor next{{.mission = next_mission,
+                   .platform = {clock, memory, flows},
+                   .launcher = *this,
+                   .guard = next_guard,
+                   .log = log,
+                   .open_database = [](DatabaseStrategy) { return nullptr; },
+                   .observer = *this,
+                   .journal = &journal,
+                   .values = &counted,
+                   .log_readings = &log_readings}};
+  next.adopt(false);
+  EXPECT_EQ(counted.reads, 0) << "a disk that stands still would hold it up before anybody guards";
+  for (int step = 0; step < 3; ++step) {
+    wait(1ms);
+    static_cast<void>(next.step(clock.now()));
+    EXPECT_EQ(counted.reads, 1);
+  }
+}
+
 TEST_F(AdoptionTest, WhoWasNeverStartedIsNotHeld) {
   craft.mission.subsystems[1].starts = false;
   next_mission.subsystems[1].starts = false;

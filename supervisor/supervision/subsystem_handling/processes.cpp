@@ -94,7 +94,7 @@ Result<> Processes::launch(Member& member) {
     }
   }
   craft_.guard.adopt(member.apid(), *launched);
-  tell_not_kept(member, *launched);
+  tell_not_kept(member, launched->not_kept);
   member.started(std::move(*launched));
   if (!std::exchange(member.was_started, true) && member.fences_when_free)
     member.fences_when_free = craft_.guard.fences(member.apid());
@@ -103,11 +103,10 @@ Result<> Processes::launch(Member& member) {
   return ok();
 }
 
-void Processes::tell_not_kept(const Member& member, const LaunchedSubsystem& launched) {
-  if (!launched.not_kept.empty())
-    craft_.tell(
-        fmt::format("{} ends with this supervisor, should that die: {}", member.descriptor().name, launched.not_kept),
-        member.apid());
+void Processes::tell_not_kept(const Member& member, std::string_view why) {
+  if (!why.empty())
+    craft_.tell(fmt::format("{} ends with this supervisor, should that die: {}", member.descriptor().name, why),
+                member.apid());
 }
 
 std::optional<MemoryHandle> Processes::adopt(Member& member, std::string_view against) {
@@ -141,7 +140,7 @@ std::optional<MemoryHandle> Processes::adopt(Member& member, std::string_view ag
   if (adopted->stopped) member.fences_when_free.reset();
   static_cast<void>(parts_.resources.claim(member));  // it has it already
   const std::string_view why = craft_.guard.take_over(member.apid(), *adopted, against);
-  tell_not_kept(member, adopted->launched);
+  tell_not_kept(member, adopted->launched.not_kept);
   member.started(std::move(adopted->launched));
   member.enter_mode(craft_.mode_epoch);
   const bool operational = member.state() == State::Operational;
@@ -203,10 +202,12 @@ void Processes::let_go(Member& subject) {
 void Processes::watch(TimePoint now) {
   watch_ends(Whom::All);
   watch_leaving();
-  for (const Member& member : craft_.members)
-    if (member.alive())
-      craft_.guard.falls_with(member.apid(),
-                              parts_.reactions.fenced_by(member, descriptor::event_of_death, Severity::High));
+  for (const Member& member : craft_.members) {
+    if (!member.alive()) continue;
+    craft_.guard.falls_with(member.apid(),
+                            parts_.reactions.fenced_by(member, descriptor::event_of_death, Severity::High));
+    tell_not_kept(member, craft_.launcher.take_not_kept(member.process()));
+  }
   while (const auto apid = parts_.restarts.take_due(now))
     if (!craft_.shutting_down && !start(*apid)) parts_.restarts.again(*apid, now);
 }

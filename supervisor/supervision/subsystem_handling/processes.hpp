@@ -75,7 +75,7 @@ class Processes final : public Watch {
     bool missed{false};  ///< it was found dead before it had gone
   };
   void watch_leaving();
-  void tell_not_kept(const Member& member, const LaunchedSubsystem& launched);
+  void tell_not_kept(const Member& member, std::string_view why);
   Result<> launch(Member& member);
   void watch_ends(Whom whom);
   void hear_of(Member& member, const GuardFinding& finding);

@@ -3,6 +3,7 @@
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "hirosco/data_transfer/device/enable_frame.hpp"
 #include "hirosco/data_transfer/device/testing/sealed.hpp"
@@ -21,6 +22,10 @@ struct ProcessesTest : PartsTest {
   std::vector<std::string> lacks;
   const char* not_held{""};  ///< what of those that are started no manifest holds
   const char* not_kept{""};  ///< why the keeper does not hold them
+  std::map<std::uint32_t, std::string_view> not_taken;  ///< by the keeper, which says so later
+  [[nodiscard]] std::string_view take_not_kept(std::uint32_t process) override {
+    return std::exchange(not_taken[process], {});
+  }
   const char* open{""};  ///< why those that are started are in no sandbox
   [[nodiscard]] std::vector<std::string> isolation_lacks() const override { return lacks; }
   std::string not_asked{};  ///< of isolation
@@ -178,6 +183,17 @@ TEST_F(ProcessesTest, WhomTheKeeperDoesNotHoldIsTold) {
   not_kept = "the keeper takes nothing";
   EXPECT_TRUE(parts.processes.start(arm));
   EXPECT_TRUE(was_told("ARM ends with this supervisor, should that die: the keeper takes nothing"));
+}
+
+TEST_F(ProcessesTest, WhomTheKeeperHadNoRoomForIsToldOnceWhenThatIsKnown) {
+  constexpr const char* line = "ARM ends with this supervisor, should that die: the keeper has no room";
+  parts.processes.start_all();
+  parts.processes.watch(clock.now());
+  EXPECT_FALSE(was_told("ends with this supervisor"));
+  not_taken[played[arm].process] = "the keeper has no room";
+  for (int time = 0; time < 3; ++time) parts.processes.watch(clock.now());
+  EXPECT_EQ(std::ranges::count(story, line), 1);
+  EXPECT_FALSE(was_told("HAND ends with this supervisor"));
 }
 
 TEST_F(ProcessesTest, WhoIsNotInTheStartListIsStartedWhenTheGroundAsks) {

@@ -18,7 +18,7 @@ namespace hirosco::supervisor {
 class Journal {
  public:
   /// Of what the parts note: another build's is not read.
-  static constexpr std::uint32_t version = 4;
+  static constexpr std::uint32_t version = 5;
 
   /// The memory outlives this; half of it is the most that one copy holds, with its head.
   explicit Journal(MutableOctets memory) noexcept : memory_{memory} {}

@@ -38,7 +38,7 @@ struct AdoptionTest : PartsTest {
   Memory notes{&journal,
                {&parts.adoption, &parts.modes, &parts.links, &parts.telecommands, &parts.safe_all, &parts.own,
                 &parts.commanded, &parts.restarts, &parts.power, &parts.replacement, &parts.subscriptions,
-                &parts.stored, &parts.ground_loss, &parts.losses, this}};
+                &parts.stored, &parts.ground_loss, &parts.losses, &parts.reactions, this}};
   std::set<std::uint16_t> gone;
   std::vector<std::unique_ptr<Next>> nexts;
 

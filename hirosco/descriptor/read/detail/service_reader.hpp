@@ -106,6 +106,9 @@ class ServiceListReader {
   void check_housekeeping_offered(const xml::Element& element, const Configuration& configuration);
 
  private:
+  /// It stays where it is, and why.
+  void refuse_loop(const xml::Attribute& loop, std::string_view name);
+
   Problems& problems_;
   SubsystemDescriptor& subsystem_;
   Unique loop_names_{"name of a loop", "E0201"};

@@ -24,6 +24,9 @@ void read_resources(const xml::Element& element, Resources& resources, Problems&
 /// Makes those queues of whose size nothing is said hold what it declares besides. Whether the others do, and its memory all of them.
 void fit_queues(const xml::Element& root, SubsystemDescriptor& subsystem, Problems& problems);
 
+/// Of the supervisor's own descriptor: what is not in force there is refused.
+void check_supervisor(const xml::Element& root, Problems& problems);
+
 /// One <Commands>, and one <Subscribes>: no subsystem in two of either.
 void read_commands(const xml::Element& element, Problems& problems, Unique& commanded, std::vector<Commands>& all);
 void read_subscribes(const xml::Element& element, Problems& problems, Unique& heard, std::vector<Subscribes>& all);

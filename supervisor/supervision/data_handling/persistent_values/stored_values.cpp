@@ -322,15 +322,22 @@ void StoredValues::note(OctetWriter& writer) const {
   const auto is_under_way = [](const auto& entry) {
     return entry.second.waits || !entry.second.changed.empty() || !entry.second.asked.empty();
   };
-  writer.put(static_cast<std::uint16_t>(std::ranges::count_if(subjects_, is_under_way)));
+  const auto put = [&writer](std::uint16_t apid, const Ids& changed, const Ids& asked, const ValueCopy* unkept) {
+    writer.put(apid).put(static_cast<std::uint16_t>(changed.size() + asked.size()));
+    for (const Ids* ids : {&changed, &asked})
+      for (const std::uint32_t id : *ids) writer.put(id);
+    const auto copy = unkept != nullptr ? write_copy(*unkept) : std::vector<std::byte>{};
+    writer.put(static_cast<std::uint16_t>(copy.size())).put(Octets{copy});
+  };
+  // Of the supervisor before, until begin() has gone on with it.
+  writer.put(static_cast<std::uint16_t>(std::ranges::count_if(subjects_, is_under_way) +
+                                        static_cast<std::ptrdiff_t>(left_.size())));
+  for (const auto& [apid, left] : left_) put(apid, left.changed, {}, left.unkept ? &*left.unkept : nullptr);
   for (const auto& entry : subjects_) {
     if (!is_under_way(entry)) continue;
     const auto& [apid, subject] = entry;
-    writer.put(apid).put(static_cast<std::uint16_t>(subject.changed.size() + subject.asked.size()));
-    for (const Ids* ids : {&subject.changed, &subject.asked})
-      for (const std::uint32_t id : *ids) writer.put(id);
-    const auto copy = subject.waits ? write_copy(copy_of(subject)) : std::vector<std::byte>{};
-    writer.put(static_cast<std::uint16_t>(copy.size())).put(Octets{copy});
+    const auto unkept = subject.waits ? std::optional{copy_of(subject)} : std::nullopt;
+    put(apid, subject.changed, subject.asked, unkept ? &*unkept : nullptr);
   }
   awaited_.note(writer);
 }

@@ -320,18 +320,22 @@ struct StoredValuesGoOn : StoredValuesTest {
 
   void goes_on() { goes_on(values); }
   void goes_on(ValueStore& store) {
+    recalls(stored, store);
+    next->begin();
+  }
+  /// One that has not come to its first step.
+  void recalls(const StoredValues& before, ValueStore& disk) {
     std::vector<std::byte> noted(4096);
     OctetWriter writer{noted};
-    stored.note(writer);
+    before.note(writer);
     ASSERT_TRUE(writer.good());
     described().overrides.clear();  // the mission as it is read again
     for (auto& parameter : described().subsystem.parameters) parameter.init = {Number{5}};
     events.clear();
-    next.emplace(craft, parts.own, parts.own_telecommands, &store);
+    next.emplace(craft, parts.own, parts.own_telecommands, &disk);
     OctetReader reader{writer.written()};
     next->recall(reader);
     ASSERT_TRUE(reader.exhausted());
-    next->begin();
   }
   void heard(std::uint16_t from, std::uint8_t service, std::uint8_t subtype, Octets data, std::uint16_t destination) {
     std::array<std::byte, 64> room;
@@ -431,6 +435,23 @@ TEST_F(StoredValuesGoOn, WhatTheDiskHadNotTakenIsKeptByTheNextOneAndTold) {
   ValueCopies there{other_disk, "values/ARM"};
   EXPECT_TRUE(there.read()[0] && there.read()[1]);
   EXPECT_EQ(there.read()[0]->sequence, 1U);
+}
+
+TEST_F(StoredValuesGoOn, WhoDiesBeforeItHasReadTheDiskLeavesAllOfItToTheNextOne) {
+  begin();
+  set(1, 42);
+  ends(leaves(8, 1, call_data("SET_LIMIT", 1)));
+  MemoryValueDisk other_disk;
+  DirectValueStore other{other_disk, "values"};
+  recalls(stored, other);
+  for (int death = 0; death < 2; ++death) {
+    const StoredValues before{*next};
+    recalls(before, other);
+  }
+  next->begin();
+  EXPECT_THAT(begins(), ElementsAre("P1=42"));
+  goes_by();
+  EXPECT_EQ(answered(), 1U) << "what the function made of it";
 }
 
 TEST_F(StoredValuesGoOn, WhatTheDiskHasIsNotNotedAndNobodyIsAskedForNothing) {

@@ -13,7 +13,7 @@ void recall(const ProcedureStep& step, const Means& means, CommandDone done);
 }  // namespace settings
 
 /// The settings that its subject had by telecommand, sent to it again one after the other, in this state: the value. What is refused
-/// ends it.
+/// ends it, but where its subject is the supervisor itself.
 inline constexpr StepKind recall{
     .name = "recall",
     .values = 1,

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "simulation/spacecraft/observed_flight.hpp"
+
+/// The imager of this folder on virtual time, judged at its device and in the supervisor's story.
+namespace hirosco {
+namespace {
+
+using simulation::SimulatedDevice;
+
+struct Endnodes : ::testing::Test {
+  simulation::Flight flight{{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "tests/endnodes/mission.xml",
+                             .subsystems = {},
+                             .devices = {}}};
+
+  SimulatedDevice& imager() { return *flight.craft().device("imager"); }
+  double truth(std::string_view name) {
+    const std::string words = imager().truth();
+    const auto at = words.find(std::string{name} + "=");
+    return at == words.npos ? -1000 : std::atof(words.c_str() + at + name.size() + 1);
+  }
+  void fault(std::string_view line) { ASSERT_TRUE(imager().fault(line)) << line; }
+  void point(double angle_rad) {
+    ASSERT_TRUE(flight.craft().command("IMAGER", "POINT", {angle_rad}).completed) << flight.story().text();
+  }
+  bool points_to(double angle_rad) { return std::abs(truth("angle") - angle_rad) < 0.001; }
+  bool operational() { return flight.state("IMAGER") == State::Operational && flight.inhibited("IMAGER") == 0; }
+};
+
+TEST_F(Endnodes, AllOfADeviceAreUsedTogether) {
+  ASSERT_TRUE(flight.commission()) << flight.story().text();
+  point(0.1);
+  ASSERT_TRUE(flight.craft().command("IMAGER", "EXPOSE", {12}).completed);
+  flight.craft().run(3s);
+  EXPECT_TRUE(points_to(0.1)) << imager().truth();
+  EXPECT_EQ(truth("exposure"), 12);
+  EXPECT_TRUE(operational());
+  EXPECT_FALSE(flight.story().has("FALL_BACK")) << flight.story().text();
+  EXPECT_FALSE(flight.story().has("IMAGER high")) << flight.story().text();
+}
+
+TEST_F(Endnodes, InOfflineTheDeviceHasNoPower) {
+  flight.craft().run(100us);
+  EXPECT_EQ(truth("powered"), 0) << "nobody has asked for it";
+  ASSERT_TRUE(flight.commission());
+  EXPECT_EQ(truth("powered"), 1);
+  for (const State down : {State::SafeOperational, State::PostOperational, State::Offline})
+    ASSERT_TRUE(flight.set_state("IMAGER", down).completed) << to_text(down);
+  ASSERT_EQ(flight.state("IMAGER"), State::Offline);
+  EXPECT_EQ(truth("powered"), 0) << "at the instant in which it is Offline";
+  flight.craft().run(10s);
+  EXPECT_EQ(truth("powered"), 0);
+  ASSERT_TRUE(flight.set_mode("operation").completed) << flight.story().text();
+  EXPECT_TRUE(operational());
+  EXPECT_EQ(truth("powered"), 1);
+}
+
+TEST_F(Endnodes, WhoseSubsystemIsKilledAtSpeedStopsAndThenHasNoPower) {
+  ASSERT_TRUE(flight.commission());
+  point(1);
+  flight.craft().run(1s);
+  ASSERT_EQ(truth("moves"), 1);
+  flight.craft().kill("IMAGER");
+  ASSERT_TRUE(flight.craft().run_until([&] { return truth("moves") == 0; }, 100ms));
+  EXPECT_EQ(truth("powered"), 1) << "its stop is its own, and needs power";
+  EXPECT_EQ(imager().output(), DeviceOutput::Holding);
+  EXPECT_TRUE(flight.craft().run_until([&] { return truth("powered") == 0; }, 500ms)) << imager().truth();
+}
+
+TEST_F(Endnodes, GoesOverToAFallBackInFlightAndNeverMovesOnOldData) {
+  ASSERT_TRUE(flight.commission());
+  point(1);
+  flight.craft().run(1s);
+  ASSERT_EQ(truth("moves"), 1);
+  fault("endnode POINTING 0 silent");
+  bool held = false;
+  const bool over = flight.craft().run_until(
+      [&] {
+        const bool inhibited = flight.inhibited("IMAGER") != 0;
+        held = held || inhibited;
+        return held && !inhibited;
+      },
+      1s);
+  ASSERT_TRUE(over) << flight.story().text();
+  EXPECT_TRUE(flight.story().has("IMAGER_POINTING_FALL_BACK")) << flight.story().text();
+  flight.craft().run(8s);
+  EXPECT_TRUE(points_to(1)) << imager().truth();
+  EXPECT_TRUE(operational());
+  EXPECT_EQ(flight.story().count("IMAGER_POINTING_FALL_BACK"), 1U);
+}
+
+TEST_F(Endnodes, WhileItGoesOverTheActuatorIsAtRest) {
+  ASSERT_TRUE(flight.commission());
+  point(1);
+  flight.craft().run(1s);
+  fault("endnode POINTING 0 silent");
+  fault("endnode POINTING 1 silent");
+  // Cut for a while only: the fall-back's first answer comes late, within its silence limit.
+  ASSERT_TRUE(flight.craft().run_until([&] { return flight.inhibited("IMAGER") != 0; }, 1s));
+  flight.craft().run(1ms);
+  EXPECT_EQ(truth("moves"), 0) << "it has been told to let go by the way that was left";
+  const double angle = truth("angle");
+  fault("endnode POINTING 1 heal");
+  flight.craft().run(15ms);
+  EXPECT_EQ(truth("angle"), angle) << "the watchdog of what was left has not run out";
+  flight.craft().run(1s);
+  EXPECT_GT(truth("angle"), angle);
+}
+
+/// What a fault of one way does: with a fall-back the flight goes on, without one the device is lost.
+struct OneFault {
+  const char* endnode;
+  const char* fault;
+  int ways;
+};
+
+struct EachEndnode : Endnodes, ::testing::WithParamInterface<OneFault> {};
+
+TEST_P(EachEndnode, FailsAloneAndTheFlightGoesOnByItsFallBacksOrEndsSafelyAndFliesAgain) {
+  const auto& [endnode, what, ways] = GetParam();
+  ASSERT_TRUE(flight.commission());
+  point(1);
+  flight.craft().run(500ms);
+  for (int way = 0; way < ways; ++way) {
+    SCOPED_TRACE(way);
+    EXPECT_TRUE(operational()) << flight.story().text();
+    fault("endnode " + std::string{endnode} + " " + std::to_string(way) + " " + what);
+    flight.craft().run(400ms);
+    const bool last = way + 1 == ways;
+    EXPECT_EQ(flight.story().count(std::string{"IMAGER_"} + endnode + "_FALL_BACK"),
+              static_cast<std::size_t>(last ? way : way + 1))
+        << flight.story().text();
+    EXPECT_EQ(flight.story().has(std::string{"IMAGER_"} + endnode + "_LOST"), last) << flight.story().text();
+  }
+  EXPECT_EQ(truth("moves"), 0);
+  ASSERT_TRUE(flight.run_until_state("IMAGER", State::Offline, 10s)) << flight.story().text();
+  EXPECT_EQ(truth("powered"), 0);
+  fault("heal");
+  for (int way = 0; way < ways; ++way) fault("endnode " + std::string{endnode} + " " + std::to_string(way) + " plug");
+  ASSERT_TRUE(flight.set_mode("operation").completed) << flight.story().text();
+  point(-0.2);
+  flight.craft().run(8s);
+  EXPECT_TRUE(points_to(-0.2)) << imager().truth();
+  EXPECT_TRUE(operational());
+}
+
+std::vector<OneFault> all_faults() {
+  std::vector<OneFault> all;
+  for (const auto& [endnode, ways] : {std::pair{"POINTING", 2}, {"COMMAND", 1}, {"STATUS", 1}, {"IMAGE", 3}})
+    for (const char* what : {"silent", "deaf", "unplug", "corrupt 1000000"}) all.push_back({endnode, what, ways});
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(AllEndnodes, EachEndnode, ::testing::ValuesIn(all_faults()), [](const auto& row) {
+  std::string name = std::string{row.param.endnode} + "_" + row.param.fault;
+  return name.substr(0, name.find(' '));
+});
+
+}  // namespace
+}  // namespace hirosco
