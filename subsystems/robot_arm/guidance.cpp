@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/guidance.hpp"
 
-#include <algorithm>
 #include <span>
 
 namespace hirosco::robot_arm {
@@ -11,18 +10,12 @@ namespace {
 /// So long a goal has to be measured before it counts as reached, and at most so long after the end of the path.
 constexpr double settled_enough_s = 0.02;
 constexpr double patience_s = 3;
-/// A telecommand is waited for a little longer.
-constexpr double longest_motion_s = 60;
 /// Of a line, before it is given up; of its end, where the tool has to be measured.
 constexpr double most_off_line_m = 0.002, most_off_end_m = 0.001;
 /// A way back from a contact takes 10 s at most, and whoever brakes is there sooner.
 constexpr double longest_wait_s = 12;
-/// A setpoint that is no farther from a posture has gone there.
-constexpr double at_posture = 1e-6;
-constexpr const char* would_last = "it would take longer, s";
 /// With which MOVE_ABORT goes unless it is told another one: who says that a path is free says it of this.
 constexpr double usual_share = 0.25;
-constexpr const char* would_last_as_usual = "at a SPEED of 0.25 it would take longer, s";
 constexpr const char* ends_range = "on the line ends the range of joint";
 /// No longer: a failure carries 64 octets of words.
 constexpr const char* ends_reach = "a singular posture, or it leads out of reach, after mm";
@@ -64,19 +57,18 @@ std::optional<double> Guidance::end_retract() noexcept {
 }
 
 void Guidance::tell() noexcept {
-  const double duration_s = abort_ && abort_->goes ? abort_->duration_s : setpoints_->duration_s();
+  const double duration_s = abort_.goes() ? abort_.duration_s() : setpoints_->duration_s();
   parts_.parameters.motion.store({static_cast<std::uint8_t>(setpoints_->kind()), duration_s, progress()});
 }
 
 /// Of an abort path the whole, and not the way to a posture of it.
 double Guidance::progress() const noexcept {
-  if (!abort_ || !abort_->goes || abort_->duration_s <= 0) return setpoints_->progress();
-  return std::min(1.0, (abort_->gone_s + setpoints_->progress() * setpoints_->duration_s()) / abort_->duration_s);
+  return abort_.goes() ? abort_.progress(*setpoints_) : setpoints_->progress();
 }
 
 Guidance::News Guidance::look(bool gives_way) noexcept {
   if (waiting_) return wait();
-  if (abort_) return look_at_abort(gives_way);
+  if (abort_.under_way()) return look_at_abort(gives_way);
   if (setpoints_->off_line_m() > most_off_line_m) return lose_line();
   if (searched_) {
     const std::optional<Reason> why = search();
@@ -151,18 +143,18 @@ void Guidance::lead() noexcept {
   settled_s_ = waited_s_ = 0;
 }
 
-Outcome Guidance::start_jog(Setpoints::Kind kind, double seconds) noexcept {
+Outcome Guidance::start_jog(Begin by, double seconds) noexcept {
   tool_to_.reset();
   retreats_ = false;
   arrives_ = false;
   settled_s_ = waited_s_ = 0;
   jog_left_s_ = seconds;
-  jog_ = kind;
+  jog_ = by;
   return running;
 }
 
 /// Where it may not stand: nearer to itself, or to what it keeps out of, than it may be and than it is.
-std::optional<Guidance::Reason> Guidance::forbids(const JointVector& goal) noexcept {
+std::optional<Reason> Guidance::forbids(const JointVector& goal) noexcept {
   const auto there = parts_.obstacles.nearer(setpoints_->now().position, goal);
   if (there.distance_m == HUGE_VAL) return std::nullopt;
   return Reason{Trouble::too_near, there.names, millimetres(there.distance_m)};
@@ -194,7 +186,7 @@ Outcome Guidance::move_p(const FunctionValues& values) noexcept {
 }
 
 /// It stands meanwhile, and has a reason, or goes, in that cycle in which there is an answer.
-std::optional<Guidance::Reason> Guidance::search() noexcept {
+std::optional<Reason> Guidance::search() noexcept {
   const PoseSearch::Found found = pose_search_->step();
   if (found == PoseSearch::Found::NotYet) return std::nullopt;
   const Searched wanted = *searched_;
@@ -210,7 +202,7 @@ std::optional<Guidance::Reason> Guidance::search() noexcept {
   return std::nullopt;
 }
 
-std::optional<Guidance::Reason> Guidance::no_posture() noexcept {
+std::optional<Reason> Guidance::no_posture() noexcept {
   if (const auto joint = pose_search_->joint_at_its_end())
     return Reason{Trouble::out_of_range, "before it is there ends the range of joint",
                   static_cast<std::int64_t>(*joint + 1)};
@@ -229,7 +221,7 @@ Outcome Guidance::move_l(const FunctionValues& values) noexcept {
 }
 
 /// It stands until it was walked along in advance; whoever may not go stands on.
-std::optional<Guidance::Reason> Guidance::judge_line() noexcept {
+std::optional<Reason> Guidance::judge_line() noexcept {
   const Line& line = setpoints_->line();
   if (line.found() == Line::Found::NotYet) return std::nullopt;
   line_judged_ = true;
@@ -263,7 +255,7 @@ Outcome Guidance::retreat(const FunctionValues& values) noexcept {
 // --- out, once it stands -------------------------------------------------------------------------------------------------
 
 /// Whatever takes the actuators away, stops the arm or lets it float meanwhile ends this as it ends a motion.
-Outcome Guidance::once_it_stands(WayOut way_out, const FunctionValues& values) noexcept {
+Outcome Guidance::once_it_stands(Begin way_out, const FunctionValues& values) noexcept {
   end_motion();
   waiting_ = Waiting{way_out, values, longest_wait_s};
   return running;
@@ -295,73 +287,38 @@ Outcome Guidance::judge_abort(AbortWay::Judged what, double speed_share) noexcep
   retreats_ = half_reported_ = false;
   arrives_ = true;
   settled_s_ = waited_s_ = 0;
-  abort_ = Abort{.what = what, .speed_share = speed_share};
+  abort_.begin(what, speed_share);
   return running;
 }
 
 Guidance::News Guidance::look_at_abort(bool gives_way) noexcept {
-  const AbortWay& way = parts_.abort_path.way();
-  if (!abort_->goes) {
-    const AbortWay::Found found = parts_.abort_path.judge();
-    if (found == AbortWay::Found::NotYet) return {};
-    if (found == AbortWay::Found::Nothing) {
-      const auto& near = way.in_the_way();
-      return {.end = End::NoWay, .why = {Trouble::too_near, near.names, millimetres(near.distance_m)}};
-    }
-    const std::optional<Reason> why = begin_abort();
-    if (why) return {.end = End::NoWay, .why = *why};
-    return {.end = abort_->what == AbortWay::Judged::PathAlone ? End::Judged : End::None};
-  }
+  using At = AbortMotion::At;
+  const bool went = abort_.goes();
+  const At at = abort_.step(*setpoints_);
   News news;
-  const bool stands = setpoints_->at_rest(), last = abort_->posture + 1 == way.size();
-  const bool there = stands && apart(setpoints_->now().position, way.posture(abort_->posture)) <= at_posture;
-  // Its time was foreseen with the power of where it began: with more of it the whole way may be less than half of that.
-  if (!half_reported_ && (progress() >= 0.5 || (there && last))) half_reported_ = news.half_way = true;
-  if (!stands) return news;
-  if (!there) news.end = End::NotReached;
-  else if (last) news.end = arrive(gives_way);
-  else {
-    abort_->gone_s += setpoints_->duration_s();
-    ++abort_->posture;
-    if (!go_to_posture()) news.end = End::NotReached;
+  // With more power than it began with the whole way may be less than half of what was foreseen.
+  if (went && !half_reported_ && (progress() >= 0.5 || at == At::Last)) half_reported_ = news.half_way = true;
+  switch (at) {
+    case At::OnWay: break;
+    case At::Judged: news.end = End::Judged; break;
+    case At::Last: news.end = arrive(gives_way); break;
+    case At::Lost: news.end = End::NotReached; break;
+    case At::NoWay: news.end = End::NoWay, news.why = abort_.why(); break;
   }
   return news;
-}
-
-/// Of a path that is judged alone it is seen whether a telecommand could wait for it; the other one goes.
-std::optional<Guidance::Reason> Guidance::begin_abort() noexcept {
-  const AbortWay& way = parts_.abort_path.way();
-  const bool goes = abort_->what == AbortWay::Judged::FromHere;
-  const double share = abort_->speed_share;
-  abort_->posture = way.joined();
-  abort_->duration_s = goes ? setpoints_->duration_s(way.here(), way.posture(way.joined()), share) : 0;
-  for (std::size_t i = way.joined() + 1; i < way.size(); ++i)
-    abort_->duration_s += setpoints_->duration_s(way.posture(i - 1), way.posture(i), share);
-  if (abort_->duration_s > longest_motion_s)
-    return Reason{Trouble::too_slow, goes ? would_last : would_last_as_usual,
-                  static_cast<std::int64_t>(longest_motion_s)};
-  if (!goes) return std::nullopt;
-  abort_->goes = true;
-  if (!go_to_posture()) return Reason{Trouble::no_goal, "it is no place"};
-  return std::nullopt;
-}
-
-bool Guidance::go_to_posture() noexcept {
-  parts_.abort_path.tell(abort_->posture + 1);
-  return setpoints_->go(parts_.abort_path.way().posture(abort_->posture), abort_->speed_share).has_value();
 }
 
 Outcome Guidance::jog_j(const FunctionValues& values) noexcept {
   const std::size_t joints = parts_.known.joints();
   setpoints_->jog(vector_of(std::span{values}.first(joints)));
-  return start_jog(Setpoints::Kind::JointJog, values[joints]);
+  return start_jog(&Guidance::jog_j, values[joints]);
 }
 
 Outcome Guidance::jog_l(const FunctionValues& values) noexcept {
   Vector6 twist;
   twist << values[3], values[4], values[5], values[0], values[1], values[2];
   setpoints_->jog(twist);
-  return start_jog(Setpoints::Kind::TipJog, values[6]);
+  return start_jog(&Guidance::jog_l, values[6]);
 }
 
 }  // namespace hirosco::robot_arm

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "hirosco/subsystem/author/handler.hpp"
-#include "subsystems/robot_arm/abort_path.hpp"
+#include "subsystems/robot_arm/abort_motion.hpp"
 #include "subsystems/robot_arm/control/pose_search.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
 #include "subsystems/robot_arm/drives.hpp"
@@ -36,12 +36,6 @@ class Guidance {
     NoWay,  ///< it was judged before it went, and stands
     Judged,  ///< nothing was to move, and nothing is in the way
   };
-  /// Why there is no way.
-  struct Reason {
-    Trouble trouble{};
-    const char* text{""};
-    std::int64_t number{0};
-  };
   /// What a cycle has brought, in the order in which it is told.
   struct News {
     bool begun{false};  ///< it stands, and what waited for that moves it from now on
@@ -65,6 +59,7 @@ class Guidance {
   }
 
   // --- functions: refused, or running; all numbers in the order of the descriptor -----------------------------------------
+  using Begin = Outcome (Guidance::*)(const FunctionValues&) noexcept;
   [[nodiscard]] Outcome move_j(const FunctionValues& values) noexcept;
   /// The posture is looked for while it stands, in the next cycles, and judged before it goes.
   [[nodiscard]] Outcome move_p(const FunctionValues& values) noexcept;
@@ -75,10 +70,9 @@ class Guidance {
   [[nodiscard]] Outcome move_abort(const FunctionValues& values) noexcept;
   /// The stored path alone is judged; nothing moves.
   [[nodiscard]] Outcome check_abort() noexcept;
-  [[nodiscard]] bool only_judges() const noexcept { return abort_ && abort_->what == AbortWay::Judged::PathAlone; }
-  using WayOut = Outcome (Guidance::*)(const FunctionValues&) noexcept;
+  [[nodiscard]] bool only_judges() const noexcept { return abort_.only_judges(); }
   /// One of these, of who comes_to_rest(): it begins once it stands, unless end_motion() comes before.
-  [[nodiscard]] Outcome once_it_stands(WayOut way_out, const FunctionValues& values) noexcept;
+  [[nodiscard]] Outcome once_it_stands(Begin way_out, const FunctionValues& values) noexcept;
   [[nodiscard]] bool waits() const noexcept { return waiting_.has_value(); }
   [[nodiscard]] Outcome jog_j(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome jog_l(const FunctionValues& values) noexcept;
@@ -88,12 +82,12 @@ class Guidance {
   void keep_power(const JointVector& held) noexcept {
     setpoints_->keep_power(held, parts_.parameters.power_limit_w.load());
   }
-  /// The motion that was begun last is a jog of this kind: another one may take its place, from the velocities that it has.
-  [[nodiscard]] bool jogs(Setpoints::Kind kind) const noexcept { return jog_ == kind; }
+  /// The motion that was begun last is a jog that was begun so: another one may take its place, from the velocities that it has.
+  [[nodiscard]] bool jogs(Begin by) const noexcept { return jog_ == by; }
   /// Whatever its time was, and whatever was looked for: nobody waits for it any more.
   void end_motion() noexcept {
-    jog_left_s_ = 0, jog_.reset(), searched_.reset(), line_judged_ = true;
-    waiting_.reset(), abort_.reset();
+    jog_left_s_ = 0, jog_ = nullptr, searched_.reset(), line_judged_ = true;
+    waiting_.reset(), abort_.end();
   }
 
   // --- in each cycle ------------------------------------------------------------------------------------------------------
@@ -121,11 +115,9 @@ class Guidance {
   [[nodiscard]] News wait() noexcept;
   [[nodiscard]] Outcome judge_abort(AbortWay::Judged what, double speed_share) noexcept;
   [[nodiscard]] News look_at_abort(bool gives_way) noexcept;
-  [[nodiscard]] std::optional<Reason> begin_abort() noexcept;
-  [[nodiscard]] bool go_to_posture() noexcept;
   [[nodiscard]] double progress() const noexcept;
   [[nodiscard]] Outcome start(const Result<>& planned) noexcept;
-  [[nodiscard]] Outcome start_jog(Setpoints::Kind kind, double seconds) noexcept;
+  [[nodiscard]] Outcome start_jog(Begin by, double seconds) noexcept;
   [[nodiscard]] End arrive(bool gives_way) noexcept;
 
   Parts parts_;
@@ -140,27 +132,18 @@ class Guidance {
   bool line_judged_{true};
   /// RETREAT or MOVE_ABORT of who does not stand yet.
   struct Waiting {
-    WayOut begin{nullptr};
+    Begin begin{nullptr};
     FunctionValues values;
     double left_s{0};
   };
   std::optional<Waiting> waiting_;
-  /// MOVE_ABORT, or CHECK_ABORT.
-  struct Abort {
-    AbortWay::Judged what{};
-    double speed_share{0};
-    bool goes{false};  ///< it was judged
-    std::size_t posture{0};  ///< to which it goes, from 0
-    double gone_s{0};  ///< behind which it was before
-    double duration_s{0};  ///< of all
-  };
-  std::optional<Abort> abort_;
+  AbortMotion abort_{parts_.abort_path};
   std::optional<Vector3> tool_to_;  ///< where the tool is to be at the end of a motion that has a pose for a goal
   double cycle_s_{0.001};
   double waited_s_{0};  ///< behind the end of a path
   double settled_s_{0};  ///< at the goal
   double jog_left_s_{0};
-  std::optional<Setpoints::Kind> jog_;
+  Begin jog_{nullptr};  ///< the one that is under way
   bool retracting_{false};
   bool half_reported_{false};
   bool retreats_{false};  ///< its motion is a way back

@@ -31,7 +31,6 @@ Result<Step> RobotArm::software_init() {
   HIROSCO_TRY(obstacles_.read(source, known_.model(), known_.tip()));
   HIROSCO_TRY(known_.take_bounds());
   bind_motions();
-  bind_abort_path();
   bind_settings();
   bind_laws();
   bind_lead();
@@ -39,9 +38,7 @@ Result<Step> RobotArm::software_init() {
 }
 
 Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
-  HIROSCO_TRY(robot_arm::check_lengths(known_.joints(), own_descriptor(), parameters_, drives_));
-  if (robot_arm::AbortPath::declared(own_descriptor()) && !abort_path_.has_length(known_.joints()))
-    return fail(ErrorCode::Mismatch, "JOINTS of ABORT_PATH has another length than the robot has joints");
+  HIROSCO_TRY(robot_arm::check_lengths(known_.joints(), own_descriptor(), parameters_, drives_, abort_path_));
   const double cycle_s = seconds(configuration.sampling);
   known_.limit_motions(parameters_.acceleration.load(), parameters_.jerk.load());
   model_.begin(cycle_s);
@@ -74,9 +71,8 @@ Result<> RobotArm::safe_operational(const Cycle& cycle) noexcept {
   yielding_.engage();
   control_.control();
   watch(false);
-  if (!motion_) return ok();
-  guidance_.keep_power(model_.held(model_.payload()));  // how long the path would take depends on it
-  tell(guidance_.look(false));  // CHECK_ABORT moves nothing
+  guidance_.keep_power(model_.held(model_.payload()));  // how long a path would take depends on it
+  if (motion_) tell(guidance_.look(false));  // CHECK_ABORT moves nothing
   return ok();
 }
 
@@ -140,11 +136,7 @@ void RobotArm::tell(const Guidance::News& news) noexcept {
   switch (news.end) {
     case Guidance::End::None: return;
     case Guidance::End::Reached: raise(events_.motion_done); [[fallthrough]];
-    case Guidance::End::Judged:
-      finish(*motion_);
-      motion_.reset();
-      guidance_.end_motion();
-      return;
+    case Guidance::End::Judged: finish_motion(); return;
     case Guidance::End::NotReached: end_motion(Trouble::goal_not_reached); return;
     case Guidance::End::LineLost:
     case Guidance::End::NoWay: end_motion(news.why.trouble, news.why.text, news.why.number); return;
@@ -175,15 +167,9 @@ void RobotArm::watch_clearance() noexcept {
     raise(events_.too_near, ahead.distance_m, Events::PairNames{std::string_view{ahead.names}});
     end_motion(Trouble::too_near, ahead.names, millimetres(ahead.distance_m));
   };
-  if (const auto ahead = obstacles_.watch(guidance_.setpoints())) {
-    end(*ahead);
-    guidance_.setpoints().brake();
-  }
+  if (const auto ahead = obstacles_.watch(guidance_.setpoints())) end(*ahead), guidance_.setpoints().brake();
   if (!control_.gives_way()) return;
-  if (const auto ahead = obstacles_.watch_led(drives_.measured())) {
-    end(*ahead);
-    yielding_.stand_apart();
-  }
+  if (const auto ahead = obstacles_.watch_led(drives_.measured())) end(*ahead), yielding_.stand_apart();
 }
 
 /// Whoever asked for a motion is told that it ended.
@@ -201,19 +187,8 @@ void RobotArm::watch_contact() noexcept {
 
 // --- functions -----------------------------------------------------------------------------------------------------------
 
-Outcome RobotArm::may_move() const noexcept {
-  if (moving_ && control_.floats()) return refused(Trouble::led, "HOLD first");
-  return may_change_law();
-}
-
-Outcome RobotArm::may_change_law() const noexcept {
-  if (!moving_) return refused(Trouble::actuators_inhibited);
-  if (motion_ || stop_ || !guidance_.at_rest()) return refused(pus::FailureCode::Busy);
-  return running;
-}
-
 Outcome RobotArm::move(Begin begin, const FunctionValues& values, const Call& call) noexcept {
-  if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
+  if (const Outcome may = rules_.may_move(now()); may.kind == Outcome::Kind::Refused) return may;
   const Outcome begun = (guidance_.*begin)(values);
   if (begun.kind == Outcome::Kind::Refused) return begun;
   contact_watch_.arm(Yielding::Before::Stands);
@@ -221,31 +196,25 @@ Outcome RobotArm::move(Begin begin, const FunctionValues& values, const Call& ca
   return begun;
 }
 
-/// Whoever wants the arm out of where it is need not wait until it stands, where it comes to rest by itself. A stop is none of that: it ends in brakes. Who is inhibited, or
-/// floats, is refused as for any motion. CHECK_ABORT, which moves nothing, keeps nobody in.
+/// CHECK_ABORT, which moves nothing, keeps nobody in.
 Outcome RobotArm::leave(Begin begin, const FunctionValues& values, const Call& call) noexcept {
   if (guidance_.only_judges()) end_motion(pus::FailureCode::Aborted);
-  const bool may_wait = moving_ && !control_.floats() && !motion_ && !stop_;
-  if (!may_wait || !(guidance_.comes_to_rest() || lead_.slows_down())) return move(begin, values, call);
+  if (!rules_.may_wait_for_rest(now())) return move(begin, values, call);
   motion_ = call;
   return guidance_.once_it_stands(begin, values);
 }
 
-/// Nothing moves for it: in Safe-Operational it needs no actuators. In Operational without them nothing goes on that was begun.
 Outcome RobotArm::check_abort(const Call& call) noexcept {
-  if (!guidance_.begun()) return refused(pus::FailureCode::NotPermittedNow);
   const bool operational = parameters_.current.load().state == static_cast<std::int32_t>(State::Operational);
-  if (operational && !moving_) return refused(Trouble::actuators_inhibited);
-  if (motion_ || stop_ || !guidance_.at_rest()) return refused(pus::FailureCode::Busy);
+  if (const Outcome may = rules_.may_check(now(), operational); may.kind == Outcome::Kind::Refused) return may;
   const Outcome begun = guidance_.check_abort();
   if (begun.kind != Outcome::Kind::Refused) motion_ = call;
   return begun;
 }
 
 /// Who jogs on says so before the time of what he said last is over: that is done then, and nothing stands still between them.
-Outcome RobotArm::jog(Begin begin, robot_arm::Setpoints::Kind kind, const FunctionValues& values,
-                      const Call& call) noexcept {
-  if (!motion_ || stop_ || !guidance_.jogs(kind)) return move(begin, values, call);
+Outcome RobotArm::jog(Begin begin, const FunctionValues& values, const Call& call) noexcept {
+  if (!motion_ || stop_ || !guidance_.jogs(begin)) return move(begin, values, call);
   finish(*motion_);
   motion_ = call;
   return (guidance_.*begin)(values);
@@ -255,7 +224,7 @@ Outcome RobotArm::jog(Begin begin, robot_arm::Setpoints::Kind kind, const Functi
 /// waits for its rest then is not driven on.
 Outcome RobotArm::drive(const FunctionValues& values, const Call& call) noexcept {
   const bool goes_on = motion_ && !stop_ && torque_mode_.drives() && !guidance_.waits();
-  if (const Outcome may = goes_on ? running : may_move(); may.kind == Outcome::Kind::Refused) return may;
+  if (const Outcome may = goes_on ? running : rules_.may_move(now()); may.kind == Outcome::Kind::Refused) return may;
   const Outcome driven = torque_mode_.drive(values);
   if (driven.kind == Outcome::Kind::Refused) return driven;
   if (goes_on) finish(*motion_);
@@ -264,31 +233,23 @@ Outcome RobotArm::drive(const FunctionValues& values, const Call& call) noexcept
   return driven;
 }
 
+/// Whose descriptor has no abort path has no function of it.
 void RobotArm::bind_motions() {
-  on_function("MOVE_J",
-              [this](const FunctionValues& values, Call call) { return move(&Guidance::move_j, values, call); });
-  on_function("MOVE_P",
-              [this](const FunctionValues& values, Call call) { return move(&Guidance::move_p, values, call); });
-  on_function("MOVE_L",
-              [this](const FunctionValues& values, Call call) { return move(&Guidance::move_l, values, call); });
-  using Kind = robot_arm::Setpoints::Kind;
-  on_function("JOG_J", [this](const FunctionValues& values, Call call) {
-    return jog(&Guidance::jog_j, Kind::JointJog, values, call);
-  });
-  on_function("JOG_L", [this](const FunctionValues& values, Call call) {
-    return jog(&Guidance::jog_l, Kind::TipJog, values, call);
-  });
-  on_function("RETREAT",
-              [this](const FunctionValues& values, Call call) { return leave(&Guidance::retreat, values, call); });
+  const auto bind = [this](const char* name, auto how, Begin begin) {
+    on_function(name, [this, how, begin](const FunctionValues& values, Call call) {
+      return (this->*how)(begin, values, call);
+    });
+  };
+  bind("MOVE_J", &RobotArm::move, &Guidance::move_j);
+  bind("MOVE_P", &RobotArm::move, &Guidance::move_p);
+  bind("MOVE_L", &RobotArm::move, &Guidance::move_l);
+  bind("JOG_J", &RobotArm::jog, &Guidance::jog_j);
+  bind("JOG_L", &RobotArm::jog, &Guidance::jog_l);
+  bind("RETREAT", &RobotArm::leave, &Guidance::retreat);
   bind_hold_and_stop();
-}
-
-/// Whose descriptor has no such path has no function of it.
-void RobotArm::bind_abort_path() {
   if (!robot_arm::AbortPath::declared(own_descriptor())) return;
   abort_path_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
-  on_function("MOVE_ABORT",
-              [this](const FunctionValues& values, Call call) { return leave(&Guidance::move_abort, values, call); });
+  bind("MOVE_ABORT", &RobotArm::leave, &Guidance::move_abort);
   on_function("CHECK_ABORT", [this](Call call) { return check_abort(call); });
 }
 
@@ -316,21 +277,19 @@ void RobotArm::bind_laws() {
   const auto offered = [&](const char* name) { return own_descriptor().find_function(name) != nullptr; };
   if (offered("IMPEDANCE_J"))
     on_function("IMPEDANCE_J", [this](const FunctionValues& values, Call) -> Outcome {
-      if (!control_.begun()) return refused(pus::FailureCode::NotPermittedNow);
-      if (const Outcome may = may_change_law(); may.kind == Outcome::Kind::Refused) return may;
+      if (const Outcome may = rules_.may_soften(now()); may.kind == Outcome::Kind::Refused) return may;
       return yielding_.soften_joints(values);
     });
   if (offered("IMPEDANCE_L"))
     on_function("IMPEDANCE_L", [this](double stiffness_n_m, double turning_n_m, double damping) -> Outcome {
-      if (!control_.begun()) return refused(pus::FailureCode::NotPermittedNow);
-      if (const Outcome may = may_change_law(); may.kind == Outcome::Kind::Refused) return may;
+      if (const Outcome may = rules_.may_soften(now()); may.kind == Outcome::Kind::Refused) return may;
       return yielding_.soften_tool(stiffness_n_m, turning_n_m, damping);
     });
   if (offered("TORQUE_J"))
     on_function("TORQUE_J", [this](const FunctionValues& values, Call call) { return drive(values, call); });
   if (offered("POSITION_CONTROL"))
     on_function("POSITION_CONTROL", [this]() -> Outcome {
-      if (const Outcome may = may_change_law(); may.kind == Outcome::Kind::Refused) return may;
+      if (const Outcome may = rules_.may_change_law(now()); may.kind == Outcome::Kind::Refused) return may;
       yielding_.harden();
       return ok();
     });
@@ -354,7 +313,7 @@ void RobotArm::bind_lead() {
   lead_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
   events_.each_of_lead([this](EventPort& event) { use_event(event); });
   on_function("FOLLOW", [this]() -> Outcome {
-    if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
+    if (const Outcome may = rules_.may_move(now()); may.kind == Outcome::Kind::Refused) return may;
     const Outcome begun = lead_.follow();
     if (begun.kind != Outcome::Kind::Refused) contact_watch_.arm(Yielding::Before::Stands);
     return begun;
