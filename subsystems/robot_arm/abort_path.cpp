@@ -69,7 +69,9 @@ Outcome AbortPath::fit(JointVector& posture, std::size_t number) const noexcept 
 }
 
 AbortWay::Found AbortPath::judge() noexcept {
-  if (way_.found() == AbortWay::Found::NotYet) way_.heed(parts_.obstacles.nearer(way_.before(), way_.then()));
+  if (way_.found() == AbortWay::Found::NotYet)
+    way_.heed(way_.by_itself() ? parts_.obstacles.too_near(way_.then())
+                               : parts_.obstacles.nearer(way_.before(), way_.then()));
   if (way_.found() == AbortWay::Found::Nothing) tell(way_.blocked() + 1);
   return way_.found();
 }

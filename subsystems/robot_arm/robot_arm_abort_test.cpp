@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "subsystems/robot_arm/testing/flown.hpp"
+#include "subsystems/robot_arm/testing/way_out.hpp"
 
-/// Out by a stored path, and out while it still brakes (docs/adr/0199).
+/// Out by a stored path (docs/adr/0199).
 namespace hirosco {
 namespace {
 
@@ -13,90 +13,10 @@ using robot_arm::JointVector;
 using robot_arm::vector_of;
 using robot_arm::testing::descriptor_for;
 using robot_arm::testing::Flown;
-using robot_arm::testing::folder;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const std::string arm_file = std::string{folder} + "robot_arm.urdf";
-
-struct RobotArmAbort : ::testing::Test {
-  Flown flown{6, arm_file};
-  JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
-  JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
-  const std::string done = "1 3 5:0001 7", aborted = "1 3 8:0204";
-
-  void SetUp() override {
-    flown.plant.place(start);
-    flown.rig.bring_to(State::PreOperational, 1);
-    flown.cycle(5);
-    flown.command(State::SafeOperational);
-  }
-  /// By TC[20,3], as ground does.
-  hirosco::testing::Sent write_path(const std::vector<JointVector>& postures) {
-    const auto& descriptor = flown.rig.descriptor();
-    const auto its = std::ranges::find(descriptor.parameters, std::string_view{"ABORT_PATH"},
-                                       [](const auto& each) { return std::string_view{each.field.name}; });
-    std::vector<std::byte> data(1 + 4 + its->octets());
-    OctetWriter writer{data};
-    writer.put(std::uint8_t{1}).put(ParameterId{descriptor.id, its->field.type, its->id}.wire());
-    writer.put(static_cast<std::uint8_t>(postures.size()));
-    for (const JointVector& posture : postures)
-      for (const double joint : posture) writer.put(static_cast<float>(joint));
-    const auto sent = flown.rig.send(20, 3, data);
-    flown.cycle(3);
-    return sent;
-  }
-  void store(const std::vector<JointVector>& postures) {
-    ASSERT_EQ(flown.rig.outcome(write_path(postures)), "1 3 7") << ::testing::PrintToString(flown.rig.explanations);
-  }
-  void operate() {
-    flown.command(State::Operational);
-    ASSERT_EQ(flown.mode, DeviceMode::Active);
-  }
-  [[nodiscard]] JointVector turned(double by, double twisted = 0) const {
-    JointVector posture = start;
-    posture[0] += by;
-    posture[5] += twisted;
-    return posture;
-  }
-  std::string check() {
-    const auto request = flown.rig.call("CHECK_ABORT");
-    flown.finish(request);
-    return flown.rig.outcome(request);
-  }
-  [[nodiscard]] static std::string hex_of(const std::string& words) {
-    return testing::hex(std::as_bytes(std::span{words}));
-  }
-  [[nodiscard]] robotics::Vector3 tool_at(const JointVector& q) {
-    robotics::Dynamics dynamics{flown.model, robotics::Base::Fixed};
-    dynamics.update({.q = q, .qd = JointVector::Zero(6)});
-    return dynamics.frame_pose(flown.model.find_frame("tool").value()).position;
-  }
-  /// A ball of 5 cm there, that no link comes near.
-  void keep_out(const robotics::Vector3& there) {
-    std::vector<std::optional<Value>> numbers;
-    for (const double number : {there.x(), there.y(), there.z(), there.x(), there.y(), there.z(), 0.05})
-      numbers.emplace_back(number);
-    numbers.resize(28, Value{0.0});
-    const auto set = flown.rig.call_with("KEEP_OUT", numbers);
-    flown.cycle(5);
-    ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
-  }
-  /// In the midst of a motion it is told to hold, and has begun to brake.
-  void brake(const char* by = "HOLD") {
-    static_cast<void>(flown.move_j(goal));
-    flown.cycle(400);
-    static_cast<void>(flown.rig.call(by));
-    flown.cycle(3);
-    ASSERT_GT(flown.plant.measured().velocity.cwiseAbs().maxCoeff(), 0.2) << "it moves still";
-  }
-  std::string stands() {
-    flown.cycle(1000);
-    const JointVector where = flown.plant.measured().position;
-    flown.cycle(500);
-    return flown.off(where) < 1e-3 ? "it stands" : "it moves";
-  }
-};
+struct RobotArmAbort : robot_arm::testing::WayOut {};
 
 TEST_F(RobotArmAbort, GoesToTheNearestPostureOfItsPathAndFromThereToTheLast) {
   store({turned(0.8), turned(0.3), turned(0.3, 0.4)});
@@ -236,6 +156,17 @@ TEST_F(RobotArmAbort, PathIsCheckedBeforeAnythingMovesAndWhoIsInTheWayIsNamed) {
   EXPECT_LT(flown.off(start), 1e-3);
 }
 
+TEST_F(RobotArmAbort, PathThatIsTooNearIsToldByItsCheckHoweverNearTheArmStands) {
+  store({start, turned(0.4)});
+  keep_out(tool_at(start));
+  EXPECT_THAT(check(), StartsWith("1 3 8:800a")) << "no nearer than where it is is no way out";
+  EXPECT_THAT(check(), HasSubstr(hex_of("a volume to keep out of")));
+  operate();
+  EXPECT_THAT(check(), StartsWith("1 3 8:800a"));
+  keep_out({3, 3, 3});
+  EXPECT_EQ(check(), "1 3 7");
+}
+
 TEST_F(RobotArmAbort, EndsBeforeItMovesWhereNoPostureCanBeReachedAndThePairIsNamed) {
   store({turned(0.8)});
   keep_out(tool_at(turned(0.4)));
@@ -301,7 +232,7 @@ TEST_F(RobotArmAbort, IsEndedByHoldAndByStopInItsMidst) {
 }
 
 TEST_F(RobotArmAbort, IsSomethingThatADescriptorMayLeaveOut) {
-  std::string text = descriptor_for(6, arm_file);
+  std::string text = descriptor_for(6, file);
   const auto cut = [&](const std::string& from, const std::string& to) {
     const auto at = text.find(from);
     ASSERT_NE(at, std::string::npos) << from;
@@ -310,141 +241,12 @@ TEST_F(RobotArmAbort, IsSomethingThatADescriptorMayLeaveOut) {
   cut("<StructRef name=\"ABORT_PATH\"", "<ParamRef name=\"ABORT_POSTURE\" id=\"65\" type=\"UINT8\"/>");
   cut("<Function name=\"MOVE_ABORT\"", "</Function>");
   cut("<Function name=\"CHECK_ABORT\"", "</Function>");
-  Flown other{robot_arm::testing::model_of(arm_file), text};
+  Flown other{robot_arm::testing::model_of(file), text};
   other.plant.place(start);
   other.operate();
   const auto motion = other.move_j(goal);
   other.finish(motion);
   EXPECT_EQ(other.rig.outcome(motion), done);
-}
-
-// --- while it still brakes -------------------------------------------------------------------------------------------------
-
-TEST_F(RobotArmAbort, AndRetreatBeginOnceTheArmStandsThatStillBrakes) {
-  store({start});
-  operate();
-  ASSERT_NO_FATAL_FAILURE(brake());
-  const auto retreat = flown.ask("RETREAT", {0.2});
-  flown.cycle(3);
-  EXPECT_EQ(flown.rig.outcome(retreat), "1 3") << "it waits";
-  flown.finish(retreat);
-  EXPECT_EQ(flown.rig.outcome(retreat), "1 3 7");
-  EXPECT_EQ(flown.rig.events(1027), 1);
-  ASSERT_NO_FATAL_FAILURE(brake());
-  const auto out = flown.ask("MOVE_ABORT", {0.5});
-  flown.cycle(3);
-  EXPECT_EQ(flown.rig.outcome(out), "1 3") << "it waits";
-  const auto other = flown.ask("RETREAT", {0.2});
-  flown.cycle(3);
-  EXPECT_THAT(flown.rig.outcome(other), StartsWith("1 4:0108")) << "one waits, not two";
-  flown.finish(out);
-  EXPECT_EQ(flown.rig.outcome(out), done);
-  EXPECT_LE(flown.off(start), 1e-3);
-}
-
-/// A contact ends the torque, and its law is in force until the next cycle.
-TEST_F(RobotArmAbort, ThatWaitsIsNotTakenForATorqueThatIsSaidAnew) {
-  store({start});
-  operate();
-  const std::vector<double> torque{6, 0, 0, 0, 0, 0, 1};
-  const auto driven = flown.ask("TORQUE_J", torque);
-  flown.cycle(400);
-  flown.outside[0] = -60;
-  for (int i = 0; i < 100 && flown.rig.events(1025) == 0; ++i) flown.cycle();
-  flown.outside[0] = 0;
-  const auto out = flown.ask("MOVE_ABORT", {0.5}), again = flown.ask("TORQUE_J", torque);
-  flown.cycle(3);
-  EXPECT_EQ(flown.rig.outcome(driven), "1 3 8:8004");
-  EXPECT_EQ(flown.rig.outcome(out), "1 3") << "it waits";
-  EXPECT_THAT(flown.rig.outcome(again), StartsWith("1 4:0108")) << "who met somebody is not driven on";
-}
-
-TEST_F(RobotArmAbort, ThatWaitsIsRefusedInItsOwnWordsOnceTheArmStands) {
-  operate();
-  ASSERT_NO_FATAL_FAILURE(brake());
-  const auto out = flown.ask("MOVE_ABORT", {0.5});
-  flown.finish(out);
-  EXPECT_THAT(flown.rig.outcome(out), StartsWith("1 3 8:8009"));
-  EXPECT_THAT(flown.rig.outcome(out), HasSubstr(hex_of("ABORT_PATH.COUNT is 0")));
-}
-
-TEST_F(RobotArmAbort, ThatWaitsIsCalledOffByHoldAndTheArmStands) {
-  store({start});
-  operate();
-  for (const char* function : {"RETREAT", "MOVE_ABORT"}) {
-    ASSERT_NO_FATAL_FAILURE(brake());
-    const auto waits = flown.ask(function, {0.5});
-    flown.cycle(3);
-    const auto hold = flown.rig.call("HOLD");
-    flown.cycle(3);
-    EXPECT_EQ(flown.rig.outcome(hold), "1 3 7");
-    EXPECT_EQ(flown.rig.outcome(waits), aborted) << function;
-    EXPECT_EQ(stands(), "it stands") << function;
-    EXPECT_GT(flown.off(start), 0.02) << function;
-    const auto back = flown.move_j(start);
-    flown.finish(back);
-    ASSERT_EQ(flown.rig.outcome(back), done);
-  }
-}
-
-TEST_F(RobotArmAbort, NeverOvercomesAStopHoweverItIsAskedFor) {
-  store({start});
-  operate();
-  ASSERT_NO_FATAL_FAILURE(brake("STOP"));
-  const auto refused = flown.ask("MOVE_ABORT", {0.5});
-  flown.cycle(3);
-  EXPECT_THAT(flown.rig.outcome(refused), StartsWith("1 4:0108")) << "a stop is under way";
-  EXPECT_EQ(stands(), "it stands");
-  EXPECT_EQ(flown.mode, DeviceMode::Off);
-  flown.command(State::SafeOperational);
-  operate();
-  ASSERT_NO_FATAL_FAILURE(brake());
-  const auto waits = flown.ask("RETREAT", {0.5});
-  flown.cycle(3);
-  const auto stop = flown.rig.call("STOP");
-  flown.finish(stop);
-  EXPECT_EQ(flown.rig.outcome(stop), "1 3 7");
-  EXPECT_EQ(flown.rig.outcome(waits), aborted);
-  flown.cycle(500);
-  EXPECT_EQ(flown.mode, DeviceMode::Off);
-  EXPECT_EQ(flown.rig.inhibited(), inhibited_by_author);
-}
-
-TEST_F(RobotArmAbort, ThatWaitsEndsWithTheLimitThatTookTheActuatorsAway) {
-  store({start});
-  operate();
-  ASSERT_NO_FATAL_FAILURE(brake());
-  const auto waits = flown.ask("MOVE_ABORT", {0.5});
-  flown.cycle(3);
-  flown.told = flown.plant.measured();
-  flown.told->torque[3] = 23;
-  flown.cycle(4);
-  EXPECT_EQ(flown.rig.outcome(waits), "1 3 8:8003");
-  EXPECT_EQ(flown.mode, DeviceMode::Off);
-  flown.cycle(100);
-  EXPECT_EQ(flown.rig.inhibited(), inhibited_by_author);
-}
-
-TEST_F(RobotArmAbort, BeginsBehindTheWayBackFromAContact) {
-  store({start});
-  operate();
-  const auto set = flown.rig.call_with("SET_CONTACT", {Value{Number{std::uint8_t{3}}}, Value{0.3}});
-  flown.cycle(3);
-  ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
-  const auto motion = flown.move_j(goal, 0.5);
-  flown.cycle(500);
-  flown.outside[0] = 60;
-  for (int i = 0; i < 200 && flown.rig.events(1025) == 0; ++i) flown.cycle();
-  flown.outside[0] = 0;
-  flown.cycle(20);
-  ASSERT_EQ(flown.rig.outcome(motion), "1 3 8:8004");
-  const auto out = flown.ask("MOVE_ABORT", {0.5});
-  flown.cycle(3);
-  EXPECT_EQ(flown.rig.outcome(out), "1 3") << "it backs off by itself, and this waits";
-  flown.finish(out);
-  EXPECT_EQ(flown.rig.outcome(out), done);
-  EXPECT_EQ(flown.rig.events(1027), 1);
-  EXPECT_LE(flown.off(start), 1e-3);
 }
 
 }  // namespace

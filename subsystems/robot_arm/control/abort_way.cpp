@@ -19,10 +19,8 @@ void AbortWay::begin(std::span<const JointVector> postures, const JointVector& h
   in_the_way_ = {};
   blocked_ = 0;
   found_ = size_ > 0 ? Found::NotYet : Found::Nothing;
-  if (size_ == 0) return;
-  first_ = size_ - 1;
-  if (first_ > 0) look_along(postures_[first_ - 1], first_);
-  else join();
+  first_ = size_;
+  if (size_ > 0) look_along(postures_[size_ - 1], size_ - 1);
 }
 
 void AbortWay::look_along(const JointVector& from, std::size_t to) noexcept {
@@ -46,8 +44,8 @@ void AbortWay::heed(const robotics::Clearance::Nearest& nearer) noexcept {
     else end_of_segment();
     return;
   }
-  // The way to the nearest posture is what is told of, where there are several.
-  if (!was_blocked_) in_the_way_ = nearer, blocked_ = to_;
+  // The way to the nearest posture is what is told of, where there are several. The path is looked along the other way round.
+  if (!was_blocked_) in_the_way_ = nearer, blocked_ = joins_ || step_ == steps_ ? to_ : to_ + 1;
   was_blocked_ = joins_;
   if (what_ == Judged::PathAlone) found_ = Found::Nothing;
   else join();
@@ -59,21 +57,14 @@ void AbortWay::end_of_segment() noexcept {
     found_ = Found::Way;
     return;
   }
-  first_ = to_ - 1;
-  if (first_ > 0) look_along(postures_[first_ - 1], first_);
+  first_ = to_;
+  if (first_ > 0) look_along(postures_[first_], first_ - 1);
+  else if (what_ == Judged::PathAlone) found_ = Found::Way;
   else join();
 }
 
-/// A path that is judged alone is joined at its beginning, and only that posture is looked at: what lies between it and the arm is nobody's way.
 void AbortWay::join() noexcept {
   joins_ = true;
-  if (what_ == Judged::PathAlone) {
-    to_ = 0;
-    steps_ = step_ = 1;
-    before_ = here_;
-    then_ = postures_[0];
-    return;
-  }
   std::size_t nearest = size_;
   for (std::size_t i = first_; i < size_; ++i)
     if (!tried_[i] && (nearest == size_ || apart(here_, postures_[i]) < apart(here_, postures_[nearest]))) nearest = i;

@@ -14,8 +14,8 @@
 namespace hirosco::robot_arm {
 
 /// Out by a stored path (docs/adr/0199): postures, all joints on a straight line from each to the next, and to one of them from where the arm stands. Before it goes
-/// that is judged, a posture in a cycle: the path from its end back, as far as it is free; then the way to the nearest posture of that part, and to the next nearest where
-/// something is in the way.
+/// that is judged, a posture in a cycle: the path from its end back, as far as it is free, by itself; then the way to the nearest posture of that part, and to the next nearest where
+/// something is in the way. Who is too near already where he stands may go away from there, as in any motion; to what is stored that is nothing.
 class AbortWay {
  public:
   static constexpr std::size_t most = 8;
@@ -32,9 +32,11 @@ class AbortWay {
   void begin(std::span<const JointVector> postures, const JointVector& here, Judged what) noexcept;
 
   // --- while found() is NotYet, once in each cycle ------------------------------------------------------------------------
-  /// Who is nearer there than he may be, and than in the posture before it? heed() takes the answer.
-  [[nodiscard]] const JointVector& before() const noexcept { return before_; }
+  /// Who is nearer there than he may be; and, unless that is judged by_itself(), than in the posture before it? heed() takes the answer.
   [[nodiscard]] const JointVector& then() const noexcept { return then_; }
+  [[nodiscard]] const JointVector& before() const noexcept { return before_; }
+  /// It is of what is stored, and not of the way there.
+  [[nodiscard]] bool by_itself() const noexcept { return !joins_; }
   void heed(const robotics::Clearance::Nearest& nearer) noexcept;
 
   // --- of what was judged -------------------------------------------------------------------------------------------------

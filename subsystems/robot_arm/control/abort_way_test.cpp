@@ -26,14 +26,17 @@ struct AbortWayTest : ::testing::Test {
   AbortWay way;
   std::function<const char*(const JointVector&)> in_the_way = [](const JointVector&) { return ""; };
   std::vector<JointVector> looked_at;
+  std::vector<bool> by_itself;  ///< of each of them
   double widest{0};
 
   Found judge(const std::vector<JointVector>& postures, const JointVector& here, Judged what = Judged::FromHere) {
     way.begin(postures, here, what);
     looked_at.clear();
+    by_itself.clear();
     widest = 0;
     for (int cycle = 0; cycle < 10'000 && way.found() == Found::NotYet; ++cycle) {
       looked_at.push_back(way.then());
+      by_itself.push_back(way.by_itself());
       if (what == Judged::FromHere) widest = std::max(widest, apart(way.before(), way.then()));
       const std::string name = in_the_way(way.then());
       way.heed(name.empty() ? robotics::Clearance::Nearest{} : robotics::Clearance::Nearest{0.01, wall});
@@ -89,9 +92,27 @@ TEST_F(AbortWayTest, ThatNobodyCanJoinTellsWhoIsInTheWayToTheNearestPosture) {
 TEST_F(AbortWayTest, OfOnePostureIsTheWayToIt) {
   ASSERT_EQ(judge({at(1, 0)}, at(0, 0)), Found::Way);
   EXPECT_EQ(way.joined(), 0u);
-  EXPECT_EQ(looked_at.size(), 50u);
+  EXPECT_EQ(looked_at.size(), 1u + 50u) << "the posture itself, and the way";
   ASSERT_EQ(judge({at(1, 0)}, at(1, 0)), Found::Way);
-  EXPECT_EQ(looked_at.size(), 1u) << "it stands there";
+  EXPECT_EQ(looked_at.size(), 2u) << "it stands there";
+}
+
+TEST_F(AbortWayTest, IsLookedAtByItselfWhereItIsStoredAndByWhatTheArmIsNearAlreadyOnTheWayThere) {
+  ASSERT_EQ(judge({at(0.1, 0), at(0.2, 0)}, at(0, 0)), Found::Way);
+  ASSERT_FALSE(by_itself.empty());
+  for (std::size_t i = 0; i < looked_at.size(); ++i)
+    EXPECT_EQ(by_itself[i], i < 6) << "two postures and what lies between them: " << looked_at[i].transpose();
+  EXPECT_EQ(judge({at(0.1, 0), at(0.2, 0)}, at(0, 0), Judged::PathAlone), Found::Way);
+  EXPECT_THAT(by_itself, ::testing::Each(true));
+}
+
+TEST_F(AbortWayTest, WhoseLastPostureIsInTheWayLeadsNowhere) {
+  wall_between(0.9, 1.1);
+  for (const auto what : {Judged::FromHere, Judged::PathAlone}) {
+    EXPECT_EQ(judge({at(0.5, 0), at(1, 0)}, at(0, 0), what), Found::Nothing);
+    EXPECT_EQ(way.blocked(), 1u);
+    EXPECT_EQ(looked_at.size(), 1u) << "nothing of it is free";
+  }
 }
 
 TEST_F(AbortWayTest, OfEightPosturesIsJudgedWhole) {

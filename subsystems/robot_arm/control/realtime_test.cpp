@@ -116,7 +116,8 @@ TEST(Control, UsesNoHeapInACycleThatJudgesAnAbortPath) {
   setpoints.begin(start);
   const RealtimeScope scope;
   way.begin(path, setpoints.now().position, AbortWay::Judged::FromHere);
-  while (way.found() == AbortWay::Found::NotYet) way.heed(clearance.nearer(way.before(), way.then()));
+  while (way.found() == AbortWay::Found::NotYet)
+    way.heed(way.by_itself() ? clearance.too_near(way.then()) : clearance.nearer(way.before(), way.then()));
   EXPECT_EQ(way.found(), AbortWay::Found::Way);
   double all_s = setpoints.duration_s(way.here(), way.posture(way.joined()), 1);
   for (std::size_t i = way.joined(); i < way.size(); ++i) {
