@@ -263,12 +263,15 @@ Clearance::Nearest Clearance::nearer(const JointVector& now, const JointVector& 
   return found;
 }
 
-bool Clearance::keeps_limits(const JointVector& position) noexcept {
+Clearance::Nearest Clearance::too_near(const JointVector& position) noexcept {
   place(position);
-  return std::ranges::none_of(pairs_, [&](LookedAt& pair) {
-    const double limit_m = pair.named.limit_m;
-    return limit_m > 0 && apart_m(pair, limit_m) < limit_m;
-  });
+  Nearest found;
+  for (LookedAt& pair : pairs_) {
+    const double enough_m = std::min(pair.named.limit_m, found.distance_m);
+    if (pair.named.limit_m <= 0) continue;
+    if (const double far = apart_m(pair, enough_m); far < enough_m) found = {far, pair.named.names.c_str()};
+  }
+  return found;
 }
 
 void Clearance::distances(const JointVector& position, std::span<double> of_pairs) noexcept {

@@ -55,8 +55,12 @@ class Clearance {
   /// is too near may go away, and keeps nobody else from being seen. None: infinitely far.  Realtime: wait-free.
   [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& then, double by_m = same_m) noexcept;
 
-  /// Whether no two are nearer than they may be.  Realtime: wait-free.
-  [[nodiscard]] bool keeps_limits(const JointVector& position) noexcept;
+  /// The nearest two among those that are nearer there than they may be, wherever they come from. None: infinitely far.  Realtime: wait-free.
+  [[nodiscard]] Nearest too_near(const JointVector& position) noexcept;
+  /// Whether no two are.  Realtime: wait-free.
+  [[nodiscard]] bool keeps_limits(const JointVector& position) noexcept {
+    return too_near(position).distance_m == HUGE_VAL;
+  }
 
   /// Two links, and how near each other they are built.
   struct Pair {

@@ -27,6 +27,12 @@ void MovingSubsystem::forget_motion() noexcept {
   moving_ = stopped_ = false;
 }
 
+void MovingSubsystem::finish_motion() noexcept {
+  if (motion_) finish(*motion_);
+  motion_.reset();
+  motion_ended();
+}
+
 void MovingSubsystem::drop_calls(bool limit_tripped) noexcept {
   const auto why = limit_tripped ? codes_.limit_tripped : pus::FailureCode::Aborted;
   end_motion(why);

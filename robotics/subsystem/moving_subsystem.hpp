@@ -27,6 +27,8 @@ class MovingSubsystem : public Subsystem {
   // --- in the cycle and in function handlers --------------------------------------------------------------------------
   /// Comes to rest where it is.
   virtual void stand() noexcept = 0;
+  /// Whoever asked for it hears that it is done.
+  void finish_motion() noexcept;
   /// Whatever else belongs to a motion ends with it.
   virtual void motion_ended() noexcept {}
   template <FailureEnumeration Code>

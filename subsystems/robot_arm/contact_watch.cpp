@@ -24,7 +24,8 @@ ContactWatch::Met ContactWatch::meet() noexcept {
   const bool felt = met.at_wrist.has_value();
   if (!met.by_joints && !felt) return met;
   // Whoever told of it first may tell of another one at any time.
-  if (parts_.guidance.retracting() && since_answered_ < one_contact && felt != felt_at_wrist_) return met;
+  const bool answered = parts_.guidance.retracting() || parts_.guidance.waits();
+  if (answered && since_answered_ < one_contact && felt != felt_at_wrist_) return met;
   since_answered_ = 0;
   felt_at_wrist_ = felt;
   met.counts = true;

@@ -10,11 +10,12 @@ namespace {
 /// So long a goal has to be measured before it counts as reached, and at most so long after the end of the path.
 constexpr double settled_enough_s = 0.02;
 constexpr double patience_s = 3;
-/// A telecommand is waited for a little longer.
-constexpr double longest_motion_s = 60;
 /// Of a line, before it is given up; of its end, where the tool has to be measured.
 constexpr double most_off_line_m = 0.002, most_off_end_m = 0.001;
-constexpr const char* would_last = "it would take longer, s";
+/// A way back from a contact takes 10 s at most, and whoever brakes is there sooner.
+constexpr double longest_wait_s = 12;
+/// With which MOVE_ABORT goes unless it is told another one: who says that a path is free says it of this.
+constexpr double usual_share = 0.25;
 constexpr const char* ends_range = "on the line ends the range of joint";
 /// No longer: a failure carries 64 octets of words.
 constexpr const char* ends_reach = "a singular posture, or it leads out of reach, after mm";
@@ -56,11 +57,18 @@ std::optional<double> Guidance::end_retract() noexcept {
 }
 
 void Guidance::tell() noexcept {
-  parts_.parameters.motion.store(
-      {static_cast<std::uint8_t>(setpoints_->kind()), setpoints_->duration_s(), setpoints_->progress()});
+  const double duration_s = abort_.goes() ? abort_.duration_s() : setpoints_->duration_s();
+  parts_.parameters.motion.store({static_cast<std::uint8_t>(setpoints_->kind()), duration_s, progress()});
+}
+
+/// Of an abort path the whole, and not the way to a posture of it.
+double Guidance::progress() const noexcept {
+  return abort_.goes() ? abort_.progress(*setpoints_) : setpoints_->progress();
 }
 
 Guidance::News Guidance::look(bool gives_way) noexcept {
+  if (waiting_) return wait();
+  if (abort_.under_way()) return look_at_abort(gives_way);
   if (setpoints_->off_line_m() > most_off_line_m) return lose_line();
   if (searched_) {
     const std::optional<Reason> why = search();
@@ -71,7 +79,7 @@ Guidance::News Guidance::look(bool gives_way) noexcept {
     return why ? News{.end = End::NoWay, .why = *why} : News{};
   }
   News news;
-  if (arrives_ && !half_reported_ && setpoints_->progress() >= 0.5) half_reported_ = news.half_way = true;
+  if (arrives_ && !half_reported_ && progress() >= 0.5) half_reported_ = news.half_way = true;
   if (setpoints_->at_rest()) news.end = retreats_ && !setpoints_->retreated() ? End::NotReached : arrive(gives_way);
   return news;
 }
@@ -135,18 +143,18 @@ void Guidance::lead() noexcept {
   settled_s_ = waited_s_ = 0;
 }
 
-Outcome Guidance::start_jog(Setpoints::Kind kind, double seconds) noexcept {
+Outcome Guidance::start_jog(Begin by, double seconds) noexcept {
   tool_to_.reset();
   retreats_ = false;
   arrives_ = false;
   settled_s_ = waited_s_ = 0;
   jog_left_s_ = seconds;
-  jog_ = kind;
+  jog_ = by;
   return running;
 }
 
 /// Where it may not stand: nearer to itself, or to what it keeps out of, than it may be and than it is.
-std::optional<Guidance::Reason> Guidance::forbids(const JointVector& goal) noexcept {
+std::optional<Reason> Guidance::forbids(const JointVector& goal) noexcept {
   const auto there = parts_.obstacles.nearer(setpoints_->now().position, goal);
   if (there.distance_m == HUGE_VAL) return std::nullopt;
   return Reason{Trouble::too_near, there.names, millimetres(there.distance_m)};
@@ -178,7 +186,7 @@ Outcome Guidance::move_p(const FunctionValues& values) noexcept {
 }
 
 /// It stands meanwhile, and has a reason, or goes, in that cycle in which there is an answer.
-std::optional<Guidance::Reason> Guidance::search() noexcept {
+std::optional<Reason> Guidance::search() noexcept {
   const PoseSearch::Found found = pose_search_->step();
   if (found == PoseSearch::Found::NotYet) return std::nullopt;
   const Searched wanted = *searched_;
@@ -194,7 +202,7 @@ std::optional<Guidance::Reason> Guidance::search() noexcept {
   return std::nullopt;
 }
 
-std::optional<Guidance::Reason> Guidance::no_posture() noexcept {
+std::optional<Reason> Guidance::no_posture() noexcept {
   if (const auto joint = pose_search_->joint_at_its_end())
     return Reason{Trouble::out_of_range, "before it is there ends the range of joint",
                   static_cast<std::int64_t>(*joint + 1)};
@@ -213,7 +221,7 @@ Outcome Guidance::move_l(const FunctionValues& values) noexcept {
 }
 
 /// It stands until it was walked along in advance; whoever may not go stands on.
-std::optional<Guidance::Reason> Guidance::judge_line() noexcept {
+std::optional<Reason> Guidance::judge_line() noexcept {
   const Line& line = setpoints_->line();
   if (line.found() == Line::Found::NotYet) return std::nullopt;
   line_judged_ = true;
@@ -244,17 +252,73 @@ Outcome Guidance::retreat(const FunctionValues& values) noexcept {
   return running;
 }
 
+// --- out, once it stands -------------------------------------------------------------------------------------------------
+
+/// Whatever takes the actuators away, stops the arm or lets it float meanwhile ends this as it ends a motion.
+Outcome Guidance::once_it_stands(Begin way_out, const FunctionValues& values) noexcept {
+  end_motion();
+  waiting_ = Waiting{way_out, values, longest_wait_s};
+  return running;
+}
+
+Guidance::News Guidance::wait() noexcept {
+  waiting_->left_s -= cycle_s_;
+  if (!setpoints_->at_rest()) return {.end = waiting_->left_s > 0 ? End::None : End::NotReached};
+  const Waiting waited = *waiting_;
+  waiting_.reset();
+  const Outcome begun = (this->*waited.begin)(waited.values);
+  if (begun.kind != Outcome::Kind::Refused) return {.begun = true};
+  return {.end = End::NoWay, .why = {static_cast<Trouble>(begun.code), begun.reason.text, begun.reason.value}};
+}
+
+// --- the abort path ------------------------------------------------------------------------------------------------------
+
+Outcome Guidance::move_abort(const FunctionValues& values) noexcept {
+  return judge_abort(AbortWay::Judged::FromHere, values[0]);
+}
+
+Outcome Guidance::check_abort() noexcept { return judge_abort(AbortWay::Judged::PathAlone, usual_share); }
+
+Outcome Guidance::judge_abort(AbortWay::Judged what, double speed_share) noexcept {
+  const Outcome stored = parts_.abort_path.begin(setpoints_->now().position, what);
+  if (stored.kind == Outcome::Kind::Refused) return stored;
+  end_motion();
+  tool_to_.reset();
+  retreats_ = half_reported_ = false;
+  arrives_ = true;
+  settled_s_ = waited_s_ = 0;
+  abort_.begin(what, speed_share);
+  return running;
+}
+
+Guidance::News Guidance::look_at_abort(bool gives_way) noexcept {
+  using At = AbortMotion::At;
+  const bool went = abort_.goes();
+  const At at = abort_.step(*setpoints_);
+  News news;
+  // With more power than it began with the whole way may be less than half of what was foreseen.
+  if (went && !half_reported_ && (progress() >= 0.5 || at == At::Last)) half_reported_ = news.half_way = true;
+  switch (at) {
+    case At::OnWay: break;
+    case At::Judged: news.end = End::Judged; break;
+    case At::Last: news.end = arrive(gives_way); break;
+    case At::Lost: news.end = End::NotReached; break;
+    case At::NoWay: news.end = End::NoWay, news.why = abort_.why(); break;
+  }
+  return news;
+}
+
 Outcome Guidance::jog_j(const FunctionValues& values) noexcept {
   const std::size_t joints = parts_.known.joints();
   setpoints_->jog(vector_of(std::span{values}.first(joints)));
-  return start_jog(Setpoints::Kind::JointJog, values[joints]);
+  return start_jog(&Guidance::jog_j, values[joints]);
 }
 
 Outcome Guidance::jog_l(const FunctionValues& values) noexcept {
   Vector6 twist;
   twist << values[3], values[4], values[5], values[0], values[1], values[2];
   setpoints_->jog(twist);
-  return start_jog(Setpoints::Kind::TipJog, values[6]);
+  return start_jog(&Guidance::jog_l, values[6]);
 }
 
 }  // namespace hirosco::robot_arm

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "hirosco/subsystem/author/handler.hpp"
+#include "subsystems/robot_arm/abort_motion.hpp"
 #include "subsystems/robot_arm/control/pose_search.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
 #include "subsystems/robot_arm/drives.hpp"
@@ -25,6 +26,7 @@ class Guidance {
     const Drives& drives;
     Obstacles& obstacles;  ///< no goal is near them
     Parameters& parameters;  ///< MOTION tells how far it is
+    AbortPath& abort_path;
   };
   enum class End : std::uint8_t {
     None,  ///< not yet
@@ -32,15 +34,11 @@ class Guidance {
     NotReached,  ///< its path has ended, and it is not there
     LineLost,  ///< the joints cannot follow: it brakes
     NoWay,  ///< it was judged before it went, and stands
-  };
-  /// Why there is no way.
-  struct Reason {
-    Trouble trouble{};
-    const char* text{""};
-    std::int64_t number{0};
+    Judged,  ///< nothing was to move, and nothing is in the way
   };
   /// What a cycle has brought, in the order in which it is told.
   struct News {
+    bool begun{false};  ///< it stands, and what waited for that moves it from now on
     bool half_way{false};  ///< once in a motion that has a goal
     End end{End::None};
     Reason why{};  ///< of LineLost and NoWay
@@ -55,14 +53,27 @@ class Guidance {
   /// Goes back by the way it came, RETRACT_DISTANCE at most.
   void retract() noexcept;
   [[nodiscard]] bool retracting() const noexcept { return retracting_; }
+  /// It brakes, or backs off from what it met: nothing that leads it anywhere.
+  [[nodiscard]] bool comes_to_rest() const noexcept {
+    return !at_rest() && (setpoints_->braking() || setpoints_->kind() == Setpoints::Kind::Retract);
+  }
 
   // --- functions: refused, or running; all numbers in the order of the descriptor -----------------------------------------
+  using Begin = Outcome (Guidance::*)(const FunctionValues&) noexcept;
   [[nodiscard]] Outcome move_j(const FunctionValues& values) noexcept;
   /// The posture is looked for while it stands, in the next cycles, and judged before it goes.
   [[nodiscard]] Outcome move_p(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome move_l(const FunctionValues& values) noexcept;
   /// Back by the way it came.
   [[nodiscard]] Outcome retreat(const FunctionValues& values) noexcept;
+  /// Out by the stored path, which is judged while it stands, in the next cycles.
+  [[nodiscard]] Outcome move_abort(const FunctionValues& values) noexcept;
+  /// The stored path alone is judged; nothing moves.
+  [[nodiscard]] Outcome check_abort() noexcept;
+  [[nodiscard]] bool only_judges() const noexcept { return abort_.only_judges(); }
+  /// One of these, of who comes_to_rest(): it begins once it stands, unless end_motion() comes before.
+  [[nodiscard]] Outcome once_it_stands(Begin way_out, const FunctionValues& values) noexcept;
+  [[nodiscard]] bool waits() const noexcept { return waiting_.has_value(); }
   [[nodiscard]] Outcome jog_j(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome jog_l(const FunctionValues& values) noexcept;
   /// Torques lead it from now on: it is wherever they have it.
@@ -71,10 +82,13 @@ class Guidance {
   void keep_power(const JointVector& held) noexcept {
     setpoints_->keep_power(held, parts_.parameters.power_limit_w.load());
   }
-  /// The motion that was begun last is a jog of this kind: another one may take its place, from the velocities that it has.
-  [[nodiscard]] bool jogs(Setpoints::Kind kind) const noexcept { return jog_ == kind; }
+  /// The motion that was begun last is a jog that was begun so: another one may take its place, from the velocities that it has.
+  [[nodiscard]] bool jogs(Begin by) const noexcept { return jog_ == by; }
   /// Whatever its time was, and whatever was looked for: nobody waits for it any more.
-  void end_motion() noexcept { jog_left_s_ = 0, jog_.reset(), searched_.reset(), line_judged_ = true; }
+  void end_motion() noexcept {
+    jog_left_s_ = 0, jog_ = nullptr, searched_.reset(), line_judged_ = true;
+    waiting_.reset(), abort_.end();
+  }
 
   // --- in each cycle ------------------------------------------------------------------------------------------------------
   /// `led`: it is to be wherever it is.
@@ -98,8 +112,12 @@ class Guidance {
   [[nodiscard]] std::optional<Reason> no_posture() noexcept;
   [[nodiscard]] std::optional<Reason> judge_line() noexcept;
   [[nodiscard]] News lose_line() noexcept;
+  [[nodiscard]] News wait() noexcept;
+  [[nodiscard]] Outcome judge_abort(AbortWay::Judged what, double speed_share) noexcept;
+  [[nodiscard]] News look_at_abort(bool gives_way) noexcept;
+  [[nodiscard]] double progress() const noexcept;
   [[nodiscard]] Outcome start(const Result<>& planned) noexcept;
-  [[nodiscard]] Outcome start_jog(Setpoints::Kind kind, double seconds) noexcept;
+  [[nodiscard]] Outcome start_jog(Begin by, double seconds) noexcept;
   [[nodiscard]] End arrive(bool gives_way) noexcept;
 
   Parts parts_;
@@ -112,12 +130,20 @@ class Guidance {
   };
   std::optional<Searched> searched_;
   bool line_judged_{true};
+  /// RETREAT or MOVE_ABORT of who does not stand yet.
+  struct Waiting {
+    Begin begin{nullptr};
+    FunctionValues values;
+    double left_s{0};
+  };
+  std::optional<Waiting> waiting_;
+  AbortMotion abort_{parts_.abort_path};
   std::optional<Vector3> tool_to_;  ///< where the tool is to be at the end of a motion that has a pose for a goal
   double cycle_s_{0.001};
   double waited_s_{0};  ///< behind the end of a path
   double settled_s_{0};  ///< at the goal
   double jog_left_s_{0};
-  std::optional<Setpoints::Kind> jog_;
+  Begin jog_{nullptr};  ///< the one that is under way
   bool retracting_{false};
   bool half_reported_{false};
   bool retreats_{false};  ///< its motion is a way back

@@ -67,6 +67,8 @@ class Lead {
   // --- in each cycle ------------------------------------------------------------------------------------------------------
   /// LEAD.
   void tell() noexcept;
+  /// Nobody is followed any more, and it does not stand yet.
+  [[nodiscard]] bool slows_down() const noexcept { return phase_ == Phase::Stops; }
   /// Before the setpoint is advanced; why it ends, once.
   [[nodiscard]] std::optional<End> advance() noexcept;
 

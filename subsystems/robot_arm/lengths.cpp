@@ -8,7 +8,7 @@
 namespace hirosco::robot_arm {
 
 Result<> check_lengths(std::size_t joints, const descriptor::SubsystemDescriptor& subsystem,
-                       const Parameters& parameters, Drives& drives) noexcept {
+                       const Parameters& parameters, Drives& drives, const AbortPath& abort_path) noexcept {
   const auto current = parameters.current.load();
   const auto arguments_of = [&](std::string_view name) -> std::size_t {
     const descriptor::Function* function = subsystem.find_function(name);
@@ -56,6 +56,8 @@ Result<> check_lengths(std::size_t joints, const descriptor::SubsystemDescriptor
   };
   for (const Length& length : lengths)
     if (length.of != length.wanted) return fail(ErrorCode::Mismatch, length.text, static_cast<std::int64_t>(length.of));
+  if (AbortPath::declared(subsystem) && !abort_path.has_length(joints))
+    return fail(ErrorCode::Mismatch, "JOINTS of ABORT_PATH has another length than the robot has joints");
   return ok();
 }
 

@@ -58,6 +58,8 @@ class Obstacles {
   [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& goal) noexcept {
     return clearance_->nearer(now, goal);
   }
+  /// Who is nearer there than they may be, wherever they come from; infinitely far: nobody.
+  [[nodiscard]] Nearest too_near(const JointVector& position) noexcept { return clearance_->too_near(position); }
   /// Each cycle of who goes that way and is measured with noise: who would be too near at its end, and by more than `noise_m` nearer than in the last place
   /// where nobody was. What shakes about the limit comes no nearer by that, however often it begins.
   [[nodiscard]] std::optional<Nearest> watch_way(const JointVector& now, const JointVector& way,

@@ -38,7 +38,7 @@ Result<Step> RobotArm::software_init() {
 }
 
 Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
-  HIROSCO_TRY(robot_arm::check_lengths(known_.joints(), own_descriptor(), parameters_, drives_));
+  HIROSCO_TRY(robot_arm::check_lengths(known_.joints(), own_descriptor(), parameters_, drives_, abort_path_));
   const double cycle_s = seconds(configuration.sampling);
   known_.limit_motions(parameters_.acceleration.load(), parameters_.jerk.load());
   model_.begin(cycle_s);
@@ -56,6 +56,7 @@ Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
 
 Result<> RobotArm::pre_operational(const Cycle& cycle) noexcept {
   measure(cycle);
+  if (cycle.first && motion_) drop_calls(limits_.tripped());  // what was judged in Safe-Operational
   return ok();
 }
 
@@ -70,6 +71,8 @@ Result<> RobotArm::safe_operational(const Cycle& cycle) noexcept {
   yielding_.engage();
   control_.control();
   watch(false);
+  guidance_.keep_power(model_.held(model_.payload()));  // how long a path would take depends on it
+  if (motion_) tell(guidance_.look(false));  // CHECK_ABORT moves nothing
   return ok();
 }
 
@@ -128,14 +131,12 @@ void RobotArm::advance() noexcept {
 }
 
 void RobotArm::tell(const Guidance::News& news) noexcept {
+  if (news.begun) contact_watch_.arm(Yielding::Before::Stands);
   if (news.half_way) progress(*motion_, 1);
   switch (news.end) {
     case Guidance::End::None: return;
-    case Guidance::End::Reached:
-      raise(events_.motion_done);
-      finish(*motion_);
-      motion_.reset();
-      return;
+    case Guidance::End::Reached: raise(events_.motion_done); [[fallthrough]];
+    case Guidance::End::Judged: finish_motion(); return;
     case Guidance::End::NotReached: end_motion(Trouble::goal_not_reached); return;
     case Guidance::End::LineLost:
     case Guidance::End::NoWay: end_motion(news.why.trouble, news.why.text, news.why.number); return;
@@ -166,15 +167,9 @@ void RobotArm::watch_clearance() noexcept {
     raise(events_.too_near, ahead.distance_m, Events::PairNames{std::string_view{ahead.names}});
     end_motion(Trouble::too_near, ahead.names, millimetres(ahead.distance_m));
   };
-  if (const auto ahead = obstacles_.watch(guidance_.setpoints())) {
-    end(*ahead);
-    guidance_.setpoints().brake();
-  }
+  if (const auto ahead = obstacles_.watch(guidance_.setpoints())) end(*ahead), guidance_.setpoints().brake();
   if (!control_.gives_way()) return;
-  if (const auto ahead = obstacles_.watch_led(drives_.measured())) {
-    end(*ahead);
-    yielding_.stand_apart();
-  }
+  if (const auto ahead = obstacles_.watch_led(drives_.measured())) end(*ahead), yielding_.stand_apart();
 }
 
 /// Whoever asked for a motion is told that it ended.
@@ -192,19 +187,8 @@ void RobotArm::watch_contact() noexcept {
 
 // --- functions -----------------------------------------------------------------------------------------------------------
 
-Outcome RobotArm::may_move() const noexcept {
-  if (moving_ && control_.floats()) return refused(Trouble::led, "HOLD first");
-  return may_change_law();
-}
-
-Outcome RobotArm::may_change_law() const noexcept {
-  if (!moving_) return refused(Trouble::actuators_inhibited);
-  if (motion_ || stop_ || !guidance_.at_rest()) return refused(pus::FailureCode::Busy);
-  return running;
-}
-
 Outcome RobotArm::move(Begin begin, const FunctionValues& values, const Call& call) noexcept {
-  if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
+  if (const Outcome may = rules_.may_move(now()); may.kind == Outcome::Kind::Refused) return may;
   const Outcome begun = (guidance_.*begin)(values);
   if (begun.kind == Outcome::Kind::Refused) return begun;
   contact_watch_.arm(Yielding::Before::Stands);
@@ -212,19 +196,35 @@ Outcome RobotArm::move(Begin begin, const FunctionValues& values, const Call& ca
   return begun;
 }
 
+/// CHECK_ABORT, which moves nothing, keeps nobody in.
+Outcome RobotArm::leave(Begin begin, const FunctionValues& values, const Call& call) noexcept {
+  if (guidance_.only_judges()) end_motion(pus::FailureCode::Aborted);
+  if (!rules_.may_wait_for_rest(now())) return move(begin, values, call);
+  motion_ = call;
+  return guidance_.once_it_stands(begin, values);
+}
+
+Outcome RobotArm::check_abort(const Call& call) noexcept {
+  const bool operational = parameters_.current.load().state == static_cast<std::int32_t>(State::Operational);
+  if (const Outcome may = rules_.may_check(now(), operational); may.kind == Outcome::Kind::Refused) return may;
+  const Outcome begun = guidance_.check_abort();
+  if (begun.kind != Outcome::Kind::Refused) motion_ = call;
+  return begun;
+}
+
 /// Who jogs on says so before the time of what he said last is over: that is done then, and nothing stands still between them.
-Outcome RobotArm::jog(Begin begin, robot_arm::Setpoints::Kind kind, const FunctionValues& values,
-                      const Call& call) noexcept {
-  if (!motion_ || stop_ || !guidance_.jogs(kind)) return move(begin, values, call);
+Outcome RobotArm::jog(Begin begin, const FunctionValues& values, const Call& call) noexcept {
+  if (!motion_ || stop_ || !guidance_.jogs(begin)) return move(begin, values, call);
   finish(*motion_);
   motion_ = call;
   return (guidance_.*begin)(values);
 }
 
-/// Who drives it on says so before the time of what he said last is over, as who jogs.
+/// Who drives it on says so before the time of what he said last is over, as who jogs. Behind a contact its law is that of torques for a cycle yet: whoever
+/// waits for its rest then is not driven on.
 Outcome RobotArm::drive(const FunctionValues& values, const Call& call) noexcept {
-  const bool goes_on = motion_ && !stop_ && torque_mode_.drives();
-  if (const Outcome may = goes_on ? running : may_move(); may.kind == Outcome::Kind::Refused) return may;
+  const bool goes_on = motion_ && !stop_ && torque_mode_.drives() && !guidance_.waits();
+  if (const Outcome may = goes_on ? running : rules_.may_move(now()); may.kind == Outcome::Kind::Refused) return may;
   const Outcome driven = torque_mode_.drive(values);
   if (driven.kind == Outcome::Kind::Refused) return driven;
   if (goes_on) finish(*motion_);
@@ -233,23 +233,24 @@ Outcome RobotArm::drive(const FunctionValues& values, const Call& call) noexcept
   return driven;
 }
 
+/// Whose descriptor has no abort path has no function of it.
 void RobotArm::bind_motions() {
-  on_function("MOVE_J",
-              [this](const FunctionValues& values, Call call) { return move(&Guidance::move_j, values, call); });
-  on_function("MOVE_P",
-              [this](const FunctionValues& values, Call call) { return move(&Guidance::move_p, values, call); });
-  on_function("MOVE_L",
-              [this](const FunctionValues& values, Call call) { return move(&Guidance::move_l, values, call); });
-  using Kind = robot_arm::Setpoints::Kind;
-  on_function("JOG_J", [this](const FunctionValues& values, Call call) {
-    return jog(&Guidance::jog_j, Kind::JointJog, values, call);
-  });
-  on_function("JOG_L", [this](const FunctionValues& values, Call call) {
-    return jog(&Guidance::jog_l, Kind::TipJog, values, call);
-  });
-  on_function("RETREAT",
-              [this](const FunctionValues& values, Call call) { return move(&Guidance::retreat, values, call); });
+  const auto bind = [this](const char* name, auto how, Begin begin) {
+    on_function(name, [this, how, begin](const FunctionValues& values, Call call) {
+      return (this->*how)(begin, values, call);
+    });
+  };
+  bind("MOVE_J", &RobotArm::move, &Guidance::move_j);
+  bind("MOVE_P", &RobotArm::move, &Guidance::move_p);
+  bind("MOVE_L", &RobotArm::move, &Guidance::move_l);
+  bind("JOG_J", &RobotArm::jog, &Guidance::jog_j);
+  bind("JOG_L", &RobotArm::jog, &Guidance::jog_l);
+  bind("RETREAT", &RobotArm::leave, &Guidance::retreat);
   bind_hold_and_stop();
+  if (!robot_arm::AbortPath::declared(own_descriptor())) return;
+  abort_path_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
+  bind("MOVE_ABORT", &RobotArm::leave, &Guidance::move_abort);
+  on_function("CHECK_ABORT", [this](Call call) { return check_abort(call); });
 }
 
 void RobotArm::bind_settings() {
@@ -276,21 +277,19 @@ void RobotArm::bind_laws() {
   const auto offered = [&](const char* name) { return own_descriptor().find_function(name) != nullptr; };
   if (offered("IMPEDANCE_J"))
     on_function("IMPEDANCE_J", [this](const FunctionValues& values, Call) -> Outcome {
-      if (!control_.begun()) return refused(pus::FailureCode::NotPermittedNow);
-      if (const Outcome may = may_change_law(); may.kind == Outcome::Kind::Refused) return may;
+      if (const Outcome may = rules_.may_soften(now()); may.kind == Outcome::Kind::Refused) return may;
       return yielding_.soften_joints(values);
     });
   if (offered("IMPEDANCE_L"))
     on_function("IMPEDANCE_L", [this](double stiffness_n_m, double turning_n_m, double damping) -> Outcome {
-      if (!control_.begun()) return refused(pus::FailureCode::NotPermittedNow);
-      if (const Outcome may = may_change_law(); may.kind == Outcome::Kind::Refused) return may;
+      if (const Outcome may = rules_.may_soften(now()); may.kind == Outcome::Kind::Refused) return may;
       return yielding_.soften_tool(stiffness_n_m, turning_n_m, damping);
     });
   if (offered("TORQUE_J"))
     on_function("TORQUE_J", [this](const FunctionValues& values, Call call) { return drive(values, call); });
   if (offered("POSITION_CONTROL"))
     on_function("POSITION_CONTROL", [this]() -> Outcome {
-      if (const Outcome may = may_change_law(); may.kind == Outcome::Kind::Refused) return may;
+      if (const Outcome may = rules_.may_change_law(now()); may.kind == Outcome::Kind::Refused) return may;
       yielding_.harden();
       return ok();
     });
@@ -314,7 +313,7 @@ void RobotArm::bind_lead() {
   lead_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
   events_.each_of_lead([this](EventPort& event) { use_event(event); });
   on_function("FOLLOW", [this]() -> Outcome {
-    if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
+    if (const Outcome may = rules_.may_move(now()); may.kind == Outcome::Kind::Refused) return may;
     const Outcome begun = lead_.follow();
     if (begun.kind != Outcome::Kind::Refused) contact_watch_.arm(Yielding::Before::Stands);
     return begun;

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "robotics/subsystem/moving_subsystem.hpp"
+#include "subsystems/robot_arm/abort_path.hpp"
 #include "subsystems/robot_arm/at_tip.hpp"
 #include "subsystems/robot_arm/contact_watch.hpp"
 #include "subsystems/robot_arm/drives.hpp"
@@ -14,6 +15,7 @@
 #include "subsystems/robot_arm/guidance.hpp"
 #include "subsystems/robot_arm/lead.hpp"
 #include "subsystems/robot_arm/limit_watch.hpp"
+#include "subsystems/robot_arm/motion_rules.hpp"
 #include "subsystems/robot_arm/obstacles.hpp"
 #include "subsystems/robot_arm/on_board_model.hpp"
 #include "subsystems/robot_arm/parameters.hpp"
@@ -35,7 +37,7 @@ class RobotArm final : public robotics::MovingSubsystem {
                          .limit_tripped = static_cast<pus::FailureCode>(robot_arm::Trouble::limit_tripped)}} {}
 
  private:
-  using Begin = Outcome (robot_arm::Guidance::*)(const FunctionValues&) noexcept;
+  using Begin = robot_arm::Guidance::Begin;
 
   Result<Step> software_init() override;
   Result<> configure(const descriptor::Configuration& configuration) override;
@@ -60,11 +62,12 @@ class RobotArm final : public robotics::MovingSubsystem {
   void watch(bool follows) noexcept;
   void watch_clearance() noexcept;
   void watch_contact() noexcept;
-  [[nodiscard]] Outcome may_move() const noexcept;
-  [[nodiscard]] Outcome may_change_law() const noexcept;
+  [[nodiscard]] robot_arm::MotionRules::Now now() const noexcept { return {moving_, motion_ || stop_}; }
   Outcome move(Begin begin, const FunctionValues& values, const Call& call) noexcept;
+  Outcome leave(Begin begin, const FunctionValues& values, const Call& call) noexcept;
+  Outcome check_abort(const Call& call) noexcept;
   Outcome drive(const FunctionValues& values, const Call& call) noexcept;
-  Outcome jog(Begin begin, robot_arm::Setpoints::Kind kind, const FunctionValues& values, const Call& call) noexcept;
+  Outcome jog(Begin begin, const FunctionValues& values, const Call& call) noexcept;
 
   robot_arm::Parameters parameters_;
   robot_arm::Events events_;
@@ -76,9 +79,11 @@ class RobotArm final : public robotics::MovingSubsystem {
   robot_arm::OnBoardModel model_{{known_, drives_, parameters_}};
   robot_arm::ForceSensor force_sensor_{{known_, drives_, model_, parameters_}};
   robot_arm::Obstacles obstacles_{{parameters_.clearance_limit_m, parameters_.clearance_m, parameters_.keep_out}};
-  robot_arm::Guidance guidance_{{known_, drives_, obstacles_, parameters_}};
+  robot_arm::AbortPath abort_path_{{known_, obstacles_}};
+  robot_arm::Guidance guidance_{{known_, drives_, obstacles_, parameters_, abort_path_}};
   robot_arm::Lead lead_{{known_, guidance_}};
   robot_arm::TorqueControl control_{{known_, drives_, limits_, model_, guidance_, parameters_}};
+  robot_arm::MotionRules rules_{{guidance_, control_, lead_}};
   robot_arm::Yielding yielding_{{known_, drives_, model_, obstacles_, guidance_, control_, parameters_}};
   robot_arm::ContactWatch contact_watch_{{guidance_, control_, yielding_, force_sensor_}};
   robot_arm::AtTip at_tip_{{limits_, model_, obstacles_, guidance_, control_, parameters_}};

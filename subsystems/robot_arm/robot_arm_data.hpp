@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "robotics/shapes/clearance.hpp"
+#include "subsystems/robot_arm/control/abort_way.hpp"
 #include "subsystems/robot_arm/control/joints.hpp"
 
 /// Structures of an arm's descriptor: same members, same order; lengths are the descriptor's.
@@ -71,6 +72,16 @@ struct LedToPositions {
 struct LedWithSpeeds {
   Joints velocity;
   std::uint8_t active;
+};
+
+/// Of single precision, so that eight postures of 16 joints outlive a flight (`persistent`): what they are off by is nothing to an arm.
+struct PostureValues {
+  Sized<float, max_joints> joints;
+};
+/// The first COUNT of them are in force.
+struct AbortPathValues {
+  std::uint8_t count;
+  std::array<PostureValues, AbortWay::most> postures;
 };
 
 /// Of each volume that is kept out of: two points and a radius.

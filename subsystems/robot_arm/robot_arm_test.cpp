@@ -435,7 +435,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Wrong{"<Setting name=\"MODEL_FILE\"", "<Setting name=\"TIP2\"", "MODEL_FILE"},
                       Wrong{R"(name="DES_VELOCITY" id="2" type="DOUBLE" count="6")",
                             R"(name="DES_VELOCITY" id="2" type="DOUBLE" count="5")",
-                            "DES_VELOCITY has another length than the robot has joints"}));
+                            "DES_VELOCITY has another length than the robot has joints"},
+                      Wrong{R"(type="FLOAT" count="6")", R"(type="FLOAT" count="5")",
+                            "JOINTS of ABORT_PATH has another length than the robot has joints"}));
 
 }  // namespace
 }  // namespace hirosco

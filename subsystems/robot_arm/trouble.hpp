@@ -26,4 +26,15 @@ enum class Trouble : std::uint16_t {
   not_led = 0x8020,  ///< nobody leads, or not to where it may go
 };
 
+/// In words that live as long as the program, or as the shapes of whose names they are.
+struct Reason {
+  Trouble trouble{};
+  const char* text{""};
+  std::int64_t number{0};
+};
+
+/// A telecommand is waited for a little longer.
+inline constexpr double longest_motion_s = 60;
+inline constexpr const char* would_last = "it would take longer, s";
+
 }  // namespace hirosco::robot_arm

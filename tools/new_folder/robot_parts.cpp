@@ -255,6 +255,9 @@ NewParts parts_of(const NewRobot& robot, const NewName& name) {
                            {"@tip@", xml::escaped(robot.tip)},
                            {"@lowest@", fmt::format("{:.10g}", all.lowest - beyond_all)},
                            {"@highest@", fmt::format("{:.10g}", all.highest + beyond_all)},
+                           // What is stored begins as 0, where no joint may be able to stand.
+                           {"@least_stored@", fmt::format("{:.10g}", std::min(0.0, all.lowest - beyond_all))},
+                           {"@most_stored@", fmt::format("{:.10g}", std::max(0.0, all.highest + beyond_all))},
                            {"@fastest@", fmt::format("{}", all.fastest)},
                            {"@strongest@", fmt::format("{}", all.strongest)},
                            {"@safe@", fmt::format("{}", fmt::join(safe, " "))},

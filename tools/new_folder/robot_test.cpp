@@ -247,7 +247,17 @@ TEST(NewRobot, SaysBothUnitsWhereSomeJointsSlide) {
   EXPECT_EQ(words.at("@force_unit@"), "N m|N");
   EXPECT_EQ(words.at("@rotors@"), "0.2 0.1");
   EXPECT_EQ(words.at("@lowest@"), "-1.05");
+  EXPECT_EQ(words.at("@least_stored@"), "-1.05");
   EXPECT_EQ(words.at("@strongest@"), "60");
+}
+
+TEST(NewRobot, MayStoreNothingWhereNoJointOfItCanStandAt0) {
+  const auto found = judged(text_of({.limit = R"(<limit lower="0.5" upper="2" velocity="3" effort="60"/>)"}));
+  ASSERT_TRUE(found.robot);
+  const auto words = parts_of(*found.robot, new_name("rod").value()).words;
+  EXPECT_EQ(words.at("@lowest@"), "0.45");
+  EXPECT_EQ(words.at("@least_stored@"), "0");
+  EXPECT_EQ(words.at("@most_stored@"), "2.05");
 }
 
 /// A pair of fingers at the tool, the second of which follows the first; both at the middle at `lower`.

@@ -51,6 +51,14 @@ TEST_F(ClearanceTest, RefusesWhoComesNearerAndLetsGoWhoIsTooNear) {
   EXPECT_EQ(clearance.nearer(folded, folded).distance_m, HUGE_VAL) << "where it is";
 }
 
+TEST_F(ClearanceTest, TellsWhoIsTooNearWhereverHeComesFrom) {
+  EXPECT_LT(clearance.too_near(folded).distance_m, 0.02);
+  EXPECT_THAT(clearance.too_near(folded).names, HasSubstr("upper_arm"));
+  EXPECT_FALSE(clearance.keeps_limits(folded));
+  EXPECT_EQ(clearance.too_near(clear).distance_m, HUGE_VAL);
+  EXPECT_TRUE(clearance.keeps_limits(clear));
+}
+
 TEST_F(ClearanceTest, NamesTheLinkThatComesNearAVolumeToKeepOutOf) {
   const JointVector upright = JointVector::Zero(6), inside = vector_of(std::array{0.0, 0.8, 0.3, 0.0, 0.0, 0.0});
   const std::array volumes{robotics::Capsule{{0.5, -1, 0.7}, {0.5, 1, 0.7}, 0.2}};

@@ -8,16 +8,32 @@
 
 namespace hirosco::robot_arm {
 
-Result<> PathMotion::begin(const JointVector& from, const JointVector& goal, double speed_share,
-                           const PowerPace& power) noexcept {
+Result<robotics::PointToPoint> PathMotion::plan(const JointVector& from, const JointVector& goal,
+                                                double speed_share) const noexcept {
   std::array<robotics::MotionLimits, max_joints> limits;
   for (std::size_t i = 0; i < bounds_.size(); ++i) {
     limits[i] = bounds_[i].motion;
     limits[i].velocity *= speed_share;
   }
-  HIROSCO_TRY_LET(path_, robotics::PointToPoint::plan_straight(from, goal, std::span{limits}.first(bounds_.size())));
-  path_.at(path_.duration_s() / 2, sample_);
-  duration_s_ = path_.duration_s() / power.share(sample_.velocity);
+  return robotics::PointToPoint::plan_straight(from, goal, std::span{limits}.first(bounds_.size()));
+}
+
+double PathMotion::with_power_s(const robotics::PointToPoint& path, const PowerPace& power) noexcept {
+  robotics::PointToPoint::Sample sample;
+  path.at(path.duration_s() / 2, sample);
+  return path.duration_s() / power.share(sample.velocity);
+}
+
+double PathMotion::foreseen_s(const JointVector& from, const JointVector& goal, double speed_share,
+                              const PowerPace& power) const noexcept {
+  const auto planned = plan(from, goal, speed_share);
+  return planned ? with_power_s(*planned, power) : HUGE_VAL;
+}
+
+Result<> PathMotion::begin(const JointVector& from, const JointVector& goal, double speed_share,
+                           const PowerPace& power) noexcept {
+  HIROSCO_TRY_LET(path_, plan(from, goal, speed_share));
+  duration_s_ = with_power_s(path_, power);
   path_.at(0, sample_);
   on_ = {};
   return ok();

@@ -18,6 +18,9 @@ class PathMotion {
   /// Each joint by the same share of its way, jerk-limited, with this share of their velocities. InvalidArgument: as of PointToPoint, and nothing is changed.
   [[nodiscard]] Result<> begin(const JointVector& from, const JointVector& goal, double speed_share,
                                const PowerPace& power) noexcept;
+  /// So long it would take; infinitely, where begin() would refuse.
+  [[nodiscard]] double foreseen_s(const JointVector& from, const JointVector& goal, double speed_share,
+                                  const PowerPace& power) const noexcept;
   /// The setpoint of the next cycle. True: it rests there.
   [[nodiscard]] bool advance(bool braking, const PowerPace& power, Setpoint& setpoint) noexcept;
   /// Where it would come to rest if it went on for a cycle and braked then.
@@ -27,6 +30,9 @@ class PathMotion {
   [[nodiscard]] double progress() const noexcept { return progress_on(path_, on_); }
 
  private:
+  [[nodiscard]] Result<robotics::PointToPoint> plan(const JointVector& from, const JointVector& goal,
+                                                    double speed_share) const noexcept;
+  [[nodiscard]] static double with_power_s(const robotics::PointToPoint& path, const PowerPace& power) noexcept;
   [[nodiscard]] double quickening() const noexcept;
 
   Bounds bounds_;

@@ -4,6 +4,7 @@
 
 #include "hirosco/utilities/allocation_guard.hpp"
 #include "robotics/shapes/clearance.hpp"
+#include "subsystems/robot_arm/control/abort_way.hpp"
 #include "subsystems/robot_arm/control/following.hpp"
 #include "subsystems/robot_arm/control/laws.hpp"
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
@@ -94,6 +95,39 @@ TEST(Control, UsesNoHeapInACycle) {
     }
     EXPECT_EQ(scope.count(), AllocationCount{}) << static_cast<int>(kind);
   }
+}
+
+/// A way out is judged against the arm itself, and gone.
+TEST(Control, UsesNoHeapInACycleThatJudgesAnAbortPath) {
+  ASSERT_TRUE(RealtimeScope::hook_present());
+  const robotics::Model model = testing::model_of(testing::six_axes);
+  const auto bounds = testing::bounds_of(model);
+  Setpoints setpoints{model, model.find_frame("tool").value(), bounds, period_s};
+  const auto text = descriptor::file_system()(testing::six_axes).value();
+  robotics::Clearance clearance{
+      model, robotics::read_collision_shapes(testing::six_axes, text, descriptor::file_system()).value.value().hulls};
+  clearance.set_limit(0.02);
+  const JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
+  JointVector beside = start, last = start;
+  beside[0] += 0.3;
+  last[0] += 0.6;
+  const std::array path{beside, last};
+  AbortWay way;
+  setpoints.begin(start);
+  const RealtimeScope scope;
+  way.begin(path, setpoints.now().position, AbortWay::Judged::FromHere);
+  while (way.found() == AbortWay::Found::NotYet)
+    way.heed(way.by_itself() ? clearance.too_near(way.then()) : clearance.nearer(way.before(), way.then()));
+  EXPECT_EQ(way.found(), AbortWay::Found::Way);
+  double all_s = setpoints.duration_s(way.here(), way.posture(way.joined()), 1);
+  for (std::size_t i = way.joined(); i < way.size(); ++i) {
+    EXPECT_TRUE(setpoints.go(way.posture(i), 1));
+    for (int cycle = 0; cycle < 3000 && !setpoints.at_rest(); ++cycle) setpoints.advance();
+    if (i > way.joined()) all_s += setpoints.duration_s(way.posture(i - 1), way.posture(i), 1);
+  }
+  EXPECT_LT(apart(setpoints.now().position, last), 1e-6);
+  EXPECT_GT(all_s, 0.3);
+  EXPECT_EQ(scope.count(), AllocationCount{});
 }
 
 }  // namespace

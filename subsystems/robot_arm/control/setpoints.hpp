@@ -27,6 +27,10 @@ class Setpoints {
   void rest(const JointVector& position) noexcept;
   /// All joints at once, each by the same share of its way, jerk-limited, with this share of their velocities. InvalidArgument: as of PointToPoint.
   [[nodiscard]] Result<> go(const JointVector& goal, double speed_share) noexcept;
+  /// So long it would take from one place to the other; infinitely, where go() would refuse.
+  [[nodiscard]] double duration_s(const JointVector& from, const JointVector& goal, double speed_share) const noexcept {
+    return path_.foreseen_s(from, goal, speed_share, power_);
+  }
   /// The tool on a straight line: it stands until line() has found whether it can, and rests where it cannot. InvalidArgument: as of Line.
   [[nodiscard]] Result<> go_straight(const robotics::Pose& goal, const Line::Speed& speed) noexcept;
   /// The last one.
