@@ -284,7 +284,7 @@ TEST_F(GreedyFaults, TwoMediumEventsInOneCycleRunOnePlan) {
   flight.craft().run(200ms);
   EXPECT_TRUE(flight.story().has("GREEDY medium TROUBLE"));
   EXPECT_TRUE(flight.story().has("GREEDY medium MORE_TROUBLE"));
-  EXPECT_EQ(flight.story().count("plan to-safe"), 1u) << flight.story().text();
+  EXPECT_EQ(flight.story().count("plan to-safe: "), 1u) << flight.story().text();
   EXPECT_EQ(flight.story().count("GREEDY info STATE_CHANGED STATE=SafeOperational"), 2u)
       << "once while commissioning, once by the plan";
 }

@@ -168,7 +168,7 @@ constexpr Mistake mistakes[] = {
     {"E0346", R"(path="log/orbiter.db")", R"(server="@host=db.example.org password=x" path="log/orbiter.db")", "passfile"},
     {"E0346", R"(path="log/orbiter.db")", R"(server="@postgresql://me:secret@db.example.org/log" path="log/orbiter.db")"},
     {"E0314", R"(descriptor="flywheel.xml")", R"(descriptor="@/etc/passwd")"},
-    {"E0314", R"(descriptor="flywheel.xml")", R"(descriptor="@../../../flywheel.xml")"},
+    {"E0314", R"(descriptor="flywheel.xml")", R"(descriptor="@../../../../flywheel.xml")"},
     {"E0314", R"(descriptor="flywheel.xml")", R"(descriptor="@@hirosco/../flywheel.xml")"},
     {"E0315", R"(descriptor="flywheel.xml")", R"(descriptor="@../flywheel.xml.none")"},
     {"E0315", R"(descriptor="flywheel.xml")", R"(descriptor="@@hirosco/subsystems/none.xml")"},

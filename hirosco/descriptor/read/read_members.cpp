@@ -17,7 +17,7 @@ namespace hirosco::descriptor::detail {
 namespace {
 
 /// A mission stands in missions/NAME/, what it may name in the tree two folders above.
-constexpr int folders_above = 2;
+constexpr int folders_above = 3;
 
 /// A file that comes with HIROSCO, by its name there.
 bool is_shipped(std::string_view text) { return text.starts_with(shipped_prefix); }
@@ -120,7 +120,7 @@ std::string_view refuse_path(std::string_view text, int above) {
   for (const auto& part : path) {
     if (part == "..") --depth;
     else if (part != "." && !part.empty()) ++depth;
-    if (depth < 0) return above == 0 ? "the path must stay inside the folder" : "at most two folders up";
+    if (depth < 0) return above == 0 ? "the path must stay inside the folder" : "at most three folders up";
   }
   return "";
 }

@@ -307,11 +307,11 @@ TEST(OwnLoopThreads, AnswerBesideTheCycleThroughTwentyRoundsOfStartReconfigureAn
       OctetWriter{number}.put(i);
       driven.send(200, 1, number);
       driven.send(201, 1, {});
-      set_files(driven, i);
       read_files(driven);
       driven.call("CONFIGURE", 1 + (i + 1) % 2);
       // Housekeeping is busy until the cycle has taken what was asked of it before.
       driven.done();
+      set_files(driven, i);  // busy while a change of configuration without a bump is under way
       driven.cycle_on(2);
       std::array<std::byte, 3> structure;
       OctetWriter{structure}.put(std::uint8_t{1}).put(std::uint16_t{9});
