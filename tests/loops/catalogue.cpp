@@ -47,8 +47,9 @@ class Catalogue final : public Subsystem {
 
   /// In the archive's loop, whole pages: the cycle's values as snapshots, its own by store().
   void sort() {
-    std::uint32_t seen = 0, page = 1;
+    std::uint32_t seen = 0, page = 0;
     if (!seen_.snapshot(seen) || !page_.snapshot(page)) return;
+    if (page == 0) return;  // no value is its own before it is published
     seen -= seen % page;
     if (seen != sorted_ && archive_.store(shown_, seen)) sorted_ = seen;
   }

@@ -113,16 +113,22 @@ bool Memory::put_together(OctetWriter& all) {
 bool Memory::recall() {
   const Octets found = journal_ != nullptr ? journal_->newest() : Octets{};
   if (found.empty()) return false;
+  // All of it is taken apart before any part is told: of what was noted by others, or is not whole, nobody keeps the half.
+  std::vector<Octets> notes;
   OctetReader all{found};
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const auto number = all.get<std::uint16_t>();
     const auto octets = all.get<std::uint32_t>();
-    OctetReader one{all.get(octets)};
+    notes.push_back(all.get(octets));
     if (!all.good() || number != i) return false;
+  }
+  if (!all.exhausted()) return false;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    OctetReader one{notes[i]};
     parts_[i]->recall(one);
     if (!one.exhausted()) return false;
   }
-  return all.exhausted();
+  return true;
 }
 
 }  // namespace hirosco::supervisor

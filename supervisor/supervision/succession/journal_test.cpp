@@ -147,9 +147,12 @@ TEST_F(Journals, EachPartIsToldWhatItHadNoted) {
 TEST_F(Journals, OtherPartsOrPartsThatReadOtherwiseAreNotTold) {
   RememberedNumber number;
   Memory one{&journal, {&number}};
-  ASSERT_TRUE(one.note());
+  number.value = 7;
   RememberedNumber first, second;
+  ASSERT_TRUE(one.note());
   EXPECT_FALSE((Memory{&journal, {&first, &second}}.recall()));
+  EXPECT_FALSE((Memory{&journal, {}}.recall()));
+  EXPECT_EQ(first.recalled, 0u) << "of half a note nothing is kept";
   struct Half final : Remembered {
     void note(OctetWriter&) const override {}
     void recall(OctetReader& reader) override { static_cast<void>(reader.get<std::uint16_t>()); }
