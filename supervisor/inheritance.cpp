@@ -28,7 +28,9 @@ Inheritance::Inheritance() {
   }
 }
 
-StoreClient Inheritance::store() const noexcept { return StoreClient{page_ != &own_ ? keeper_store_descriptor : -1}; }
+StoreClient Inheritance::store() const noexcept {
+  return StoreClient{page_ != &own_ ? keeper_store_descriptor : -1, page_};
+}
 
 TimePoint Inheritance::flight_began(TimePoint now) noexcept {
   std::int64_t none = 0;

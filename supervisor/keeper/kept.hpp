@@ -74,7 +74,7 @@ inline constexpr std::size_t most_ends = 64;
 struct KeeperPage {
   /// Of this layout. Keeper and supervisor of one flight are of one build; whoever finds another number knows nothing of what is there, not
   /// even whether a craft flies already.
-  static constexpr std::uint64_t layout_now = 0x484B'5047'0000'0004;  // "HKPG"
+  static constexpr std::uint64_t layout_now = 0x484B'5047'0000'0005;  // "HKPG"
   std::atomic<std::uint64_t> layout{layout_now};
   std::atomic<std::uint64_t> keeper{0};
   std::atomic<std::uint64_t> supervisor{0};
@@ -105,6 +105,9 @@ struct KeeperPage {
   /// By slot, 1: of what the supervisor handed over last the keeper had no descriptor free to take all. The supervisor clears it before it
   /// hands over, the keeper when it has taken a later one.
   std::array<std::atomic<std::uint8_t>, most_kept> not_taken{};
+  /// By slot, other than 0: what the supervisor handed over last was not sent, so that what the keeper holds is of before. Set before it is sent,
+  /// cleared behind that: a keeper that stands still, and to whom nothing can be sent any more, finds it all the same.
+  std::array<std::atomic<std::uint8_t>, most_kept> not_sent{};
   /// When the first supervisor of the flight began its steps, as monotonic time in ns, which is every later one's too; 0: not yet.
   std::atomic<std::int64_t> flight_began{0};
 

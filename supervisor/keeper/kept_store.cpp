@@ -14,10 +14,8 @@
 namespace hirosco::supervisor {
 namespace {
 
-/// A message: the slot, and a descriptor for each role beside it; none: the slot is given back, or, with `not_sent`, what it has
-/// is of before.
+/// A message: the slot, and a descriptor for each role beside it; none: the slot is given back.
 using SlotNumber = std::uint32_t;
-constexpr SlotNumber not_sent = 0x8000'0000;
 using Numbers = std::array<int, kept_roles>;
 /// More than one message of ours may carry, so that a surplus is seen; the kernel closes what does not fit.
 constexpr std::size_t noticed = kept_roles + 4;
@@ -84,20 +82,19 @@ void KeptStore::take() noexcept {
     if (octets <= 0) return;
     std::array<FileDescriptor, noticed> came;
     const std::size_t count = take_descriptors(header, came);
-    const std::size_t which = slot & ~not_sent;
-    if (octets != sizeof slot || which >= most_kept || (header.msg_flags & MSG_TRUNC) != 0) continue;
+    if (octets != sizeof slot || slot >= most_kept || (header.msg_flags & MSG_TRUNC) != 0) continue;
     // Where this process has no descriptor free, the system drops them and says so here only.
     const bool dropped = (header.msg_flags & MSG_CTRUNC) != 0;
-    if (dropped || (slot & not_sent) != 0 || (count != 0 && count != kept_roles)) {
+    if (dropped || (count != 0 && count != kept_roles)) {
       // They come in their order: where but the last is lacking, by the new one's handle it can still be ended.
       if (dropped && count > process_place && count < kept_roles)
-        slots_[which][process_place] = std::move(came[process_place]);
-      not_taken(which);
+        slots_[slot][process_place] = std::move(came[process_place]);
+      not_taken(slot);
       continue;
     }
-    Slot& place = slots_[which];
+    Slot& place = slots_[slot];
     for (std::size_t i = 0; i < kept_roles; ++i) place[i] = std::move(came[i]);
-    if (page_ != nullptr) page_->not_taken[which].store(0, std::memory_order_release);
+    if (page_ != nullptr) page_->not_taken[slot].store(0, std::memory_order_release);
   }
 }
 
@@ -109,13 +106,18 @@ void KeptStore::not_taken(std::size_t slot) noexcept {
   if (page_ != nullptr) page_->not_taken[slot].store(1, std::memory_order_release);
 }
 
+bool KeptStore::is_of_before(std::size_t slot) const noexcept {
+  return page_ != nullptr && page_->not_sent[slot].load(std::memory_order_acquire) != 0;
+}
+
 void KeptStore::pass_on(std::vector<ProcessStart::Inherited>& inherited) const {
   for (std::size_t slot = 0; slot < most_kept; ++slot) {
     const FileDescriptor& handle = slots_[slot][process_place];
     if (!handle) continue;
     for (std::size_t role = 0; role < kept_roles; ++role) {
       const FileDescriptor& kept = slots_[slot][role];
-      inherited.push_back({kept ? kept.get() : handle.get(), kept_descriptor(slot, static_cast<KeptRole>(role))});
+      const bool counts = kept && !is_of_before(slot);
+      inherited.push_back({counts ? kept.get() : handle.get(), kept_descriptor(slot, static_cast<KeptRole>(role))});
     }
   }
 }
@@ -123,9 +125,12 @@ void KeptStore::pass_on(std::vector<ProcessStart::Inherited>& inherited) const {
 Result<> StoreClient::keep(std::size_t slot, const std::array<int, kept_roles>& descriptors) noexcept {
   if (slot >= most_kept) return fail(ErrorCode::OutOfRange, "slot of the store", static_cast<std::int64_t>(slot));
   if (socket_ < 0) return fail(ErrorCode::Unavailable, "there is no keeper");
+  const auto mark = [&](std::uint8_t not_sent) {
+    if (page_ != nullptr) page_->not_sent[slot].store(not_sent, std::memory_order_release);
+  };
+  mark(1);
   const auto sent = send(socket_, static_cast<SlotNumber>(slot), descriptors);
-  // Without descriptors it may find room.
-  if (!sent) static_cast<void>(send(socket_, static_cast<SlotNumber>(slot) | not_sent, {}));
+  if (sent) mark(0);
   return sent;
 }
 

@@ -29,19 +29,24 @@ class KeptStore {
   explicit KeptStore(FileDescriptor socket, KeeperPage* page = nullptr) noexcept
       : socket_{std::move(socket)}, page_{page} {}
 
-  /// Takes what has come. What is no message of ours is closed. Of a slot of which not all came nothing counts any more but the handle that was
-  /// there: what else was held is of another permit page, and who goes on would believe that. Does not wait.
+  /// Takes what has come. What is no message of ours is closed. Of a slot of which not all came, or to which the supervisor could send nothing,
+  /// nothing counts any more but the handle that was there: what else was held is of another permit page, and who goes on would believe that.
+  /// Does not wait.
   void take() noexcept;
   /// For a supervisor that is started: what it finds where. Of whom the handle alone is held it finds that in each place, and can end it.
   void pass_on(std::vector<ProcessStart::Inherited>& inherited) const;
   /// Nobody goes on: who still runs finds its channel closed.
   void clear() noexcept { slots_ = {}; }
-  /// All of it.
-  [[nodiscard]] bool holds(std::size_t slot) const noexcept { return slots_[slot].front().valid(); }
+  /// All of it, and of what was handed over last.
+  [[nodiscard]] bool holds(std::size_t slot) const noexcept {
+    return slots_[slot].front().valid() && !is_of_before(slot);
+  }
 
  private:
   using Slot = std::array<FileDescriptor, kept_roles>;
   void not_taken(std::size_t slot) noexcept;
+  /// By the page: what is asked for behind the end of the supervisor, who marks each while it sends it.
+  [[nodiscard]] bool is_of_before(std::size_t slot) const noexcept;
 
   FileDescriptor socket_;
   KeeperPage* page_;
@@ -52,7 +57,8 @@ class KeptStore {
 class StoreClient {
  public:
   /// -1: there is no keeper, nothing is kept.
-  explicit StoreClient(int socket) noexcept : socket_{socket} {}
+  /// \param page Where the keeper finds what could not be sent, and outlives this; null: nowhere.
+  explicit StoreClient(int socket, KeeperPage* page = nullptr) noexcept : socket_{socket}, page_{page} {}
   [[nodiscard]] bool has_keeper() const noexcept { return socket_ >= 0; }
   /// Unavailable: the keeper is gone or takes nothing; OutOfRange: there is no such slot. Whether it had room for them it tells later
   /// (KeeperPage::not_taken).
@@ -65,6 +71,7 @@ class StoreClient {
 
  private:
   int socket_;
+  KeeperPage* page_;
 };
 
 }  // namespace hirosco::supervisor

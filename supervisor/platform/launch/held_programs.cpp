@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 #include <system_error>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/utilities/os/installation.hpp"
@@ -87,37 +87,41 @@ void HeldPrograms::read_all(const descriptor::Mission& mission) {
 }
 
 void HeldPrograms::read_all_beside(const descriptor::Mission& mission) {
-  std::vector<std::packaged_task<Outcome()>> tasks;
   for (const descriptor::MissionSubsystem& member : mission.subsystems) {
     auto listed = wanted(member.executable);
-    if (!listed || held_.contains(member.executable) || read_now_.contains(member.executable)) continue;
-    tasks.emplace_back([read = read_, listed = std::move(*listed)] { return check(read, listed); });
-    read_now_.emplace(member.executable, tasks.back().get_future());
+    if (!listed || held_.contains(member.executable) || read_now_[member.executable].valid()) continue;
+    if (!begin_to_read(read_now_[member.executable], std::move(*listed))) return;
   }
+}
+
+/// The thread has all that it needs for itself: it may end after this object.
+bool HeldPrograms::begin_to_read(std::future<Outcome>& reading, Wanted listed) const {
+  std::packaged_task<Outcome()> task{[read = read_, listed = std::move(listed)] { return check(read, listed); }};
+  auto outcome = task.get_future();
   try {
-    std::thread{[tasks = std::move(tasks)]() mutable {
-      for (auto& task : tasks) task();
-    }}.detach();
+    std::thread{std::move(task)}.detach();
   } catch (const std::system_error&) {
-    read_now_.clear();
+    return false;
   }
+  reading = std::move(outcome);
+  return true;
+}
+
+bool HeldPrograms::any_is_read_now() const {
+  return std::ranges::any_of(read_now_, [](const auto& entry) {
+    return entry.second.valid() && entry.second.wait_for(Duration{0}) != std::future_status::ready;
+  });
 }
 
 std::expected<const ProgramImage*, StartRefusal> HeldPrograms::find(const std::string& name, Duration patience) {
   if (const auto held = held_.find(name); held != held_.end()) return &held->second;
   auto listed = wanted(name);
   if (!listed) return std::unexpected{std::move(listed.error())};
+  // Several that have died at once over a disk that stands still are waited for once: together they would hold up the loop.
+  if (any_is_read_now()) patience = Duration{0};
   std::future<Outcome>& reading = read_now_[name];
-  try {
-    if (!reading.valid()) {
-      std::packaged_task<Outcome()> task{[read = read_, listed = std::move(*listed)] { return check(read, listed); }};
-      reading = task.get_future();
-      std::thread{std::move(task)}.detach();
-    }
-  } catch (const std::system_error&) {
-    reading = {};
+  if (!reading.valid() && !begin_to_read(reading, std::move(*listed)))
     return std::unexpected{of({ErrorCode::ResourceExhausted, "no thread is left to read its executable"})};
-  }
   if (reading.wait_for(patience) != std::future_status::ready)
     return std::unexpected{of({ErrorCode::Unavailable, "its executable is still being read: ask again"})};
   Outcome outcome = reading.get();

@@ -19,7 +19,8 @@ namespace hirosco::supervisor {
 /// The executables of a mission that has a manifest, in memory, each with the digest that stands there for its name. They are
 /// read before the flight; who crashed is started anew from memory, and waits for no
 /// disk and no hash. A supervisor that goes on for another one reads them anew, from the disk, beside the flight (docs/adr/0192).
-/// Thread: the supervisor's; a file is read by a thread of its own, for which nobody waits longer than longest_wait.
+/// Thread: the supervisor's; a file is read by a thread of its own, one at most for each name: one that hangs holds up no other. Nobody waits longer
+/// than longest_wait for all that are read at once.
 class HeldPrograms {
  public:
   using Outcome = std::expected<ProgramImage, StartRefusal>;
@@ -33,10 +34,11 @@ class HeldPrograms {
 
   /// Reads those of all subsystems, before the flight: it takes as long as the disk takes. What is refused is so by find().
   void read_all(const descriptor::Mission& mission);
-  /// The same beside a flight: one after the other, in one thread of ordinary priority, for which nobody waits here. Until one is there find()
-  /// says that it is still being read. Where no thread is left each is read when it is asked for.
+  /// The same beside a flight: at once, in threads of ordinary priority, for which nobody waits here. Until one is there find() says that it is
+  /// still being read. Where no thread is left the others are read when they are asked for.
   void read_all_beside(const descriptor::Mission& mission);
   /// One that is not held is read anew: its file or the disk may be in order by now. The image stays for the flight.
+  /// `patience` is for one that nothing else is being read beside, itself neither; else it is to be asked for again.
   /// A version of one, "arm@2", may have come in flight: with it the manifest is read anew.
   [[nodiscard]] std::expected<const ProgramImage*, StartRefusal> find(const std::string& name,
                                                                       Duration patience = longest_wait);
@@ -55,6 +57,9 @@ class HeldPrograms {
   [[nodiscard]] static StartRefusal not_listed(const Wanted& wanted);
   [[nodiscard]] static std::optional<StartRefusal> look_up(Wanted& wanted);
   [[nodiscard]] std::expected<Wanted, StartRefusal> wanted(const std::string& name) const;
+  /// False: no thread is left.
+  [[nodiscard]] bool begin_to_read(std::future<Outcome>& reading, Wanted listed) const;
+  [[nodiscard]] bool any_is_read_now() const;
 
   descriptor::Manifest manifest_;
   std::string mission_;

@@ -26,7 +26,7 @@ struct PlanStart {
   Stage steps{};  ///< at least one, taken one after the other
   bool of_loss{false};  ///< whoever is gone is stopped and taken down whatever else runs for it (hazard SF5)
   std::uint16_t origin{};  ///< whose event it answers
-  Stage idle{};  ///< further steps for its subject, which have nothing to do now
+  Stage planned{};  ///< all for its subject, in their order; those that have nothing to do now are none of `steps`
   bool anew{false};  ///< a supervisor before this one had begun it and died over it
 };
 

@@ -29,6 +29,29 @@ constexpr std::string_view event_of_failure = "RECOVERY_FAILED";
   return step.kind == &steps::set_state && subject.state() == steps::state_step::wanted(step);
 }
 
+[[nodiscard]] bool does_something(const ProcedureStep& step, const Craft& craft) {
+  return step.kind->answers == nullptr || step.kind->answers(step, craft);
+}
+
+/// What a plan asks of its subject on the way to where that is now, and would fail there.
+[[nodiscard]] bool is_done_on_the_way(const ProcedureStep& step, const Member& subject) {
+  if (step.kind == &steps::set_state) return true;
+  if (step.kind != &steps::command || !subject.state()) return false;
+  const descriptor::Function* function = subject.descriptor().find_function(step.words.front());
+  return function != nullptr && !function->permitted_in(*subject.state());
+}
+
+/// Of a plan that begins anew. What cannot be told to have been done is done once more.
+[[nodiscard]] Stage left_to_do(const PlanStart& start, const Member& subject, const Craft& craft) {
+  const auto is_there = [&](const ProcedureStep& step) { return leads_to_where_it_is(step, subject); };
+  const auto behind_the_way = std::ranges::find_if(start.planned.rbegin(), start.planned.rend(), is_there).base();
+  Stage left;
+  for (auto each = start.planned.begin(); each != start.planned.end(); ++each)
+    if (does_something(*each, craft) && (each >= behind_the_way || !is_done_on_the_way(*each, subject)))
+      left.push_back(*each);
+  return left;
+}
+
 }  // namespace
 
 bool Reactions::take_event(std::uint16_t from, Octets message) {
@@ -111,8 +134,8 @@ PlanStart Reactions::start_for(const Member& subject, const Member* whose, const
     // What is about the craft is done once where a plan is for all.
     const bool elsewhere = whose == nullptr && step.kind->of_craft && &subject != first_of_all();
     if (!for_it || step.kind->run == nullptr || elsewhere || !(only.empty() || only == event)) continue;
-    const bool does_something = step.kind->answers == nullptr || step.kind->answers(step, craft_);
-    (does_something ? start.steps : start.idle).push_back(step);
+    start.planned.push_back(step);
+    if (does_something(step, craft_)) start.steps.push_back(step);
   }
   return start;
 }
@@ -123,6 +146,10 @@ void Reactions::escalate(const PlanStart& plan, const ProcedureEnd& end) {
   Member& subject = *craft_.member(plan.subject);
   craft_.tell("plan failed (" + end.why + "): escalating", plan.subject);
   if (plan.occasion.event != event_of_failure) return react(subject, event_of_failure, Severity::High);
+  take_down_network_of(subject);
+}
+
+void Reactions::take_down_network_of(const Member& subject) {
   const Reaction last{"default", {{"shut_down_network"}}};
   if (!craft_.shutting_down) runs_.begin(start_for(subject, &subject, last, Severity::High, event_of_failure));
 }
@@ -164,7 +191,7 @@ void Reactions::react_to_own(std::string_view event, Severity severity) {
 
 bool Reactions::begins_anew(std::uint16_t apid) const {
   const auto of_it = [apid](const PlanUnderWay& each) { return each.subject == apid; };
-  return std::ranges::any_of(before_, of_it) &&
+  return !is_spent(apid) && std::ranges::any_of(before_, of_it) &&
          std::ranges::none_of(before_, [&](const PlanUnderWay& each) { return of_it(each) && each.anew; });
 }
 
@@ -189,10 +216,10 @@ bool Reactions::begin_anew(Member& subject) {
     PlanStart start = start_for(subject, origin, reaction, severity, each.event);
     const auto is_there = [&](const ProcedureStep& step) { return leads_to_where_it_is(step, subject); };
     // Who has come elsewhere than its plan leads has not followed that.
-    if (start.steps.empty() && (start.idle.empty() || !std::ranges::all_of(start.idle, is_there))) continue;
+    if (start.steps.empty() && (start.planned.empty() || !std::ranges::all_of(start.planned, is_there))) continue;
     goes_on = start.anew = true;
-    // It stands fenced there; commanded there again it would refuse, and the plan fail.
-    start.steps.erase(start.steps.begin(), std::ranges::find_if_not(start.steps, is_there));
+    // It stands fenced where it has come to.
+    start.steps = left_to_do(start, subject, craft_);
     const bool has_to_do = !start.steps.empty();
     if (!has_to_do || runs_.against(start).empty())
       craft_.tell(
@@ -204,9 +231,25 @@ bool Reactions::begin_anew(Member& subject) {
   return goes_on;
 }
 
+void Reactions::fail_plan_of(Member& subject) {
+  const std::uint16_t apid = subject.apid();
+  if (is_spent(apid)) return take_down_network_of(subject);
+  const auto of_it = [apid](const PlanUnderWay& each) { return each.subject == apid; };
+  std::erase_if(before_, of_it);
+  before_.push_back({apid, apid, Severity::High, false, std::string{event_of_failure}});
+  craft_.remember();  // should this supervisor die by it at once, the next one knows that it had begun
+  std::erase_if(before_, of_it);
+  react(subject, event_of_failure, Severity::High);
+}
+
 void Reactions::note(OctetWriter& writer) const {
   std::vector<PlanUnderWay> all = runs_.under_way();
   all.insert(all.end(), before_.begin(), before_.end());
+  // Until it is down, whoever goes on finds it on its way.
+  for (const std::uint16_t apid : spent_)
+    if (const Member* member = std::as_const(craft_).member(apid);
+        !answered_before_ || (member != nullptr && member->recovery.running()))
+      all.push_back({apid, apid, Severity::High, true, std::string{event_of_failure}});
   writer.put(static_cast<std::uint16_t>(all.size()));
   for (const PlanUnderWay& each : all) each.note(writer);
 }
@@ -215,7 +258,9 @@ void Reactions::recall(OctetReader& reader) {
   for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
     PlanUnderWay each;
     each.recall(reader);
-    if (reader.good()) before_.push_back(std::move(each));
+    if (!reader.good()) return;
+    if (each.anew && each.event == event_of_failure) spent_.insert(each.subject);
+    else before_.push_back(std::move(each));
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -51,8 +52,15 @@ class Reactions final : public Remembered {
   /// It does, as if its event were told now: by the plan that answers that now, for this one, without what is done already. False: none
   /// answers it for this one, or this one has come elsewhere.
   bool begin_anew(Member& subject);
+  /// Two supervisors have died over the plan for RECOVERY_FAILED that was under way for it.
+  [[nodiscard]] bool is_spent(std::uint16_t apid) const { return spent_.contains(apid); }
+  /// The plan that was under way for it counts as failed: RECOVERY_FAILED, high; where that is spent the network goes down.
+  void fail_plan_of(Member& subject);
   /// What has not begun anew by now does not any more.
-  void forget_what_was_under_way() noexcept { before_.clear(); }
+  void forget_what_was_under_way() noexcept {
+    before_.clear();
+    answered_before_ = true;
+  }
   /// What is under way, or was under the supervisor before.
   void note(OctetWriter& writer) const override;
   void recall(OctetReader& reader) override;
@@ -78,6 +86,7 @@ class Reactions final : public Remembered {
   [[nodiscard]] PlanStart start_for(const Member& subject, const Member* whose, const Reaction& reaction,
                                     descriptor::Severity severity, std::string_view event) const;
   void escalate(const PlanStart& plan, const ProcedureEnd& end);
+  void take_down_network_of(const Member& subject);
 
   class Desk final : public CommandDesk {
    public:
@@ -98,6 +107,8 @@ class Reactions final : public Remembered {
   Means means_;
   PlanRuns runs_;
   std::vector<PlanUnderWay> before_;  ///< under the supervisor before
+  std::set<std::uint16_t> spent_;
+  bool answered_before_{false};  ///< nothing of `before_` is still to be answered
   pus::PacketDescriber describer_;
 };
 

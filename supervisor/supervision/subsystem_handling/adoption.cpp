@@ -18,8 +18,6 @@
 
 namespace hirosco::supervisor {
 
-using descriptor::Severity;
-
 void Adoption::note(OctetWriter& writer) const {
   writer.put(craft_.mode->id).put(craft_.mode_epoch);
   const auto flag = [&](bool set) { writer.put(static_cast<std::uint8_t>(set ? 1 : 0)); };
@@ -163,10 +161,12 @@ void Adoption::recover_the_living() {
   for (Member& member : craft_.members)
     if (member.alive() && before(member).recovering && (stop_asked_ || !parts_.reactions.begin_anew(member)))
       failed.push_back(&member);
-  parts_.reactions.forget_what_was_under_way();
+  // First: a failure of others of its network may ask of it again what two supervisors have died by.
+  std::ranges::stable_partition(failed, [&](const Member* each) { return parts_.reactions.is_spent(each->apid()); });
   // After all that begin anew, which nobody takes down meanwhile; whom one of those takes down goes down already.
   for (Member* member : failed)
     if (!member->recovery.going_down()) fail_plan_of(*member);
+  parts_.reactions.forget_what_was_under_way();
 }
 
 void Adoption::fail_plan_of(Member& member) {
@@ -177,7 +177,7 @@ void Adoption::fail_plan_of(Member& member) {
     for (const std::uint16_t each : parts_.links.graph().network_of(member.apid()))
       if (const Member* other = craft_.member(each); other != nullptr && !craft_.is_ground_link(*other))
         craft_.guard.fence(each);
-  parts_.reactions.react(member, "RECOVERY_FAILED", Severity::High);
+  parts_.reactions.fail_plan_of(member);
 }
 
 /// The enable of a device may have run out before anybody could go on telling it: it has stopped and stays so, and its subsystem

@@ -29,6 +29,7 @@ struct PlansOfTheLiving : AdoptionTest {
       "HAND: plan cool because of HOT begins anew: the supervisor died in the midst of it";
   static constexpr const char* failed = ": the supervisor died in the midst of a plan, which counts as failed";
   const descriptor::PlanStep hand_brakes{"command", {1, 0, 15}, "HAND", {"BRAKE"}};
+  static descriptor::PlanStep hand_to(State state) { return {"set_state", {static_cast<std::int64_t>(state)}, "HAND"}; }
 
   void fly(std::string event, std::vector<descriptor::PlanStep> steps) {
     descriptor::Event told;
@@ -162,6 +163,100 @@ TEST_F(PlansOfTheLiving, CommandNobodyToWhereItHasComeAndGoOnFromThere) {
   EXPECT_TRUE(next.craft.guard.fenced(arm));
   EXPECT_FALSE(next.craft.guard.fenced(hand));
 }
+
+/// BRAKE is refused in each state but Operational, and the plan would fail.
+TEST_F(PlansOfTheLiving, CallNothingThatWhoHasComeWhereALaterStepLeadsItRefusesThere) {
+  is_under_way({hand_brakes, hand_to(SafeOperational)});
+  set(hand, SafeOperational);
+  SupervisorParts& next = go_on();
+  begins_to_hear(next);
+  EXPECT_TRUE(was_told("HAND: plan cool because of HOT has nothing left to do"));
+  EXPECT_FALSE(was_told(failed));
+  for (const std::uint16_t apid : {arm, hand}) EXPECT_THAT(texts(apid), IsEmpty()) << apid;
+  EXPECT_TRUE(next.craft.guard.fenced(hand));
+  EXPECT_FALSE(next.craft.guard.fenced(arm));
+}
+
+TEST_F(PlansOfTheLiving, GoOnBehindTheStepThatLeadsToWhereItsSubjectHasCome) {
+  is_under_way({hand_brakes, hand_to(ErrorOperational), hand_to(PostOperational), hand_brakes});
+  set(hand, PostOperational);
+  SupervisorParts& next = go_on();
+  begins_to_hear(next);
+  EXPECT_THAT(texts(hand), ElementsAre("BRAKE")) << "the last step, whatever that one says";
+}
+
+TEST_F(PlansOfTheLiving, CallOnceMoreWhatIsPermittedWhereItsSubjectHasCome) {
+  auto& brake = craft.mission.subsystems[1].subsystem.functions[1];
+  ASSERT_EQ(brake.name, "BRAKE");
+  brake.states = in_states({SafeOperational, Operational});
+  is_under_way({hand_brakes, hand_to(SafeOperational)});
+  set(hand, SafeOperational);
+  begins_to_hear(go_on());
+  EXPECT_THAT(texts(hand), ElementsAre("BRAKE")) << "whether it was called is not known";
+}
+
+TEST_F(PlansOfTheLiving, CallWhatIsRefusedWhereNoStepOfTheirsHasLedTheirSubject) {
+  is_under_way({hand_brakes});
+  set(hand, SafeOperational);
+  begins_to_hear(go_on());
+  EXPECT_THAT(texts(hand), ElementsAre("BRAKE")) << "it has not been done, and the plan fails";
+}
+
+/// HAND is to brake when a plan of its own has failed, and each supervisor dies that has it do so.
+struct PlansForFailure : PlansOfTheLiving {
+  static constexpr const char* failure_anew = "HAND: plan last because of RECOVERY_FAILED begins anew";
+  void SetUp() override {
+    PlansOfTheLiving::SetUp();
+    fly("HOT", {hand_brakes});
+    descriptor::Plan last;
+    last.name = "last";
+    last.event = "RECOVERY_FAILED";
+    last.steps = {hand_brakes};
+    craft.mission.plans.push_back(last);
+    next_mission = craft.mission;
+    event(arm, hot, Severity::Low);
+    is_noted();
+  }
+  /// In the very step in which it begins what was under way, or behind what it notes of that.
+  enum class Dies { AtOnce, Later };
+  /// The next one, with what it says and what HAND is sent.
+  SupervisorParts& next_that(Dies when) {
+    story.clear();
+    for (const std::uint16_t apid : {arm, hand}) static_cast<void>(received(apid));
+    SupervisorParts& next = go_on();
+    begins_to_hear(next);
+    if (when == Dies::Later) {
+      EXPECT_TRUE(next.memory.note());
+    }
+    return next;
+  }
+  void begins_no_third_time(Dies when) {
+    next_that(when);
+    EXPECT_TRUE(was_told(anew));
+    next_that(when);
+    EXPECT_TRUE(was_told("HAND" + std::string{failed}));
+    EXPECT_THAT(texts(hand), ElementsAre("BRAKE"));
+    next_that(when);
+    EXPECT_TRUE(was_told(failure_anew));
+    EXPECT_THAT(texts(hand), ElementsAre("BRAKE"));
+    for (int death = 0; death < 3; ++death) {
+      SupervisorParts& next = next_that(when);
+      EXPECT_TRUE(was_told("HAND" + std::string{failed})) << death;
+      EXPECT_FALSE(was_told("begins anew")) << death;
+      EXPECT_THAT(texts(hand), ::testing::Not(Contains("BRAKE"))) << death;
+      for (const std::uint16_t apid : {arm, hand}) {
+        EXPECT_TRUE(next.craft.guard.fenced(apid)) << apid;
+        EXPECT_TRUE(next.craft.member(apid)->recovery.going_down()) << apid;
+      }
+    }
+  }
+};
+
+TEST_F(PlansForFailure, OverWhichTwoSupervisorsDieBeginNoThirdTimeAndTheNetworkGoesDown) {
+  begins_no_third_time(Dies::Later);
+}
+
+TEST_F(PlansForFailure, ByWhichTwoSupervisorsDieAtOnceBeginNoThirdTimeEither) { begins_no_third_time(Dies::AtOnce); }
 
 /// By the loss of a link, say, which is no plan: that gives way with its next step.
 TEST_F(PlansOfTheLiving, DoNotBeginAnewForWhomSomebodyElseHasTakenDownMeanwhile) {
