@@ -93,6 +93,7 @@ ELSEWHERE = {
     "supervisor/platform/storage/sqlite_database.cpp": "supervisor/platform/storage/database_test.cpp",
     "supervisor/platform/storage/postgresql_": "supervisor/platform/storage/postgresql_database_test.cpp",
     "supervisor/platform/storage/value_disk.cpp": "supervisor/platform/storage/value_store_test.cpp",
+    "supervisor/supervision/event_handling/plans_before.cpp": "supervisor/supervision/succession/plans_of_the_living_test.cpp",
     "supervisor/supervision/procedures/steps/": "supervisor/supervision/procedures/plan_step_kinds_test.cpp",
     "supervisor/supervisor.cpp": "tests/integration/commissioning_test.cpp",
     "ground/api/schemas.cpp": "ground/api/openapi_test.cpp",

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/event_handling/reactions.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <utility>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
@@ -21,36 +18,6 @@ namespace {
 
 /// What nothing overrides: whoever is gone must be stopped and taken down whatever else runs for it (hazard SF5).
 [[nodiscard]] bool is_loss(std::string_view event) { return event == descriptor::event_of_death || event == "HANG"; }
-
-/// Nobody declares it: a plan may be for its severity.
-constexpr std::string_view event_of_failure = "RECOVERY_FAILED";
-
-[[nodiscard]] bool leads_to_where_it_is(const ProcedureStep& step, const Member& subject) {
-  return step.kind == &steps::set_state && subject.state() == steps::state_step::wanted(step);
-}
-
-[[nodiscard]] bool does_something(const ProcedureStep& step, const Craft& craft) {
-  return step.kind->answers == nullptr || step.kind->answers(step, craft);
-}
-
-/// What a plan asks of its subject on the way to where that is now, and would fail there.
-[[nodiscard]] bool is_done_on_the_way(const ProcedureStep& step, const Member& subject) {
-  if (step.kind == &steps::set_state) return true;
-  if (step.kind != &steps::command || !subject.state()) return false;
-  const descriptor::Function* function = subject.descriptor().find_function(step.words.front());
-  return function != nullptr && !function->permitted_in(*subject.state());
-}
-
-/// Of a plan that begins anew. What cannot be told to have been done is done once more.
-[[nodiscard]] Stage left_to_do(const PlanStart& start, const Member& subject, const Craft& craft) {
-  const auto is_there = [&](const ProcedureStep& step) { return leads_to_where_it_is(step, subject); };
-  const auto behind_the_way = std::ranges::find_if(start.planned.rbegin(), start.planned.rend(), is_there).base();
-  Stage left;
-  for (auto each = start.planned.begin(); each != start.planned.end(); ++each)
-    if (does_something(*each, craft) && (each >= behind_the_way || !is_done_on_the_way(*each, subject)))
-      left.push_back(*each);
-  return left;
-}
 
 }  // namespace
 
@@ -189,79 +156,23 @@ void Reactions::react_to_own(std::string_view event, Severity severity) {
 
 // --- under another supervisor --------------------------------------------------------------------------------------------
 
-bool Reactions::begins_anew(std::uint16_t apid) const {
-  const auto of_it = [apid](const PlanUnderWay& each) { return each.subject == apid; };
-  return !is_spent(apid) && std::ranges::any_of(before_, of_it) &&
-         std::ranges::none_of(before_, [&](const PlanUnderWay& each) { return of_it(each) && each.anew; });
+PlanStart Reactions::answer_again(const Member& subject, const PlanUnderWay& before) const {
+  const Member* origin = std::as_const(craft_).member(before.origin);
+  if (origin == nullptr && before.origin != supervisor_apid) return {};
+  Severity severity = before.severity;
+  const Reaction reaction =
+      origin != nullptr ? reaction_to(*origin, before.event, severity) : reaction_to_own(before.event, severity);
+  return start_for(subject, origin, reaction, severity, before.event);
 }
 
 bool Reactions::begin_anew(Member& subject) {
-  const std::uint16_t apid = subject.apid();
-  const bool may = begins_anew(apid) && !craft_.shutting_down;
-  const auto of_it = [apid](const PlanUnderWay& each) { return each.subject == apid; };
-  if (may) {
-    for (PlanUnderWay& each : before_) each.anew = each.anew || of_it(each);
-    craft_.remember();  // should this supervisor die by it at once, no third one does
-  }
-  std::vector<PlanUnderWay> those;
-  std::ranges::copy_if(before_, std::back_inserter(those), of_it);
-  std::erase_if(before_, of_it);
-  bool goes_on = false;
-  for (const PlanUnderWay& each : those) {
-    const Member* origin = std::as_const(craft_).member(each.origin);
-    if (!may || (origin == nullptr && each.origin != supervisor_apid)) continue;
-    Severity severity = each.severity;
-    const Reaction reaction =
-        origin != nullptr ? reaction_to(*origin, each.event, severity) : reaction_to_own(each.event, severity);
-    PlanStart start = start_for(subject, origin, reaction, severity, each.event);
-    const auto is_there = [&](const ProcedureStep& step) { return leads_to_where_it_is(step, subject); };
-    // Who has come elsewhere than its plan leads has not followed that.
-    if (start.steps.empty() && (start.planned.empty() || !std::ranges::all_of(start.planned, is_there))) continue;
-    goes_on = start.anew = true;
-    // It stands fenced where it has come to.
-    start.steps = left_to_do(start, subject, craft_);
-    const bool has_to_do = !start.steps.empty();
-    if (!has_to_do || runs_.against(start).empty())
-      craft_.tell(
-          fmt::format("{}: plan {} because of {} {}: the supervisor died in the midst of it", craft_.name_of(apid),
-                      start.occasion.plan, each.event, has_to_do ? "begins anew" : "has nothing left to do"),
-          apid);
-    if (has_to_do) runs_.begin(start);
-  }
-  return goes_on;
+  return plans_before_.begin_anew(subject, [&](const PlanUnderWay& before) { return answer_again(subject, before); });
 }
 
 void Reactions::fail_plan_of(Member& subject) {
-  const std::uint16_t apid = subject.apid();
-  if (is_spent(apid)) return take_down_network_of(subject);
-  const auto of_it = [apid](const PlanUnderWay& each) { return each.subject == apid; };
-  std::erase_if(before_, of_it);
-  before_.push_back({apid, apid, Severity::High, false, std::string{event_of_failure}});
-  craft_.remember();  // should this supervisor die by it at once, the next one knows that it had begun
-  std::erase_if(before_, of_it);
+  if (is_spent(subject.apid())) return take_down_network_of(subject);
+  plans_before_.counts_as_failed(subject.apid());
   react(subject, event_of_failure, Severity::High);
-}
-
-void Reactions::note(OctetWriter& writer) const {
-  std::vector<PlanUnderWay> all = runs_.under_way();
-  all.insert(all.end(), before_.begin(), before_.end());
-  // Until it is down, whoever goes on finds it on its way.
-  for (const std::uint16_t apid : spent_)
-    if (const Member* member = std::as_const(craft_).member(apid);
-        !answered_before_ || (member != nullptr && member->recovery.running()))
-      all.push_back({apid, apid, Severity::High, true, std::string{event_of_failure}});
-  writer.put(static_cast<std::uint16_t>(all.size()));
-  for (const PlanUnderWay& each : all) each.note(writer);
-}
-
-void Reactions::recall(OctetReader& reader) {
-  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
-    PlanUnderWay each;
-    each.recall(reader);
-    if (!reader.good()) return;
-    if (each.anew && each.event == event_of_failure) spent_.insert(each.subject);
-    else before_.push_back(std::move(each));
-  }
 }
 
 /// What would be done now, by the code that does it, up to where it would begin.

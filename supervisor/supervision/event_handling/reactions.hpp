@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <set>
 #include <string_view>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/event_handling/plan_choice.hpp"
 #include "supervisor/supervision/event_handling/plan_runs.hpp"
+#include "supervisor/supervision/event_handling/plans_before.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/procedures/procedure_runner.hpp"
 #include "supervisor/supervision/succession/journal.hpp"
@@ -21,8 +21,8 @@ namespace hirosco::supervisor {
 
 /// Events are heard here and nowhere else, and answered by the recovery plans of the mission (paper 4.3 and 5): whether
 /// ST[05] reports one to ground is no matter of recovery (adr 0020). Which plan: `plan_choice.hpp`; what its steps do:
-/// `procedures/steps/`, which of two is followed: `plan_runs.hpp`; what a member is in the middle of by that:
-/// `subsystem_handling/member_recovery.hpp`. Thread: the supervisor's.
+/// `procedures/steps/`, which of two is followed: `plan_runs.hpp`; which were under way when the supervisor before this
+/// one died: `plans_before.hpp`; what a member is in the middle of by that: `subsystem_handling/member_recovery.hpp`. Thread: the supervisor's.
 class Reactions final : public Remembered {
  public:
   Reactions(const Means& means, OwnSubsystem& own)
@@ -46,24 +46,17 @@ class Reactions final : public Remembered {
   /// TC[129,6]: what it would do about an event now, and what is against it. Nothing is moved, kept or sent but the answer.
   void preview(const pus::Request& asked, Octets data);
 
-  /// A plan was under way for it when the supervisor before this one died, and begins anew (docs/adr/0201). Not one that had been begun anew
-  /// already: over it two have died.
-  [[nodiscard]] bool begins_anew(std::uint16_t apid) const;
-  /// It does, as if its event were told now: by the plan that answers that now, for this one, without what is done already. False: none
-  /// answers it for this one, or this one has come elsewhere.
+  /// See PlansBefore.
+  [[nodiscard]] bool begins_anew(std::uint16_t apid) const { return plans_before_.begins_anew(apid); }
+  /// As if its event were told now: by the plan that answers that now.
   bool begin_anew(Member& subject);
-  /// Two supervisors have died over the plan for RECOVERY_FAILED that was under way for it.
-  [[nodiscard]] bool is_spent(std::uint16_t apid) const { return spent_.contains(apid); }
+  [[nodiscard]] bool is_spent(std::uint16_t apid) const { return plans_before_.is_spent(apid); }
   /// The plan that was under way for it counts as failed: RECOVERY_FAILED, high; where that is spent the network goes down.
   void fail_plan_of(Member& subject);
-  /// What has not begun anew by now does not any more.
-  void forget_what_was_under_way() noexcept {
-    before_.clear();
-    answered_before_ = true;
-  }
+  void forget_what_was_under_way() noexcept { plans_before_.forget(); }
   /// What is under way, or was under the supervisor before.
-  void note(OctetWriter& writer) const override;
-  void recall(OctetReader& reader) override;
+  void note(OctetWriter& writer) const override { plans_before_.note(writer); }
+  void recall(OctetReader& reader) override { plans_before_.recall(reader); }
 
  private:
   /// For each whom the plan moves, with what there is to do for it: the one whose event it is first.
@@ -85,6 +78,8 @@ class Reactions final : public Remembered {
   /// `whose`: the event's; null: the supervisor's, and the plan is for all that act.
   [[nodiscard]] PlanStart start_for(const Member& subject, const Member* whose, const Reaction& reaction,
                                     descriptor::Severity severity, std::string_view event) const;
+  /// Empty: nobody answers that any more.
+  [[nodiscard]] PlanStart answer_again(const Member& subject, const PlanUnderWay& before) const;
   void escalate(const PlanStart& plan, const ProcedureEnd& end);
   void take_down_network_of(const Member& subject);
 
@@ -106,9 +101,7 @@ class Reactions final : public Remembered {
   Desk desk_;
   Means means_;
   PlanRuns runs_;
-  std::vector<PlanUnderWay> before_;  ///< under the supervisor before
-  std::set<std::uint16_t> spent_;
-  bool answered_before_{false};  ///< nothing of `before_` is still to be answered
+  PlansBefore plans_before_{craft_, runs_};
   pus::PacketDescriber describer_;
 };
 

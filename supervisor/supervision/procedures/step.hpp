@@ -79,6 +79,11 @@ struct StepKind {
   Holds holds{Holds::Subject};
 };
 
+/// Of a plan: there is something to do now.
+[[nodiscard]] inline bool does_something(const ProcedureStep& step, const Craft& craft) {
+  return step.kind->answers == nullptr || step.kind->answers(step, craft);
+}
+
 /// What it asks of its subject, in words.
 [[nodiscard]] inline std::string text_of(const ProcedureStep& step, const descriptor::Mission& mission) {
   return step.kind->text != nullptr ? step.kind->text(step, mission) : std::string{step.kind->name};
