@@ -22,6 +22,29 @@ constexpr std::array carried_names{"the tool", "the payload"};
   return number;
 }
 
+/// The `i`th posture that is looked at, from 1, within the joints' ranges.
+void take_posture(const Model& model, std::size_t i, JointVector& position) {
+  constexpr std::array<std::size_t, max_joints> bases{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53};
+  for (std::size_t joint = 0; joint < model.joints().size(); ++joint) {
+    const JointLimits& limits = model.joints()[joint].limits;
+    const double lower = limits.lower.value_or(-std::numbers::pi), upper = limits.upper.value_or(std::numbers::pi);
+    position[static_cast<Eigen::Index>(joint)] = lower + (upper - lower) * spread(i, bases[joint]);
+  }
+}
+
+/// Are all joints between two bodies such that they can be at 0?
+[[nodiscard]] bool may_be_zero(const Model& model, std::size_t one, std::size_t other) {
+  const auto bodies = model.bodies();
+  while (one != other) {
+    // What carries stands before what is carried.
+    std::size_t& farther = one > other ? one : other;
+    const auto& limits = model.joints()[static_cast<std::size_t>(bodies[farther].coordinate)].limits;
+    if (limits.lower.value_or(0) > 0 || limits.upper.value_or(0) < 0) return false;
+    farther = bodies[farther].parent;
+  }
+  return true;
+}
+
 }  // namespace
 
 Clearance::Clearance(const Model& model, std::span<const LinkHull> hulls, std::optional<FrameId> tip)
@@ -133,19 +156,6 @@ void Clearance::add_pair(std::size_t one, std::size_t other, std::string names) 
   pair.axes.assign(searches, Vector3::UnitZ());
 }
 
-/// Are all joints between two bodies such that they can be at 0?
-bool Clearance::may_be_zero(const Model& model, std::size_t one, std::size_t other) {
-  const auto bodies = model.bodies();
-  while (one != other) {
-    // What carries stands before what is carried.
-    std::size_t& farther = one > other ? one : other;
-    const auto& limits = model.joints()[static_cast<std::size_t>(bodies[farther].coordinate)].limits;
-    if (limits.lower.value_or(0) > 0 || limits.upper.value_or(0) < 0) return false;
-    farther = bodies[farther].parent;
-  }
-  return true;
-}
-
 /// What somebody else moves is built as near as it stands: a finger that opens beside its own wrist is no neighbour by construction.
 void Clearance::built_distances(const Model& model, std::span<const LinkHull> hulls, std::span<double> of_pairs) {
   const JointVector zeros = JointVector::Zero(model.joint_count());
@@ -162,12 +172,7 @@ void Clearance::learn_construction(const Model& model, std::span<const LinkHull>
   JointVector position = JointVector::Zero(model.joint_count());
   for (LookedAt& pair : pairs_) pair.named.built_m = 0;
   for (std::size_t i = 1; i <= postures; ++i) {
-    constexpr std::array<std::size_t, max_joints> bases{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53};
-    for (std::size_t joint = 0; joint < model.joints().size(); ++joint) {
-      const JointLimits& limits = model.joints()[joint].limits;
-      const double lower = limits.lower.value_or(-std::numbers::pi), upper = limits.upper.value_or(std::numbers::pi);
-      position[static_cast<Eigen::Index>(joint)] = lower + (upper - lower) * spread(i, bases[joint]);
-    }
+    take_posture(model, i, position);
     distances(position, apart);
     for (std::size_t k = 0; k < pairs_.size(); ++k)
       pairs_[k].named.built_m = std::max(pairs_[k].named.built_m, apart[k]);

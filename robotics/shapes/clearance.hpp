@@ -104,7 +104,6 @@ class Clearance {
   [[nodiscard]] double behind_m(std::size_t body) const noexcept;
   void learn_construction(const Model& model, std::span<const LinkHull> hulls);
   void built_distances(const Model& model, std::span<const LinkHull> hulls, std::span<double> of_pairs);
-  [[nodiscard]] static bool may_be_zero(const Model& model, std::size_t one, std::size_t other);
   void place(const JointVector& position) noexcept;
   [[nodiscard]] double apart_m(LookedAt& pair, double enough_m) noexcept;
 

@@ -7,11 +7,8 @@
 namespace hirosco::robot_arm {
 namespace {
 
-/// So long a goal has to be measured before it counts as reached, and at most so long after the end of the path.
-constexpr double settled_enough_s = 0.02;
-constexpr double patience_s = 3;
-/// Of a line, before it is given up; of its end, where the tool has to be measured.
-constexpr double most_off_line_m = 0.002, most_off_end_m = 0.001;
+/// Of a line, before it is given up.
+constexpr double most_off_line_m = 0.002;
 /// A way back from a contact takes 10 s at most, and whoever brakes is there sooner.
 constexpr double longest_wait_s = 12;
 /// With which MOVE_ABORT goes unless it is told another one: who says that a path is free says it of this.
@@ -20,6 +17,42 @@ constexpr const char* ends_range = "on the line ends the range of joint";
 /// No longer: a failure carries 64 octets of words.
 constexpr const char* ends_reach = "a singular posture, or it leads out of reach, after mm";
 constexpr const char* singular_there = "a singular posture has the tool there";
+
+[[nodiscard]] bool in_range(Bounds bounds, const JointVector& goal) noexcept {
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const double value = goal[static_cast<Eigen::Index>(i)];
+    if (!(value >= bounds[i].lowest && value <= bounds[i].highest)) return false;
+  }
+  return true;
+}
+
+[[nodiscard]] Result<robotics::Pose> wanted_pose(const FunctionValues& values) noexcept {
+  const robotics::Quaternion wanted{values[3], values[4], values[5], values[6]};
+  if (!(wanted.norm() > 0.5 && wanted.norm() < 1.5)) return fail(ErrorCode::InvalidArgument, "no orientation");
+  return robotics::Pose{wanted.normalized().toRotationMatrix(), {values[0], values[1], values[2]}};
+}
+
+/// Of a search that has found nothing.
+[[nodiscard]] Reason no_posture(PoseSearch& search) noexcept {
+  if (const auto joint = search.joint_at_its_end())
+    return {Trouble::out_of_range, "before it is there ends the range of joint", static_cast<std::int64_t>(*joint + 1)};
+  if (search.nearly() && search.singular()) return {Trouble::singular, singular_there};
+  return {Trouble::out_of_reach, "as near as it comes, mm", millimetres(search.off_m())};
+}
+
+/// Of a line that was walked along in advance, and ends before its end.
+[[nodiscard]] Reason no_line(const Line& line) noexcept {
+  if (const auto joint = line.joint_in_the_way())
+    return {Trouble::line_lost, ends_range, static_cast<std::int64_t>(*joint + 1)};
+  return {Trouble::line_lost, ends_reach, millimetres(line.free_m())};
+}
+
+/// What is in the way can be seen from here alone: where it would be, a line needs another posture.
+[[nodiscard]] Reason line_left(const Setpoints& setpoints) noexcept {
+  if (const auto joint = setpoints.joint_in_the_way())
+    return {Trouble::line_lost, ends_range, static_cast<std::int64_t>(*joint + 1)};
+  return {Trouble::line_lost, "on the line is a singular posture, after mm", millimetres(setpoints.gone_m())};
+}
 
 }  // namespace
 
@@ -70,55 +103,34 @@ Guidance::News Guidance::look(bool gives_way) noexcept {
   if (waiting_) return wait();
   if (abort_.under_way()) return look_at_abort(gives_way);
   if (setpoints_->off_line_m() > most_off_line_m) return lose_line();
-  if (searched_) {
-    const std::optional<Reason> why = search();
-    return why ? News{.end = End::NoWay, .why = *why} : News{};
-  }
-  if (!line_judged_) {
-    const std::optional<Reason> why = judge_line();
+  if (searched_ || !line_judged_) {
+    const std::optional<Reason> why = searched_ ? search() : judge_line();
     return why ? News{.end = End::NoWay, .why = *why} : News{};
   }
   News news;
-  if (arrives_ && !half_reported_ && progress() >= 0.5) half_reported_ = news.half_way = true;
-  if (setpoints_->at_rest()) news.end = retreats_ && !setpoints_->retreated() ? End::NotReached : arrive(gives_way);
+  news.half_way = arrival_.tell_half(progress() >= 0.5);
+  if (setpoints_->at_rest())
+    news.end = arrival_.goes_back() && !setpoints_->retreated() ? End::NotReached : arrive(gives_way);
   return news;
 }
 
-/// What is in the way can be seen from here alone: where it would be, a line needs another posture.
 Guidance::News Guidance::lose_line() noexcept {
-  News lost{.end = End::LineLost};
-  if (const auto joint = setpoints_->joint_in_the_way())
-    lost.why = {Trouble::line_lost, ends_range, static_cast<std::int64_t>(*joint + 1)};
-  else
-    lost.why = {Trouble::line_lost, "on the line is a singular posture, after mm", millimetres(setpoints_->gone_m())};
+  const Reason why = line_left(*setpoints_);
   setpoints_->brake();
-  return lost;
+  return {.end = End::LineLost, .why = why};
 }
 
-/// The end of a path is not yet the goal: a motion is done when it is measured there, and rests.
+/// Who gives way is wherever he was pushed.
 Guidance::End Guidance::arrive(bool gives_way) noexcept {
   const double tolerance = parts_.parameters.goal_tolerance.load();
   const JointVector left = setpoints_->now().position - parts_.drives.measured().position;
-  // A long arm's joints are all there, and its tool is not.
   const auto tool = parts_.parameters.tool.load().position_m;
-  const bool at_end = !tool_to_ || (Vector3{tool[0], tool[1], tool[2]} - *tool_to_).norm() <= most_off_end_m;
-  const bool there = gives_way || (at_end && left.cwiseAbs().maxCoeff() <= tolerance);
-  settled_s_ = there ? settled_s_ + cycle_s_ : 0;
-  waited_s_ += cycle_s_;
-  if (settled_s_ >= settled_enough_s) return End::Reached;
-  return waited_s_ > patience_s ? End::NotReached : End::None;
+  arrival_.wait(gives_way || arrival_.there(left, tolerance, {tool[0], tool[1], tool[2]}), cycle_s_);
+  if (arrival_.settled()) return End::Reached;
+  return arrival_.overdue() ? End::NotReached : End::None;
 }
 
 // --- functions -----------------------------------------------------------------------------------------------------------
-
-bool Guidance::in_range(const JointVector& goal) const noexcept {
-  const Bounds bounds = parts_.known.bounds();
-  for (std::size_t i = 0; i < bounds.size(); ++i) {
-    const double value = goal[static_cast<Eigen::Index>(i)];
-    if (!(value >= bounds[i].lowest && value <= bounds[i].highest)) return false;
-  }
-  return true;
-}
 
 Outcome Guidance::start(const Result<>& planned) noexcept {
   if (!planned) return refused(Trouble::no_goal, planned.error().text, planned.error().value);
@@ -126,28 +138,18 @@ Outcome Guidance::start(const Result<>& planned) noexcept {
     setpoints_->rest(setpoints_->now().position);
     return refused(Trouble::too_slow, would_last, static_cast<std::int64_t>(longest_motion_s));
   }
-  tool_to_.reset();
-  half_reported_ = false;
-  retreats_ = false;
-  arrives_ = true;
-  settled_s_ = waited_s_ = 0;
+  arrival_.begin(Arrival::To::Goal);
   end_motion();
   return running;
 }
 
 void Guidance::lead() noexcept {
   end_motion();
-  tool_to_.reset();
-  retreats_ = false;
-  arrives_ = false;
-  settled_s_ = waited_s_ = 0;
+  arrival_.begin(Arrival::To::Nowhere);
 }
 
 Outcome Guidance::start_jog(Begin by, double seconds) noexcept {
-  tool_to_.reset();
-  retreats_ = false;
-  arrives_ = false;
-  settled_s_ = waited_s_ = 0;
+  arrival_.begin(Arrival::To::Nowhere);
   jog_left_s_ = seconds;
   jog_ = by;
   return running;
@@ -163,24 +165,17 @@ std::optional<Reason> Guidance::forbids(const JointVector& goal) noexcept {
 Outcome Guidance::move_j(const FunctionValues& values) noexcept {
   const std::size_t joints = parts_.known.joints();
   const JointVector goal = vector_of(std::span{values}.first(joints));
-  if (!in_range(goal)) return refused(Trouble::out_of_range);
+  if (!in_range(parts_.known.bounds(), goal)) return refused(Trouble::out_of_range);
   if (const auto why = forbids(goal)) return refused(why->trouble, why->text, why->number);
   return start(setpoints_->go(goal, values[joints]));
 }
 
-Result<robotics::Pose> Guidance::pose_of(const FunctionValues& values) const noexcept {
-  const robotics::Quaternion wanted{values[3], values[4], values[5], values[6]};
-  if (!(wanted.norm() > 0.5 && wanted.norm() < 1.5)) return fail(ErrorCode::InvalidArgument, "no orientation");
-  return robotics::Pose{wanted.normalized().toRotationMatrix(), {values[0], values[1], values[2]}};
-}
-
 Outcome Guidance::move_p(const FunctionValues& values) noexcept {
-  const Result<robotics::Pose> goal = pose_of(values);
+  const Result<robotics::Pose> goal = wanted_pose(values);
   if (!goal) return refused(Trouble::no_goal, goal.error().text);
   pose_search_->begin(setpoints_->tip_with(*goal), setpoints_->now().position);
   end_motion();
-  tool_to_.reset();
-  arrives_ = true;
+  arrival_.begin(Arrival::To::Goal);
   searched_ = Searched{goal->position, values[7]};
   return running;
 }
@@ -191,31 +186,23 @@ std::optional<Reason> Guidance::search() noexcept {
   if (found == PoseSearch::Found::NotYet) return std::nullopt;
   const Searched wanted = *searched_;
   searched_.reset();
-  if (found == PoseSearch::Found::Nothing) return no_posture();
+  if (found == PoseSearch::Found::Nothing) return no_posture(*pose_search_);
   const JointVector& goal = pose_search_->posture();
   if (pose_search_->singular()) return Reason{Trouble::singular, singular_there};
   if (auto why = forbids(goal)) return why;
   const Outcome started = start(setpoints_->go(goal, wanted.speed_share));
   if (started.kind == Outcome::Kind::Refused)
     return Reason{static_cast<Trouble>(started.code), started.reason.text, started.reason.value};
-  tool_to_ = wanted.tool_m;
+  arrival_.expect_tool(wanted.tool_m);
   return std::nullopt;
 }
 
-std::optional<Reason> Guidance::no_posture() noexcept {
-  if (const auto joint = pose_search_->joint_at_its_end())
-    return Reason{Trouble::out_of_range, "before it is there ends the range of joint",
-                  static_cast<std::int64_t>(*joint + 1)};
-  if (pose_search_->nearly() && pose_search_->singular()) return Reason{Trouble::singular, singular_there};
-  return Reason{Trouble::out_of_reach, "as near as it comes, mm", millimetres(pose_search_->off_m())};
-}
-
 Outcome Guidance::move_l(const FunctionValues& values) noexcept {
-  const Result<robotics::Pose> goal = pose_of(values);
+  const Result<robotics::Pose> goal = wanted_pose(values);
   if (!goal) return refused(Trouble::no_goal, goal.error().text);
   const Outcome started = start(setpoints_->go_straight(*goal, {values[7], values[8]}));
   if (started.kind == Outcome::Kind::Refused) return started;
-  tool_to_ = goal->position;
+  arrival_.expect_tool(goal->position);
   line_judged_ = false;
   return started;
 }
@@ -225,11 +212,7 @@ std::optional<Reason> Guidance::judge_line() noexcept {
   const Line& line = setpoints_->line();
   if (line.found() == Line::Found::NotYet) return std::nullopt;
   line_judged_ = true;
-  if (line.found() == Line::Found::Nothing) {
-    if (const auto joint = line.joint_in_the_way())
-      return Reason{Trouble::line_lost, ends_range, static_cast<std::int64_t>(*joint + 1)};
-    return Reason{Trouble::line_lost, ends_reach, millimetres(line.free_m())};
-  }
+  if (line.found() == Line::Found::Nothing) return no_line(line);
   std::optional<Reason> why = forbids(line.posture());
   if (!why && line.duration_s() > longest_motion_s)
     why = Reason{Trouble::too_slow, would_last, static_cast<std::int64_t>(longest_motion_s)};
@@ -245,10 +228,8 @@ Outcome Guidance::retreat(const FunctionValues& values) noexcept {
     return refused(Trouble::no_goal, "it came here by no way since it entered Operational");
   }
   end_motion();
-  tool_to_.reset();
-  arrives_ = false;
-  settled_s_ = waited_s_ = 0;
-  retreats_ = retracting_ = true;
+  arrival_.begin(Arrival::To::WayBack);
+  retracting_ = true;
   return running;
 }
 
@@ -283,10 +264,7 @@ Outcome Guidance::judge_abort(AbortWay::Judged what, double speed_share) noexcep
   const Outcome stored = parts_.abort_path.begin(setpoints_->now().position, what);
   if (stored.kind == Outcome::Kind::Refused) return stored;
   end_motion();
-  tool_to_.reset();
-  retreats_ = half_reported_ = false;
-  arrives_ = true;
-  settled_s_ = waited_s_ = 0;
+  arrival_.begin(Arrival::To::Goal);
   abort_.begin(what, speed_share);
   return running;
 }
@@ -297,7 +275,7 @@ Guidance::News Guidance::look_at_abort(bool gives_way) noexcept {
   const At at = abort_.step(*setpoints_);
   News news;
   // With more power than it began with the whole way may be less than half of what was foreseen.
-  if (went && !half_reported_ && (progress() >= 0.5 || at == At::Last)) half_reported_ = news.half_way = true;
+  news.half_way = arrival_.tell_half(went && (progress() >= 0.5 || at == At::Last));
   switch (at) {
     case At::OnWay: break;
     case At::Judged: news.end = End::Judged; break;

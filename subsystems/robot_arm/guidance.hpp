@@ -7,6 +7,7 @@
 
 #include "hirosco/subsystem/author/handler.hpp"
 #include "subsystems/robot_arm/abort_motion.hpp"
+#include "subsystems/robot_arm/control/arrival.hpp"
 #include "subsystems/robot_arm/control/pose_search.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
 #include "subsystems/robot_arm/drives.hpp"
@@ -105,11 +106,8 @@ class Guidance {
   [[nodiscard]] bool at_rest() const noexcept { return setpoints_->at_rest(); }
 
  private:
-  [[nodiscard]] bool in_range(const JointVector& goal) const noexcept;
-  [[nodiscard]] Result<robotics::Pose> pose_of(const FunctionValues& values) const noexcept;
   [[nodiscard]] std::optional<Reason> forbids(const JointVector& goal) noexcept;
   [[nodiscard]] std::optional<Reason> search() noexcept;
-  [[nodiscard]] std::optional<Reason> no_posture() noexcept;
   [[nodiscard]] std::optional<Reason> judge_line() noexcept;
   [[nodiscard]] News lose_line() noexcept;
   [[nodiscard]] News wait() noexcept;
@@ -138,16 +136,11 @@ class Guidance {
   };
   std::optional<Waiting> waiting_;
   AbortMotion abort_{parts_.abort_path};
-  std::optional<Vector3> tool_to_;  ///< where the tool is to be at the end of a motion that has a pose for a goal
+  Arrival arrival_;  ///< of the motion that was begun last
   double cycle_s_{0.001};
-  double waited_s_{0};  ///< behind the end of a path
-  double settled_s_{0};  ///< at the goal
   double jog_left_s_{0};
   Begin jog_{nullptr};  ///< the one that is under way
   bool retracting_{false};
-  bool half_reported_{false};
-  bool retreats_{false};  ///< its motion is a way back
-  bool arrives_{false};  ///< its motion has a goal
 };
 
 }  // namespace hirosco::robot_arm
