@@ -256,6 +256,10 @@ TEST_F(ManifestStart, ThatFailsForWantOfADescriptorAtWhicheverStepLeavesNoProces
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
     auto launched = launcher.launch(mission.subsystems[0]);
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &all), 0);
+    if (!launched && launched.error().code == ErrorCode::Unavailable) {  // still being read, beside this
+      --left;
+      continue;
+    }
     started = launched.has_value();
     failed += started ? 0 : 1;
     while (launcher.any_running()) {}
