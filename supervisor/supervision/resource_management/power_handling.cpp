@@ -119,7 +119,7 @@ void PowerHandling::note(OctetWriter& writer) const {
 void PowerHandling::recall(OctetReader& reader) {
   const bool set = reader.get<std::uint8_t>() != 0;
   const auto budget_w = reader.get<double>();
-  if (!set) return;
+  if (!set || !reader.good()) return;
   ledger_.set_budget(budget_w);
   set_w_ = budget_w;
 }

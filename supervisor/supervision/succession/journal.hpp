@@ -53,7 +53,7 @@ class Remembered {
   virtual ~Remembered() = default;
   /// What does not fit is not remembered at all.  Realtime: bounded.
   virtual void note(OctetWriter& writer) const = 0;
-  /// What cannot be read leaves the part as it was made; `reader` tells it.
+  /// What cannot be read `reader` tells; then nothing of the note counts and what moves is stopped, whatever a part has taken of it.
   virtual void recall(OctetReader& reader) = 0;
 };
 
