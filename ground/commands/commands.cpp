@@ -23,6 +23,16 @@ constexpr std::uint16_t count_modulo = 16'384;
 constexpr std::size_t longest_sender = 32;
 constexpr std::size_t most_open = 10'000;
 
+constexpr std::uint16_t asked_apid(std::uint32_t request_id) {
+  return static_cast<std::uint16_t>(request_id >> 16 & 0x7FF);
+}
+
+/// Of another station, for what was said before, while one is being answered: no telecommand of anybody, and asked again by itself.
+bool is_question_refused(const Verdict& verdict) {
+  return verdict.last && asked_apid(verdict.request_id) == pus::supervisor_apid &&
+         verdict.code == static_cast<int>(pus::FailureCode::Busy);
+}
+
 [[nodiscard]] std::string hex_of(Octets octets) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   std::string text;
@@ -158,6 +168,7 @@ void Commands::take_verdict(const Verdict& verdict, OnboardTime t) {
   if (found == open_.end()) {
     // The supervisor's own are its business; of ours that have ended, nothing more is wanted.
     if (verdict.destination == pus::supervisor_apid || verdict.destination == parts_.source) return;
+    if (is_question_refused(verdict)) return;
     if (open_.size() >= most_open) return;
     found = open_.emplace(key, add_foreign(verdict, t)).first;
   }
@@ -182,11 +193,10 @@ void Commands::take_copy(Octets packet, OnboardTime t) {
 }
 
 Commands::Open Commands::add_foreign(const Verdict& verdict, OnboardTime t) {
-  constexpr std::uint16_t apid_mask = 0x7FF;
   StoredCommand command;
   command.t = t;
   command.sender = sender_of(verdict.destination);
-  command.apid = static_cast<std::uint16_t>(verdict.request_id >> 16 & apid_mask);
+  command.apid = asked_apid(verdict.request_id);
   command.subsystem = parts_.catalogue.name_of(command.apid);
   command.function = "?";
   command.arguments = "{}";

@@ -243,6 +243,16 @@ TEST_F(ACommander, OfAForeignTelecommandWithoutACopyTellsWhomItWentToAndWhatBeca
   EXPECT_THAT(told, SizeIs(3)) << "the supervisor's own are its business";
 }
 
+/// Each asks by itself for what was said before it came, and asks again.
+TEST_F(ACommander, AnotherStationsQuestionThatFoundTheSupervisorBusyIsNoTelecommandOfAnybody) {
+  constexpr int busy = 0x0108;
+  constexpr std::uint32_t to_supervisor = 0x1801'C005, to_drill = 0x180A'C006;
+  reports_on(to_supervisor, elsewhere, "failed", true, busy);
+  EXPECT_THAT(told, IsEmpty());
+  reports_on(to_drill, elsewhere, "failed", true, busy);
+  EXPECT_THAT(told, SizeIs(1));
+}
+
 TEST_F(ACommander, ForgetsOneOfWhichNothingIsHeardForTenMinutes) {
   ASSERT_TRUE(commands.send(bore()));
   pass(600s);

@@ -48,7 +48,7 @@ const entry = (source) => outputs.find((one) => one.entry === source).name;
 const of_page = new Set(with_needs(entry('page/main.js'))), drawing = outputs.find(({name}) => /^view-.*\.js$/.test(name)).name;
 const of_robot = [...new Set(with_needs(drawing))].filter((name) => !of_page.has(name));
 // What is the robot's alone says so by its name.
-const said = (name) => of_robot.includes(name) ? name.replace('chunk-', 'robot_space-') : name;
+const said = (name) => of_robot.includes(name) ? name.replace(/^(chunk|view)-/, 'robot_space-') : name;
 for (const {name} of outputs.filter((one) => one.name.endsWith('.js'))) {
   const text = readFileSync(join(out, name), 'utf8');
   const changed = of_robot.reduce((all, one) => all.replaceAll(one, said(one)), text);

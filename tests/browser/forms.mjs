@@ -42,7 +42,7 @@ async function fill_fields({address, fields}) {
     do {
       await turn();
       await turn();
-      node = document.querySelector(`[data-test=field-${name}]`);
+      node = document.querySelector(`[data-test="field-${name}"]`);
     } while (!node);
     if (node.tagName === 'SELECT') {
       answers.push({choices: node.querySelectorAll('option').length});
