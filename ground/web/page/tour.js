@@ -15,13 +15,13 @@ const page = {bring_up, commands, events, fault, injections, mission, mode_of, o
 
 const usual_steps = [
   {title: 'Look around', view: '#/subsystems',
-    text: 'Each subsystem says in which of its ten states it is, how its cycle keeps its time and what it measures. All of it follows the descriptors of the mission.',
+    text: 'Each subsystem says in which of its ten states it is, how its cycle keeps its time and what it measures, as its descriptor has it.',
     done: () => Boolean(status.value?.subsystems?.some((one) => state_name(one.state) === 'Operational'))},
   {title: 'Send a telecommand', view: '#/commands',
     text: 'Choose one, fill in its form and send it. The supervisor says beforehand whether the mode permits it, logs it and reports how it ended.',
     done: () => commands.value.some((one) => outcome_of(one).stage === 'completed')},
   {title: 'Read the story', view: '#/events',
-    text: 'Every event and every refusal is here with its on-board time; “hirosco log” and “hirosco why” tell the same. In the timeline a click replays the moment before.',
+    text: 'Every event and every refusal is here with its on-board time, as “hirosco log” has it. In the timeline a click replays the moment before.',
     done: () => location.hash.startsWith('#/events')},
 ];
 export const tour_steps = signal([]);

@@ -23,6 +23,6 @@ export const Help = () => html`<main class="help">
     <dt class="stale">grey</dt><dd>older than three of its periods: the last thing known, not the present</dd>
     <dt class="amber_text">amber frame</dt><dd>a replay from the archive; telecommands are locked</dd>
     <dt><b>SAFE ALL</b></dt><dd>held for 0.8 s, inhibits the actuators of every subsystem, in every mode</dd></dl>
-    <p class="about">Times are on-board times. Plots, tables and forms follow the mission's descriptors. Every view has its own address: send it to a colleague on the same tunnel.</p>
+    <p class="about">Times are on-board times. Every view has its own address: send it to a colleague on the same tunnel.</p>
     <p class="about">The page asks no other host for anything. Licences of what is in it: <a href="notices.txt">notices.txt</a>.</p></${Panel}>
 </main>`;

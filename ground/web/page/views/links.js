@@ -36,6 +36,6 @@ export function Links() {
           <td><button class="chip" disabled=${locked || !may_now(up ? 'UNLINK' : 'LINK')} title=${locked || may_now(up ? 'UNLINK' : 'LINK') ? undefined : 'not in this mode'} data-test=${`link-${link.id}`} onClick=${() => send_and_say('SUPERVISOR', up ? 'UNLINK' : 'LINK', {LINK: link.id})}>${up ? 'cut' : 'make'}</button></td></tr>`;
       })}</tbody></table>
       ${mission.value?.links?.length ? null : html`<p class="empty">This mission has no real-time links.</p>`}
-      <p class="about">Links join parameters of two subsystems cycle by cycle, without the ground and without the supervisor. Who misses a required one for longer than its limit stops its own actuators. A mode permits cutting and making links, commissioning for example.</p></${Panel}>
+      <p class="about">Links join parameters of two subsystems cycle by cycle, past ground and supervisor. Who misses a required one for longer than its limit stops its own actuators.</p></${Panel}>
   </main>`;
 }
