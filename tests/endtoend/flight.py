@@ -79,11 +79,12 @@ def listens(port):
 
 
 def segments():
-    """Named shared memory of the project on this computer. The folders of device addresses stay (docs/adr/0169)."""
+    """Named shared memory of the project on this computer, but for that of unit tests, which may run beside. The folders of device addresses
+    stay (docs/adr/0169)."""
     memory = pathlib.Path("/dev/shm")
     with contextlib.suppress(FileNotFoundError):
         return sorted(str(path.relative_to(memory)) for top in memory.glob("hirosco*") for path in [top, *top.rglob("*")]
-                      if not path.is_dir())
+                      if not path.is_dir() and not any(part.startswith("test-") for part in path.parts))
     return []
 
 
