@@ -307,12 +307,12 @@ TEST(OwnLoopThreads, AnswerBesideTheCycleThroughTwentyRoundsOfStartReconfigureAn
       OctetWriter{number}.put(i);
       driven.send(200, 1, number);
       driven.send(201, 1, {});
-      read_files(driven);
       driven.call("CONFIGURE", 1 + (i + 1) % 2);
       // Housekeeping is busy until the cycle has taken what was asked of it before.
       driven.done();
       set_files(driven, i);  // busy while a change of configuration without a bump is under way
       driven.cycle_on(2);
+      read_files(driven);  // nobody writes it now: who is preempted there, as no cycle of a flight is, is not waited for
       std::array<std::byte, 3> structure;
       OctetWriter{structure}.put(std::uint8_t{1}).put(std::uint16_t{9});
       driven.send(3, i % 2 == 0 ? 6 : 5, structure);
@@ -322,7 +322,7 @@ TEST(OwnLoopThreads, AnswerBesideTheCycleThroughTwentyRoundsOfStartReconfigureAn
     driven.go(State::Offline);
   }
   driven.done();
-  EXPECT_EQ(driven.told.failures, 0);
+  EXPECT_EQ(driven.told.failures, 0) << driven.told.failed;
   EXPECT_EQ(driven.told.completions, driven.sent);
   EXPECT_EQ(driven.told.reports, 20 * 6);
 }
