@@ -311,8 +311,10 @@ TEST(OwnLoopThreads, AnswerBesideTheCycleThroughTwentyRoundsOfStartReconfigureAn
       // Housekeeping is busy until the cycle has taken what was asked of it before.
       driven.done();
       set_files(driven, i);  // busy while a change of configuration without a bump is under way
+      driven.done();
       driven.cycle_on(2);
-      read_files(driven);  // nobody writes it now: who is preempted there, as no cycle of a flight is, is not waited for
+      read_files(
+          driven);  // nobody writes it now: who is preempted there, as no cycle of a flight is, is not waited for
       std::array<std::byte, 3> structure;
       OctetWriter{structure}.put(std::uint8_t{1}).put(std::uint16_t{9});
       driven.send(3, i % 2 == 0 ? 6 : 5, structure);
