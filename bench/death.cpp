@@ -130,7 +130,7 @@ class Network {
     launched.vital =
         page != nullptr ? Mapping{nullptr, {reinterpret_cast<std::byte*>(page), sizeof(VitalPage)}} : vital_[number];
     launched.permit = permit_[number];
-    guard_.adopt(first_apid + number, launched);
+    guard_.started(first_apid + number, launched);
     static_cast<void>(guard_.release(first_apid + number, guard_.fences(first_apid + number)));
   }
   /// One of them at least.

@@ -83,7 +83,6 @@ TESTED = ("supervisor/", "ground/")
 ELSEWHERE = {
     "supervisor/flight_shell.cpp": "tests/endtoend/flight_test.py",
     "supervisor/guard/guard_roster.cpp": "supervisor/guard/guard_test.cpp",
-    "supervisor/guard/guarded_processes.cpp": "supervisor/guard/take_over_test.cpp",
     "supervisor/guard/loop_watch.cpp": "supervisor/guard/watching_test.cpp",
     "supervisor/guard/stop_of_all.cpp": "supervisor/guard/guard_test.cpp",
     "supervisor/guard/supervisor_watch.cpp": "supervisor/guard/watching_test.cpp",

@@ -34,13 +34,13 @@ bool Guard::holds(std::uint16_t apid) const {
   return guarded_.find(apid) != nullptr;
 }
 
-void Guard::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
+void Guard::started(std::uint16_t apid, const LaunchedSubsystem& launched) {
   const LockGuard lock{mutex_};
-  processes_.adopt(apid, launched);
+  processes_.started(apid, launched);
 }
 
-std::string_view Guard::take_over(std::uint16_t apid, const AdoptedSubsystem& adopted, std::string_view against) {
-  adopt(apid, adopted.launched);
+std::string_view Guard::adopt(std::uint16_t apid, const AdoptedSubsystem& adopted, std::string_view against) {
+  started(apid, adopted.launched);
   const LockGuard lock{mutex_};
   return processes_.go_on(apid, adopted, against);
 }

@@ -63,12 +63,12 @@ class Guard {
   /// It was added: who was not is not to be started.
   [[nodiscard]] bool holds(std::uint16_t apid) const;
   /// It was started: its pages are taken over, nothing is permitted.
-  void adopt(std::uint16_t apid, const LaunchedSubsystem& launched);
+  void started(std::uint16_t apid, const LaunchedSubsystem& launched);
   /// It goes on after the guard that held it is gone (docs/adr/0093): under the same epoch, so that nothing that has stopped meanwhile
   /// can begin to move by this; and permitted only if it was, and is Operational, and nothing stands against it.
   /// \param against Why it may not go on; empty: it may.
   /// \return why it is not permitted; empty: it is.
-  std::string_view take_over(std::uint16_t apid, const AdoptedSubsystem& adopted, std::string_view against);
+  std::string_view adopt(std::uint16_t apid, const AdoptedSubsystem& adopted, std::string_view against);
   /// It was added, and its process had ended already under the guard before: its devices may be coming to rest still.
   void ended_before(std::uint16_t apid);
   /// It is permitted, and a device of it says that it does not put out what it is told: it stopped while nobody told it that it may.

@@ -27,7 +27,7 @@ void steps_only(GuardTest& test, Duration span) {
 
 TEST_F(GuardTest, WhoIsNobodyOfTheMissionIsNeitherFencedNorReleasedNorTakenOver) {
   constexpr std::uint16_t nobody = 99;
-  guard.adopt(nobody, {});
+  guard.started(nobody, {});
   guard.fence(nobody);
   guard.forget(nobody);
   EXPECT_EQ(guard.fences(nobody), 0u);
@@ -46,7 +46,7 @@ TEST_F(GuardTest, PagesThatAreTooSmallAreNotTakenOver) {
     launched.permit = page(sizeof(PermitPage));
     Mapping& small = small_vital ? launched.vital : launched.permit;
     small.octets = small.octets.first((small_vital ? sizeof(VitalPage) : sizeof(PermitPage)) - 1);
-    guard.adopt(arm, launched);
+    guard.started(arm, launched);
     EXPECT_FALSE(guard.release(arm, guard.fences(arm)));
   }
 }
@@ -217,7 +217,7 @@ TEST_F(GuardTest, OneWithoutAProcessToEndIsFencedAndToldAllTheSame) {
   LaunchedSubsystem launched;
   launched.vital = lives[hand].vital_memory;
   launched.permit = lives[hand].permit_memory;
-  guard.adopt(hand, launched);
+  guard.started(hand, launched);
   cycling(hand);
   run(50ms);
   ASSERT_TRUE(guard.release(hand, guard.fences(hand)));
@@ -418,7 +418,7 @@ TEST_F(GuardTest, OneDeviceThatHasStoppedDoesNotStandForTheOther) {
   launched.vital = lives[hand].vital_memory;
   launched.permit = lives[hand].permit_memory;
   launched.grip = lives[hand].process;
-  second.adopt(hand, launched);
+  second.started(hand, launched);
   const auto open = [&](const char* name) {
     return flows.open({Transfer::SharedMemory, name}, FlowSide::Device).value();
   };

@@ -128,7 +128,7 @@ struct GuardShellTest : ::testing::Test {
     arm.grip = std::make_shared<EndedProcess>(device.mute);
     new (arm.vital.octets.data()) VitalPage{};
     new (arm.permit.octets.data()) PermitPage{};
-    guard.adopt(testing::arm, arm);
+    guard.started(testing::arm, arm);
     ASSERT_TRUE(guard.release(testing::arm, guard.fences(testing::arm)));
   }
   [[nodiscard]] VitalPage& vital() { return *reinterpret_cast<VitalPage*>(arm.vital.octets.data()); }

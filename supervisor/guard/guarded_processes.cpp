@@ -10,7 +10,7 @@
 
 namespace hirosco::supervisor {
 
-void GuardedProcesses::adopt(std::uint16_t apid, const LaunchedSubsystem& launched) {
+void GuardedProcesses::started(std::uint16_t apid, const LaunchedSubsystem& launched) {
   GuardedMember* member = parts_.guarded.find(apid);
   if (member == nullptr || launched.vital.octets.size() < sizeof(VitalPage) ||
       launched.permit.octets.size() < sizeof(PermitPage))

@@ -29,8 +29,8 @@ class GuardedProcesses {
   explicit GuardedProcesses(const Parts& parts) : parts_{parts} {}
 
   /// It was started: its pages are taken over, nothing is permitted.
-  void adopt(std::uint16_t apid, const LaunchedSubsystem& launched);
-  /// Its pages were taken over by adopt(): it goes on as it did under the guard before.
+  void started(std::uint16_t apid, const LaunchedSubsystem& launched);
+  /// Its pages were taken over by started(): it goes on as it did under the guard before.
   /// \param against Why it may not go on; empty: it may.
   /// \return why it is not permitted; empty: it is.
   [[nodiscard]] std::string_view go_on(std::uint16_t apid, const AdoptedSubsystem& adopted, std::string_view against);

@@ -34,7 +34,7 @@ struct LifeWatchTest : GuardTest {
       static_cast<void>(hold_life(life.vital->life));
       for (;;) ::pause();
     }
-    guard.adopt(apid, launched);
+    guard.started(apid, launched);
     return child;
   }
   /// Until the guard has seen who lives, and then until it has fenced `apid`: what is waited for ends the wait.

@@ -54,7 +54,7 @@ TEST_F(NewestStop, GoesOnWithTheOneThatTheGuardBeforeHadWritten) {
     adopted.launched.permit = memory.map(memory.create("page", sizeof(PermitPage)).value(), Access::ReadWrite).value();
     pages[apid] = new (adopted.launched.permit.octets.data()) PermitPage{};
     if (apid == hand) pages[apid]->newest_stop = on_page(hand);
-    static_cast<void>(next.take_over(apid, adopted, {}));
+    static_cast<void>(next.adopt(apid, adopted, {}));
   }
   EXPECT_EQ(next.newest_stop(), guard.newest_stop()) << "what they have said since the last stop is not void by this";
   for (const auto& [apid, page] : pages) EXPECT_EQ(page->newest_stop.load(), guard.newest_stop()) << apid;

@@ -277,7 +277,7 @@ TEST_F(PowerTest, WhereNothingMovesThePowerGoesAtOnce) {
   LaunchedSubsystem launched;
   launched.vital = lives[arm].vital_memory;
   launched.permit = lives[arm].permit_memory;
-  second.adopt(arm, launched);
+  second.started(arm, launched);
   enter(State::Operational);
   static_cast<void>(second.step(clock.now()));
   EXPECT_TRUE(hear()->on);

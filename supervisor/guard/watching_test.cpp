@@ -348,7 +348,7 @@ void without_grip(Watching& test, std::uint16_t apid) {
   LaunchedSubsystem launched;
   launched.vital = test.lives[apid].vital_memory;
   launched.permit = test.lives[apid].permit_memory;
-  test.guard.adopt(apid, launched);
+  test.guard.started(apid, launched);
 }
 
 TEST_F(Watching, WhoIsGoneOrEndedAlreadyOrCannotBeGrippedIsNotBlamedForAStarvedLoop) {

@@ -81,7 +81,7 @@ struct GuardTest : ::testing::Test {
     life.vital = new (launched.vital.octets.data()) VitalPage{};
     life.permit = new (launched.permit.octets.data()) PermitPage{};
     life.vital->realtime = 1;
-    guard.adopt(apid, launched);
+    guard.started(apid, launched);
   }
   void cycling(std::uint16_t apid, State state = State::Operational) {
     lives[apid].vital->state = static_cast<std::uint32_t>(state);

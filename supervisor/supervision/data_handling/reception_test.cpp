@@ -114,7 +114,7 @@ TEST_F(ReceptionTest, WhoseMessageTheChannelCannotReadIsHeardOnAndNeitherClosedN
   auto rest = std::make_unique<PlayedMember::End>(played[hand].channel);
   launched.port = std::make_unique<LocalMemberPort>(std::make_unique<DamagedChannel>(std::move(rest)), launched.vital,
                                                     launched.permit);
-  guard.adopt(hand, launched);
+  guard.started(hand, launched);
   member.started(std::move(launched));
   ASSERT_TRUE(guard.release(hand, guard.fences(hand)));
   report(hand, 17, 2, {});

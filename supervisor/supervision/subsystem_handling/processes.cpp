@@ -103,7 +103,7 @@ Result<> Processes::launch(Member& member) {
       return cannot_start("the mission wants it isolated");
     }
   }
-  craft_.guard.adopt(member.apid(), *launched);
+  craft_.guard.started(member.apid(), *launched);
   tell_not_kept(member, launched->not_kept);
   member.started(std::move(*launched));
   if (!std::exchange(member.was_started, true) && member.fences_when_free)
@@ -149,7 +149,7 @@ std::optional<MemoryHandle> Processes::adopt(Member& member, std::string_view ag
   // By its page as well as by what was noted: the guard may have stopped it after that.
   if (adopted->stopped) member.fences_when_free.reset();
   static_cast<void>(parts_.resources.claim(member));  // it has it already
-  const std::string_view why = craft_.guard.take_over(member.apid(), *adopted, against);
+  const std::string_view why = craft_.guard.adopt(member.apid(), *adopted, against);
   tell_not_kept(member, adopted->launched.not_kept);
   member.started(std::move(adopted->launched));
   member.enter_mode(craft_.mode_epoch);

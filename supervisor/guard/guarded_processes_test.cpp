@@ -13,13 +13,13 @@ using testing::hand;
 using testing::Life;
 using namespace std::chrono_literals;
 
-struct TakeOver : GuardTest {
+struct GuardAdoption : GuardTest {
   KeeperPage kept;
   Guard next{{.clock = clock, .flows = flows, .first_epoch = 5000, .notes = {mission, kept}, .on_finding = {}}};
   std::map<std::uint16_t, PermitPage*> pages;
 
   /// The guard before has let go of its flows; this one finds ARM as it is.
-  std::string_view take_over(std::uint16_t apid, std::string_view against = {}) {
+  std::string_view adopt(std::uint16_t apid, std::string_view against = {}) {
     const Life& life = lives[apid];
     AdoptedSubsystem adopted;
     adopted.epoch = life.permit->epoch.load();
@@ -33,7 +33,7 @@ struct TakeOver : GuardTest {
       if (described.subsystem.id == apid && !next.holds(apid)) {
         EXPECT_TRUE(next.add(described, apid == camera));
       }
-    return next.take_over(apid, adopted, against);
+    return next.adopt(apid, adopted, against);
   }
   [[nodiscard]] bool permits(std::uint16_t apid) { return pages[apid]->permits(pages[apid]->epoch.load()); }
   void operational(std::uint16_t apid) {
@@ -44,10 +44,10 @@ struct TakeOver : GuardTest {
   }
 };
 
-TEST_F(TakeOver, WhoWasPermittedGoesOnUnderTheEpochThatItHad) {
+TEST_F(GuardAdoption, WhoWasPermittedGoesOnUnderTheEpochThatItHad) {
   operational(hand);
   const auto epoch = lives[hand].permit->epoch.load();
-  EXPECT_EQ(take_over(hand), "");
+  EXPECT_EQ(adopt(hand), "");
   EXPECT_TRUE(permits(hand));
   EXPECT_EQ(pages[hand]->epoch.load(), epoch);
   static_cast<void>(next.step(clock.now()));
@@ -57,21 +57,21 @@ TEST_F(TakeOver, WhoWasPermittedGoesOnUnderTheEpochThatItHad) {
   EXPECT_FALSE(permits(hand)) << "for the stay in Operational that it was given for";
 }
 
-TEST_F(TakeOver, NobodyWhoWasNotPermittedIsAndNobodyGetsAnEpochBelowTheOneItHad) {
+TEST_F(GuardAdoption, NobodyWhoWasNotPermittedIsAndNobodyGetsAnEpochBelowTheOneItHad) {
   cycling(hand);
-  EXPECT_EQ(take_over(hand), "it was not permitted");
+  EXPECT_EQ(adopt(hand), "it was not permitted");
   EXPECT_FALSE(permits(hand));
   EXPECT_GE(pages[hand]->epoch.load(), lives[hand].permit->epoch.load());
 }
 
-TEST_F(TakeOver, WhatStandsAgainstItStopsItUnderAHigherEpoch) {
+TEST_F(GuardAdoption, WhatStandsAgainstItStopsItUnderAHigherEpoch) {
   const auto refuse = [&](const char* what, auto change, std::string_view against = {}) {
     lives.erase(hand);
     start(hand);
     operational(hand);
     change();
     const auto epoch = lives[hand].permit->epoch.load();
-    EXPECT_EQ(take_over(hand, against), what);
+    EXPECT_EQ(adopt(hand, against), what);
     EXPECT_FALSE(permits(hand)) << what;
     EXPECT_GT(pages[hand]->epoch.load(), epoch) << what;
     EXPECT_EQ(pages[hand]->stop.load(), 1u) << what;
@@ -84,30 +84,30 @@ TEST_F(TakeOver, WhatStandsAgainstItStopsItUnderAHigherEpoch) {
   refuse("it has not seen its permit of now", [&] { lives[hand].vital->seen_epoch = 17; });
 }
 
-TEST_F(TakeOver, OfAPageThatNobodyWroteTheEpochIsNotTakenOver) {
+TEST_F(GuardAdoption, OfAPageThatNobodyWroteTheEpochIsNotTakenOver) {
   operational(hand);
   const auto seen = lives[hand].permit->epoch.load();
   // A supervisor between the two died before its guard had written on the page that it had made.
   lives[hand].permit = new (lives[hand].permit_memory.octets.data()) PermitPage{};
-  EXPECT_EQ(take_over(hand), "it was not permitted");
+  EXPECT_EQ(adopt(hand), "it was not permitted");
   EXPECT_GT(pages[hand]->epoch.load(), seen) << "no device would hear of it";
   ASSERT_TRUE(next.release(hand, next.fences(hand)));
   EXPECT_GT(pages[hand]->epoch.load(), 5000u);
   EXPECT_TRUE(permits(hand));
 }
 
-TEST_F(TakeOver, WhoCyclesUnpermittedKeepsTheEpochThatItLooksAt) {
+TEST_F(GuardAdoption, WhoCyclesUnpermittedKeepsTheEpochThatItLooksAt) {
   cycling(hand);
   run(20ms);
   const auto epoch = lives[hand].permit->epoch.load();
   ASSERT_EQ(lives[hand].vital->seen_epoch.load(), epoch);
-  EXPECT_EQ(take_over(hand), "it was not permitted");
+  EXPECT_EQ(adopt(hand), "it was not permitted");
   EXPECT_EQ(pages[hand]->epoch.load(), epoch) << "it looks at its old page for a while, and is not ended for that";
 }
 
-TEST_F(TakeOver, WhoMayHaveLostItsRealTimeToTheGuardBeforeIsGivenItBackWithItsFirstRelease) {
+TEST_F(GuardAdoption, WhoMayHaveLostItsRealTimeToTheGuardBeforeIsGivenItBackWithItsFirstRelease) {
   cycling(hand);
-  take_over(hand);
+  adopt(hand);
   lives[hand].process->realtime = false;
   ASSERT_TRUE(next.release(hand, next.fences(hand)));
   EXPECT_TRUE(lives[hand].process->realtime);
@@ -116,17 +116,17 @@ TEST_F(TakeOver, WhoMayHaveLostItsRealTimeToTheGuardBeforeIsGivenItBackWithItsFi
   EXPECT_FALSE(lives[hand].process->realtime) << "once: this guard knows what it has taken itself";
 }
 
-TEST_F(TakeOver, AStopOfTheGuardBeforeHolds) {
+TEST_F(GuardAdoption, AStopOfTheGuardBeforeHolds) {
   operational(hand);
   guard.fence(hand);
-  EXPECT_EQ(take_over(hand), "it was not permitted");
+  EXPECT_EQ(adopt(hand), "it was not permitted");
   EXPECT_FALSE(permits(hand));
   EXPECT_EQ(pages[hand]->stop.load(), 1u);
 }
 
-TEST_F(TakeOver, AFenceOfItReachesWhoGoesOn) {
+TEST_F(GuardAdoption, AFenceOfItReachesWhoGoesOn) {
   operational(hand);
-  ASSERT_EQ(take_over(hand), "");
+  ASSERT_EQ(adopt(hand), "");
   next.fence(hand);
   EXPECT_FALSE(permits(hand));
   EXPECT_TRUE(next.fenced(hand));
@@ -150,7 +150,7 @@ struct Notes : GuardTest {
     launched.vital = lives[arm].vital_memory;
     launched.permit = lives[arm].permit_memory;
     launched.grip = lives[arm].process;
-    notes.adopt(arm, launched);
+    notes.started(arm, launched);
     cycling(arm);
   }
 };
