@@ -199,7 +199,7 @@ class Subsystem {
   friend class Configurations;
   friend class StateMachine;
   friend class CycleLoop;
-  friend class Takeover;
+  friend class BumplessChange;
   friend class GroundLink;  // and nobody else: who holds a ground link cannot forget what it has to say of a stop
   void bind_function(std::string_view name, BoundHandler handler);
   void raise_encoded(std::uint16_t event, Octets auxiliary) noexcept;

@@ -15,7 +15,8 @@ CycleLoop::CycleLoop(const Parts& parts)
       lost_devices_{{parts_.descriptor, plan_, control_, self_test_, reports_}},
       inputs_{{plan_, control_, lost_devices_, reports_, parts_.vital}},
       gate_{{parts_.descriptor, plan_, control_, permit_, lost_devices_}},
-      takeover_{{parts_.author, parts_.descriptor, parts_.dictionary, plan_, control_, permit_, self_test_, reports_}},
+      bumpless_change_{
+          {parts_.author, parts_.descriptor, parts_.dictionary, plan_, control_, permit_, self_test_, reports_}},
       own_writes_{parts_.descriptor, parts_.dictionary},
       meter_{{parts_.clock, parts_.rings, parts_.vital, parts_.realtime, parts_.resources, parts_.loops, reports_}} {}
 
@@ -26,7 +27,7 @@ void CycleLoop::prepare(CyclePlan plan) {
   control_.begin();
   first_ = true;
   inputs_.begin();
-  takeover_.forget();
+  bumpless_change_.forget();
   permit_.begin();
   begin_counting(*plan_.configuration);
   meter_.begin_links();
@@ -67,7 +68,7 @@ TimePoint CycleLoop::step(TimePoint planned, std::optional<Duration> spun_from) 
   own_writes_.note_stores();
   run_node(start.planned);
   own_writes_.note_own_writes();
-  takeover_.end();
+  bumpless_change_.end();
   gate_.write_outputs(start.planned);
   if (plan_.sampler != nullptr && start.counts) plan_.sampler->tick(*this, reports_);
   ++count_;
@@ -123,7 +124,7 @@ void CycleLoop::run_function(const CycleCommand& command) noexcept {
 }
 
 void CycleLoop::reconfigure(Reconfiguration& wanted, TimePoint planned) noexcept {
-  if (!takeover_.begin(wanted, planned)) return;
+  if (!bumpless_change_.begin(wanted, planned)) return;
   begin_counting(*wanted.to);
   parts_.vital.period_ns.store(static_cast<std::uint64_t>(wanted.to->sampling.count()), std::memory_order_relaxed);
   parts_.vital.configuration.store(wanted.to->id, std::memory_order_release);

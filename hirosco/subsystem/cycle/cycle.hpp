@@ -14,6 +14,7 @@
 #include "hirosco/parameter/write_queue.hpp"
 #include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
 #include "hirosco/subsystem/cycle/actuator_gate.hpp"
+#include "hirosco/subsystem/cycle/bumpless_change.hpp"
 #include "hirosco/subsystem/cycle/control_state.hpp"
 #include "hirosco/subsystem/cycle/cycle_inputs.hpp"
 #include "hirosco/subsystem/cycle/cycle_meter.hpp"
@@ -26,7 +27,6 @@
 #include "hirosco/subsystem/cycle/reconfiguration.hpp"
 #include "hirosco/subsystem/cycle/report_writer.hpp"
 #include "hirosco/subsystem/cycle/self_test_run.hpp"
-#include "hirosco/subsystem/cycle/takeover.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 
 namespace hirosco {
@@ -125,7 +125,7 @@ class CycleLoop final : private pus::SampleSource {
   LostDevices lost_devices_;
   CycleInputs inputs_;
   ActuatorGate gate_;
-  Takeover takeover_;
+  BumplessChange bumpless_change_;
   OwnWrites own_writes_;
   CycleMeter meter_;
   CyclePace pace_;

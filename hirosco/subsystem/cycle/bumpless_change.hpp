@@ -13,7 +13,7 @@ namespace hirosco {
 
 /// The one cycle in which another configuration is taken over without a break (docs/adr/0096), whole or not at all: it begins where commands
 /// are taken and ends before anything is put out. What comes of it is reported. Thread: the cycle's.
-class Takeover {
+class BumplessChange {
  public:
   struct Parts {
     Subsystem& author;
@@ -25,7 +25,7 @@ class Takeover {
     const SelfTestRun& self_test;
     ReportWriter& reports;
   };
-  explicit Takeover(const Parts& parts) noexcept : parts_{parts} {}
+  explicit BumplessChange(const Parts& parts) noexcept : parts_{parts} {}
 
   /// None has begun. Thread: service, while the cycle rests.
   void forget() noexcept { taken_over_ = nullptr; }

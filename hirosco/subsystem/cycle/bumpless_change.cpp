@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 // Safety module: cycle (docs/safety/modules.csv).
-#include "hirosco/subsystem/cycle/takeover.hpp"
+#include "hirosco/subsystem/cycle/bumpless_change.hpp"
 
 #include <utility>
 
 namespace hirosco {
 
 /// Whether it may be: the guard, the second inhibit and the state are asked in the cycle, as it is taken over there.
-const char* Takeover::why_not(const Reconfiguration& wanted) const noexcept {
+const char* BumplessChange::why_not(const Reconfiguration& wanted) const noexcept {
   if (parts_.plan.configuration != wanted.from) return "another configuration is in force";
   if (!parts_.control.controlling()) return "neither Safe-Operational nor Operational";
   if (parts_.self_test.running()) return "a self test runs";
@@ -18,7 +18,7 @@ const char* Takeover::why_not(const Reconfiguration& wanted) const noexcept {
   return nullptr;
 }
 
-bool Takeover::begin(Reconfiguration& wanted, TimePoint planned) noexcept {
+bool BumplessChange::begin(Reconfiguration& wanted, TimePoint planned) noexcept {
   const auto refuse = [&](const Error& why) {
     parts_.reports.explain({.kind = ReportKind::NotReconfigured, .index = wanted.to->id}, why);
     return false;
@@ -43,7 +43,7 @@ bool Takeover::begin(Reconfiguration& wanted, TimePoint planned) noexcept {
   return true;
 }
 
-void Takeover::end() noexcept {
+void BumplessChange::end() noexcept {
   const Reconfiguration* const taken = std::exchange(taken_over_, nullptr);
   if (taken == nullptr) return;
   const bool active = parts_.control.active();
