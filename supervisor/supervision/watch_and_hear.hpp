@@ -38,12 +38,19 @@ class Accounts {
   virtual void outcome_unknown(std::uint16_t apid) = 0;
 };
 
+/// What a cancel has ended.
+enum class Cancelled : std::uint8_t {
+  Nothing,  ///< it was over already, or the shutdown has taken over
+  Ended,  ///< the flight goes on without it
+  ForGood,  ///< the commissioning, which nobody begins again: the flight has failed
+};
+
 /// What takes many steps and goes on by itself: it would go on with what was taken down or stopped as if nothing had happened.
 class Undertaking {
  public:
   virtual ~Undertaking() = default;
-  /// For a recovery. False: it is over already.
-  virtual bool cancel(std::string_view why) = 0;
+  /// For a recovery.
+  virtual Cancelled cancel(std::string_view why) = 0;
   /// Every actuator is stopped, and whoever did it takes the states along.
   virtual void all_stopped(std::string_view why) = 0;
 };

@@ -62,12 +62,12 @@ void Commissioning::drop() {
   runner_.cancel();
 }
 
-bool Commissioning::cancel(std::string_view why) {
-  if (craft_.shutting_down || !running()) return false;
+Cancelled Commissioning::cancel(std::string_view why) {
+  if (craft_.shutting_down || !running()) return Cancelled::Nothing;
   begins_ = false;
   runner_.cancel();
   craft_.tell("commissioning stopped: " + std::string{why}, supervisor_apid);
-  return true;
+  return Cancelled::ForGood;
 }
 
 }  // namespace hirosco::supervisor

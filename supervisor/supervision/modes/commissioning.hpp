@@ -22,7 +22,7 @@ class Commissioning final : public Undertaking {
   /// Of a supervisor that goes on for another: itself alone. `done` is told whether it is Operational.
   void start_itself(std::function<void(bool)> done);
   void succeeded_before() noexcept { succeeded_ = true; }
-  bool cancel(std::string_view why) override;
+  Cancelled cancel(std::string_view why) override;
   void all_stopped(std::string_view why) override { static_cast<void>(cancel(why)); }
   /// The shutdown takes over.
   void drop();

@@ -104,12 +104,12 @@ TEST_F(CommissioningTest, ASupervisorThatCannotStartEndsTheFlight) {
 
 TEST_F(CommissioningTest, ItIsCancelledOnceWithAReasonAndNotDuringTheShutdown) {
   start();
-  EXPECT_TRUE(commissioning.cancel("SAFE_ALL"));
+  EXPECT_EQ(commissioning.cancel("SAFE_ALL"), Cancelled::ForGood);
   EXPECT_TRUE(was_told("commissioning stopped: SAFE_ALL"));
-  EXPECT_FALSE(commissioning.cancel("SAFE_ALL"));
+  EXPECT_EQ(commissioning.cancel("SAFE_ALL"), Cancelled::Nothing);
   start();
   craft.shutting_down = true;
-  EXPECT_FALSE(commissioning.cancel("plan"));
+  EXPECT_EQ(commissioning.cancel("plan"), Cancelled::Nothing);
   EXPECT_TRUE(commissioning.running());
   commissioning.drop();
   EXPECT_FALSE(commissioning.running());

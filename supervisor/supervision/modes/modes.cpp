@@ -110,10 +110,10 @@ void Modes::ended(const descriptor::Mode& mode, const std::string& failure) {
   if (const auto call = std::exchange(call_, std::nullopt)) parts_.own.finish(*call);
 }
 
-bool Modes::cancel(std::string_view why) {
-  if (!runner_.running()) return false;
+Cancelled Modes::cancel(std::string_view why) {
+  if (!runner_.running()) return Cancelled::Nothing;
   fall_back(why, StatesFollow::Here);
-  return true;
+  return Cancelled::Ended;
 }
 
 void Modes::all_stopped(std::string_view why) {

@@ -38,7 +38,7 @@ class Modes final : public Undertaking, public Remembered {
   void preview(const pus::Request& asked, Octets data);
 
   /// The change ends, and whom it moved and nobody else has stopped is stopped.
-  bool cancel(std::string_view why) override;
+  Cancelled cancel(std::string_view why) override;
   /// The change ends.
   void all_stopped(std::string_view why) override;
   [[nodiscard]] bool running() const noexcept { return runner_.running(); }

@@ -199,7 +199,7 @@ TEST_F(BeingCommissioned, WhomItExcludesAndSomebodyHasBroughtUpMeanwhileEndsIt) 
 
 TEST_F(BeingCommissioned, WhoseLastStepIsReadWhenItHasBeenStoppedEntersNoMode) {
   go_to_the_last_step();
-  EXPECT_TRUE(parts.under_way.cancel("SAFE_ALL"));
+  EXPECT_EQ(parts.under_way.cancel("SAFE_ALL"), Cancelled::ForGood);
   end();
   EXPECT_EQ(craft.mode->name, "open");
 }
@@ -262,6 +262,12 @@ TEST_F(ModeChangeTest, OneTelecommandBringsTheWholeCraftIntoTheModeAndItsEndSays
   EXPECT_EQ(craft.changing_to, nullptr);
   EXPECT_EQ(craft.member(hand)->state(), Operational);
   EXPECT_TRUE(was_told("change from mode open to narrow: 5 stages, moves HAND"));
+}
+
+TEST_F(ModeChangeTest, OfWhichThePlanThatCancelsItHearsThatTheFlightGoesOn) {
+  begin();
+  EXPECT_EQ(parts.under_way.cancel("a plan"), Cancelled::Ended);
+  EXPECT_EQ(parts.under_way.cancel("a plan"), Cancelled::Nothing);
 }
 
 TEST_F(ModeChangeTest, ASecondChangeWaitsForTheEndOfTheFirst) {

@@ -14,10 +14,10 @@ namespace hirosco::supervisor {
 class UnderWay final : public Undertaking {
  public:
   UnderWay(Commissioning& commissioning, Modes& modes) : commissioning_{commissioning}, modes_{modes} {}
-  /// True: it was the commissioning, which nobody tries again.
-  bool cancel(std::string_view why) override {
-    static_cast<void>(modes_.cancel(why));
-    return commissioning_.cancel(why);
+  Cancelled cancel(std::string_view why) override {
+    const Cancelled change = modes_.cancel(why);
+    const Cancelled commissioning = commissioning_.cancel(why);
+    return commissioning == Cancelled::Nothing ? change : commissioning;
   }
   void all_stopped(std::string_view why) override {
     modes_.all_stopped(why);

@@ -214,7 +214,7 @@ void LinkLosses::recall(OctetReader& reader) {
   }
 }
 
-bool LinkLosses::cancel(std::string_view why) {
+Cancelled LinkLosses::cancel(std::string_view why) {
   std::erase_if(fallbacks_, [](const auto& entry) { return !entry.second.runner.running(); });
   std::set<std::uint16_t> ended;
   for (auto& [apid, fallback] : fallbacks_) {
@@ -222,12 +222,11 @@ bool LinkLosses::cancel(std::string_view why) {
     ended.insert(apid);
   }
   for (const std::uint8_t id : begun_before_) ended.insert(consumer_of(*craft_.mission.find_link(id)).apid());
-  const bool running = !ended.empty();
   for (const std::uint16_t apid : ended)
     craft_.tell(fmt::format("{} does not go on in another configuration: {}", craft_.name_of(apid), why), apid);
   fallbacks_.clear();
   begun_before_.clear();
-  return running;
+  return ended.empty() ? Cancelled::Nothing : Cancelled::Ended;
 }
 
 }  // namespace hirosco::supervisor

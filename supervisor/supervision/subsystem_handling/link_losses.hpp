@@ -27,7 +27,7 @@ class LinkLosses final : public Watch, public Undertaking, public LossHandling, 
   [[nodiscard]] std::uint8_t answered_link(std::uint16_t apid, std::string_view event) const override;
   /// Those that are held over, and those on their way to another configuration.
   void watch(TimePoint now) override;
-  bool cancel(std::string_view why) override;
+  Cancelled cancel(std::string_view why) override;
   void all_stopped(std::string_view why) override { static_cast<void>(cancel(why)); }
   /// Whoever the supervisor before this one led to another configuration goes there and rests, or goes down; told either way.
   void end_what_was_begun();

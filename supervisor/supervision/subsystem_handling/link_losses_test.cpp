@@ -348,13 +348,13 @@ TEST_F(WhoFallsBack, AndCannotGoesDown) {
 }
 
 TEST_F(WhoFallsBack, IsLeftInTheMiddleByAStopOfEverythingWhichIsTold) {
-  EXPECT_FALSE(losses.cancel("nobody does")) << "nothing to end";
+  EXPECT_EQ(losses.cancel("nobody does"), Cancelled::Nothing) << "nothing to end";
   falls_back();
-  EXPECT_TRUE(losses.cancel("plan p"));
+  EXPECT_EQ(losses.cancel("plan p"), Cancelled::Ended);
   EXPECT_TRUE(was_told("ARM does not go on in another configuration: plan p"));
   desk.answer(true);
   EXPECT_EQ(desk.sent.size(), 1U);
-  EXPECT_FALSE(losses.cancel("again"));
+  EXPECT_EQ(losses.cancel("again"), Cancelled::Nothing);
   falls_back();
   losses.all_stopped("a stop");
   EXPECT_TRUE(was_told("ARM does not go on in another configuration: a stop"));

@@ -77,16 +77,16 @@ void Restoration::all_stopped(std::string_view why) {
   static_cast<void>(cancel(why));
 }
 
-bool Restoration::cancel(std::string_view why) {
+Cancelled Restoration::cancel(std::string_view why) {
   losses_.clear();
-  if (means_.commanded.wanted().empty()) return false;
+  if (means_.commanded.wanted().empty()) return Cancelled::Nothing;
   craft_.tell(fmt::format("{} not brought back: {}", names(), why), supervisor_apid);
   for (const auto& [apid, commanded] : means_.commanded.wanted())
     own_.announce("NOT_RESTORED", {static_cast<double>(apid)});
   runner_.cancel();
   means_.commanded.forget_wanted();
   links_.clear();
-  return true;
+  return Cancelled::Ended;
 }
 
 void Restoration::watch(TimePoint now) {

@@ -38,7 +38,7 @@ class Restoration final : public Watch, public Undertaking {
   /// Its plan has answered its death.
   void answered(std::uint16_t apid);
   /// Nobody comes back by itself any more.
-  bool cancel(std::string_view why) override;
+  Cancelled cancel(std::string_view why) override;
   void all_stopped(std::string_view why) override;
   void watch(TimePoint now) override;
 

@@ -286,7 +286,7 @@ TEST_F(RestorationTest, WhatWasCommandedBeforeItHungCountsAsLongAsAHangMayLastBe
     dies(hand);
     ASSERT_NE(commanded.wanted(hand), nullptr);
     EXPECT_EQ(commanded.wanted(hand)->state(), beyond == Duration{0} ? Operational : PreOperational);
-    EXPECT_TRUE(restoration.cancel("the next"));
+    EXPECT_EQ(restoration.cancel("the next"), Cancelled::Ended);
     starts(hand);
   }
 }
@@ -358,7 +358,7 @@ TEST_F(EndOfARestoration, IsToldWithItsReason) {
   EXPECT_EQ(end_by([this] { restoration.cancel("somebody says so"); }), "HAND not brought back: somebody says so");
   EXPECT_EQ(end_by([this] { restoration.answered(hand); }), "HAND not brought back: HAND does not come back");
   EXPECT_EQ(end_by([this] { parts.commissioning.start([] {}); }), "HAND not brought back: the mode changes");
-  EXPECT_FALSE(restoration.cancel("again")) << "it is over already";
+  EXPECT_EQ(restoration.cancel("again"), Cancelled::Nothing) << "it is over already";
 }
 
 TEST_F(RestorationTest, AStepThatFailsEndsItAndNobodyTriesAgain) {

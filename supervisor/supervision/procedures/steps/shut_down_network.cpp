@@ -59,7 +59,7 @@ void shut_down(const ProcedureStep& step, const Means& means, const CommandDone&
   const auto network = members(step, means);
   const std::string plan = "plan " + step.occasion.plan;
   means.craft.tell(plan + ": network {" + names(network, means.craft) + "} to ErrorOperational and down", step.subject);
-  if (means.under_way.cancel(plan)) means.craft.fail();
+  if (means.under_way.cancel(plan) == Cancelled::ForGood) means.craft.fail();
   for (const std::uint16_t apid : network) {
     Member* member = means.craft.member(apid);
     if (member == nullptr || !member->alive()) continue;
