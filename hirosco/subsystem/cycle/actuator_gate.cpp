@@ -4,7 +4,7 @@
 #include "hirosco/subsystem/cycle/actuator_gate.hpp"
 
 /// The cycle's part in stopping an actuator: what an output is while it is inhibited. What the cycle looks at before each output (the supervisor's
-/// stop, its permission and its heartbeat) stands in `permit_watch.cpp`, what is lost in `lost_devices.cpp` and `cycle_inputs.cpp`; all reasons are in
+/// stop, its permission and its heartbeat) stands in `permit_watch.cpp`, what is lost in `device_inputs.cpp` and `cycle_inputs.cpp`; all reasons are in
 /// `pages/inhibition.hpp`. What stops one that does not obey is the guard's: `supervisor/guard/guard.hpp`. Every way: docs/safety/stops.md.
 namespace hirosco {
 
@@ -47,7 +47,7 @@ void ActuatorGate::write_outputs(TimePoint planned) noexcept {
   write_devices();
   // Old data is not sent as new: nobody else's actuator moves on it either, once it is older than its consumer takes.
   const LinkStatus status = link_status();
-  if (parts_.lost_devices.awaits_device() && status != LinkStatus::Fault) return;
+  if (parts_.device_inputs.awaits_device() && status != LinkStatus::Fault) return;
   for (LinkOutputSlot& output : parts_.plan.outputs) output.write(planned, status);
 }
 

@@ -8,7 +8,7 @@
 
 #include "hirosco/subsystem/cycle/control_state.hpp"
 #include "hirosco/subsystem/cycle/cycle_plan.hpp"
-#include "hirosco/subsystem/cycle/lost_devices.hpp"
+#include "hirosco/subsystem/cycle/device_inputs.hpp"
 #include "hirosco/subsystem/cycle/permit_watch.hpp"
 
 namespace hirosco {
@@ -22,7 +22,7 @@ class ActuatorGate {
     CyclePlan& plan;
     const ControlState& control;
     const PermitWatch& permit;
-    const LostDevices& lost_devices;
+    const DeviceInputs& device_inputs;
   };
   explicit ActuatorGate(const Parts& parts);
 
@@ -31,7 +31,7 @@ class ActuatorGate {
   /// What passes to each actuator, as a parameter: one for each actuator of the descriptor.
   [[nodiscard]] std::span<const std::unique_ptr<OutputParameter>> outputs() const noexcept { return outputs_; }
 
-  /// Devices alone, as on the way down.  Realtime: bounded, no allocation, at most one system call per device.
+  /// Devices alone, as on the way down.  Realtime: bounded, no allocation; of each device the system calls of a send (DataFlow).
   void write_devices() noexcept;
   /// Devices, then links, with what was due at `planned`.  Realtime: as write_devices().
   void write_outputs(TimePoint planned) noexcept;

@@ -12,9 +12,9 @@ CycleLoop::CycleLoop(const Parts& parts)
       reports_{parts_.descriptor.events, parts_.rings},
       permit_{parts_.permit, {control_, reports_, parts_.vital}},
       self_test_{reports_},
-      lost_devices_{{parts_.descriptor, plan_, control_, self_test_, reports_}},
-      inputs_{{plan_, control_, lost_devices_, reports_, parts_.vital}},
-      gate_{{parts_.descriptor, plan_, control_, permit_, lost_devices_}},
+      device_inputs_{{parts_.descriptor, plan_, control_, self_test_, reports_}},
+      inputs_{{plan_, control_, device_inputs_, reports_, parts_.vital}},
+      gate_{{parts_.descriptor, plan_, control_, permit_, device_inputs_}},
       bumpless_change_{
           {parts_.author, parts_.descriptor, parts_.dictionary, plan_, control_, permit_, self_test_, reports_}},
       own_writes_{parts_.descriptor, parts_.dictionary},
@@ -110,7 +110,7 @@ void CycleLoop::take_commands(TimePoint planned) noexcept {
 
 void CycleLoop::run_function(const CycleCommand& command) noexcept {
   pus::ArgumentReader reader{parts_.descriptor.functions[command.index].arguments, command.arguments};
-  const Outcome outcome = functions_[command.index].handler(reader, Call{command.request});
+  const Outcome outcome = functions_[command.index](reader, Call{command.request});
   switch (outcome.kind) {
     case Outcome::Kind::Refused:
       reports_.fail_call(ReportKind::Refused, outcome.code, command.request, outcome.reason);

@@ -20,8 +20,8 @@
 #include "hirosco/subsystem/cycle/cycle_meter.hpp"
 #include "hirosco/subsystem/cycle/cycle_pace.hpp"
 #include "hirosco/subsystem/cycle/cycle_plan.hpp"
+#include "hirosco/subsystem/cycle/device_inputs.hpp"
 #include "hirosco/subsystem/cycle/loop_rings.hpp"
-#include "hirosco/subsystem/cycle/lost_devices.hpp"
 #include "hirosco/subsystem/cycle/own_writes.hpp"
 #include "hirosco/subsystem/cycle/permit_watch.hpp"
 #include "hirosco/subsystem/cycle/reconfiguration.hpp"
@@ -31,13 +31,8 @@
 
 namespace hirosco {
 
-/// A function's handler and what the cycle needs to know of it.
-struct BoundFunction {
-  FunctionHandler handler;
-};
-
-/// The cycle of a subsystem (architecture, rule 1): reads links and devices, runs the state's node, gates the actuators,
-/// samples housekeeping, writes links and devices. Composes what does each of these and steps it; takes commands and enters states
+/// The cycle of a subsystem (architecture, rule 1): reads links and devices, runs the state's node, writes devices and links
+/// as the actuators' gate lets them, samples housekeeping. Composes what does each of these and steps it; takes commands and enters states
 /// (docs/adr/0163).
 class CycleLoop final : private pus::SampleSource {
  public:
@@ -61,14 +56,15 @@ class CycleLoop final : private pus::SampleSource {
   void prepare(CyclePlan plan);
   void release();
   [[nodiscard]] CyclePlan& plan() noexcept { return plan_; }
-  [[nodiscard]] std::vector<BoundFunction>& functions() noexcept { return functions_; }
+  /// Of each function of the descriptor; empty: nobody has introduced it.
+  [[nodiscard]] std::vector<FunctionHandler>& functions() noexcept { return functions_; }
 
   // --- service loop -----------------------------------------------------------------------------------------------
   /// The configuration that the next cycle works by, after prepare().  Realtime: wait-free. Thread: any.
   [[nodiscard]] const descriptor::Configuration& in_force() const noexcept {
     return *in_force_.load(std::memory_order_acquire);
   }
-  [[nodiscard]] const LostDevices& lost_devices() const noexcept { return lost_devices_; }
+  [[nodiscard]] const DeviceInputs& device_inputs() const noexcept { return device_inputs_; }
   [[nodiscard]] PermitWatch& permit() noexcept { return permit_; }
   /// Whether the author's self test has passed in this configuration, and nothing has voided it.  Realtime: wait-free. Thread: any.
   [[nodiscard]] bool self_test_passed() const noexcept { return self_test_.passed(); }
@@ -91,8 +87,9 @@ class CycleLoop final : private pus::SampleSource {
   [[nodiscard]] std::span<const std::unique_ptr<OutputParameter>> outputs() const noexcept { return gate_.outputs(); }
 
   // --- the cycle --------------------------------------------------------------------------------------------------
-  /// One cycle that was due at `planned`, or was started by a sample before that; returns when the next one is due.  Realtime: bounded, no allocation, no lock,
-  /// at most one system call per device, and one for its own processor time, or two where it has spun before.
+  /// One cycle that was due at `planned`, or was started by a sample before that; returns when the next one is due.  Realtime: bounded, no allocation, no lock;
+  /// of each device the system calls of a receive and of a send, and of one send more where it falls back or is let go (DataFlow), those of its links, and one for its own
+  /// processor time, or two where it has spun before.
   /// `spun_from`: the thread's processor time when it began to spin; empty: it has slept until it was woken.
   TimePoint step(TimePoint planned, std::optional<Duration> spun_from = {}) noexcept;
   /// What may start the next one before it is due.  Realtime: wait-free. Thread: cycle.
@@ -122,14 +119,14 @@ class CycleLoop final : private pus::SampleSource {
   ReportWriter reports_;
   PermitWatch permit_;
   SelfTestRun self_test_;
-  LostDevices lost_devices_;
+  DeviceInputs device_inputs_;
   CycleInputs inputs_;
   ActuatorGate gate_;
   BumplessChange bumpless_change_;
   OwnWrites own_writes_;
   CycleMeter meter_;
   CyclePace pace_;
-  std::vector<BoundFunction> functions_;
+  std::vector<FunctionHandler> functions_;
   std::atomic<const descriptor::Configuration*> in_force_{nullptr};
   bool first_{true};
   std::uint64_t count_{0};

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 /// What the cycle does about a link that is lost: one that is required or made (`link_slots.cpp` says when) is told as NAME_STALE, medium
-/// severity, and inhibits the actuators unless its absence is held over. What becomes of a lost device stands in `lost_devices.cpp`, what inhibited
+/// severity, and inhibits the actuators unless its absence is held over. What becomes of a lost device stands in `device_inputs.cpp`, what inhibited
 /// means for an output in `actuator_gate.cpp`, `write_outputs()`. From there on it is the supervisor's (`supervision/event_handling/`): Safe-Operational,
 /// where no plan of the mission says otherwise; of a link that the mission gives `on_loss`, `link_losses.cpp` decides instead.
 namespace hirosco {

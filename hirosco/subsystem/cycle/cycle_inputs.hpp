@@ -8,20 +8,20 @@
 
 #include "hirosco/subsystem/cycle/control_state.hpp"
 #include "hirosco/subsystem/cycle/cycle_plan.hpp"
-#include "hirosco/subsystem/cycle/lost_devices.hpp"
+#include "hirosco/subsystem/cycle/device_inputs.hpp"
 #include "hirosco/subsystem/cycle/report_writer.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 
 namespace hirosco {
 
-/// Links and devices in. Of a link it knows whether it is awaited or lost, and inhibits and tells that; of a device LostDevices does.
+/// Links and devices in. Of a link it knows whether it is awaited or lost, and inhibits and tells that; of a device DeviceInputs does.
 /// Thread: the cycle's, where nothing else is said.
 class CycleInputs {
  public:
   struct Parts {
     CyclePlan& plan;
     ControlState& control;
-    LostDevices& devices;
+    DeviceInputs& devices;
     ReportWriter& reports;
     VitalPage& vital;
   };
@@ -30,7 +30,7 @@ class CycleInputs {
   /// Another plan: nobody has answered yet. Allocates. Thread: service, while the cycle rests.
   void begin();
   /// In the cycle that began at `started`; `counts`: it is one in which limits go on (CyclePace).
-  /// Realtime: bounded, no allocation, at most one system call per device.
+  /// Realtime: bounded, no allocation; the system calls of DeviceInputs::read(), and those of links by UDP (UdpLink).
   void read(TimePoint started, bool counts) noexcept;
   /// Whose samples start the cycle; null: nobody's.  Realtime: wait-free.
   [[nodiscard]] const LinkInputSlot* starter() const noexcept {

@@ -190,8 +190,7 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::Func
   if (call.function == pus::configure_function) return configurations_.command(first, request);
   const descriptor::Function& function = descriptor_.functions[call.function];
   if (!function.permitted_in(at_.state) || !orders_.wanted() || at_.way) return std::unexpected{at_.wrong_state()};
-  if (!cycle_.functions()[call.function].handler)
-    return std::unexpected{pus::FailureNotice{pus::FailureCode::ExecutionError}};
+  if (!cycle_.functions()[call.function]) return std::unexpected{pus::FailureNotice{pus::FailureCode::ExecutionError}};
   CycleCommand command{.kind = CommandKind::Function, .index = call.function, .request = request};
   command.arguments = call.arguments;
   if (!calls_.have_room() || !rings_.command(command))

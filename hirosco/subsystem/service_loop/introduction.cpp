@@ -83,7 +83,7 @@ void Introduction::bind_function(std::string_view name, BoundHandler handler) {
   for (std::string& problem :
        handler_mistakes("on_function " + std::string{name} + ": ", handler.takes, found->arguments))
     mistake(std::move(problem));
-  parts_.cycle.functions()[static_cast<std::size_t>(found - functions.begin())].handler = std::move(handler.call);
+  parts_.cycle.functions()[static_cast<std::size_t>(found - functions.begin())] = std::move(handler.call);
 }
 
 void Introduction::publish(std::string_view name, ParameterCell& parameter) {
@@ -150,7 +150,7 @@ void Introduction::check() {
   std::string missing;
   if (!parts_.values.dictionary().all_published(missing)) mistake("parameters declared but not published: " + missing);
   for (std::size_t i = 0; i < parts_.descriptor.functions.size(); ++i)
-    if (!parts_.cycle.functions()[i].handler)
+    if (!parts_.cycle.functions()[i])
       mistake("function declared but without a handler: " + parts_.descriptor.functions[i].name);
   for (const auto& event : parts_.descriptor.events)
     if (event.id < descriptor::framework_event::first && !uses_all_events_ &&

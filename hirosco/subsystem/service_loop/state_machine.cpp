@@ -55,15 +55,15 @@ void StateMachine::go(State target, std::optional<pus::Request> request) {
 
 /// The cycle controls already. Who has never been heard is lost there within its limit, the last fall-back included.
 void StateMachine::look_for_first_answer() {
-  if (parts_.cycle.lost_devices().awaits_first_answer()) return;
+  if (parts_.cycle.device_inputs().awaits_first_answer()) return;
   awaiting_cycle_ = answer_owed_ = false;
-  if (const auto device = parts_.cycle.lost_devices().never_answered())
+  if (const auto device = parts_.cycle.device_inputs().never_answered())
     return fail_transition(State::SafeOperational, never_answered_failure(*device));
   arrive(State::SafeOperational);
 }
 
 /// "device ARM: never heard (udp 127.0.0.1:5001)".
-Failure StateMachine::never_answered_failure(const LostDevices::NeverAnswered& device) const {
+Failure StateMachine::never_answered_failure(const DeviceInputs::NeverAnswered& device) const {
   std::string text =
       "device " + parts_.descriptor.devices[device.device].name + ": " + std::string{to_text(device.reason)};
   const auto use = std::ranges::find(at_.configuration->devices, device.device, &descriptor::DeviceUse::device);
@@ -91,7 +91,7 @@ bool StateMachine::run_phase(State next, TimePoint now) {
   if (cycle_node) {
     // Nothing moves yet: who begins is given time to, which the limit of somebody's silence is not made for (docs/adr/0128).
     if (next == State::SafeOperational && at_.state == State::PreOperational &&
-        parts_.cycle.lost_devices().awaits_first_answer() &&
+        parts_.cycle.device_inputs().awaits_first_answer() &&
         now <= phase_deadline_ - transient_limit + first_answer_limit)
       return false;
     // What ST[20] has found permitted in a loop of its own is queued before this, or judged once more (docs/adr/0200).

@@ -65,7 +65,7 @@ class StateMachine {
   void go_down_from(State failed);
   void fail_transition(State failed, const Failure& why);
   void look_for_first_answer();
-  [[nodiscard]] Failure never_answered_failure(const LostDevices::NeverAnswered& device) const;
+  [[nodiscard]] Failure never_answered_failure(const DeviceInputs::NeverAnswered& device) const;
   Result<Step> enter_transient(State next);
   Result<Step> leave_cycle();
   /// Whether the switches of its devices say so; for who has none: always.

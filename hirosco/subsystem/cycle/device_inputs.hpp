@@ -13,9 +13,9 @@
 
 namespace hirosco {
 
-/// What the cycle does about a device that is lost, or has yet to answer: actuators inhibited, an event, a self test voided.
+/// Devices in, and what the cycle does about one that is lost, or has yet to answer: actuators inhibited, an event, a self test voided.
 /// Thread: the cycle's, where nothing else is said.
-class LostDevices {
+class DeviceInputs {
  public:
   struct Parts {
     const descriptor::SubsystemDescriptor& descriptor;
@@ -24,12 +24,12 @@ class LostDevices {
     SelfTestRun& self_test;
     ReportWriter& reports;
   };
-  explicit LostDevices(const Parts& parts) noexcept : parts_{parts} {}
+  explicit DeviceInputs(const Parts& parts) noexcept : parts_{parts} {}
 
   /// Another plan: nobody has answered yet.  Thread: service, while the cycle rests.
   void begin() noexcept;
   /// Takes the newest frame of each device; `counts`: the cycle is one in which limits go on (CyclePace).
-  /// Realtime: bounded, no allocation, at most one system call per device.
+  /// Realtime: bounded, no allocation; of each device the system calls of a receive (DataFlow), and of a send where it falls back.
   void read(bool counts) noexcept;
   /// What a device said last is of before.  Realtime: wait-free.
   [[nodiscard]] bool awaits_device() const noexcept { return awaits_device_; }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 // Safety module: cycle (docs/safety/modules.csv).
-#include "hirosco/subsystem/cycle/lost_devices.hpp"
+#include "hirosco/subsystem/cycle/device_inputs.hpp"
 
 #include <array>
 
@@ -15,19 +15,19 @@ namespace {
 constexpr unsigned reason_shift = 16;
 }  // namespace
 
-void LostDevices::begin() noexcept {
+void DeviceInputs::begin() noexcept {
   awaits_device_ = false;
   awaits_first_answer_.store(!parts_.plan.devices.empty(), std::memory_order_relaxed);
   never_answered_.store(0, std::memory_order_relaxed);
 }
 
-std::optional<LostDevices::NeverAnswered> LostDevices::never_answered() const noexcept {
+std::optional<DeviceInputs::NeverAnswered> DeviceInputs::never_answered() const noexcept {
   const std::uint32_t told = never_answered_.load(std::memory_order_relaxed);
   if (told == 0) return std::nullopt;
   return NeverAnswered{static_cast<std::uint16_t>(told - 1), static_cast<descriptor::DeviceLoss>(told >> reason_shift)};
 }
 
-void LostDevices::read(bool counts) noexcept {
+void DeviceInputs::read(bool counts) noexcept {
   ControlState& control = parts_.control;
   awaits_device_ = false;
   bool awaits_first = false;
@@ -45,14 +45,14 @@ void LostDevices::read(bool counts) noexcept {
   awaits_first_answer_.store(awaits_first, std::memory_order_release);
 }
 
-void LostDevices::tell_fall_back(std::size_t device) noexcept {
+void DeviceInputs::tell_fall_back(std::size_t device) noexcept {
   const DeviceSlot& slot = parts_.plan.devices[device];
   const std::array arguments{static_cast<double>(slot.loss().reason), static_cast<double>(slot.left()),
                              static_cast<double>(slot.taken()), static_cast<double>(slot.times_fallen_back())};
   parts_.reports.raise(parts_.plan.fell_back_events[device], arguments);
 }
 
-void LostDevices::lose(std::size_t device) noexcept {
+void DeviceInputs::lose(std::size_t device) noexcept {
   const DeviceSlot& slot = parts_.plan.devices[device];
   parts_.self_test.lose_device(static_cast<std::int64_t>(device));
   const DeviceSlot::Loss loss = slot.loss();

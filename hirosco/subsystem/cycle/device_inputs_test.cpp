@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/subsystem/cycle/lost_devices.hpp"
+#include "hirosco/subsystem/cycle/device_inputs.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ struct TwoDevices {
   LoopRings rings;
   ReportWriter reports{descriptor.events, rings};
   SelfTestRun self_test{reports};
-  LostDevices devices{{descriptor, plan, control, self_test, reports}};
+  DeviceInputs devices{{descriptor, plan, control, self_test, reports}};
   std::uint32_t sequence{0};
 
   explicit TwoDevices(State state, bool with_fall_back = false) {
