@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A code block that follows `<!-- quote: PATH -->` in a Markdown file must be PATH or a contiguous part of it; and what
 the documents name in backquotes as a file or folder of the project must exist; in a README also what it names by a part of its
-path. Where a link of a document leads, there must be a file or folder. Everywhere in the repository each decision, page of docs/adr and hazard that is cited must exist. Each page of docs/adr has
-a status; one that says "Changes NNNN" is named there by "changed by" of that page, and the other way round. In the guides that build something
+path. Where a link of a document leads, there must be a file or folder. Everywhere in the repository each decision, page of docs/adr and hazard that is cited must exist, and nothing cites a paragraph of the notes
+from which the project was designed: nobody else has those. Each page of docs/adr has a status; one that says "Changes NNNN" is named there by "changed by" of that page, and the other way round. In the guides that build something
 from files to copy (WHOLE) each block with a language is such a quote: what a reader copies is what tests build and simulate."""
 import pathlib
 import posixpath
@@ -16,6 +16,7 @@ quote = re.compile(r"^<!-- quote: (\S+) -->\n+```[^\n]*\n(.*?)^```$", re.M | re.
 named = re.compile(r"`((?:bench|cmake|docs|ground|hirosco|missions|simulation|subsystems|supervisor|tests|tools)/[\w./-]*)`")
 part = re.compile(r"`((?![A-Z]+_)[\w./-]*\w\.(?:hpp|cpp|py|m?js|xml|csv))`")
 cited = re.compile(r"\b(adr[ /]|decisions? |SF|findings? |LW(?=\d))(\d+)", re.I)
+notes = re.compile(r"\b(?:pus-c|tailoring|reliability|architecture|mission row) [A-Z]?\d[\d.]*", re.I)
 mark = re.compile(r"^<!-- quote:", re.M)
 code = re.compile(r"^(```+)[^\n]*\n.*?^\1|`[^`\n]*`", re.M | re.S)
 WHOLE = ("docs/guide/your_mission.md", "docs/guide/your_project.md")
@@ -67,6 +68,7 @@ def undefined(text, known):
         kind = kind.strip(" /").rstrip("s").lower()
         if int(number) not in known.get(kind, set()):
             yield f"cites {kind} {number}, which does not exist"
+    yield from (f"cites '{note}' of notes that are not in the repository" for note in notes.findall(text))
 
 
 def statuses(pages):
@@ -111,6 +113,9 @@ def self_test():
     known = {"adr": {7}, "decision": {3}, "sf": {1}}
     assert not list(undefined("adr 0007, docs/adr/0007-one.md, Decision 3, decisions 3 and 4, hazard SF1", known))
     for fault in ("adr 0008", "docs/adr/0008-one.md", "decision 4", "(hazard SF2)", "findings SF1, finding 3", "LW1"):
+        assert list(undefined(fault, known)), fault
+    assert not list(undefined("(architecture, rule 3), ECSS-E-ST-70-41C 8.1.2, PUS-C clients", known))
+    for fault in ("(pus-c tailoring 5.3)", "pus-c 9.7", "reliability 5.1", "architecture 4", "mission row B1"):
         assert list(undefined(fault, known)), fault
     page = "# {} A\n\nStatus: accepted{}\n\n## Context\nChanges 0009.\n".format
     newer, older = page(2, ". Changes 0001 (as of\n0003), and decision 7. New."), page(1, "; changed by [0002](0002-a.md).")

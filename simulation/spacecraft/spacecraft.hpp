@@ -18,7 +18,7 @@
 #include "simulation/spacecraft/simulated_supervisor.hpp"
 
 /// The whole spacecraft in one process on virtual time: the same supervisor and subsystem objects as in the executables,
-/// deterministic from one seed (architecture, rule 3; mission row B1). No clock, socket or random call while it runs.
+/// deterministic from one seed (architecture, rule 3; docs/paper_map.md, B1). No clock, socket or random call while it runs.
 namespace hirosco::simulation {
 
 /// Puts the parts together, and moves time from one thing that is due to the next. What others reach into it for goes to the part that it

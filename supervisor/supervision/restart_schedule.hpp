@@ -13,7 +13,7 @@
 #include "supervisor/supervision/succession/journal.hpp"
 
 /// When a subsystem whose process ended is started again: after a pause that doubles with each time, and no more often
-/// than its plan says (`procedures/steps/restart.hpp`; `Processes` starts it; hazard SF15; reliability 5: a crash loop stays
+/// than its plan says (`procedures/steps/restart.hpp`; `Processes` starts it; hazard SF15; a crash loop stays
 /// down until the ground starts it, docs/adr/0068). The ground link alone never stays down: nobody could bring it up again. It is started
 /// where no plan says so, too (`GroundLinkCare`).
 namespace hirosco::supervisor {

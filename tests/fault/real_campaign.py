@@ -41,7 +41,7 @@ HANG_S, AGAIN_S, GRID_S, WATCHDOG_S, LOOK_S = 0.220, 0.005, 2 * pages.PERIOD_S, 
 BACK_S, ADOPTED_S = 2.0, 1.0                    # who died is there again; another supervisor goes on with what runs
 STILL_S, STILL_PACE_S = 3.0, 0.5                # of a keeper: supervisor/keeper/kept.hpp
 MODES = {"standalone": 2, "telepresence": 3}
-# What took how long, and the deadline that it was held to (reliability 5.1).
+# What took how long, and the deadline that it was held to.
 DEADLINES_S = {"the robot obeys nobody": WATCHDOG_S + LOOK_S, "network fenced": HANG_S + 5 * CYCLE_S + GRID_S, "others cycle again": AGAIN_S + GRID_S,
                "longest pause of others": AGAIN_S + GRID_S, "network down": 2.0, "back after its death": BACK_S, "adopted": ADOPTED_S,
                "a still keeper is told of": STILL_S + STILL_PACE_S}

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """Keeper and supervisor are killed or stopped while the robot pushes: it stops where nobody looks after it, nobody is left behind,
-and who is left says so (hazard SF18, reliability 5.1). The supervisor alone: adoption_test.py."""
+and who is left says so (hazard SF18). The supervisor alone: adoption_test.py."""
 import os
 import pathlib
 import signal

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-// What the ten states promise, shown by a subsystem that does its best to break it (mission row S2).
+// What the ten states promise, shown by a subsystem that does its best to break it (docs/paper_map.md, S2).
 #include <set>
 
 #include <gtest/gtest.h>

@@ -11,7 +11,7 @@
 #include "hirosco/utilities/time.hpp"
 
 /// CCSDS unsegmented time code (CCSDS 301.0-B-4). On our links always 4 octets of seconds and 3 of fraction without
-/// P-field, epoch 1958-01-01 TAI (pus-c tailoring 6.3).
+/// P-field, epoch 1958-01-01 TAI (docs/interfaces/packets.md).
 namespace hirosco::pus {
 
 inline constexpr std::size_t cuc_octets = 7;

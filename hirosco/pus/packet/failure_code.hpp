@@ -14,7 +14,7 @@
 
 namespace hirosco::pus {
 
-/// Failure codes of ST[01] notices (pus-c tailoring 5.5; 13 to 15 decision 26, 16 paper 4.3; documented in docs/failure-codes.md).
+/// Failure codes of ST[01] notices (docs/failure-codes.md; 13 to 15 decision 26, 16 paper 4.3).
 enum class FailureCode : std::uint16_t {
   UnknownApid = 1,
   IllegalLength = 2,

@@ -26,7 +26,7 @@ inline constexpr std::size_t max_telemetry_octets = 4096;
 inline constexpr std::uint16_t idle_apid = 2047;
 inline constexpr std::uint16_t sequence_counts = 16'384;  ///< of a packet: one after the last is 0
 
-/// Acknowledgement flags of a telecommand (pus-c tailoring 4.3).
+/// Acknowledgement flags of a telecommand (docs/interfaces/packets.md).
 enum Ack : std::uint8_t { ack_acceptance = 1, ack_start = 2, ack_progress = 4, ack_completion = 8, ack_all = 15 };
 
 /// Total length that a primary header announces, 7 .. 65,542; for cutting a stream. `header` has at least 6 octets.
@@ -47,14 +47,14 @@ struct PrimaryHeader {
 /// Malformed: fewer than 6 octets.
 [[nodiscard]] Result<PrimaryHeader> read_primary_header(Octets packet) noexcept;
 
-/// Check 1 of acceptance: fewer than 6 octets, another version, telemetry or idle. Such a packet is discarded and counted
+/// The first check of acceptance: fewer than 6 octets, another version, telemetry or idle. Such a packet is discarded and counted
 /// (idle ones not even that) without a report, though parse() says IllegalPrimaryHeader for want of a better notice.
 [[nodiscard]] bool to_be_discarded(Octets packet) noexcept;
 
 /// A whole, checked telecommand packet. Views the octets it was parsed from.  Realtime: bounded.
 class TelecommandView {
  public:
-  /// Checks 1 to 5 and 7 of acceptance in that order (pus-c tailoring 5.3): the notice is what TM[1,2] must say.
+  /// What of acceptance the packet itself shows, in the order of docs/interfaces/packets.md: the notice is what TM[1,2] must say.
   [[nodiscard]] static std::expected<TelecommandView, FailureNotice> parse(Octets packet) noexcept;
 
   [[nodiscard]] std::uint16_t apid() const noexcept;

@@ -30,7 +30,7 @@ static_assert(std::is_trivially_copyable_v<CounterBlock> && std::is_standard_lay
               sizeof(CounterBlock) == 8 + 8 * CounterBlock::max_message_types);
 
 /// Stamps telemetry of one APID with its sequence count and with the message type counter of its destination, service and
-/// subtype (pus-c 4.2). From the 65th such type on the counter is 0, which says "unsupported".
+/// subtype (docs/interfaces/packets.md). From the 65th such type on the counter is 0, which says "unsupported".
 /// Realtime: bounded, does not allocate. Thread: one.
 class PacketCounters {
  public:

@@ -41,7 +41,7 @@ inline constexpr std::size_t max_instructions = 255;   ///< a count N is one oct
   return count;
 }
 
-/// Runs an accepted request of `count` instructions (at most 255) and reports its stages (pus-c tailoring 5.4). All are
+/// Runs an accepted request of `count` instructions (at most 255) and reports its stages. All are
 /// checked before the first is executed: `check(i)` gives the notice of a rejected one, `execute(i)` does a valid one,
 /// `finish()` follows once after at least one was executed, before the completion.
 template <class Check, class Execute, class Finish>

@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <vector>
 
-/// Octets as pus-c 8.3.2 lays them out; what the service makes of them is in housekeeping_structures_test.cpp.
+/// Octets as ECSS-E-ST-70-41C 8.3.2 lays them out; what the service makes of them is in housekeeping_structures_test.cpp.
 namespace hirosco::pus {
 namespace {
 

@@ -16,7 +16,7 @@
 #include "hirosco/utilities/spsc_ring.hpp"
 
 /// ST[03] housekeeping in two halves: the sampler in the cycle collects values and makes whole reports; the service in
-/// the service loop answers telecommands and tells the sampler by commands (pus-c 9.3).
+/// the service loop answers telecommands and tells the sampler by commands (ECSS-E-ST-70-41C 8.3.2; README.md).
 namespace hirosco::pus {
 
 inline constexpr std::size_t max_housekeeping_structures = 32;

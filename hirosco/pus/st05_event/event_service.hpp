@@ -11,7 +11,7 @@
 
 namespace hirosco::pus {
 
-/// ST[05]: reports events and lets their reports be switched (pus-c 9.5). A disabled event is still an event: whoever
+/// ST[05]: reports events and lets their reports be switched (ECSS-E-ST-70-41C 8.5.2; README.md). A disabled event is still an event: whoever
 /// reacts to it does so before or beside raise().  Thread: the service loop.
 class EventService final : public Service {
  public:
@@ -36,7 +36,7 @@ class EventService final : public Service {
   struct Definition {
     std::uint16_t id{};
     descriptor::Severity severity{};
-    std::size_t octets{};              ///< of the auxiliary data
+    std::size_t octets{};  ///< of the auxiliary data
     bool enabled{true};
   };
   [[nodiscard]] Definition* find(std::uint16_t event_id) noexcept;

@@ -38,7 +38,7 @@ struct CallFailure {
 enum BuiltInFunction : std::uint16_t { set_state_function = 0xFF00, configure_function = 0xFF01 };
 [[nodiscard]] std::vector<descriptor::Function> common_functions();
 
-/// Decodes the application data of TC[8,1] (pus-c 9.7): name of 16 octets, N x (argument id u8, value). A value is its
+/// Decodes the application data of TC[8,1] (ECSS-E-ST-70-41C 8.8.2; README.md): name of 16 octets, N x (argument id u8, value). A value is its
 /// numbers in order, or length u16 and octets of text. Arguments come in any order, each at most once, ids from 1; absent
 /// ones take their declared value. Acceptance: code 8. Start: 0x0101 with index 0 and the 16 octets of the name; 0x0105
 /// with index and argument id for an argument that is unknown, doubled, missing, out of range, not a finite number, no value

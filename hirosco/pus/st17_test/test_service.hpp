@@ -7,7 +7,7 @@
 
 namespace hirosco::pus {
 
-/// ST[17]: answers "are you alive" (pus-c 11.1), and carries the self test of the subsystem's author, ours (adr 0073). The
+/// ST[17]: answers "are you alive" (ECSS-E-ST-70-41C 8.17.2; README.md), and carries the self test of the subsystem's author, ours (adr 0073). The
 /// on-board connection test TC[17,3] is not built in: it is refused with code 7.  Thread: the service loop.
 ///
 ///   TC[17,128]  run the self test, in Safe-Operational: TM[17,129], then TM[1,7] or TM[1,8] with the author's reason

@@ -34,7 +34,7 @@ struct ParameterAccess {
                                                                       const Request& request) = 0;
 };
 
-/// ST[20]: reports and sets parameter values (pus-c 11.4); of one request all are set, or none.
+/// ST[20]: reports and sets parameter values (ECSS-E-ST-70-41C 8.20.2; README.md); of one request all are set, or none.
 /// Thread: the service loop, or a loop of its own (docs/adr/0200).
 class ParameterService final : public Service {
  public:

@@ -10,7 +10,7 @@
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/utilities/time.hpp"
 
-/// The ten states as one table (paper 4.2, figure 4; architecture 4). Code, tests and the drawn diagram use this one.
+/// The ten states as one table (paper 4.2, figure 4). Code, tests and the drawn diagram use this one.
 namespace hirosco {
 
 using descriptor::State;
@@ -65,7 +65,7 @@ inline constexpr std::array transitions{
          state == State::ErrorOperational;
 }
 
-/// Without a sign of life of the supervisor for this long a subsystem makes itself safe (reliability 5.1). Its cycle counts
+/// Without a sign of life of the supervisor for this long a subsystem makes itself safe (hazard SF8). Its cycle counts
 /// own cycles, at least this many, its service loop the time that it has watched: with both parts of the machine stopped for a
 /// while nobody has been silent.
 inline constexpr Duration supervisor_silence_limit = std::chrono::seconds{2};
@@ -76,7 +76,7 @@ inline constexpr Duration most_silence_a_look = std::chrono::milliseconds{200};
   return static_cast<std::uint32_t>(cycles > 1 ? cycles : 1);
 }
 
-/// Where a failure in a state leads (architecture 4); empty where the state stays as it is.
+/// Where a failure in a state leads; empty where the state stays as it is.
 [[nodiscard]] constexpr std::optional<State> failure_target(State state) noexcept {
   switch (state) {
     case State::SoftwareInit: return State::SoftwareDeinit;

@@ -6,7 +6,7 @@
 
 #include <cstring>
 
-/// What decides over actuators survives damage (reliability 5, hazard SF19): every flip of one bit is tried.
+/// What decides over actuators survives damage (hazard SF19): every flip of one bit is tried.
 namespace hirosco {
 namespace {
 

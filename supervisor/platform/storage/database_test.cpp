@@ -26,7 +26,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// TC[17,1] to 0x73 from pus-c section 16.
+/// TC[17,1] to 0x73, a whole packet.
 std::vector<std::byte> ping() {
   std::vector<std::byte> packet;
   for (int octet : {0x18, 0x73, 0xC0, 0x19, 0x00, 0x06, 0x2F, 0x11, 0x01, 0x00, 0x00, 0x73, 0xAB})

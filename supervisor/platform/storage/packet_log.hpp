@@ -13,7 +13,7 @@
 #include "supervisor/platform/storage/database.hpp"
 #include "supervisor/platform/storage/log_queue.hpp"
 
-/// The way from the router to the database (decision 24, reliability 5.2).
+/// The way from the router to the database (decision 24).
 namespace hirosco::supervisor {
 
 /// Figures since the start. accepted + lost + refused = the last number given.

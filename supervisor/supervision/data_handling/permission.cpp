@@ -69,7 +69,7 @@ using Notice = std::optional<FailureNotice>;
   for (unsigned i = 0; i < count && reader.good(); ++i) {
     const auto id = reader.get<std::uint32_t>();
     const auto place = descriptor::find_parameter(subsystem, id);
-    // An unknown one hides the width of all behind it; the addressee refuses the whole (pus-c tailoring, ST[20]).
+    // An unknown one hides the width of all behind it; the addressee refuses the whole (adr 0074).
     if (!reader.good() || !place) return std::nullopt;
     const descriptor::Parameter* const parameter = &subsystem.parameters[place->parameter];
     static_cast<void>(reader.get(parameter->octets(place->member)));

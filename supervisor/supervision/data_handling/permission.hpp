@@ -58,7 +58,7 @@ struct Permitted {
 /// Who is down answers nothing; what brings it up again is said with the refusal.
 [[nodiscard]] pus::FailureNotice is_down();
 
-/// Acceptance checks 6, 8, 9 and 12 (pus-c tailoring 5.3) plus codes 13, 14, 16 and 18. A notice with code UnknownApid belongs
+/// What of acceptance is the supervisor's: codes 1, 6, 7, 10, 13, 14, 16, 18 and 0x0107 of docs/failure-codes.md. A notice with code UnknownApid belongs
 /// into TM[1,10], every other into TM[1,2].
 [[nodiscard]] std::expected<Permitted, pus::FailureNotice> decide(const pus::TelecommandView& telecommand,
                                                                   const Origin& origin, const Situation& situation);

@@ -10,7 +10,7 @@
 #include "hirosco/pus/standard_services.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 
-/// The rules of acceptance that are the supervisor's (pus-c tailoring 5.3, decisions 24 and 26), as one table.
+/// The rules of acceptance that are the supervisor's (docs/failure-codes.md, decisions 24 and 26), as one table.
 namespace hirosco::supervisor {
 namespace {
 

@@ -12,7 +12,7 @@ namespace {
 using pus::FailureCode;
 using pus::FailureNotice;
 
-/// Reports on damaged packets in one second (pus-c tailoring 5.3).
+/// Reports on damaged packets in one second.
 constexpr int damaged_reports_per_second = 10;
 
 }  // namespace

@@ -15,7 +15,7 @@
 #include "hirosco/utilities/time.hpp"
 
 /// Telecommands that were handed to a subsystem and whose final report has not passed yet: when their addressee dies,
-/// somebody must say that their outcome is unknown (reliability 5.2).
+/// somebody must say that their outcome is unknown (docs/adr/0062).
 namespace hirosco::supervisor {
 
 class Unanswered {
