@@ -111,7 +111,7 @@ bool LoopWatch::was_starved(GuardedMember& standing, TimePoint now) {
   const auto members = parts_.guarded.members();
   const auto at = static_cast<std::size_t>(&standing - members.data());
   const LoopTime own = standing.grip->loop_time();
-  if (!own.waits || share(own.service, standing.had_then[at].service) > hardly) return false;
+  if (!own.runnable || share(own.service, standing.had_then[at].service) > hardly) return false;
   bool starved = false;
   for (std::size_t i = 0; i < members.size(); ++i) {
     GuardedMember& other = members[i];

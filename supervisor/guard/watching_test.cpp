@@ -268,7 +268,7 @@ TEST_F(Watching, WhoHangsIsNotEndedForTimeInWhichNobodyTookItsWordAcross) {
 }
 
 TEST_F(Watching, AServiceLoopThatGetsNoProcessorIsNotBlamedButWhoHasIt) {
-  lives[arm].process->loops.waits = true;
+  lives[arm].process->loops.runnable = true;
   arm_stands(Guard::service_limit + 50ms, 0.9);
   EXPECT_TRUE(may_move(arm));
   EXPECT_FALSE(lives[hand].process->loops_realtime);
@@ -284,7 +284,7 @@ TEST_F(Watching, AServiceLoopThatGetsNoProcessorIsNotBlamedButWhoHasIt) {
 }
 
 TEST_F(Watching, WhoHasTheProcessorIsFoundWhereverItStandsInTheMission) {
-  lives[hand].process->loops.waits = true;
+  lives[hand].process->loops.runnable = true;
   stands(hand, arm, Guard::service_limit + 50ms, 0.9);
   EXPECT_TRUE(may_move(hand));
   EXPECT_FALSE(lives[arm].process->loops_realtime);
@@ -300,7 +300,7 @@ TEST_F(Watching, ASlowCycleThatStandsHangsAfterThreeOfItsSteps) {
 }
 
 TEST_F(Watching, AStarvedLoopThatStandsOnThoughNobodyHasItsProcessorHangs) {
-  lives[arm].process->loops.waits = true;
+  lives[arm].process->loops.runnable = true;
   arm_stands(Guard::service_limit + 50ms, 0.9);
   static_cast<void>(guard.take_findings());
   arm_stands(Guard::service_limit - 100ms, 0);
@@ -312,7 +312,7 @@ TEST_F(Watching, AStarvedLoopThatStandsOnThoughNobodyHasItsProcessorHangs) {
 TEST_F(Watching, WhoseServiceLoopWaitsForSomethingElseOrRunsOrIsKeptByNobodyHangs) {
   struct Case {
     const char* says;
-    bool waits;
+    bool runnable;
     double own_share, share;
   };
   for (const Case& c : {Case{"it sleeps", false, 0, 0.9}, Case{"it has a fifth itself", true, 0.2, 0.9},
@@ -320,7 +320,7 @@ TEST_F(Watching, WhoseServiceLoopWaitsForSomethingElseOrRunsOrIsKeptByNobodyHang
     start(arm);
     lives[hand].process->loops.realtime += 1'000s;  // of its past
     run(50ms);
-    lives[arm].process->loops.waits = c.waits;
+    lives[arm].process->loops.runnable = c.runnable;
     for (int i = 0; i < (Guard::service_limit + 50ms) / Guard::period; ++i) {
       lives[arm].process->loops.service += std::chrono::duration_cast<Duration>(Guard::period * c.own_share);
       arm_stands(Guard::period, c.share);
@@ -331,7 +331,7 @@ TEST_F(Watching, WhoseServiceLoopWaitsForSomethingElseOrRunsOrIsKeptByNobodyHang
 }
 
 TEST_F(Watching, OneThatKeepsTheProcessorFromOthersAgainIsEnded) {
-  lives[arm].process->loops.waits = true;
+  lives[arm].process->loops.runnable = true;
   arm_stands(2 * Guard::service_limit + 100ms, 0.9);
   EXPECT_THAT(kinds(hand), ElementsAre(Found::Starves, Found::Starves));
   EXPECT_FALSE(may_move(hand));
@@ -361,9 +361,9 @@ TEST_F(Watching, WhoIsGoneOrEndedAlreadyOrCannotBeGrippedIsNotBlamedForAStarvedL
       cycling(apid);
     }
     run(50ms);
-    lives[arm].process->loops.waits = true;
+    lives[arm].process->loops.runnable = true;
   };
-  lives[arm].process->loops.waits = true;
+  lives[arm].process->loops.runnable = true;
   arm_stands(Guard::service_limit - 100ms, 0.9);
   guard.forget(hand);
   arm_stands(150ms, 0.9);
@@ -378,7 +378,7 @@ TEST_F(Watching, WhoIsGoneOrEndedAlreadyOrCannotBeGrippedIsNotBlamedForAStarvedL
   start(arm);
   without_grip(*this, hand);
   run(50ms);
-  lives[arm].process->loops.waits = true;
+  lives[arm].process->loops.runnable = true;
   arm_stands(Guard::service_limit + 50ms, 0.9);
   expect_arm_hangs("nobody can ask it");
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -16,9 +17,14 @@
 #include "hirosco/subsystem/author/native_values.hpp"
 #include "hirosco/subsystem/author/typed_values.hpp"
 #include "hirosco/utilities/octets.hpp"
+#include "hirosco/utilities/time.hpp"
 
 /// What a subsystem asks of another one (adr 0062).
 namespace hirosco {
+
+/// How long a request is waited for unless its author says otherwise, by the requester and by the supervisor's count of those that are open. Longer
+/// than a slow disk may hold a telecommand back: what timed out is not carried out later.
+inline constexpr Duration request_patience = std::chrono::seconds{20};
 
 /// What became of a request.
 struct RequestReport {
@@ -26,19 +32,19 @@ struct RequestReport {
     Accepted,
     Started,
     Progressed,
-    Answered,   ///< a report of the service that was asked: `data`
+    Answered,  ///< a report of the service that was asked: `data`
     Completed,  ///< an end, like those below
-    Refused,    ///< nothing was done
-    Failed,     ///< it had begun
-    TimedOut,   ///< nobody said how it ended
+    Refused,  ///< nothing was done
+    Failed,  ///< it had begun
+    TimedOut,  ///< nobody said how it ended
   };
   Stage stage{};
-  std::uint32_t request{0};          ///< as request() returned it
-  std::uint16_t step{0};             ///< of Progressed
-  pus::FailureCode code{};           ///< of Refused and Failed
-  std::string_view reason{};         ///< of every end but Completed; valid during the call, like `data`
-  std::int64_t number{0};            ///< of a reason with words
-  std::uint8_t subtype{0};           ///< of Answered
+  std::uint32_t request{0};  ///< as request() returned it
+  std::uint16_t step{0};  ///< of Progressed
+  pus::FailureCode code{};  ///< of Refused and Failed
+  std::string_view reason{};  ///< of every end but Completed; valid during the call, like `data`
+  std::int64_t number{0};  ///< of a reason with words
+  std::uint8_t subtype{0};  ///< of Answered
   Octets data{};
   [[nodiscard]] constexpr bool is_end() const noexcept { return stage >= Stage::Completed; }
 };

@@ -58,7 +58,8 @@ class Subsystem {
 
  protected:
   // --- the nodes of figure 4 ------------------------------------------------------------------------------------
-  /// Entered at start and at the end: custom services start here.
+  /// Called once, when the subsystem has been made and nothing else of it was called: custom services are provided here. Not again where it comes
+  /// back to Offline. An error fails its first Software-Init.
   virtual Result<> offline() { return ok(); }
   /// Publishes parameters, functions, links and devices: those of all configurations. Called again while it returns `again`, within 10 s.
   virtual Result<Step> software_init() { return done; }
@@ -115,8 +116,7 @@ class Subsystem {
   void use_device(std::string_view name, DevicePortBase& port, std::initializer_list<std::string_view> settings = {});
   /// Names an event that the author raises. Arguments that differ from the descriptor's fail Software-Init.
   void use_event(EventPort& event);
-  /// Longer than a slow disk may hold a telecommand back: what timed out is not carried out later.
-  static constexpr Duration request_patience = std::chrono::seconds{20};
+  static constexpr Duration request_patience = hirosco::request_patience;
   /// Names what is asked of another subsystem. What <Commands> of the descriptor does not say, and arguments that differ
   /// from the other's descriptor, fail Software-Init. The handler hears each stage of each such request, in the service
   /// loop, and one end: completed, refused or failed with the reason, or not in `patience`.

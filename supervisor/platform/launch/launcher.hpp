@@ -24,7 +24,7 @@ namespace hirosco::supervisor {
 struct LoopTime {
   Duration service{};   ///< had by its service loop
   Duration realtime{};  ///< had by all loops that have real-time priority
-  bool waits{false};    ///< its service loop could run at this moment
+  bool runnable{false}; ///< its service loop has the processor at this moment, or lacks nothing else
 };
 
 /// What can be done to a started process whatever it does itself. After its end nothing happens any more.

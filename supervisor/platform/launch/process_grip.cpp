@@ -90,7 +90,7 @@ class LinuxGrip final : public ProcessGrip {
       const bool service = thread == process_.pid();
       if (!status || (!service && status->cycle)) return;
       if (service) time.service = status->had;
-      if (service) time.waits = status->runs;
+      if (service) time.runnable = status->runs;
       if (status->realtime) time.realtime += status->had;
     });
     return time;

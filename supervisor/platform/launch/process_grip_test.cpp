@@ -118,7 +118,7 @@ TEST(ProcessGrip, WhatALoopCallsItselfDeceivesNobody) {
     return Thread{};
   }};
   child.stand();
-  EXPECT_FALSE(child.grip().loop_time().waits);
+  EXPECT_FALSE(child.grip().loop_time().runnable);
 }
 
 TEST(ProcessGrip, WhoseRealTimeIsTakenTakesItNotAgainAndMayHaveItWhenItIsGivenBack) {
@@ -197,7 +197,7 @@ TEST(ProcessGrip, OfOneThatHasEndedNothingIsToldAndNothingIsDone) {
   const LoopTime time = child.grip().loop_time();
   EXPECT_EQ(time.service, 0ms);
   EXPECT_EQ(time.realtime, 0ms);
-  EXPECT_FALSE(time.waits);
+  EXPECT_FALSE(time.runnable);
 }
 
 TEST(ProcessGrip, OneThatHasEndedBeforeItWasGrippedIsGrippedAllTheSame) {

@@ -141,17 +141,17 @@ TEST(ProcessGrip, TellsWhatTheServiceLoopHasHadAndWhetherItCouldRun) {
     while (grip->processor_time() < 50ms) ::sched_yield();
     const LoopTime time = grip->loop_time();
     if (name == nullptr) {
-      EXPECT_TRUE(time.waits);
+      EXPECT_TRUE(time.runnable);
       EXPECT_GT(time.service, 10ms);
     } else {
-      EXPECT_FALSE(time.waits) << name;
+      EXPECT_FALSE(time.runnable) << name;
       EXPECT_EQ(time.service / 30ms, 0) << name;
     }
     EXPECT_EQ(time.realtime, 0ms) << "none of them has any";
     grip->kill();
     int status = 0;
     ::waitpid(child, &status, 0);
-    EXPECT_FALSE(grip->loop_time().waits) << "it is gone";
+    EXPECT_FALSE(grip->loop_time().runnable) << "it is gone";
   }
 }
 

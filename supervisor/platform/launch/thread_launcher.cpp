@@ -177,7 +177,7 @@ class ThreadLauncher::Grip final : public ProcessGrip {
     // the processor only where another one has had it all the time, too.
     return {.service = service,
             .realtime = member_->service.has_realtime() ? service : Duration{0},
-            .waits = !member_->resting.load(std::memory_order_relaxed)};
+            .runnable = !member_->resting.load(std::memory_order_relaxed)};
   }
   Duration processor_time() noexcept override {
     Duration all = member_->service.processor_time() + member_->cycle.processor_time();

@@ -171,10 +171,10 @@ TEST_F(ThreadLauncherTest, TheGripTellsWhoHadTheProcessorAndWhoRests) {
   auto idle = launcher->launch(other).value();
   // Of the member's other threads a part is the rest.
   wait_for([&] { return busy.grip->loop_time().service > 5ms; });
-  EXPECT_TRUE(busy.grip->loop_time().waits);
+  EXPECT_TRUE(busy.grip->loop_time().runnable);
   EXPECT_GE(busy.grip->processor_time(), 5ms);
   EXPECT_EQ(busy.grip->loop_time().realtime, Duration{0}) << "it has no real-time priority";
-  wait_for([&] { return !idle.grip->loop_time().waits; });
+  wait_for([&] { return !idle.grip->loop_time().runnable; });
 }
 
 TEST_F(ThreadLauncherTest, WhatNobodyMakesIsRefusedByName) {

@@ -345,7 +345,7 @@ TEST_F(TelecommandsTest, WhatProtectsIsNotRefusedForRequestsWhoseEndNobodyTold) 
   EXPECT_THAT(refusals(), ElementsAre(words(FailureCode::QueueFull)));
   ask("BRAKE");
   EXPECT_THAT(texts(arm), ::testing::Contains("BRAKE"));
-  wait(Unanswered::patience);
+  wait(request_patience);
   ask("MOVE_TO");
   EXPECT_THAT(texts(arm), ElementsAre("MOVE_TO")) << "HAND has given up the others, and so has the supervisor";
 }

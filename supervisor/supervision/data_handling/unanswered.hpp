@@ -30,8 +30,8 @@ class Unanswered {
   /// telecommand a number of reports does, so that an addressee cannot flood who asks.
   static constexpr std::uint16_t most_reports = 64;
   [[nodiscard]] bool answers(const pus::TelemetryView& report);
-  /// How many of `source` are under way, but for those that it has given up itself (Subsystem::request_patience).
-  static constexpr Duration patience = std::chrono::seconds{20};
+  /// How many of `source` are under way, but for those that are older than request_patience: it has given them up itself, or waits longer for them
+  /// and may have others besides.
   [[nodiscard]] std::size_t count_of(std::uint16_t source, TimePoint now) const;
   /// A report of service 1 came by: what it ends is forgotten.
   void reported(const pus::TelemetryView& report);
