@@ -3,8 +3,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A code block that follows `<!-- quote: PATH -->` in a Markdown file must be PATH or a contiguous part of it; and what
 the documents name in backquotes as a file or folder of the project must exist; in a README also what it names by a part of its
-path. Where a link of a document leads, there must be a file or folder. Everywhere in the repository each decision, page of docs/adr and hazard that is cited must exist, and nothing cites a paragraph of the notes
-from which the project was designed: nobody else has those. Each page of docs/adr has a status; one that says "Changes NNNN" is named there by "changed by" of that page, and the other way round. In the guides that build something
+path. Where a link of a document leads, there must be a file or folder. Everywhere in the repository each decision, page of docs/adr and hazard that is cited must exist,
+and nothing cites a paragraph of the notes from which the project was designed: nobody else has those. What comments and documents name as
+Class::member must be one where that class is of the repository. Each page of docs/adr has a status; one that says "Changes NNNN" is named there by
+"changed by" of that page, and the other way round. In the guides that build something
 from files to copy (WHOLE) each block with a language is such a quote: what a reader copies is what tests build and simulate."""
 import pathlib
 import posixpath
@@ -71,6 +73,44 @@ def undefined(text, known):
     yield from (f"cites '{note}' of notes that are not in the repository" for note in notes.findall(text))
 
 
+CLASS = re.compile(r"\b(?:class|struct|enum class|enum|union)\s+(?:\[\[\w+\]\]\s*)?(\w+)(?:<[^>{;]*>)?\s*(?:final)?\s*(:[^{;]*)?\{")
+ALIAS = re.compile(r"\busing (\w+) = ([^;]+);")
+PARAMETER = re.compile(r"\b(?:class|typename) (\w+)(?=[,>])")
+MEMBER = re.compile(r"(?<![\w:])([A-Z]\w*)::(~?\w+)")
+comment = re.compile(r"//[^\n]*")
+
+
+def classes(sources):
+    """The words between the braces of each class of C++ texts, with those of its bases and of what it is another name for; those of one name are one.
+    Names that are a template's parameter or another one of the standard library's, too, are left out: theirs may be any members."""
+    own, others, any_class = {}, {}, set()
+    for text in sources:
+        text = comment.sub("", text)
+        any_class.update(PARAMETER.findall(text))
+        for name, whole in ALIAS.findall(text):
+            any_class.update([name] if "std::" in whole else [])
+            own.setdefault(name, set())
+            others.setdefault(name, set()).update(re.findall(r"\w+", whole))
+        for begin in CLASS.finditer(text):
+            depth, end = 1, begin.end()
+            while depth and end < len(text):
+                depth += {"{": 1, "}": -1}.get(text[end], 0)
+                end += 1
+            own.setdefault(begin[1], set()).update(re.findall(r"\w+", text[begin.end():end]))
+            others.setdefault(begin[1], set()).update(re.findall(r"\w+", begin[2] or ""))
+
+    def all_words(name, seen):
+        seen.add(name)
+        return own[name].union(*(all_words(other, seen) for other in others.get(name, ()) if other in own and other not in seen))
+    return {name: all_words(name, set()) for name in own if name not in any_class}
+
+
+def memberless(prose, has):
+    """Yields what a text cites as a member of a class that has none of that name; `has` is of classes()."""
+    yield from (f"cites {name}::{member}, which {name} does not have" for name, member in MEMBER.findall(prose)
+                if name in has and member.lstrip("~") not in has[name] | {name})
+
+
 def statuses(pages):
     """Yields what is wrong with the statuses of docs/adr; `pages` has the text of each by its number, four digits."""
     changes = {number: set() for number in pages}
@@ -117,6 +157,10 @@ def self_test():
     assert not list(undefined("(architecture, rule 3), ECSS-E-ST-70-41C 8.1.2, PUS-C clients", known))
     for fault in ("(pus-c tailoring 5.3)", "pus-c 9.7", "reliability 5.1", "architecture 4", "mission row B1"):
         assert list(undefined(fault, known)), fault
+    has = classes(["struct A : B<C> {\n  int a;  // b\n};\nclass B { void c(); };", "using D = A; using G = std::a;\ntemplate <class E> f();\nstruct E { int a; };"])
+    assert not list(memberless("A::a, A::c(), D::c, A::A, std::b, E::z, F::z, G::z, x::A::z", has))
+    for fault in ("A::b", "`B::a()`", "D::z"):
+        assert list(memberless(fault, has)), fault
     page = "# {} A\n\nStatus: accepted{}\n\n## Context\nChanges 0009.\n".format
     newer, older = page(2, ". Changes 0001 (as of\n0003), and decision 7. New."), page(1, "; changed by [0002](0002-a.md).")
     assert not list(statuses({"0001": older, "0002": newer}))
@@ -163,4 +207,9 @@ for name in sorted(files):
         found += [f"{name}: {what}" for what in lost(str(pathlib.Path(name).parent), read(name) or "", files)]
     if name.endswith((".md", ".hpp", ".cpp", ".py", ".xml", ".js", ".mjs", ".csv")) and name != "tools/check_quotes.py":
         found += [f"{name}: {what}" for what in undefined(read(name) or "", known)]
+sources = {name: read(name) or "" for name in sorted(files) if name.endswith((".hpp", ".cpp"))}
+has = classes(sources.values())
+found += [f"{name}: {what}" for name, text in sources.items() for what in memberless("\n".join(comment.findall(text)), has)]
+found += [f"{name}: {what}" for name in sorted(files) if name.endswith(".md") and not name.startswith("docs/adr/")
+          for what in memberless("\n".join(each[0] for each in code.finditer(read(name) or "") if not each[1]), has)]
 sys.exit("\n".join(found) or None)

@@ -40,7 +40,7 @@ struct SampleSink {
 /// One value of a structure, resolved.
 struct SampledValue {
   std::uint32_t wire{};              ///< ParameterId::wire() of the parameter or member
-  std::uint16_t parameter{};         ///< index into Subsystem::parameters
+  std::uint16_t parameter{};         ///< index into SubsystemDescriptor::parameters
   std::int16_t member{-1};           ///< as ParameterRef::member, -1 = whole
   std::uint16_t octets{};
 };

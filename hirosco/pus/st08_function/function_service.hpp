@@ -23,7 +23,7 @@ inline constexpr std::uint16_t first_built_in_function = 0xFF00;
 /// A decoded and checked call: trivially copyable, travels to the cycle. Values stand in declared order whatever the order
 /// on the wire; ArgumentReader reads them.
 struct FunctionCall {
-  std::uint16_t function{};  ///< index into Subsystem::functions, or first_built_in_function + index
+  std::uint16_t function{};  ///< index into SubsystemDescriptor::functions, or first_built_in_function + index
   ArgumentData arguments{};
 };
 

@@ -18,7 +18,7 @@ namespace hirosco::supervisor {
 
 /// SAFE_ALL, however it was asked for: the guard stops everything, the states follow, and what became of it is told by who
 /// was to stop. What was said before it, read or not, lets nobody move (`Guard::newest_stop()`).
-/// It holds until a SET_STATE(Operational) that was permitted after it leaves (`Telecommands::forward()`, `Guard::release()`).
+/// It holds until a SET_STATE(Operational) that was permitted after it leaves (`Telecommands::send()`, `Guard::release()`).
 /// Thread: the supervisor's; the stop itself is the guard's.
 class SafeAll final : public Remembered {
  public:
