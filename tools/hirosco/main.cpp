@@ -273,8 +273,8 @@ int read_and_do(int argc, char** argv) {
                             "Mission that runs; by default the one that flies, else that of this folder");
   add_instance(*fault_command, fault_options.instance);
   SafeOptions safe_options;
-  auto* safe_command =
-      app.add_subcommand("safe", "Stop every actuator, past ground link, cycles, queues, disk and mode");
+  auto* safe_command = app.add_subcommand(
+      "safe", "Stop every actuator but for the ground link's, past ground link, cycles, queues, disk and mode");
   safe_command->add_option("--mission", safe_options.mission, "Only this mission; by default all that fly here");
   safe_command->add_option("--instance", safe_options.instance, "Only this flight");
 

@@ -26,7 +26,8 @@ struct FlowOpening {
   std::span<const DeviceNetwork> networks{};  ///< outside this computer that it may be in
 };
 
-/// One means of transfer of the real set: a function that opens its flows, what that needs in a sandbox, and a row in `linux_flow_means.cpp`.
+/// One means of transfer of the real set: a function that opens its flows, what that needs in a sandbox, and a row in `linux_flow_means.cpp`;
+/// what a further one takes besides says `hirosco/data_transfer/README.md`, "To extend".
 struct FlowMeans {
   Transfer transfer;
   AddressForm form;
