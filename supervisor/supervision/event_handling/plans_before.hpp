@@ -18,6 +18,7 @@ namespace hirosco::supervisor {
 inline constexpr std::string_view event_of_failure = "RECOVERY_FAILED";
 
 /// The plans that were under way when the supervisor before this one died, and what the next one has to know of all (docs/adr/0201).
+/// Adoption begins them anew.
 /// Thread: the supervisor's.
 class PlansBefore {
  public:

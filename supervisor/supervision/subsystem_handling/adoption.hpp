@@ -29,7 +29,8 @@ class Shutdown;
 class Telecommands;
 
 /// A supervisor that goes on for one that died (docs/adr/0093): what runs is taken over with the permission that it had, unless
-/// something was under way that was to stop it or would have moved it: that ends stopped. Thread: the supervisor's.
+/// something was under way that was to stop it or would have moved it: that ends stopped. What happens in which order, and where: supervisor/README.md.
+/// Thread: the supervisor's.
 class Adoption final : public Watch, public Remembered, public Succession {
  public:
   struct Parts {

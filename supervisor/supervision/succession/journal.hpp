@@ -9,7 +9,8 @@
 
 #include "hirosco/utilities/octets.hpp"
 
-/// What a supervisor has to know to go on for one that died (docs/adr/0093), in memory that somebody else keeps.
+/// What a supervisor has to know to go on for one that died (docs/adr/0093), in memory that somebody else keeps. What it does with that, in which
+/// order, and where: supervisor/README.md.
 namespace hirosco::supervisor {
 
 /// Two copies, of which the older is written over: whatever is torn by a death, the other one is whole. A copy has a magic word, the

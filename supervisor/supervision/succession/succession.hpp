@@ -6,7 +6,7 @@
 
 namespace hirosco::supervisor {
 
-/// How a supervisor that goes on for one that died is met by who reads what members say (docs/adr/0093).
+/// How a supervisor that goes on for one that died is met by who reads what members say (docs/adr/0093): Adoption, in subsystem_handling/.
 class Succession {
  public:
   virtual ~Succession() = default;
