@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "hirosco/data_transfer/device/enable_frame.hpp"
-#include "hirosco/subsystem/author/states.hpp"
+#include "hirosco/subsystem/pages/supervisor_silence.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/life.hpp"
 #include "hirosco/utilities/os/process.hpp"

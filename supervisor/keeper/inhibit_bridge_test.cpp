@@ -14,7 +14,7 @@
 
 #include "hirosco/data_transfer/device/enable_frame.hpp"
 #include "hirosco/data_transfer/device/local_flows.hpp"
-#include "hirosco/subsystem/author/states.hpp"
+#include "hirosco/subsystem/pages/supervisor_silence.hpp"
 #include "hirosco/utilities/os/life.hpp"
 
 /// Between two guards: the second inhibits while no supervisor tells them anything (docs/adr/0093).

@@ -19,7 +19,7 @@ import supervisor_kills
 import supervisors
 
 MODE = 3
-SAFE_AFTER_S = 2.0          # supervisor_silence_limit of hirosco/subsystem/author/states.hpp
+SAFE_AFTER_S = 2.0          # supervisor_silence_limit of hirosco/subsystem/pages/supervisor_silence.hpp
 ADOPTED_S = 1.0
 # The structures of both machines come every so often, by their cycles' count.
 SAMPLES_S = {4713: 0.05, 4721: 0.25}

@@ -14,7 +14,7 @@ import unittest
 
 import flight
 
-SILENCE_S = 2.0                   # hirosco/subsystem/author/states.hpp
+SILENCE_S = 2.0                   # hirosco/subsystem/pages/supervisor_silence.hpp
 MARGIN_S = 1.0
 
 

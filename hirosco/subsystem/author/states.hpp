@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "hirosco/descriptor/model/subsystem.hpp"
-#include "hirosco/utilities/time.hpp"
 
 /// The ten states as one table (paper 4.2, figure 4). Code, tests and the drawn diagram use this one.
 namespace hirosco {
@@ -63,17 +62,6 @@ inline constexpr std::array transitions{
 [[nodiscard]] constexpr bool is_cyclic(State state) noexcept {
   return state == State::PreOperational || state == State::SafeOperational || state == State::Operational ||
          state == State::ErrorOperational;
-}
-
-/// Without a sign of life of the supervisor for this long a subsystem makes itself safe (hazard SF8). Its cycle counts
-/// own cycles, at least this many, its service loop the time that it has watched: with both parts of the machine stopped for a
-/// while nobody has been silent.
-inline constexpr Duration supervisor_silence_limit = std::chrono::seconds{2};
-/// Of the time between two looks of the service loop no more counts. They are 10 ms apart at most while nothing holds it up.
-inline constexpr Duration most_silence_a_look = std::chrono::milliseconds{200};
-[[nodiscard]] constexpr std::uint32_t supervisor_silence_cycles(Duration period) noexcept {
-  const auto cycles = period > Duration{0} ? (supervisor_silence_limit + period - Duration{1}) / period : 1;
-  return static_cast<std::uint32_t>(cycles > 1 ? cycles : 1);
 }
 
 /// Where a failure in a state leads; empty where the state stays as it is.

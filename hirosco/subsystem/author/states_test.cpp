@@ -98,20 +98,6 @@ TEST(States, TheWayDownPassesThroughTheDeinitStates) {
   EXPECT_EQ(way->states[3], State::Offline);
 }
 
-TEST(States, TheLimitOfSilenceIsOneCycleAtLeastWhateverThePeriod) {
-  EXPECT_EQ(supervisor_silence_cycles(Duration{0}), 1u);
-  EXPECT_EQ(supervisor_silence_cycles(Duration{-5}), 1u);
-  EXPECT_EQ(supervisor_silence_cycles(std::chrono::hours{1}), 1u);
-}
-
-TEST(States, TheLimitOfSilenceIsTwoSecondsInWholeCyclesAndNotShorter) {
-  EXPECT_EQ(supervisor_silence_cycles(1ms), 2000u);
-  EXPECT_EQ(supervisor_silence_cycles(500us), 4000u);
-  EXPECT_EQ(supervisor_silence_cycles(3ms), 667u);
-  EXPECT_EQ(supervisor_silence_cycles(2s), 1u);
-  EXPECT_EQ(supervisor_silence_cycles(2s - 1ns), 2u);
-}
-
 /// Written by hand from figure 4: - leads nowhere, S and H to the deinit states, E to Error-Operational.
 TEST(States, AFailureLeadsWhereFigure4Says) {
   constexpr std::string_view targets = "-SHEEE----";

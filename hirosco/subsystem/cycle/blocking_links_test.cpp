@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 
+#include "hirosco/subsystem/pages/supervisor_silence.hpp"
 #include "hirosco/subsystem/testing/inside.hpp"
 
 /// A filter whose cycle starts with each sample of an encoder (adr 0094): handshake, cycle, limits, and a producer that floods, stops,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hirosco/descriptor/model/framework_events.hpp"
+#include "hirosco/subsystem/pages/supervisor_silence.hpp"
 
 namespace hirosco {
 

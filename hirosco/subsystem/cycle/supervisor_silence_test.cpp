@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "hirosco/subsystem/pages/supervisor_silence.hpp"
 #include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "hirosco/subsystem/pages/supervisor_silence.hpp"
+
 namespace hirosco {
 
 /// The supervisor died, and another one goes on in its place: it cannot write the page of the one before (hazard SF13). What is no
