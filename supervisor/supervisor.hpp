@@ -62,7 +62,7 @@ class Supervisor final {
   /// False when commissioning failed or the shutdown was not orderly.
   [[nodiscard]] bool succeeded() const noexcept;
   [[nodiscard]] bool commissioned() const noexcept;
-  /// What commissioning waits for; empty when nothing.
+  /// What commissioning waits for, or the shutdown once it has begun; empty when nothing.
   [[nodiscard]] std::string waiting_for() const;
 
   [[nodiscard]] const std::vector<Member>& members() const noexcept;

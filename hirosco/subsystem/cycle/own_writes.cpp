@@ -7,13 +7,13 @@ namespace hirosco {
 
 OwnWrites::OwnWrites(const descriptor::SubsystemDescriptor& descriptor, const Dictionary& dictionary)
     : descriptor_{descriptor}, dictionary_{dictionary} {
-  own_writes_octets_ = descriptor_.parameters.size();
-  own_writes_ = std::make_unique<std::atomic<std::uint8_t>[]>(own_writes_octets_);
+  parameters_ = descriptor_.parameters.size();
+  own_writes_ = std::make_unique<std::atomic<std::uint8_t>[]>(parameters_);
 }
 
 void OwnWrites::begin() {
   watched_.clear();
-  for (std::size_t i = 0; i < own_writes_octets_; ++i) {
+  for (std::size_t i = 0; i < parameters_; ++i) {
     own_writes_[i].store(0, std::memory_order_relaxed);
     const ParameterCell* cell = dictionary_.cell(i);
     if (descriptor_.parameters[i].writable() && cell != nullptr)

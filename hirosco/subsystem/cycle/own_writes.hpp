@@ -27,7 +27,7 @@ class OwnWrites {
   void note_own_writes() noexcept;
   /// Whether the node wrote this parameter in the newest cycle; by its place in the descriptor.  Realtime: wait-free. Thread: any.
   [[nodiscard]] bool has(std::size_t parameter) const noexcept {
-    return parameter < own_writes_octets_ && own_writes_[parameter].load(std::memory_order_relaxed) != 0;
+    return parameter < parameters_ && own_writes_[parameter].load(std::memory_order_relaxed) != 0;
   }
 
  private:
@@ -40,7 +40,7 @@ class OwnWrites {
   const Dictionary& dictionary_;
   std::vector<Watched> watched_;  ///< what ST[20] might set
   std::unique_ptr<std::atomic<std::uint8_t>[]> own_writes_;  ///< by parameter
-  std::size_t own_writes_octets_{0};
+  std::size_t parameters_{0};
 };
 
 }  // namespace hirosco

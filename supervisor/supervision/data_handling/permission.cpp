@@ -96,9 +96,10 @@ using Notice = std::optional<FailureNotice>;
   return configuration != nullptr ? configuration->power_w : 0;
 }
 
-[[nodiscard]] FailureNotice notice_of(const PowerShortage& shortage) {
+/// `shortage` in mW.
+[[nodiscard]] FailureNotice notice_of(const Shortage& shortage) {
   FailureNotice notice{FailureCode::PowerShort};
-  return notice.with(shortage.budget_mw).with(shortage.reserved_mw).with(shortage.requested_mw);
+  return notice.with(shortage.budget).with(shortage.reserved).with(shortage.requested);
 }
 
 /// Towards safety: never delayed or refused by mode (decision 24).

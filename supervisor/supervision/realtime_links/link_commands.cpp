@@ -12,7 +12,7 @@ namespace hirosco::supervisor {
 void LinkCommands::provide() {
   own_.on_function("LINK", [this](double number, Call call) -> Outcome {
     const auto link = static_cast<std::uint8_t>(number);
-    if (handling_.releases(link))
+    if (handshakes_.releases(link))
       return refused(pus::FailureCode::WrongStatus, "an end has not let go since UNLINK of link", link);
     if (const auto ours = renewing_.find(link); ours != renewing_.end()) {
       ours->second.push_back(call);
@@ -20,7 +20,7 @@ void LinkCommands::provide() {
     }
     if (renewed_.erase(link) != 0 && graph_.is_up(link)) return Outcome{Outcome::Kind::Done};
     renewals_.drop(link);
-    const bool begun = handling_.establish(link, craft_.now, [this, call](bool success) {
+    const bool begun = handshakes_.establish(link, craft_.now, [this, call](bool success) {
       if (success) own_.finish(call);
       else own_.abort(call, pus::FailureCode::ExecutionError);
     });
@@ -29,7 +29,7 @@ void LinkCommands::provide() {
   own_.on_function("UNLINK", [this](double link, Call call) -> Outcome {
     using enum LinkReleases::Released;
     renewals_.drop(static_cast<std::uint8_t>(link));
-    const bool begun = handling_.release(static_cast<std::uint8_t>(link), [=, this](LinkReleases::Released how) {
+    const bool begun = handshakes_.release(static_cast<std::uint8_t>(link), [=, this](LinkReleases::Released how) {
       if (how == ByBoth) return own_.finish(call);
       const auto code = how == Refused ? pus::FailureCode::ExecutionError : pus::FailureCode::Timeout;
       own_.abort(call, code, "an end has not let go of link", static_cast<std::int64_t>(link));
@@ -45,8 +45,8 @@ void LinkCommands::hear(std::uint16_t from, const pus::TelemetryView& report) {
   const auto link = leaves ? std::to_integer<std::uint8_t>(data[0]) : std::uint8_t{0};
   const bool was_up = leaves && graph_.is_up(link);
   if (leaves) renewals_.let_go(link, from);
-  handling_.handle(from, report);
-  if (!was_up || graph_.is_up(link) || handling_.releases(link) || craft_.shutting_down) return;
+  handshakes_.handle(from, report);
+  if (!was_up || graph_.is_up(link) || handshakes_.releases(link) || craft_.shutting_down) return;
   const descriptor::MissionLink& left = *craft_.mission.find_link(link);
   const auto apid_of = [&](const std::string& name) { return craft_.mission.find_subsystem(name)->subsystem.id; };
   renewals_.left(link, apid_of(left.from) == from ? apid_of(left.to) : apid_of(left.from));
@@ -57,7 +57,7 @@ void LinkCommands::hear(std::uint16_t from, const pus::TelemetryView& report) {
 void LinkCommands::watch(TimePoint now) {
   for (const LinkGraph::HalfHeld& half : graph_.half_held())
     if (has_left(half.gone, half.link) || has_left(half.holder, half.link)) graph_.forget(half.link);
-  handling_.step(now);
+  handshakes_.step(now);
   renew();
 }
 
@@ -79,7 +79,7 @@ void LinkCommands::renew() {
   if (craft_.changing_to != nullptr || craft_.shutting_down) return renewals_.drop_all();
   renewals_.for_each([&](std::uint8_t id) {
     if (graph_.is_up(id)) return renewals_.drop(id);
-    if (renewing_.contains(id) || handling_.releases(id)) return;
+    if (renewing_.contains(id) || handshakes_.releases(id)) return;
     const descriptor::MissionLink& link = *craft_.mission.find_link(id);
     const auto judged = renewals_.judge(link, end_of(link.from), end_of(link.to));
     switch (judged.next) {
@@ -96,7 +96,7 @@ void LinkCommands::renew() {
 
 void LinkCommands::renew(std::uint8_t link) {
   renewing_.try_emplace(link);
-  if (!handling_.establish(link, craft_.now, [this, link](bool success) { renewed(link, success); }))
+  if (!handshakes_.establish(link, craft_.now, [this, link](bool success) { renewed(link, success); }))
     renewing_.erase(link);  // somebody else's handshake of it is under way
 }
 
@@ -129,13 +129,13 @@ void LinkCommands::forget(std::uint16_t apid) {
     const auto is = [&](const std::string& name) { return craft_.mission.find_subsystem(name)->subsystem.id == apid; };
     if (is(link.from) || is(link.to)) renewals_.drop(link.id);
   }
-  handling_.forget(apid);
+  handshakes_.forget(apid);
 }
 
 void LinkCommands::note(OctetWriter& writer) const {
-  writer.put(handling_.epoch()).put(static_cast<std::uint16_t>(craft_.mission.links.size()));
+  writer.put(handshakes_.epoch()).put(static_cast<std::uint16_t>(craft_.mission.links.size()));
   for (const auto& link : craft_.mission.links) writer.put(link.id).put(graph_.standing(link.id));
-  auto between = handling_.under_way();
+  auto between = handshakes_.under_way();
   between.insert(between.end(), broken_.begin(), broken_.end());
   writer.put(static_cast<std::uint16_t>(between.size()));
   for (const std::uint8_t link : between) writer.put(link);
@@ -144,7 +144,7 @@ void LinkCommands::note(OctetWriter& writer) const {
 }
 
 void LinkCommands::recall(OctetReader& reader) {
-  handling_.go_on_from(reader.get<std::uint32_t>());
+  handshakes_.go_on_from(reader.get<std::uint32_t>());
   for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
     const auto link = reader.get<std::uint8_t>();
     graph_.stand(link, reader.get<std::uint8_t>());
@@ -165,8 +165,8 @@ void LinkCommands::end_what_was_begun() {
     for (const Member& member : craft_.members)
       if (graph_.holds(link.id, member.apid()) && (has_left(member.apid(), link.id) || member.configuration() == 0))
         graph_.let_go(link.id, member.apid());
-  for (const LinkGraph::HalfHeld& half : graph_.half_held()) handling_.break_off(half.link);
-  for (const std::uint8_t link : std::exchange(broken_, {})) handling_.break_off(link);
+  for (const LinkGraph::HalfHeld& half : graph_.half_held()) handshakes_.break_off(half.link);
+  for (const std::uint8_t link : std::exchange(broken_, {})) handshakes_.break_off(link);
 }
 
 bool LinkCommands::has_left(std::uint16_t apid, std::uint8_t link) const {
@@ -181,7 +181,7 @@ void LinkCommands::send_link_command(std::uint16_t apid, std::uint8_t subtype, O
                                      const MemoryHandle& memory) {
   const auto link = data.empty() ? std::uint8_t{0} : std::to_integer<std::uint8_t>(data[0]);
   const auto done = [=, this](bool success, const std::string& why) {
-    if (!success) handling_.failed(apid, subtype, link, craft_.name_of(apid) + ": " + why);
+    if (!success) handshakes_.failed(apid, subtype, link, craft_.name_of(apid) + ": " + why);
   };
   desk_.send(apid, pus::st128::service_type, subtype, data, memory, done, Duration{0});
 }

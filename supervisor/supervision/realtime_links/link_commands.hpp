@@ -29,15 +29,15 @@ class LinkCommands final : public Watch, public Hearer, public Remembered, priva
         own_{own},
         desk_{desk},
         graph_{graph},
-        handling_{craft.mission, graph, craft.platform.memory, craft.platform.links, *this} {}
+        handshakes_{craft.mission, graph, craft.platform.memory, craft.platform.links, *this} {}
 
   /// LINK and UNLINK.
   void provide();
-  [[nodiscard]] const LinkGraph& graph() const noexcept { return handling_.graph(); }
+  [[nodiscard]] const LinkGraph& graph() const noexcept { return handshakes_.graph(); }
   /// How a link does. Empty: it is not up, nothing was produced yet, or it cannot be seen.
-  [[nodiscard]] std::optional<LinkGlance> glance(std::uint8_t link) const noexcept { return handling_.glance(link); }
+  [[nodiscard]] std::optional<LinkGlance> glance(std::uint8_t link) const noexcept { return handshakes_.glance(link); }
   /// Whether a link that is up can be looked at from here.
-  [[nodiscard]] bool can_look(std::uint8_t link) const noexcept { return handling_.can_look(link); }
+  [[nodiscard]] bool can_look(std::uint8_t link) const noexcept { return handshakes_.can_look(link); }
   /// A subsystem is gone without reporting: all its links are down.
   void forget(std::uint16_t apid);
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
@@ -65,7 +65,7 @@ class LinkCommands final : public Watch, public Hearer, public Remembered, priva
   OwnSubsystem& own_;
   CommandDesk& desk_;
   LinkGraph& graph_;
-  LinkHandshakes handling_;
+  LinkHandshakes handshakes_;
   LinkRenewals renewals_;
   std::map<std::uint8_t, std::vector<Call>> renewing_;  ///< handshakes of ours, and who waits for them
   std::set<std::uint8_t> renewed_;  ///< up again without anybody's command: LINK has nothing to do

@@ -137,8 +137,8 @@ TEST_F(MeasuredPowerTest, AMeasurementThatFallsRefusesAndShedsNobody) {
   EXPECT_FALSE(ledger().overdrawn());
   const auto shortage = ledger().shortage(arm, 60);
   ASSERT_TRUE(shortage);
-  EXPECT_EQ(shortage->budget_mw, 50'000U);
-  EXPECT_EQ(shortage->reserved_mw, 40'000U);
+  EXPECT_EQ(shortage->budget, 50'000U);
+  EXPECT_EQ(shortage->reserved, 40'000U);
 }
 
 TEST_F(MeasuredPowerTest, OneThatIsLostIsToldOnceAndGrantsTheLeastOnly) {

@@ -38,10 +38,8 @@ std::uint32_t PowerLedger::budget_mw() const noexcept {
   return grantable_mw_ ? std::min(*grantable_mw_, book_.budget()) : book_.budget();
 }
 
-std::optional<PowerShortage> PowerLedger::shortage(std::uint16_t apid, double demand_w) const noexcept {
-  const auto found = limited() ? book_.shortage(apid, milliwatts(demand_w), budget_mw()) : std::nullopt;
-  if (!found) return std::nullopt;
-  return PowerShortage{.budget_mw = found->budget, .reserved_mw = found->reserved, .requested_mw = found->requested};
+std::optional<Shortage> PowerLedger::shortage(std::uint16_t apid, double demand_w) const noexcept {
+  return limited() ? book_.shortage(apid, milliwatts(demand_w), budget_mw()) : std::nullopt;
 }
 
 void PowerLedger::reserve(std::uint16_t apid, double demand_w, const pus::Request& request, TimePoint until) {

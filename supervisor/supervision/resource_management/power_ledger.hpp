@@ -19,13 +19,6 @@
 /// against what the mission or a telecommand says. So a measurement refuses, and sheds nothing.
 namespace hirosco::supervisor {
 
-/// Why something does not fit.
-struct PowerShortage {
-  std::uint32_t budget_mw{};
-  std::uint32_t reserved_mw{};  ///< by all others
-  std::uint32_t requested_mw{};
-};
-
 /// Thread: the supervisor's.
 class PowerLedger {
  public:
@@ -35,8 +28,8 @@ class PowerLedger {
   /// Who asks from now on is granted no more than this, nor than the budget; `basis`: why, in words.
   void set_grantable(double grantable_w, std::string basis);
 
-  /// What `apid` already holds would be replaced, so it does not count.
-  [[nodiscard]] std::optional<PowerShortage> shortage(std::uint16_t apid, double demand_w) const noexcept;
+  /// In mW. What `apid` already holds would be replaced, so it does not count.
+  [[nodiscard]] std::optional<Shortage> shortage(std::uint16_t apid, double demand_w) const noexcept;
   /// For a permitted telecommand; held without a look at the state until it ended, or until `until` when nobody says.
   void reserve(std::uint16_t apid, double demand_w, const pus::Request& request, TimePoint until);
   /// It was completed, refused or failed: from now on the state decides.

@@ -26,9 +26,9 @@ TEST_F(PowerLedgerTest, OfTwoThatFitAloneTheSecondIsRefusedWithTheNumbers) {
   ledger.reserve(robot, 60, of_arm, later);
   const auto shortage = ledger.shortage(handle, 60);
   ASSERT_TRUE(shortage);
-  EXPECT_EQ(shortage->budget_mw, 100'000U);
-  EXPECT_EQ(shortage->reserved_mw, 60'000U);
-  EXPECT_EQ(shortage->requested_mw, 60'000U);
+  EXPECT_EQ(shortage->budget, 100'000U);
+  EXPECT_EQ(shortage->reserved, 60'000U);
+  EXPECT_EQ(shortage->requested, 60'000U);
   EXPECT_FALSE(ledger.shortage(handle, 40)) << "to the last milliwatt";
   EXPECT_TRUE(ledger.shortage(handle, 40.001));
 }
