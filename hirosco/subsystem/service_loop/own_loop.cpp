@@ -117,24 +117,22 @@ TimePoint OwnLoop::due(TimePoint planned) const noexcept {
 
 TimePoint OwnLoop::step(TimePoint planned) {
   const Duration used = parts_.clock.processor();
-  Duration period{};
-  {
-    const LockGuard lock{mutex_};
-    planned = std::min(planned, TimePoint{Duration{due_ns_.exchange(not_sooner_ns, std::memory_order_acq_rel)}});
-    period = in_force().period;
-    in_step_.store(true, std::memory_order_release);
-    for (std::uint32_t left = parts_.declared.queue; left > 0 && has_room(max_packet_octets); --left) {
-      const auto record = in_.front();
-      if (!record) break;
-      handle(*record);
-      in_.pop();
-      waiting_.fetch_sub(1, std::memory_order_acq_rel);
-    }
-    const TimePoint now = parts_.clock.now();
-    for (pus::Service* service : services_) service->step(now);
-    steps_.fetch_add(1, std::memory_order_acq_rel);
-    in_step_.store(false, std::memory_order_release);
+  // To the end: what it took is held against the budget that it was made under.
+  const LockGuard lock{mutex_};
+  planned = std::min(planned, TimePoint{Duration{due_ns_.exchange(not_sooner_ns, std::memory_order_acq_rel)}});
+  in_step_.store(true, std::memory_order_release);
+  for (std::uint32_t left = parts_.declared.queue; left > 0 && has_room(max_packet_octets); --left) {
+    const auto record = in_.front();
+    if (!record) break;
+    handle(*record);
+    in_.pop();
+    waiting_.fetch_sub(1, std::memory_order_acq_rel);
   }
+  const TimePoint now = parts_.clock.now();
+  for (pus::Service* service : services_) service->step(now);
+  steps_.fetch_add(1, std::memory_order_acq_rel);
+  in_step_.store(false, std::memory_order_release);
+  const Duration period = in_force().period;
   const TimePoint next = planned + period;
   const TimePoint finished = parts_.clock.now();
   const auto missed = finished <= next ? 0 : (finished - next) / period + 1;
