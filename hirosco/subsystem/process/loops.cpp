@@ -175,14 +175,17 @@ void OwnLoopThread::run() {
 
 /// One with a priority shares the processor of the cycles, where its response is reckoned (adr 0085); one without goes anywhere.
 void OwnLoopThread::take_priority(int priority) {
-  if (std::exchange(priority_, priority) == priority || !realtime_) return;
+  if (!realtime_ || priority == priority_) return;
+  // Up: priority, then processor. Down: the other way round, as behind the cycles of their processor it might not come to ask for others.
   if (priority > 0) {
+    // The guard takes the right to one for a while: it stays as it is, and asks again before its next step.
+    if (!set_fifo_priority(priority)) return;
     static_cast<void>(pin_to_cycle_cpu());
-    static_cast<void>(set_fifo_priority(priority));
   } else {
-    static_cast<void>(set_ordinary_scheduling());
     static_cast<void>(anywhere_.take());
+    static_cast<void>(set_ordinary_scheduling());
   }
+  priority_ = priority;
 }
 
 void serve(const ServiceLoop& loop) {

@@ -96,7 +96,7 @@ class OwnLoopThread {
   Bell& bell_;
   bool realtime_;
   ThreadHold* hold_;
-  int priority_{0};  ///< the thread's own, like the next
+  int priority_{0};  ///< that it has; the thread's own, like the next
   ProcessorSet anywhere_{};
   std::atomic<bool> ending_{false};
   Thread thread_;
