@@ -106,8 +106,8 @@ TEST_F(LoopPaces, AreThoseOfTheSubsystemUntilAConfigurationSaysOtherwiseAndAgain
   EXPECT_EQ(pace().priority, 30);
   EXPECT_EQ(pace().budget, 200us);
   EXPECT_EQ(pace().queue, 8U);
-  const TimePoint now = rig.clock.now();
-  EXPECT_EQ(step(now), now + 5ms);
+  const TimePoint next = step(rig.clock.now());
+  EXPECT_EQ(step(next), next + 5ms);
   rig.set_state_now(State::Offline);
   EXPECT_EQ(pace().period, 20ms);
   EXPECT_EQ(pace().priority, 12);
