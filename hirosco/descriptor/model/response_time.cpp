@@ -12,12 +12,28 @@ namespace {
   return (span + period - Duration{1}) / period;
 }
 
+/// A subsystem has its configuration in force, or not: before it and behind it there is no cycle, and its loops go as it says itself.
+enum class When { Always, Configured, Unconfigured };
+
+struct Way {
+  CycleResponse response;
+  When when{When::Always};
+};
+
+[[nodiscard]] bool never_at_once(const Way& one, const Way& other) {
+  return one.response.subsystem == other.response.subsystem && one.when != other.when && one.when != When::Always &&
+         other.when != When::Always;
+}
+
 /// Who runs, in each way in which it may: of a cycle there is one, a loop of services may go otherwise in a configuration. It goes in one
 /// of them at a time.
 struct Runner {
-  std::array<CycleResponse, 2> ways;
-  std::size_t count{1};
-  [[nodiscard]] std::span<const CycleResponse> each() const noexcept { return std::span{ways}.first(count); }
+  std::array<Way, 2> ways;
+  std::size_t count{0};
+  [[nodiscard]] std::span<const Way> each() const noexcept { return std::span{ways}.first(count); }
+  void may(const CycleResponse& response, When when) {
+    if (response.period() > Duration{}) ways[count++] = {response, when};
+  }
 };
 
 /// What this one takes from `of` until that has ended, if it began with all due and took `span`.
@@ -29,23 +45,24 @@ struct Runner {
 }
 
 /// Of who may run in several ways, in the worst for `of`.
-[[nodiscard]] Duration demand(std::span<const Runner> all, const Runner& own, const CycleResponse& of, Duration span) {
-  Duration sum = of.load();
+[[nodiscard]] Duration demand(std::span<const Runner> all, const Runner& own, const Way& of, Duration span) {
+  Duration sum = of.response.load();
   for (const Runner& runner : all) {
     if (&runner == &own) continue;
     Duration most{};
-    for (const CycleResponse& other : runner.each()) most = std::max(most, taken(other, of, span));
+    for (const Way& other : runner.each())
+      if (!never_at_once(other, of)) most = std::max(most, taken(other.response, of.response, span));
     sum += most;
   }
   return sum;
 }
 
-[[nodiscard]] std::optional<Duration> longest(std::span<const Runner> all, const Runner& own, const CycleResponse& of) {
-  // Each round is longer by a budget at least, so that it ends at the period at the latest.
+[[nodiscard]] std::optional<Duration> longest(std::span<const Runner> all, const Runner& own, const Way& of) {
+  // Each round is longer, by a microsecond of a budget at least, so that it ends at the period at the latest.
   // It counts from when the cycle takes the processor, which a precise one does before it is due.
-  for (Duration span = std::max(of.load(), Duration{1}); span <= of.period();) {
+  for (Duration span = std::max(of.response.load(), Duration{1}); span <= of.response.period();) {
     const Duration needed = demand(all, own, of, span);
-    if (needed == span) return span - of.spin();
+    if (needed == span) return span - of.response.spin();
     span = needed;
   }
   return std::nullopt;
@@ -54,22 +71,28 @@ struct Runner {
 [[nodiscard]] std::vector<CycleResponse> responses(std::span<const Runner> all) {
   std::vector<CycleResponse> cycles;
   for (const Runner& runner : all)
-    for (CycleResponse cycle : runner.each()) {
-      cycle.longest = longest(all, runner, cycle);
-      cycles.push_back(cycle);
+    for (const Way& way : runner.each()) {
+      cycles.push_back(way.response);
+      cycles.back().longest = longest(all, runner, way);
     }
   std::ranges::stable_sort(cycles, std::ranges::greater{}, &CycleResponse::priority);
   return cycles;
 }
 
-[[nodiscard]] std::vector<Runner> runners(std::span<const InForce> all) {
+enum class Reckoned { AsInForce, AlsoUnconfigured };
+
+[[nodiscard]] std::vector<Runner> runners(std::span<const InForce> all, Reckoned reckoned) {
   std::vector<Runner> found;
   for (const auto& [subsystem, configuration] : all) {
-    if (configuration != nullptr && configuration->shortest() > Duration{})
-      found.push_back({{CycleResponse{subsystem->name, configuration, nullptr, std::nullopt}}});
-    for (std::size_t i = 0; i < subsystem->service_loops.size(); ++i)
-      if (const ServiceLoop& loop = subsystem->loop_in_force(i, configuration); loop.period > Duration{})
-        found.push_back({{CycleResponse{subsystem->name, nullptr, &loop, std::nullopt}}});
+    if (configuration != nullptr)
+      found.emplace_back().may({subsystem->name, configuration, nullptr, std::nullopt}, When::Configured);
+    for (std::size_t i = 0; i < subsystem->service_loops.size(); ++i) {
+      const ServiceLoop &own = subsystem->service_loops[i], &now = subsystem->loop_in_force(i, configuration);
+      const bool goes_otherwise = &now != &own && reckoned == Reckoned::AlsoUnconfigured;
+      Runner& loop = found.emplace_back();
+      loop.may({subsystem->name, nullptr, &now, std::nullopt}, goes_otherwise ? When::Configured : When::Always);
+      if (goes_otherwise) loop.may({subsystem->name, nullptr, &own, std::nullopt}, When::Unconfigured);
+    }
   }
   return found;
 }
@@ -88,27 +111,20 @@ struct Runner {
 
 }  // namespace
 
-std::vector<CycleResponse> cycle_responses(std::span<const InForce> all) { return responses(runners(all)); }
+std::vector<CycleResponse> cycle_responses(std::span<const InForce> all) {
+  return responses(runners(all, Reckoned::AsInForce));
+}
 
 std::vector<CycleResponse> cycle_responses(const Mission& mission, const Mode& mode) {
   return cycle_responses(in_force_in(mission, mode));
 }
 
+std::vector<CycleResponse> cycle_responses_around(std::span<const InForce> all) {
+  return responses(runners(all, Reckoned::AlsoUnconfigured));
+}
+
 std::vector<CycleResponse> cycle_responses_around(const Mission& mission, const Mode& mode) {
-  const std::vector<InForce> all = in_force_in(mission, mode);
-  std::vector<Runner> found = runners(all);
-  for (Runner& runner : found) {
-    const ServiceLoop* const loop = runner.ways[0].loop;
-    if (loop == nullptr) continue;
-    const SubsystemDescriptor& subsystem = *std::ranges::find(all, runner.ways[0].subsystem, [](const InForce& each) {
-                                              return std::string_view{each.subsystem->name};
-                                            })->subsystem;
-    const auto own = std::ranges::find(subsystem.service_loops, loop->name, &ServiceLoop::name);
-    if (&*own == loop || own->period == Duration{}) continue;
-    runner.ways[1] = {subsystem.name, nullptr, &*own, std::nullopt};
-    runner.count = 2;
-  }
-  return responses(found);
+  return cycle_responses_around(in_force_in(mission, mode));
 }
 
 }  // namespace hirosco::descriptor

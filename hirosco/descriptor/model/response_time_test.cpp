@@ -119,6 +119,21 @@ TEST_F(CycleResponses, AroundAModeCountEachLoopOnceAsItTakesMost) {
   EXPECT_EQ(around[2].longest, 700us) << "300 or 200 us before it, not both";
 }
 
+/// It has no cycle before its configuration is in force and behind it: neither waits for the other.
+TEST_F(CycleResponses, AroundAModeAreNotThoseOfACycleBesideItsOwnLoopsAsTheyGoWithoutIt) {
+  commission({"A", 30, 1ms, 600us});
+  SubsystemDescriptor& own = mission.subsystems[0].subsystem;
+  own.service_loops.push_back({.name = "LOOP", .period = 2ms, .priority = 50, .budget = 500us});
+  own.configurations[0].paces.push_back({.name = "LOOP", .period = 2ms, .priority = 10, .budget = 300us});
+  const auto around = cycle_responses_around(mission, mode);
+  ASSERT_EQ(around.size(), 3U);
+  EXPECT_EQ(around[0].longest, 500us);
+  EXPECT_EQ(around[1].longest, 600us) << "1,100 us are more than its period";
+  EXPECT_EQ(around[2].longest, 900us);
+  own.configurations[0].paces[0].priority = 40;
+  EXPECT_EQ(cycle_responses_around(mission, mode)[2].longest, 900us) << "but beside them as they go with it";
+}
+
 TEST_F(CycleResponses, OfTheClassicalExampleAreThoseOfTheBooks) {
   // Burns and Wellings, Real-Time Systems and Programming Languages: periods 7, 12, 20, times 3, 3, 5: 3, 6, 20.
   commission({"C", 1, 20us, 5us});
