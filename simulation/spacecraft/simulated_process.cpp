@@ -35,7 +35,7 @@ SimulatedProcess::SimulatedProcess(const descriptor::MissionSubsystem& described
                         }};
   engine_.emplace(*author_, described.subsystem, around, channels_.subsystem_end(), *vital_, *permit_);
   for (std::size_t i = 0; i < engine_->own_loops(); ++i)
-    loop_wakes_.push_back(service_wake_ + engine_->own_loop(i).period);
+    loop_wakes_.push_back(service_wake_ + engine_->own_loop(i).in_force().period);
 }
 
 Mapping SimulatedProcess::vital_memory() const { return mapping_of(vital_); }
@@ -44,7 +44,14 @@ Mapping SimulatedProcess::permit_memory() const { return mapping_of(permit_); }
 // --- its loops ---------------------------------------------------------------------------------------------------------
 
 TimePoint SimulatedProcess::own_loops_due() const noexcept {
-  return runs() && !loop_wakes_.empty() ? std::ranges::min(loop_wakes_) : never;
+  TimePoint due = never;
+  for (std::size_t i = 0; i < loop_wakes_.size() && runs(); ++i) due = std::min(due, own_loop_due(i));
+  return due;
+}
+
+/// Another configuration may have made it due sooner.
+TimePoint SimulatedProcess::own_loop_due(std::size_t loop) const noexcept {
+  return engine_->own_loop(loop).due(loop_wakes_[loop]);
 }
 
 void SimulatedProcess::step_service(TimePoint now) {
@@ -81,7 +88,7 @@ bool SimulatedProcess::step_cycle() {
 
 void SimulatedProcess::step_own_loops(TimePoint now) {
   for (std::size_t i = 0; i < loop_wakes_.size() && runs(); ++i)
-    if (loop_wakes_[i] <= now) loop_wakes_[i] = engine_->own_loop_step(i, loop_wakes_[i]);
+    if (own_loop_due(i) <= now) loop_wakes_[i] = engine_->own_loop_step(i, loop_wakes_[i]);
 }
 
 void SimulatedProcess::wake_cycle(TimePoint now) noexcept {

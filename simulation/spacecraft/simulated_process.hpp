@@ -108,6 +108,7 @@ class SimulatedProcess {
 
  private:
   [[nodiscard]] bool runs() const noexcept { return lives() && !stopped_; }
+  [[nodiscard]] TimePoint own_loop_due(std::size_t loop) const noexcept;
 
   descriptor::MissionSubsystem described_;  ///< outlives the supervisor that started it
   std::unique_ptr<Subsystem> author_;

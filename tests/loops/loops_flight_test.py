@@ -42,6 +42,11 @@ class Loops(unittest.TestCase):
                 self.assertLess(abs(rate * sampling_s - 1), 0.15, measured)
                 if realtime:
                     self.assertEqual(self.threads(craft)["cycle"], (1, priority))
+            for configuration, scheduling in ((8, (0, 0)), (1, (1, 8))):
+                self.assertEqual(craft.tc("CATALOGUE", "CONFIGURE", configuration)[0], 0)
+                self.assertEqual(craft.tc("CATALOGUE", "SET:PAGE", 10)[0], 0)
+                if realtime:
+                    self.assertEqual(self.threads(craft)["loop.VALUES"], scheduling, configuration)
             self.assertEqual(craft.pid_of(PROGRAM), pid)
             code, reports = craft.tc("CATALOGUE", "COUNT")
             self.assertEqual((code, reports[-1]), (0, "1,7"))

@@ -43,6 +43,28 @@ struct Loops : ::testing::Test {
                                                 writer.written());
     return flight.send(written.value());
   }
+  /// Asked for ten times they come in the steps of a loop of this period, one after the other.
+  void expect_told_each(Duration period) {
+    constexpr Duration on_the_way = 12ms;
+    std::vector<TimePoint> told;
+    flight.story().on_telemetry = [&](const pus::TelemetryView& report) {
+      if (report.service() == 20 && report.subtype() == 2) told.push_back(flight.craft().now());
+    };
+    for (int i = 0; i < 10; ++i) {
+      EXPECT_EQ(values(1, {page}).subtype, 7) << flight.story().text();
+      flight.craft().run(17ms);
+    }
+    flight.story().on_telemetry = nullptr;
+    ASSERT_EQ(told.size(), 10U);
+    for (const TimePoint each : told) {
+      const Duration beside = (each - told.front()) % period;
+      EXPECT_LT(std::min(beside, period - beside), on_the_way);
+    }
+    for (std::size_t i = 1; i < told.size(); ++i) {
+      EXPECT_GT(told[i] - told[i - 1], period - on_the_way);
+      EXPECT_LT(told[i] - told[i - 1], 3 * period);
+    }
+  }
   static constexpr std::uint16_t catalogue = 24;
   static constexpr std::uint32_t page = ParameterId{catalogue, Type::Uint32, 2}.wire();
   std::uint16_t sent{0};
@@ -89,22 +111,16 @@ TEST_F(Loops, ValuesAreSetInALoopOfTheirOwnForTheArchiveInItsLoop) {
 }
 
 /// At the period that the descriptor gives to their loop, whenever they are asked for.
-TEST_F(Loops, ValuesAreToldAtThePeriodOfTheirLoop) {
-  constexpr Duration period = 50ms, on_the_way = 12ms;
-  std::vector<TimePoint> told;
-  flight.story().on_telemetry = [&](const pus::TelemetryView& report) {
-    if (report.service() == 20 && report.subtype() == 2) told.push_back(flight.craft().now());
-  };
-  for (int i = 0; i < 10; ++i) {
-    EXPECT_EQ(values(1, {page}).subtype, 7) << flight.story().text();
-    flight.craft().run(17ms);
-  }
-  ASSERT_EQ(told.size(), 10U);
-  for (const TimePoint each : told) {
-    const Duration beside = (each - told.front()) % period;
-    EXPECT_LT(std::min(beside, period - beside), on_the_way);
-  }
-  for (std::size_t i = 1; i < told.size(); ++i) EXPECT_GT(told[i] - told[i - 1], period - on_the_way);
+TEST_F(Loops, ValuesAreToldAtThePeriodOfTheirLoop) { expect_told_each(50ms); }
+
+/// In the configuration that says another one, and again behind it (docs/adr/0207).
+TEST_F(Loops, ValuesAreToldAtThePeriodThatTheConfigurationInForceSays) {
+  ASSERT_TRUE(configure("LAZY").completed) << flight.story().text();
+  expect_told_each(200ms);
+  ASSERT_TRUE(configure("CALM").completed);
+  expect_told_each(50ms);
+  EXPECT_EQ(flight.craft().vital("CATALOGUE")->missed.load(), 0U);
+  EXPECT_FALSE(flight.story().has("CATALOGUE medium")) << flight.story().text();
 }
 
 TEST_F(Loops, GoesTenTimesFromOneConfigurationToAnotherInOperationalWithoutALateOrMissingCycle) {

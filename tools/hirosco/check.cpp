@@ -90,7 +90,12 @@ void show_mission(const descriptor::Mission& mission) {
   for (const auto& mode : mission.modes) {
     fmt::print("mode {} ({}): cycles take {:.0f} % of their processor\n", mode.name, mode.id,
                100 * descriptor::cycle_share(mission, mode));
-    for (const auto& cycle : descriptor::cycle_responses(mission, mode)) show_cycle(cycle);
+    const auto in_it = descriptor::cycle_responses(mission, mode);
+    for (const auto& cycle : in_it) show_cycle(cycle);
+    const auto around = descriptor::cycle_responses_around(mission, mode);
+    if (around.size() == in_it.size()) continue;  // no loop of services goes otherwise in a configuration
+    fmt::print("  while not all that it commissions is configured:\n");
+    for (const auto& cycle : around) show_cycle(cycle);
   }
 }
 

@@ -55,6 +55,12 @@ int SubsystemDescriptor::loop_of(std::uint8_t type) const noexcept {
   const ServiceUse* const use = find_in(service_uses, type, &ServiceUse::type);
   return use == nullptr ? -1 : use->loop;
 }
+const ServiceLoop& SubsystemDescriptor::loop_in_force(std::size_t loop, const Configuration* in_force) const noexcept {
+  const ServiceLoop& own = service_loops[loop];
+  const ServiceLoop* const other =
+      in_force == nullptr ? nullptr : find_in(in_force->paces, own.name, &ServiceLoop::name);
+  return other == nullptr ? own : *other;
+}
 const Bumpless* SubsystemDescriptor::bumpless_between(std::uint8_t one, std::uint8_t other) const noexcept {
   if (one == other) return nullptr;
   const auto found = std::ranges::find_if(bumpless, [&](const Bumpless& each) {
@@ -178,10 +184,14 @@ double cycle_share(const Mission& mission, const Mode& mode) noexcept {
       share +=
           static_cast<double>(configuration->load().count()) / static_cast<double>(configuration->shortest().count());
   }
-  for (const MissionSubsystem& member : mission.subsystems)
-    for (const ServiceLoop& loop : member.subsystem.service_loops)
-      if (loop.priority > 0 && loop.period.count() > 0)
+  for (const MissionSubsystem& member : mission.subsystems) {
+    const SubsystemDescriptor& subsystem = member.subsystem;
+    const auto step = std::ranges::find(mode.commission, subsystem.name, &CommissionStep::subsystem);
+    const auto* in_force = step == mode.commission.end() ? nullptr : subsystem.find_configuration(step->configuration);
+    for (std::size_t i = 0; i < subsystem.service_loops.size(); ++i)
+      if (const ServiceLoop& loop = subsystem.loop_in_force(i, in_force); loop.priority > 0 && loop.period.count() > 0)
         share += static_cast<double>(loop.budget.count()) / static_cast<double>(loop.period.count());
+  }
   return share;
 }
 double cycle_share(const Mission& mission) noexcept {

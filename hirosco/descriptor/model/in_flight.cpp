@@ -77,6 +77,7 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
 [[nodiscard]] bool same_loop(const ServiceLoop& a, const ServiceLoop& b) {
   return a.period == b.period && a.priority == b.priority && a.budget == b.budget && a.queue == b.queue;
 }
+[[nodiscard]] bool same_pace(const ServiceLoop& a, const ServiceLoop& b) { return a.name == b.name && same_loop(a, b); }
 [[nodiscard]] bool same_outputs(const Device& a, const Device& b) {
   return std::ranges::equal(a.output, b.output, [](const Device::Output& x, const Device::Output& y) {
     return x.safe == y.safe && x.field.minimum == y.field.minimum && x.field.maximum == y.field.maximum;
@@ -284,7 +285,7 @@ class Comparison {
   void configuration(const SubsystemDescriptor& subsystem, const Configuration& flown, const Configuration& fresh) {
     [[maybe_unused]] const auto& [name, id, priority, sampling, started_by, least, budget, spin, power_w, overruns,
                                   self_test, self_test_within, housekeeping, provides, requires_, devices, initial,
-                                  services, at] = fresh;
+                                  services, paces, at] = fresh;
     const std::string what = "configuration " + name;
     unless(flown.id == id, at, what + ": its id", code_why);
     unless(flown.priority == priority && flown.sampling == sampling && flown.budget == budget, at,
@@ -293,6 +294,7 @@ class Comparison {
     unless(flown.spin == spin, at, what + ": how long before its cycles it wakes", timing_why);
     unless(std::ranges::equal(flown.services, services, same_use_of_service), at, what + ": which services it has",
            code_why);
+    unless(std::ranges::equal(flown.paces, paces, same_pace), at, what + ": how its loops of services go", timing_why);
     unless(flown.self_test == self_test, at, what + ": whether it wants a self test", safety_why);
     structures(flown.housekeeping, housekeeping, what + ": housekeeping");
     lists(

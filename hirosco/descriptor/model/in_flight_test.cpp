@@ -171,6 +171,21 @@ TEST(InFlight, AnObstacleSaysWhereItStands) {
   EXPECT_EQ(found.front().at, marked.at);
 }
 
+TEST(InFlight, HowALoopOfServicesGoesInAConfigurationStays) {
+  const std::string lamp = R"(<Device name="LAMP"><Output>)", set = R"(<Set parameter="GAIN" value="4"/>)";
+  const auto with = [&](const std::string& pace) {
+    return read(
+        changed(set, set + pace,
+                changed(lamp, R"(<ServiceLoop name="L" period_us="1000"/><Service name="ST03" loop="L"/>)" + lamp,
+                        flown_text)));
+  };
+  const SubsystemDescriptor flown = with(R"(<ServiceLoop name="L" period_us="2000"/>)");
+  EXPECT_EQ(all(obstacles(flown, with(R"(<ServiceLoop name="L" period_us="2000"/>)"))), "");
+  for (const char* other :
+       {"", R"(<ServiceLoop name="L" period_us="3000"/>)", R"(<ServiceLoop name="L" period_us="2000" priority="1"/>)"})
+    EXPECT_EQ(all(obstacles(flown, with(other))), "configuration FAST: how its loops of services go\n") << other;
+}
+
 TEST(InFlight, WhatTheConfigurationInForceWasMadeOfWaits) {
   for (const Edit& edit : std::initializer_list<Edit>{
            {R"(<HKService id="11" interval="10">)", R"(<HKService id="11" interval="20">)", "its housekeeping"},

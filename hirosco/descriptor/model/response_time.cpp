@@ -3,6 +3,7 @@
 #include "hirosco/descriptor/model/response_time.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace hirosco::descriptor {
 namespace {
@@ -11,45 +12,92 @@ namespace {
   return (span + period - Duration{1}) / period;
 }
 
-/// What all of `cycles` takes from one of them until it has ended, if that began with all due and took `span`.
-[[nodiscard]] Duration demand(const std::vector<CycleResponse>& cycles, const CycleResponse& of, Duration span) {
-  Duration sum = of.load();
-  for (const CycleResponse& other : cycles) {
-    if (&other == &of || other.priority() < of.priority()) continue;
-    const bool in_turn =
-        other.priority() == of.priority() && of.priority() > 0;  // without a priority nobody keeps a turn
-    sum += in_turn ? other.load() : begun_within(span, other.period()) * other.load();
+/// A subsystem has its configuration in force, or not: before it and behind it there is no cycle, and its loops go as it says itself.
+enum class When { Always, Configured, Unconfigured };
+
+struct Way {
+  CycleResponse response;
+  When when{When::Always};
+};
+
+[[nodiscard]] bool never_at_once(const Way& one, const Way& other) {
+  return one.response.subsystem == other.response.subsystem && one.when != other.when && one.when != When::Always &&
+         other.when != When::Always;
+}
+
+/// Who runs, in each way in which it may: of a cycle there is one, a loop of services may go otherwise in a configuration. It goes in one
+/// of them at a time.
+struct Runner {
+  std::array<Way, 2> ways;
+  std::size_t count{0};
+  [[nodiscard]] std::span<const Way> each() const noexcept { return std::span{ways}.first(count); }
+  void may(const CycleResponse& response, When when) {
+    if (response.period() > Duration{}) ways[count++] = {response, when};
+  }
+};
+
+/// What this one takes from `of` until that has ended, if it began with all due and took `span`.
+[[nodiscard]] Duration taken(const CycleResponse& other, const CycleResponse& of, Duration span) {
+  if (other.priority() < of.priority()) return Duration{};
+  const bool in_turn =
+      other.priority() == of.priority() && of.priority() > 0;  // without a priority nobody keeps a turn
+  return in_turn ? other.load() : begun_within(span, other.period()) * other.load();
+}
+
+/// Of who may run in several ways, in the worst for `of`.
+[[nodiscard]] Duration demand(std::span<const Runner> all, const Runner& own, const Way& of, Duration span) {
+  Duration sum = of.response.load();
+  for (const Runner& runner : all) {
+    if (&runner == &own) continue;
+    Duration most{};
+    for (const Way& other : runner.each())
+      if (!never_at_once(other, of)) most = std::max(most, taken(other.response, of.response, span));
+    sum += most;
   }
   return sum;
 }
 
-[[nodiscard]] std::optional<Duration> longest(const std::vector<CycleResponse>& cycles, const CycleResponse& of) {
-  // Each round is longer by a budget at least, so that it ends at the period at the latest.
+[[nodiscard]] std::optional<Duration> longest(std::span<const Runner> all, const Runner& own, const Way& of) {
+  // Each round is longer, by a microsecond of a budget at least, so that it ends at the period at the latest.
   // It counts from when the cycle takes the processor, which a precise one does before it is due.
-  for (Duration span = std::max(of.load(), Duration{1}); span <= of.period();) {
-    const Duration needed = demand(cycles, of, span);
-    if (needed == span) return span - of.spin();
+  for (Duration span = std::max(of.response.load(), Duration{1}); span <= of.response.period();) {
+    const Duration needed = demand(all, own, of, span);
+    if (needed == span) return span - of.response.spin();
     span = needed;
   }
   return std::nullopt;
 }
 
-}  // namespace
-
-std::vector<CycleResponse> cycle_responses(std::span<const InForce> all) {
+[[nodiscard]] std::vector<CycleResponse> responses(std::span<const Runner> all) {
   std::vector<CycleResponse> cycles;
-  for (const auto& [subsystem, configuration] : all) {
-    if (configuration != nullptr && configuration->shortest() > Duration{})
-      cycles.push_back({subsystem->name, configuration, nullptr, std::nullopt});
-    for (const ServiceLoop& loop : subsystem->service_loops)
-      if (loop.period > Duration{}) cycles.push_back({subsystem->name, nullptr, &loop, std::nullopt});
-  }
+  for (const Runner& runner : all)
+    for (const Way& way : runner.each()) {
+      cycles.push_back(way.response);
+      cycles.back().longest = longest(all, runner, way);
+    }
   std::ranges::stable_sort(cycles, std::ranges::greater{}, &CycleResponse::priority);
-  for (CycleResponse& cycle : cycles) cycle.longest = longest(cycles, cycle);
   return cycles;
 }
 
-std::vector<CycleResponse> cycle_responses(const Mission& mission, const Mode& mode) {
+enum class Reckoned { AsInForce, AlsoUnconfigured };
+
+[[nodiscard]] std::vector<Runner> runners(std::span<const InForce> all, Reckoned reckoned) {
+  std::vector<Runner> found;
+  for (const auto& [subsystem, configuration] : all) {
+    if (configuration != nullptr)
+      found.emplace_back().may({subsystem->name, configuration, nullptr, std::nullopt}, When::Configured);
+    for (std::size_t i = 0; i < subsystem->service_loops.size(); ++i) {
+      const ServiceLoop &own = subsystem->service_loops[i], &now = subsystem->loop_in_force(i, configuration);
+      const bool goes_otherwise = &now != &own && reckoned == Reckoned::AlsoUnconfigured;
+      Runner& loop = found.emplace_back();
+      loop.may({subsystem->name, nullptr, &now, std::nullopt}, goes_otherwise ? When::Configured : When::Always);
+      if (goes_otherwise) loop.may({subsystem->name, nullptr, &own, std::nullopt}, When::Unconfigured);
+    }
+  }
+  return found;
+}
+
+[[nodiscard]] std::vector<InForce> in_force_in(const Mission& mission, const Mode& mode) {
   std::vector<InForce> all;
   for (const CommissionStep& step : mode.commission)
     if (const auto* member = mission.find_subsystem(step.subsystem))
@@ -58,7 +106,25 @@ std::vector<CycleResponse> cycle_responses(const Mission& mission, const Mode& m
   for (const MissionSubsystem& member : mission.subsystems)
     if (std::ranges::find(all, &member.subsystem, &InForce::subsystem) == all.end())
       all.push_back({&member.subsystem, nullptr});
-  return cycle_responses(all);
+  return all;
+}
+
+}  // namespace
+
+std::vector<CycleResponse> cycle_responses(std::span<const InForce> all) {
+  return responses(runners(all, Reckoned::AsInForce));
+}
+
+std::vector<CycleResponse> cycle_responses(const Mission& mission, const Mode& mode) {
+  return cycle_responses(in_force_in(mission, mode));
+}
+
+std::vector<CycleResponse> cycle_responses_around(std::span<const InForce> all) {
+  return responses(runners(all, Reckoned::AlsoUnconfigured));
+}
+
+std::vector<CycleResponse> cycle_responses_around(const Mission& mission, const Mode& mode) {
+  return cycle_responses_around(in_force_in(mission, mode));
 }
 
 }  // namespace hirosco::descriptor

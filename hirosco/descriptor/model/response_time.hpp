@@ -41,7 +41,12 @@ struct InForce {
 /// equal ones each goes once before the other (M. Joseph, P. Pandya: Finding response times in a real-time system, 1986). It knows no
 /// other load than the declared one: the devices that a simulation adds and the system's own work are not in it.
 [[nodiscard]] std::vector<CycleResponse> cycle_responses(const Mission& mission, const Mode& mode);
+/// The same whichever of these subsystems are configured just then, as on the way into the mode and out of it, or where one of them is
+/// brought back: until it is, its loops go as it says itself, and one that its configuration has go otherwise stands there twice
+/// (docs/adr/0207). Each is held to the worst of what the others may be; of its own subsystem, to what is at the same time as it.
+[[nodiscard]] std::vector<CycleResponse> cycle_responses_around(const Mission& mission, const Mode& mode);
 /// The same of what is in force, whatever mode.
 [[nodiscard]] std::vector<CycleResponse> cycle_responses(std::span<const InForce> all);
+[[nodiscard]] std::vector<CycleResponse> cycle_responses_around(std::span<const InForce> all);
 
 }  // namespace hirosco::descriptor

@@ -69,6 +69,71 @@ TEST_F(CycleResponses, CountLoopsOfServicesOfWhoIsNotCommissionedToo) {
   EXPECT_DOUBLE_EQ(cycle_share(mission, mode), 0.4 + 0.15 + 0.4);
 }
 
+/// What a configuration says of a loop of services is reckoned where it is in force (docs/adr/0207).
+TEST_F(CycleResponses, CountLoopsOfServicesAsTheConfigurationOfTheModeSaysThem) {
+  commission({"A", 30, 1ms, 400us});
+  commission({"B", 20, 4ms, 0us});
+  SubsystemDescriptor& quick = mission.subsystems[1].subsystem;
+  quick.service_loops.push_back({.name = "ABOVE", .period = 10ms, .priority = 50, .budget = 300us});
+  quick.configurations[0].paces.push_back({.name = "ABOVE", .period = 2ms, .priority = 10, .budget = 200us});
+  const auto all = cycle_responses(mission, mode);
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[0].name(), "ONLY");
+  EXPECT_EQ(all[0].longest, 400us) << "the loop goes behind it";
+  EXPECT_EQ(all[2].name(), "ABOVE");
+  EXPECT_EQ(all[2].period(), 2ms);
+  EXPECT_EQ(all[2].longest, 600us);
+  EXPECT_DOUBLE_EQ(cycle_share(mission, mode), 0.4 + 0.1);
+  mode.commission.pop_back();
+  EXPECT_EQ(cycle_responses(mission, mode)[0].name(), "ABOVE") << "of who is not commissioned as it says itself";
+  EXPECT_DOUBLE_EQ(cycle_share(mission, mode), 0.4 + 0.03);
+}
+
+TEST_F(CycleResponses, AroundAModeAreThoseBesideLoopsOfWhoIsNotConfiguredYetOrAnyMore) {
+  commission({"A", 30, 1ms, 400us});
+  commission({"B", 20, 4ms, 0us});
+  SubsystemDescriptor& calms = mission.subsystems[1].subsystem;
+  calms.service_loops.push_back({.name = "LOOP", .period = 2ms, .priority = 50, .budget = 600us});
+  EXPECT_EQ(cycle_responses_around(mission, mode).size(), 3U) << "no configuration says anything of it";
+  calms.configurations[0].paces.push_back({.name = "LOOP", .period = 10ms, .priority = 10, .budget = 900us});
+  const auto around = cycle_responses_around(mission, mode);
+  ASSERT_EQ(around.size(), 4U) << "the loop twice";
+  EXPECT_EQ(around[0].longest, 600us) << "not beside itself";
+  EXPECT_EQ(around[1].subsystem, "A");
+  EXPECT_EQ(around[1].longest, 1ms);
+  EXPECT_EQ(around[3].longest, 1700us) << "its own 900 us and twice 400";
+  EXPECT_EQ(cycle_responses(mission, mode)[0].longest, 400us) << "in the mode the loop goes behind";
+  calms.service_loops[0].budget = 601us;
+  EXPECT_EQ(cycle_responses_around(mission, mode)[1].longest, std::nullopt);
+}
+
+TEST_F(CycleResponses, AroundAModeCountEachLoopOnceAsItTakesMost) {
+  commission({"A", 30, 1ms, 400us});
+  commission({"B", 20, 4ms, 0us});
+  SubsystemDescriptor& other = mission.subsystems[1].subsystem;
+  other.service_loops.push_back({.name = "LOOP", .period = 2ms, .priority = 50, .budget = 300us});
+  other.configurations[0].paces.push_back({.name = "LOOP", .period = 1ms, .priority = 40, .budget = 200us});
+  const auto around = cycle_responses_around(mission, mode);
+  ASSERT_EQ(around.size(), 4U);
+  EXPECT_EQ(around[2].subsystem, "A");
+  EXPECT_EQ(around[2].longest, 700us) << "300 or 200 us before it, not both";
+}
+
+/// It has no cycle before its configuration is in force and behind it: neither waits for the other.
+TEST_F(CycleResponses, AroundAModeAreNotThoseOfACycleBesideItsOwnLoopsAsTheyGoWithoutIt) {
+  commission({"A", 30, 1ms, 600us});
+  SubsystemDescriptor& own = mission.subsystems[0].subsystem;
+  own.service_loops.push_back({.name = "LOOP", .period = 2ms, .priority = 50, .budget = 500us});
+  own.configurations[0].paces.push_back({.name = "LOOP", .period = 2ms, .priority = 10, .budget = 300us});
+  const auto around = cycle_responses_around(mission, mode);
+  ASSERT_EQ(around.size(), 3U);
+  EXPECT_EQ(around[0].longest, 500us);
+  EXPECT_EQ(around[1].longest, 600us) << "1,100 us are more than its period";
+  EXPECT_EQ(around[2].longest, 900us);
+  own.configurations[0].paces[0].priority = 40;
+  EXPECT_EQ(cycle_responses_around(mission, mode)[2].longest, 900us) << "but beside them as they go with it";
+}
+
 TEST_F(CycleResponses, OfTheClassicalExampleAreThoseOfTheBooks) {
   // Burns and Wellings, Real-Time Systems and Programming Languages: periods 7, 12, 20, times 3, 3, 5: 3, 6, 20.
   commission({"C", 1, 20us, 5us});

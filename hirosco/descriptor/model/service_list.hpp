@@ -22,7 +22,8 @@ inline constexpr std::size_t max_service_loops = 8;
 /// Most requests that wait in one of them.
 inline constexpr std::uint32_t max_service_queue = 64;
 
-/// A loop of its own for services: stepped in its own thread at its own period and priority.
+/// A loop of its own for services: stepped in its own thread at its own period and priority. A configuration may say period, priority
+/// and budget otherwise (docs/adr/0207): then it has one of the same name, whole.
 struct ServiceLoop {
   std::string name;
   Duration period{};  ///< 1 ms to 1 s

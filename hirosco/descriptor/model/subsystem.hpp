@@ -253,6 +253,8 @@ struct Configuration {
   };
   std::vector<Initial> initial;  ///< parameter values that this configuration sets
   std::vector<ServiceUse> services;  ///< what it says of them otherwise than its subsystem
+  std::vector<ServiceLoop>
+      paces;  ///< the same of their loops, by name; what it leaves out is the subsystem's (docs/adr/0207)
   Location at;
   /// The shortest distance of two cycles: what they cost a processor at most is reckoned with it.
   [[nodiscard]] Duration shortest() const noexcept { return started_by.empty() ? sampling : least; }
@@ -357,6 +359,8 @@ struct SubsystemDescriptor {
   [[nodiscard]] bool offers(std::uint8_t type, const Configuration* in_force) const noexcept;
   /// In which of its loops the service runs; -1: the service loop.
   [[nodiscard]] int loop_of(std::uint8_t type) const noexcept;
+  /// Period, priority and budget of a loop, by its place, while the configuration is in force; null: none is.
+  [[nodiscard]] const ServiceLoop& loop_in_force(std::size_t loop, const Configuration* in_force) const noexcept;
   /// What holds where one follows the other without a break; null: they are not declared compatible.
   [[nodiscard]] const Bumpless* bumpless_between(std::uint8_t one, std::uint8_t other) const noexcept;
 };

@@ -66,16 +66,23 @@ void check_cycles(const xml::Element& element, const Mode& mode, const Mission& 
         fmt::format("the cycles of mode {} take {:.0f} % of a processor", in_quotes(mode.name), 100 * share),
         "all cycles share one: the sum of budget_us / sampling_us is at most 1, or of budget_us / least_us where "
         "samples start the cycle");
-  for (const CycleResponse& cycle : cycle_responses(mission, mode)) {
-    if (cycle.longest) continue;
-    problems.add(
-        element, "E0331",
-        fmt::format("in mode {} a {} of {} {} may not end within its {} us", in_quotes(mode.name),
-                    cycle.loop != nullptr ? "step of the loop" : "cycle", cycle.subsystem, in_quotes(cycle.name()),
-                    cycle.period() / 1us),
-        "others go before it: lower a budget_us, or give the shorter sampling_us (least_us) the higher priority; "
-        "`hirosco check --show` tells what each takes");
-  }
+  const auto end_in_time = [&](const std::vector<CycleResponse>& cycles, std::string_view when) {
+    const std::size_t before = problems.count();
+    for (const CycleResponse& cycle : cycles) {
+      if (cycle.longest) continue;
+      problems.add(
+          element, "E0331",
+          fmt::format("in mode {}{} a {} of {} {} may not end within its {} us", in_quotes(mode.name), when,
+                      cycle.loop != nullptr ? "step of the loop" : "cycle", cycle.subsystem, in_quotes(cycle.name()),
+                      cycle.period() / 1us),
+          "others go before it: lower a budget_us, or give the shorter sampling_us (least_us) the higher priority; "
+          "`hirosco check --show` tells what each takes");
+    }
+    return problems.count() == before;
+  };
+  if (!end_in_time(cycle_responses(mission, mode), "")) return;
+  static_cast<void>(
+      end_in_time(cycle_responses_around(mission, mode), ", while not all that it commissions is configured,"));
 }
 
 void check_required(const Mode& mode, const Mission& mission, Problems& problems) {

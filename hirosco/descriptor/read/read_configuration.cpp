@@ -53,6 +53,10 @@ void ConfigurationReader::read(const xml::Element& element, const Services& comm
   children.push_back({"Service",
                       [&](const auto& child) { service_list_.read_service(child, configuration.services, uses, true); },
                       255});
+  Unique paces{"name of a loop", "E0201"};
+  children.push_back({"ServiceLoop",
+                      [&](const auto& child) { service_list_.read_pace_of(child, configuration.paces, paces); },
+                      max_service_loops});
   each_child(element, problems_, children);
   check_start(element, configuration);
   service_list_.check_housekeeping_offered(element, configuration);

@@ -23,18 +23,72 @@ void ServiceListReader::read_service_loop(const xml::Element& element) {
   ServiceLoop loop;
   loop.at = place(element.at);
   loop.name = attributes.name();
-  loop.period = std::chrono::microseconds{
-      attributes.required_integer<std::int64_t>("period_us", least_period_us, most_period_us)};
-  loop.priority = attributes.integer_or<int>("priority", 0, greatest_cycle_priority, 0);
-  loop.budget = std::chrono::microseconds{attributes.integer_or<std::int64_t>("budget_us", 1, most_period_us, 0)};
+  static_cast<void>(attributes.required("period_us"));
+  read_pace(attributes, loop);
   loop.queue = attributes.integer_or<std::uint32_t>("queue", 1, max_service_queue, loop.queue);
-  if (loop.period != Duration{} && loop.budget > loop.period)
-    problems_.add(
-        *attributes.optional("budget_us"), "E0227",
-        fmt::format("a step of {} us every {} us does not end before the next", loop.budget / 1us, loop.period / 1us),
-        "the budget is at most the period");
   if (!loop.name.empty()) loop_names_.add(loop.name, loop.at, problems_, element.name.size() + 1);
   subsystem_.service_loops.push_back(std::move(loop));
+}
+
+/// What is left out stays as it is in `loop`.
+void ServiceListReader::read_pace(Attributes& attributes, ServiceLoop& loop) {
+  const auto microseconds_or = [&](std::string_view name, std::int64_t least, Duration other) -> Duration {
+    return std::chrono::microseconds{attributes.integer_or<std::int64_t>(name, least, most_period_us, other / 1us)};
+  };
+  loop.period = microseconds_or("period_us", least_period_us, loop.period);
+  loop.priority = attributes.integer_or<int>("priority", 0, greatest_cycle_priority, loop.priority);
+  loop.budget = microseconds_or("budget_us", 1, loop.budget);
+  if (loop.period == Duration{} || loop.budget <= loop.period) return;
+  const xml::Attribute* const budget = attributes.optional("budget_us");
+  const xml::Attribute* const at = budget != nullptr ? budget : attributes.optional("period_us");
+  if (at == nullptr) return;  // neither is said here
+  problems_.add(
+      *at, "E0227",
+      fmt::format("a step of {} us every {} us does not end before the next", loop.budget / 1us, loop.period / 1us),
+      budget != nullptr ? "the budget is at most the period"
+                        : "that is the budget of its subsystem: say a budget_us here, too, or a longer period_us");
+}
+
+/// What a configuration says of a loop of its subsystem; its queue is made when the process starts.
+void ServiceListReader::read_pace_of(const xml::Element& element, std::vector<ServiceLoop>& paces, Unique& names) {
+  Attributes attributes{element, problems_};
+  no_children(element, problems_);
+  const std::string name = attributes.name();
+  const auto own = std::ranges::find(subsystem_.service_loops, name, &ServiceLoop::name);
+  ServiceLoop loop = own != subsystem_.service_loops.end() ? *own : ServiceLoop{};
+  loop.at = place(element.at);
+  read_pace(attributes, loop);
+  if (name.empty()) return;
+  if (!names.add(name, loop.at, problems_, element.name.size() + 1)) return;
+  if (own == subsystem_.service_loops.end()) return refuse_pace(*element.find("name"));
+  if (attributes.optional("period_us") == nullptr && attributes.optional("priority") == nullptr &&
+      attributes.optional("budget_us") == nullptr)
+    return problems_.add(element, "E0244", fmt::format("nothing of the loop '{}' is otherwise here", name),
+                         "say period_us, priority or budget_us, or leave it out");
+  paces.push_back(std::move(loop));
+}
+
+/// There is no such loop: perhaps it is meant by one of its services.
+void ServiceListReader::refuse_pace(const xml::Attribute& name) {
+  const std::string& said = name.value;
+  const auto* const own = subsystem_.find_service(said);
+  const auto standard = std::ranges::find(standard_services_by_name, said, &StandardService::name);
+  const bool listed = own != nullptr || standard != standard_services_by_name.end();
+  const bool may_have_one = own != nullptr || (listed && standard->may_have_loop);
+  if (!may_have_one && is_standard_service_name(said)) return refuse_loop(name, said);
+  std::vector<std::string_view> known;
+  for (const ServiceLoop& each : subsystem_.service_loops) known.push_back(each.name);
+  std::string hint = did_you_mean(said, known);
+  if (may_have_one) {
+    const int loop = subsystem_.loop_of(own != nullptr ? own->type : standard->type);
+    if (loop < 0)
+      hint =
+          fmt::format("service {} has no loop of its own: <Service loop=\"...\"> of the subsystem gives it one", said);
+    else
+      hint = fmt::format("service {} runs in '{}': name that", said,
+                         subsystem_.service_loops[static_cast<std::size_t>(loop)].name);
+  }
+  problems_.add(name, "E0244", fmt::format("no <ServiceLoop> has the name '{}'", said), std::move(hint));
 }
 
 void ServiceListReader::read_service(const xml::Element& element, std::vector<ServiceUse>& uses, Unique& names,

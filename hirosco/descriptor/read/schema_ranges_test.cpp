@@ -87,6 +87,7 @@ const std::string ranged_subsystem = R"(<Subsystem name="S" id="10">
     <Device name="P" silence="3"><Endnode transfer="unix" address="p"/></Device>
     <Device name="Q"><Endnode name="A" silence="3" silence_reduced="9" watchdog_ms="50" watchdog_reduced_ms="60" every="1"
       transfer="unix" address="q"/></Device>
+    <ServiceLoop name="SLOW" period_us="20000" priority="1" budget_us="9"/>
   </Configuration>
   <Configuration name="T" id="2" sampling_us="1000" started_by="K" least_us="100"/>
 </Subsystem>)";

@@ -81,6 +81,76 @@ TEST(ServiceList, OffersWhatTheSubsystemSaysAndEachConfigurationOtherwise) {
       EXPECT_TRUE(read.offers(static_cast<std::uint8_t>(type), each)) << type;
 }
 
+TEST(ServiceList, HasOfALoopInAConfigurationWhatThatSaysAndTheRestOfTheSubsystem) {
+  const SubsystemDescriptor read =
+      read_text(library_with("", R"(<ServiceLoop name="SLOW" period_us="5000" priority="0"/>)", "",
+                             R"(<ServiceLoop name="SLOW" budget_us="400"/>)"))
+          .value.value();
+  const ServiceLoop& own = read.loop_in_force(0, nullptr);
+  const ServiceLoop& open = read.loop_in_force(0, read.find_configuration("OPEN"));
+  const ServiceLoop& closed = read.loop_in_force(0, read.find_configuration("CLOSED"));
+  EXPECT_EQ(&own, read.service_loops.data());
+  EXPECT_EQ(own.period, 20ms);
+  EXPECT_EQ(open.period, 20ms);
+  EXPECT_EQ(open.priority, 12);
+  EXPECT_EQ(open.budget, 400us);
+  EXPECT_EQ(closed.name, "SLOW");
+  EXPECT_EQ(closed.period, 5ms);
+  EXPECT_EQ(closed.priority, 0);
+  EXPECT_EQ(closed.budget, 900us);
+  EXPECT_EQ(closed.queue, 3U);
+}
+
+TEST(ServiceList, RefusesAPaceThatCannotBe) {
+  const auto refused = [](const std::string& of_configuration, const std::string& code, const std::string& words,
+                          const std::string& services = "") {
+    expect_one_in_list(library_with(services, of_configuration), code, words);
+  };
+  refused(R"(<ServiceLoop name="@SLOWER" period_us="5000"/>)", "E0244", "no <ServiceLoop> has the name 'SLOWER'");
+  refused(R"(<ServiceLoop name="@SLOWER" period_us="5000"/>)", "E0244", "did you mean 'SLOW'?");
+  refused(R"(<ServiceLoop name="@BOOK" period_us="5000"/>)", "E0244", "service BOOK runs in 'SLOW': name that");
+  refused(R"(<ServiceLoop name="@ST03" period_us="5000"/>)", "E0244", "service ST03 has no loop of its own");
+  refused(R"(<ServiceLoop name="@ST03" period_us="5000"/>)", "E0244", "service ST03 runs in 'SLOW'",
+          R"(<Service name="ST03" loop="SLOW"/>)");
+  refused(R"(<ServiceLoop name="@ST05" period_us="5000"/>)", "E0243",
+          "ST05 has no loop of its own: every event of every loop is told by the service loop");
+  refused(R"(@<ServiceLoop name="SLOW"/>)", "E0244", "nothing of the loop 'SLOW' is otherwise here");
+  refused(R"(<ServiceLoop name="SLOW" period_us="@999"/>)", "E0112", "999");
+  refused(R"(<ServiceLoop name="SLOW" priority="@85"/>)", "E0112", "85");
+  refused(R"(<ServiceLoop name="SLOW" period_us="5000" @queue="4"/>)", "E0103", "queue");
+  refused(R"(<ServiceLoop name="SLOW" period_us="5000" budget_us="@5001"/>)", "E0227",
+          "a step of 5001 us every 5000 us does not end before the next");
+  refused(R"(<ServiceLoop name="LONG" period_us="@1999"/>)", "E0227", "that is the budget of its subsystem",
+          R"(<ServiceLoop name="LONG" period_us="4000" budget_us="2000"/><Service name="ST03" loop="LONG"/>)");
+  refused(R"(<ServiceLoop name="SLOW" priority="1"/>@<ServiceLoop name="SLOW" priority="2"/>)", "E0201", "SLOW");
+}
+
+/// Its loop goes as it says itself until its configuration is in force, and the cycle of another one does not end in time beside that.
+TEST(ServiceList, RefusesAModeAroundWhichALoopTakesMoreThanInItsConfiguration) {
+  const auto file = [](const char* name) { return file_system()(data / name).value(); };
+  const auto flown_with = [&](const std::string& budget_us) {
+    const std::string robot = R"(<Configuration name="COUPLED" id="2" priority="80" sampling_us="500")",
+                      wheel = R"(<Configuration name="COUPLED" id="2" priority="80" sampling_us="500">)";
+    return read_mission(
+        data / "mission.xml",
+        overlay({{"coronagraph.xml", changed(robot, robot + R"( budget_us="100")", file("coronagraph.xml"))},
+                 {"flywheel.xml",
+                  changed(wheel,
+                          R"(<ServiceLoop name="SLOW" period_us="1000" priority="84" budget_us=")" + budget_us +
+                              R"("/><Service name="ST03" loop="SLOW"/>)" + wheel +
+                              R"(<ServiceLoop name="SLOW" period_us="100000" priority="1" budget_us="300"/>)",
+                          file("flywheel.xml"))}}));
+  };
+  const auto fits = flown_with("400");
+  EXPECT_TRUE(fits.value) << rendered(fits.problems, file_system());
+  const auto much = flown_with("401");
+  ASSERT_EQ(much.problems.size(), 1U) << rendered(much.problems, file_system());
+  EXPECT_EQ(much.problems[0].code, "E0331");
+  EXPECT_EQ(much.problems[0].message,
+            "in mode 'telepresence', while not all that it commissions is configured, a cycle of CORONAGRAPH 'COUPLED' "
+            "may not end within its 500 us");
+}
+
 TEST(ServiceList, RefusesWhatCannotBeSo) {
   expect_one_in_list(library_with(R"(<Service name="@BOOKS"/>)"), "E0242", "the subsystem has no service 'BOOKS'");
   expect_one_in_list(library_with(R"(<Service name="ST08" offered="@no"/>)"), "E0243",

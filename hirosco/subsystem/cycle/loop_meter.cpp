@@ -18,13 +18,18 @@ constexpr auto relaxed = std::memory_order_relaxed;
 
 LoopMeter::LoopMeter(std::span<const descriptor::ServiceLoop> loops) noexcept
     : loops_{std::min(loops.size(), places_.size())} {
-  for (std::size_t i = 0; i < loops_; ++i) places_[i].budget = loops[i].budget;
+  for (std::size_t i = 0; i < loops_; ++i) promise(i, loops[i].budget);
+}
+
+void LoopMeter::promise(std::size_t place, Duration budget) noexcept {
+  places_[place].budget_ns.store(budget.count(), relaxed);
 }
 
 void LoopMeter::account(std::size_t place, Duration used, std::uint64_t missed) noexcept {
   Place& loop = places_[place];
   if (used.count() > loop.longest_ns.load(relaxed)) loop.longest_ns.store(used.count(), relaxed);
-  if (loop.budget != Duration{} && used > loop.budget) loop.exceeded.fetch_add(1, relaxed);
+  const Duration budget{loop.budget_ns.load(relaxed)};
+  if (budget != Duration{} && used > budget) loop.exceeded.fetch_add(1, relaxed);
   if (missed != 0) loop.missed.fetch_add(missed, relaxed);
 }
 
@@ -32,7 +37,7 @@ LoopStatistics LoopMeter::statistics() const noexcept {
   LoopStatistics told;
   for (std::size_t i = 0; i < loops_; ++i) {
     const Place& loop = places_[i];
-    told.budget_us[i] = microseconds_of(loop.budget);
+    told.budget_us[i] = microseconds_of(Duration{loop.budget_ns.load(relaxed)});
     told.longest_us[i] = microseconds_of(Duration{loop.longest_ns.load(relaxed)});
     told.exceeded[i] = loop.exceeded.load(relaxed);
     told.missed[i] = loop.missed.load(relaxed);

@@ -38,6 +38,18 @@ TEST_F(Loops, WithoutABudgetExceedNone) {
   EXPECT_EQ(meter.statistics().longest_us[1], 3.6e9F);
 }
 
+/// Another configuration is in force (docs/adr/0207): what was counted stays.
+TEST_F(Loops, AreHeldToAnotherBudgetFromWhenItIsPromised) {
+  meter.account(0, 950us, 0);
+  meter.promise(0, 200us);
+  EXPECT_EQ(meter.statistics().budget_us[0], 200.0F);
+  meter.account(0, 201us, 0);
+  meter.promise(0, 900us);
+  meter.account(0, 201us, 0);
+  EXPECT_EQ(meter.statistics().exceeded[0], 2U);
+  EXPECT_EQ(meter.statistics().longest_us[0], 950.0F);
+}
+
 TEST_F(Loops, CountTheStepsForWhichTheyWereTooLate) {
   meter.account(0, 10us, 3);
   meter.account(0, 10us, 0);

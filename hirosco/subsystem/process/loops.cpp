@@ -146,31 +146,46 @@ void CycleThread::cycle(std::uint32_t generation, int priority) {
 }
 
 Result<> OwnLoopThread::start() {
-  HIROSCO_TRY_LET(thread_,
-                  Thread::start("loop." + subsystem_.own_loop(loop_).name, [this] { run(); }, cycle_stack_octets));
+  HIROSCO_TRY_LET(
+      thread_,
+      Thread::start("loop." + subsystem_.own_loop(loop_).declared().name, [this] { run(); }, cycle_stack_octets));
   return ok();
 }
 
 void OwnLoopThread::end() {
   ending_.store(true, std::memory_order_release);
+  subsystem_.own_loop(loop_).wake();
   thread_.join();
 }
 
 void OwnLoopThread::run() {
   if (hold_ != nullptr) hold_->enter();
-  const int priority = subsystem_.own_loop(loop_).priority;
-  // One with a priority shares the processor of the cycles, where its response is reckoned (adr 0085); one without goes anywhere.
-  if (realtime_ && priority > 0) {
-    static_cast<void>(pin_to_cycle_cpu());
-    static_cast<void>(set_fifo_priority(priority));
-  }
-  TimePoint planned = clock_.now() + subsystem_.own_loop(loop_).period;
+  anywhere_ = ProcessorSet::of_this_thread();
+  OwnLoop& loop = subsystem_.own_loop(loop_);
+  TimePoint planned = clock_.now() + loop.in_force().period;
   while (!ending_.load(std::memory_order_acquire)) {
-    sleep_until(planned);
-    planned = subsystem_.own_loop_step(loop_, planned);
+    // Another configuration may make it due sooner, or at another priority, while it rests.
+    take_priority(loop.in_force().priority);
+    if (!loop.rest_until(planned)) continue;
+    planned = loop.step(planned);
     if (subsystem_.has_reports()) bell_.ring();
   }
   if (hold_ != nullptr) hold_->leave();
+}
+
+/// One with a priority shares the processor of the cycles, where its response is reckoned (adr 0085); one without goes anywhere.
+void OwnLoopThread::take_priority(int priority) {
+  if (!realtime_ || priority == priority_) return;
+  // Up: priority, then processor. Down: the other way round, as behind the cycles of their processor it might not come to ask for others.
+  if (priority > 0) {
+    // The guard takes the right to one for a while: it stays as it is, and asks again before its next step.
+    if (!set_fifo_priority(priority)) return;
+    static_cast<void>(pin_to_cycle_cpu());
+  } else {
+    static_cast<void>(anywhere_.take());
+    static_cast<void>(set_ordinary_scheduling());
+  }
+  priority_ = priority;
 }
 
 void serve(const ServiceLoop& loop) {

@@ -75,7 +75,8 @@ class CycleThread {
   Thread thread_;
 };
 
-/// A loop of services of its own (adr 0096), in its thread as long as the subsystem lives.
+/// A loop of services of its own (adr 0096), in its thread as long as the subsystem lives. Its period and priority are those of the
+/// configuration in force (adr 0207).
 class OwnLoopThread {
  public:
   OwnLoopThread(GenericSubsystem& subsystem, std::size_t loop, const Clock& clock, Bell& bell, bool realtime,
@@ -87,6 +88,7 @@ class OwnLoopThread {
 
  private:
   void run();
+  void take_priority(int priority);
 
   GenericSubsystem& subsystem_;
   std::size_t loop_;
@@ -94,6 +96,8 @@ class OwnLoopThread {
   Bell& bell_;
   bool realtime_;
   ThreadHold* hold_;
+  int priority_{0};  ///< that it has; the thread's own, like the next
+  ProcessorSet anywhere_{};
   std::atomic<bool> ending_{false};
   Thread thread_;
 };

@@ -353,6 +353,43 @@ TEST(OwnLoopThreads, SetAndReportValuesWhileAServiceInAnotherLoopStands) {
   EXPECT_EQ(driven.told.failures, 0);
 }
 
+/// A second from step to step where nothing else is said: whoever rests for it is woken when a configuration says a millisecond. Twenty
+/// times: of one that is not, each waits for the rest of its second.
+TEST(OwnLoopThreads, GoAtThePeriodOfTheConfigurationAtOnceAndBackWithTheNext) {
+  Archive archive;
+  std::string text{archive_descriptor};
+  const auto change = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  change(R"("SLOW" period_us="1000")", R"("SLOW" period_us="1000000")");
+  change(R"(sampling_us="500"/>)",
+         R"(sampling_us="500"><ServiceLoop name="SLOW" period_us="1000" priority="5"/></Configuration>)");
+  Driven driven{archive, text};
+  driven.go(State::PreOperational);
+  driven.call("CONFIGURE", 1);
+  driven.cycle_on(1);
+  driven.go(State::SafeOperational);
+  std::array<std::byte, 4> number;
+  OctetWriter{number}.put(std::uint32_t{4});
+  std::uint64_t waited = 0;
+  for (int i = 0; i < 20; ++i) {
+    const std::uint64_t before = driven.cycles();
+    driven.send(200, 1, number);
+    driven.done();
+    waited += driven.cycles() - before;
+    driven.call("CONFIGURE", 2);
+    driven.done();
+    EXPECT_EQ(driven.subsystem.own_loop(0).in_force().period, 1s);
+    driven.cycle_on(20);  // the step that was due before has been: the next one is due in a second
+    driven.call("CONFIGURE", 1);
+    driven.done();
+  }
+  EXPECT_LT(waited, 20'000U) << "cycles of 500 us: half of what they are where nobody is woken";
+  EXPECT_EQ(driven.told.failures, 0) << driven.told.failed;
+  EXPECT_EQ(driven.told.completions, driven.sent);
+  EXPECT_EQ(driven.told.reports, 20);
+}
+
 /// Another text of the descriptor, with another range, while they judge by the one before (docs/adr/0200): whether they rest is what the
 /// thread sanitizer sees.
 TEST(OwnLoopThreads, RestWhileWhatTheyJudgeByChanges) {

@@ -67,8 +67,10 @@ void Bumpless::ended(std::uint8_t id, const std::optional<Failure>& why) {
     const LoopsAtRest at_rest{parts_.loops.all()};
     // What ST[20] has set in one of them was set before this, and is told before it.
     parts_.loops.tell(parts_.reports);
-    if (taken) parts_.housekeeping.take_prepared();
-    else parts_.housekeeping.drop_prepared();
+    if (taken) {
+      parts_.housekeeping.take_prepared();
+      parts_.loops.follow(change_->to);
+    } else parts_.housekeeping.drop_prepared();
   }
   if (taken) {
     parts_.at.configuration = change_->to;

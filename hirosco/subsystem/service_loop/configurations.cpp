@@ -98,6 +98,7 @@ std::optional<Failure> Configurations::apply(const descriptor::Configuration& co
   if (auto problem = plan_devices(configuration, plan)) return problem;
   {
     const LoopsAtRest at_rest{parts_.loops.all()};
+    parts_.loops.follow(&configuration);
     for (pus::Service* service : parts_.services)
       if (parts_.descriptor.offers(service->type(), &configuration))
         if (const auto set_up = service->configure(configuration); !set_up) return failure_of("", set_up.error());
@@ -162,6 +163,7 @@ void Configurations::release() {
   parts_.cycle.release();
   {
     const LoopsAtRest at_rest{parts_.loops.all()};
+    parts_.loops.follow(nullptr);
     for (pus::Service* service : parts_.services) service->release();
   }
   parts_.at.configuration = nullptr;

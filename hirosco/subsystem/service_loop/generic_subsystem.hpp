@@ -45,10 +45,8 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
 
   /// Loops of services of its own (adr 0096), from 0 on; each is stepped by a thread of its own, from now to the end.
   [[nodiscard]] std::size_t own_loops() const noexcept { return loops_.all().size(); }
-  [[nodiscard]] const descriptor::ServiceLoop& own_loop(std::size_t loop) const noexcept {
-    return loops_.all()[loop]->declared();
-  }
-  /// One step that was due at `planned`; returns when the next is due.  Realtime: allocates. Thread: that loop's.
+  [[nodiscard]] OwnLoop& own_loop(std::size_t loop) const noexcept { return *loops_.all()[loop]; }
+  /// One step that was due at `planned`, or is sooner by now; returns when the next is due.  Realtime: allocates. Thread: that loop's.
   TimePoint own_loop_step(std::size_t loop, TimePoint planned) { return loops_.all()[loop]->step(planned); }
 
   /// What the cycle thread is to do.  Realtime: wait-free. Thread: the cycle's, or the service loop's.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "hirosco/data_transfer/channel/channel.hpp"
@@ -16,6 +17,8 @@ constexpr Duration least_hang = std::chrono::milliseconds{500};
 constexpr int hang_periods = 3;
 /// From so many requests on a queue that is nearly full is worth a warning; below that it is with what it is made for.
 constexpr std::uint32_t least_judged = 4;
+/// No change has made a step due sooner.
+constexpr std::int64_t not_sooner_ns = std::numeric_limits<std::int64_t>::max();
 
 /// In front of a telecommand.
 struct Offered {
@@ -46,6 +49,8 @@ template <class T>
 OwnLoop::OwnLoop(const Parts& parts)
     : parts_{parts},
       permit_{&parts.permit},
+      in_force_{&parts.declared},
+      due_ns_{not_sooner_ns},
       in_{static_cast<std::size_t>(descriptor::loop_requests_octets(parts.declared.queue))},
       out_{parts.reports_octets},
       verification_{*this} {}
@@ -90,27 +95,44 @@ bool OwnLoop::hangs(Duration passed) noexcept {
   const bool moves = std::exchange(seen_steps_, steps) != steps || !in_step_.load(std::memory_order_acquire);
   stands_for_ = moves ? Duration{0} : stands_for_ + passed;
   if (moves) told_ = false;
-  return stands_for_ > std::max(least_hang, hang_periods * parts_.declared.period);
+  return stands_for_ > std::max(least_hang, hang_periods * in_force().period);
+}
+
+void OwnLoop::follow(const descriptor::ServiceLoop& wanted, TimePoint now) noexcept {
+  const descriptor::ServiceLoop& before = in_force();
+  if (&before == &wanted) return;
+  parts_.meter.promise(parts_.place, wanted.budget);
+  in_force_.store(&wanted, std::memory_order_release);
+  // A longer period is no reason to let wait for longer whoever waits already: it counts from the step that is due.
+  if (wanted.period < before.period) {
+    const std::int64_t due = (now + wanted.period).time_since_epoch().count();
+    due_ns_.store(std::min(due_ns_.load(std::memory_order_relaxed), due), std::memory_order_release);
+  }
+  wake();
+}
+
+TimePoint OwnLoop::due(TimePoint planned) const noexcept {
+  return std::min(planned, TimePoint{Duration{due_ns_.load(std::memory_order_acquire)}});
 }
 
 TimePoint OwnLoop::step(TimePoint planned) {
   const Duration used = parts_.clock.processor();
-  {
-    const LockGuard lock{mutex_};
-    in_step_.store(true, std::memory_order_release);
-    for (std::uint32_t left = parts_.declared.queue; left > 0 && has_room(max_packet_octets); --left) {
-      const auto record = in_.front();
-      if (!record) break;
-      handle(*record);
-      in_.pop();
-      waiting_.fetch_sub(1, std::memory_order_acq_rel);
-    }
-    const TimePoint now = parts_.clock.now();
-    for (pus::Service* service : services_) service->step(now);
-    steps_.fetch_add(1, std::memory_order_acq_rel);
-    in_step_.store(false, std::memory_order_release);
+  // To the end: what it took is held against the budget that it was made under.
+  const LockGuard lock{mutex_};
+  planned = std::min(planned, TimePoint{Duration{due_ns_.exchange(not_sooner_ns, std::memory_order_acq_rel)}});
+  in_step_.store(true, std::memory_order_release);
+  for (std::uint32_t left = parts_.declared.queue; left > 0 && has_room(max_packet_octets); --left) {
+    const auto record = in_.front();
+    if (!record) break;
+    handle(*record);
+    in_.pop();
+    waiting_.fetch_sub(1, std::memory_order_acq_rel);
   }
-  const Duration period = parts_.declared.period;
+  const TimePoint now = parts_.clock.now();
+  for (pus::Service* service : services_) service->step(now);
+  steps_.fetch_add(1, std::memory_order_acq_rel);
+  in_step_.store(false, std::memory_order_release);
+  const Duration period = in_force().period;
   const TimePoint next = planned + period;
   const TimePoint finished = parts_.clock.now();
   const auto missed = finished <= next ? 0 : (finished - next) / period + 1;

@@ -19,6 +19,7 @@
 #include "hirosco/subsystem/cycle/queue_fill.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/utilities/os/mutex.hpp"
+#include "hirosco/utilities/os/semaphore.hpp"
 #include "hirosco/utilities/record_ring.hpp"
 
 namespace hirosco {
@@ -50,6 +51,9 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   void host(pus::Service& service) { services_.push_back(&service); }
   /// A telecommand for one of its services, checked as far as the subsystem checks all of them. False: as many wait as may.
   [[nodiscard]] bool offer(Octets packet, std::uint32_t mode_epoch) noexcept;
+  /// Period, priority and budget from now on, those of a configuration or its own; `wanted` outlives the loop. What waits in it stays.
+  /// Under its lock. The step that was due is due when it was, or a new period from `now` where that is sooner: the grid goes on from there.
+  void follow(const descriptor::ServiceLoop& wanted, TimePoint now) noexcept;
   /// What it said, oldest first, as long as `has_room`: reports by `report`, events by `event`.
   struct Listener {
     std::function<bool()> has_room;
@@ -75,8 +79,19 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   [[nodiscard]] Mutex& mutex() noexcept { return mutex_; }
 
   // --- the loop --------------------------------------------------------------------------------------------------------
-  /// One step that was due at `planned`: requests that wait, then each of its services. Returns when the next is due: on its grid,
-  /// steps that were missed are skipped.  Thread: the loop's.
+  /// How it goes now.  Realtime: wait-free. Thread: any.
+  [[nodiscard]] const descriptor::ServiceLoop& in_force() const noexcept {
+    return *in_force_.load(std::memory_order_acquire);
+  }
+  /// When the step that was due at `planned` is due now.  Realtime: wait-free. Thread: the loop's.
+  [[nodiscard]] TimePoint due(TimePoint planned) const noexcept;
+  /// True once that step is due. False before: it is due sooner now, the loop goes by another priority, or somebody woke it.
+  /// Realtime: blocks. Thread: the loop's.
+  [[nodiscard]] bool rest_until(TimePoint planned) noexcept { return !woken_.wait_until(due(planned)); }
+  /// Thread: any.
+  void wake() noexcept { woken_.post(); }
+  /// One step that was due at `planned`, or is sooner now: requests that wait, then each of its services. Returns when the next is due:
+  /// on its grid, steps that were missed are skipped.  Thread: the loop's.
   TimePoint step(TimePoint planned);
   /// It has said what the service loop has not taken yet.  Realtime: wait-free. Thread: any.
   [[nodiscard]] bool has_reports() const noexcept { return out_.used() != 0; }
@@ -106,6 +121,9 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
 
   Parts parts_;
   std::atomic<const PermitPage*> permit_;
+  std::atomic<const descriptor::ServiceLoop*> in_force_;
+  std::atomic<std::int64_t> due_ns_;  ///< of the step that a change made due sooner; the greatest: none was
+  Semaphore woken_;
   Mutex mutex_;
   std::vector<pus::Service*> services_;
   RecordRing in_;

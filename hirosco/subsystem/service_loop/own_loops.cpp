@@ -17,7 +17,7 @@ constexpr Duration most_passed_a_look = 100ms;
 }  // namespace
 
 OwnLoops::OwnLoops(const Parts& parts)
-    : descriptor_{parts.descriptor}, subsystem_{parts.subsystem}, looked_at_{parts.clock.now()} {
+    : descriptor_{parts.descriptor}, subsystem_{parts.subsystem}, clock_{parts.clock}, looked_at_{parts.clock.now()} {
   const std::uint32_t reports_octets = descriptor_.resources.queues.loop_reports_octets;
   for (const descriptor::ServiceLoop& declared : descriptor_.service_loops)
     loops_.push_back(std::make_unique<OwnLoop>(OwnLoop::Parts{.declared = declared,
@@ -47,6 +47,11 @@ const std::vector<pus::Service*>& OwnLoops::in_none(const std::vector<pus::Servi
   for (; sorted_ < services.size(); ++sorted_)
     if (pus::Service* const service = services[sorted_]; of(service->type()) == nullptr) in_none_.push_back(service);
   return in_none_;
+}
+
+void OwnLoops::follow(const descriptor::Configuration* in_force) noexcept {
+  const TimePoint now = clock_.now();
+  for (std::size_t i = 0; i < loops_.size(); ++i) loops_[i]->follow(descriptor_.loop_in_force(i, in_force), now);
 }
 
 void OwnLoops::take_permit(const PermitPage& page) noexcept {

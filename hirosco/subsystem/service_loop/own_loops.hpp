@@ -37,6 +37,8 @@ class OwnLoops {
   [[nodiscard]] pus::ServiceHome& home_of(std::uint8_t type) noexcept;
   /// Of the subsystem's services, which may become more, those that are in none. Asked in each step: of which each is, is asked once.
   [[nodiscard]] const std::vector<pus::Service*>& in_none(const std::vector<pus::Service*>& services);
+  /// They go as this configuration says, null: as their subsystem does. While they rest (LoopsAtRest).
+  void follow(const descriptor::Configuration* in_force) noexcept;
   /// Another supervisor's page counts from now on.
   void take_permit(const PermitPage& page) noexcept;
   /// One has said what tell() has not told yet.  Realtime: wait-free. Thread: any.
@@ -52,6 +54,7 @@ class OwnLoops {
  private:
   const descriptor::SubsystemDescriptor& descriptor_;
   pus::ServiceHome& subsystem_;
+  const Clock& clock_;
   std::vector<std::unique_ptr<OwnLoop>> loops_;
   std::vector<pus::Service*> in_none_;
   std::size_t sorted_{0};  ///< services of which it is known whether they are in one

@@ -149,6 +149,19 @@ TEST(Scheduling, OneThatNeverRestsLeavesOthersOfASharedPriorityTheirTurn) {
   EXPECT_TRUE(got[0] && got[1]);
 }
 
+TEST(Scheduling, WhoWasPinnedGoesBackToTheProcessorsThatItCouldUse) {
+  Thread::start("pinned", [] {
+    const unsigned could_use = usable_processors();
+    const ProcessorSet before = ProcessorSet::of_this_thread();
+    const auto pinned = pin_to_cycle_cpu();
+    EXPECT_TRUE(pinned || pinned.error().code == ErrorCode::Unavailable) << "a backend without affinity says so";
+    EXPECT_EQ(usable_processors(), 1U);
+    EXPECT_EQ(before.take().has_value(), pinned.has_value());
+    EXPECT_EQ(usable_processors(), could_use);
+    EXPECT_EQ(ProcessorSet{}.take().error().code, ErrorCode::Unavailable) << "nobody was asked";
+  })->join();
+}
+
 TEST(Scheduling, ShortSlicesNeedNoRightAndChangeNoPolicy) {
   Thread::start("modest", [] {
     const auto asked = ask_for_short_slices();

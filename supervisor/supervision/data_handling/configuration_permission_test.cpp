@@ -102,5 +102,22 @@ TEST_F(ConfigurationPermission, WithoutPowerOrTimeForAllCyclesItIsRefused) {
   EXPECT_TRUE(configure(5, State::PreOperational)) << "power is asked for on the way up";
 }
 
+/// Who is brought down takes its loops of services back to what it says itself (docs/adr/0207).
+TEST_F(ConfigurationPermission, WithoutTimeBesideLoopsOfWhoIsBroughtDownItIsRefused) {
+  descriptor::SubsystemDescriptor& watches = mission.subsystems[2].subsystem;
+  watches.service_loops.push_back({.name = "EYES", .period = 2ms, .priority = 40, .budget = 1ms});
+  watches.configurations[0].paces.push_back({.name = "EYES", .period = 100ms, .priority = 10, .budget = 1ms});
+  EXPECT_TRUE(configure(4)) << "as much time as there is";
+  watches.service_loops[0].budget = 1001us;
+  const auto takes_long = configure(4);
+  ASSERT_FALSE(takes_long);
+  EXPECT_EQ(takes_long.error().code(), FailureCode::NotPermittedNow);
+  const auto why = pus::reason_in(takes_long.error().data());
+  ASSERT_TRUE(why);
+  EXPECT_EQ(why->text, "may not end in time then: " + mission.subsystems[0].subsystem.name + " QUICK");
+  watches.service_loops.clear();
+  EXPECT_TRUE(configure(4));
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

@@ -270,7 +270,8 @@ using Notice = std::optional<FailureNotice>;
   auto all = situation.in_force();
   for (descriptor::InForce& each : all)
     if (each.subsystem->id == asked.subsystem.id) each.configuration = &wanted;
-  for (const descriptor::CycleResponse& cycle : descriptor::cycle_responses(all)) {
+  // Each of them may be brought down later, which takes its loops of services back to what it says itself.
+  for (const descriptor::CycleResponse& cycle : descriptor::cycle_responses_around(all)) {
     if (cycle.longest) continue;
     const std::string why =
         "may not end in time then: " + std::string{cycle.subsystem} + " " + std::string{cycle.name()};

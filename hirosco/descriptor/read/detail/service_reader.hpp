@@ -100,6 +100,8 @@ class ServiceListReader {
   void read_service_loop(const xml::Element& element);
   /// Of the subsystem, or of one of its configurations.
   void read_service(const xml::Element& element, std::vector<ServiceUse>& uses, Unique& names, bool of_configuration);
+  /// Of one of its configurations, whose loops they are otherwise.
+  void read_pace_of(const xml::Element& element, std::vector<ServiceLoop>& paces, Unique& names);
   /// Once all is read; `root`: the <Subsystem>.
   void check(const xml::Element& root);
   /// Once the configuration is read.
@@ -108,6 +110,8 @@ class ServiceListReader {
  private:
   /// It stays where it is, and why.
   void refuse_loop(const xml::Attribute& loop, std::string_view name);
+  void read_pace(Attributes& attributes, ServiceLoop& loop);
+  void refuse_pace(const xml::Attribute& name);
 
   Problems& problems_;
   SubsystemDescriptor& subsystem_;

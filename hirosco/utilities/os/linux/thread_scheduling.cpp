@@ -91,6 +91,25 @@ Result<> pin_to_cycle_cpu() noexcept {
   return fail(ErrorCode::Internal, "no processor");
 }
 
+ProcessorSet ProcessorSet::of_this_thread() noexcept {
+  static_assert(sizeof(cpu_set_t) <= sizeof octets_);
+  ProcessorSet found;
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  found.known_ = pthread_getaffinity_np(pthread_self(), sizeof allowed, &allowed) == 0;
+  std::memcpy(found.octets_.data(), &allowed, sizeof allowed);
+  return found;
+}
+
+Result<> ProcessorSet::take() const noexcept {
+  if (!known_) return fail(ErrorCode::Unavailable, "it is not known which processors it could use");
+  cpu_set_t allowed;
+  std::memcpy(&allowed, octets_.data(), sizeof allowed);
+  if (::sched_setaffinity(0, sizeof allowed, &allowed) != 0)
+    return fail(ErrorCode::SystemFailure, "processor affinity", errno);
+  return ok();
+}
+
 unsigned usable_processors() noexcept {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
