@@ -121,20 +121,17 @@ def untested(texts):
 
 
 def folder(name):
-    return name.rsplit("/", 1)[0]
-
-
-def within(one, other):
-    return one == other or one.startswith(other + "/") or other.startswith(one + "/")
+    """Whose detail/ is nobody else's to include (check_layers.py), so the two are one."""
+    return name.rsplit("/", 1)[0].removesuffix("/detail")
 
 
 def circles(texts):
-    """Folders that include each other, over however many; a folder and those in it are one. Tests may look up and down, and
-    testing/ belongs to them."""
+    """Folders that include each other, over however many; the files of a folder itself are one, those of each folder in it another.
+    Tests may look up and down, testing/ belongs to them, and an example is run as a test."""
     edges = collections.defaultdict(set)
     for name, text in texts.items():
-        if name.endswith((".hpp", ".cpp")) and "_test." not in name and "/testing/" not in name:
-            edges[folder(name)] |= {folder(to) for to in INCLUDE.findall(text) if to in texts and not within(folder(name), folder(to))}
+        if name.endswith((".hpp", ".cpp")) and "_test." not in name and "/testing/" not in name and not name.endswith("/example.cpp"):
+            edges[folder(name)] |= {folder(to) for to in INCLUDE.findall(text) if to in texts and folder(to) != folder(name)}
     seen, found = {}, []
 
     def visit(place, way):
@@ -167,10 +164,18 @@ PLANTED = [({"hirosco/a.cpp": "\n" * 501}, "501 lines"), ({"hirosco/a.xsd": "\n"
             "hirosco::a::Whole has 32"),
            ({"hirosco/a/a.hpp": '#include "hirosco/b/b.hpp"\n', "hirosco/b/b.hpp": '#include "hirosco/c/c.hpp"\n',
              "hirosco/c/c.hpp": '#include "hirosco/a/a.hpp"\n'}, "hirosco/a -> hirosco/b -> hirosco/c -> hirosco/a"),
+           # A folder and one in it, at once or by way of another one.
+           ({"hirosco/a/a.hpp": '#include "hirosco/a/b/b.hpp"\n', "hirosco/a/b/b.cpp": '#include "hirosco/a/a.hpp"\n', "hirosco/a/b/b.hpp": ""},
+            "hirosco/a -> hirosco/a/b -> hirosco/a"),
+           ({"hirosco/a/a.hpp": '#include "hirosco/a/b/b.hpp"\n', "hirosco/a/b/b.hpp": '#include "hirosco/c/c.hpp"\n',
+             "hirosco/c/c.hpp": '#include "hirosco/a/a.hpp"\n'}, "hirosco/a -> hirosco/a/b -> hirosco/c -> hirosco/a"),
            ({"supervisor/a.cpp": ""}, "no a_test.cpp"), ({"ground/shell/a.cpp": ""}, "which there is not"),
            ({"ground/a.cpp": "", "ground/a_test.cpp": "", "ground/shell/b.cpp": ""}, "has its test beside it, or is no more")]
-# Two classes of one name are no breach, be it in two namespaces or each in a file of its own.
-SOUND = {"hirosco/a.hpp": "namespace hirosco::a {\nclass Twin {\n" + "  int a;\n" * 200 + "};\n}  // namespace hirosco::a\n",
+# Two classes of one name are no breach, be it in two namespaces or each in a file of its own; nor is a folder with its detail/, nor what tests include.
+SOUND = {"hirosco/e/e.hpp": '#include "hirosco/e/detail/e.hpp"\n', "hirosco/e/detail/e.hpp": '#include "hirosco/e/f.hpp"\n', "hirosco/e/f.hpp": "",
+         "hirosco/e/example.cpp": '#include "hirosco/e/g/g.hpp"\n', "hirosco/e/f_test.cpp": '#include "hirosco/e/g/g.hpp"\n',
+         "hirosco/e/g/g.hpp": '#include "hirosco/e/f.hpp"\n',
+         "hirosco/a.hpp": "namespace hirosco::a {\nclass Twin {\n" + "  int a;\n" * 200 + "};\n}  // namespace hirosco::a\n",
          "hirosco/b.hpp": "namespace hirosco::b {\nclass Twin {\n" + "  int a;\n" * 200 + "};\n}\n",
          "hirosco/c.cpp": "namespace hirosco::a {\nnamespace {\nclass Twin {\n" + "  int a;\n" * 200 + "};\n}  // namespace\n}\n",
          "hirosco/d.cpp": "namespace hirosco::a {\nnamespace {\nvoid Twin::a() {\n" + "  b();\n" * 200 + "}\n}\n}\n"}

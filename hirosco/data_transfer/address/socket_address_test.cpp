@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "hirosco/data_transfer/socket_address.hpp"
+#include "hirosco/data_transfer/address/socket_address.hpp"
 
 #include <gtest/gtest.h>
 #include <netdb.h>

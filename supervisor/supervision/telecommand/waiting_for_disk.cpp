@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/data_handling/waiting_for_disk.hpp"
+#include "supervisor/supervision/telecommand/waiting_for_disk.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -37,7 +37,7 @@ std::size_t WaitingForDisk::count_of(std::uint16_t origin) const {
 bool WaitingForDisk::leave_up_to(std::uint64_t number) {
   leaving_ = number;
   const auto told_of = [&](const Telecommand& each) {
-    return each.number <= number && each.request.source != supervisor_apid;
+    return each.number <= number && each.request.source != pus::supervisor_apid;
   };
   return std::ranges::any_of(waiting_, told_of);
 }
@@ -48,7 +48,7 @@ void WaitingForDisk::note(OctetWriter& writer) const {
   };
   for (const bool leaving : {false, true}) {
     const auto is_kind = [&](const Telecommand& each) {
-      return (each.number <= leaving_) == leaving && each.request.source != supervisor_apid;
+      return (each.number <= leaving_) == leaving && each.request.source != pus::supervisor_apid;
     };
     const auto own = static_cast<std::size_t>(std::ranges::count_if(waiting_, is_kind));
     writer.put(static_cast<std::uint16_t>(own + (leaving ? 0 : waited_before_.size())));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/subsystem_handling/member.hpp"
+#include "supervisor/supervision/members/member.hpp"
 
 #include <gtest/gtest.h>
 

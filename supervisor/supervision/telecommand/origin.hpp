@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "hirosco/descriptor/model/mission.hpp"
-#include "supervisor/supervision/watch_and_hear.hpp"
+#include "hirosco/pus/packet/packet.hpp"
 
 namespace hirosco::supervisor {
 
@@ -19,7 +19,7 @@ class Origin {
   [[nodiscard]] static constexpr Origin ground(std::uint16_t client = 0) noexcept { return {Kind::Ground, 0, client}; }
   /// A member, by its channel.
   [[nodiscard]] static constexpr Origin subsystem(std::uint16_t apid) noexcept { return {Kind::Subsystem, apid, 0}; }
-  [[nodiscard]] static constexpr Origin supervisor() noexcept { return {Kind::Supervisor, supervisor_apid, 0}; }
+  [[nodiscard]] static constexpr Origin supervisor() noexcept { return {Kind::Supervisor, pus::supervisor_apid, 0}; }
   /// Who has this source id, of a telecommand that was found to own it.
   [[nodiscard]] static Origin of(std::uint16_t source, const descriptor::Mission& mission) noexcept {
     if (source == mission.supervisor.id) return supervisor();

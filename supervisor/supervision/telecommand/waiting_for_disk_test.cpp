@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/data_handling/waiting_for_disk.hpp"
+#include "supervisor/supervision/telecommand/waiting_for_disk.hpp"
 
 #include <gtest/gtest.h>
 
@@ -114,7 +114,7 @@ TEST_F(WaitingBeforeTest, WhatWasAboutToLeaveIsToldApartFromWhatWaited) {
 }
 
 TEST_F(WaitingBeforeTest, NobodyMissesAnEndOfTheSupervisorsOwn) {
-  add_of(1, supervisor_apid);
+  add_of(1, pus::supervisor_apid);
   add_of(2, 7);
   EXPECT_FALSE(waiting.leave_up_to(1));
   EXPECT_TRUE(waiting.leave_up_to(2));

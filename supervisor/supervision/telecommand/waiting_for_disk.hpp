@@ -13,7 +13,7 @@
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/time.hpp"
-#include "supervisor/supervision/data_handling/origin.hpp"
+#include "supervisor/supervision/telecommand/origin.hpp"
 
 namespace hirosco::supervisor {
 

@@ -10,7 +10,7 @@
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/subsystem/author/states.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
-#include "supervisor/supervision/subsystem_handling/member_recovery.hpp"
+#include "supervisor/supervision/members/member_recovery.hpp"
 
 /// One started subsystem as the supervisor sees it: its port, whether it lives. Whether it moves, and
 /// whether it may move anything, is the guard's.

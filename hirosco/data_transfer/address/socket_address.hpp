@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "hirosco/data_transfer/link/internet_address.hpp"
+#include "hirosco/data_transfer/address/internet_address.hpp"
 
 namespace hirosco {
 
