@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""The shape of the house: no file over 500 lines, no class over 300, with its members in whatever files neither, `supervisor.hpp` under
+"""The shape of the house: no file over 500 lines, no class over 300 in any language, with its members in whatever files neither, `supervisor.hpp` under
 90, no circle of folders, a test beside each file of the supervisor and the ground station. Prints what breaks it, and breaks each rule once itself, to be caught."""
-import bisect, collections, pathlib, re, sys
+import ast, bisect, collections, pathlib, re, sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PARTS = ("hirosco", "robotics", "supervisor", "subsystems", "simulation", "missions", "ground", "tools", "tests", "bench")
@@ -11,6 +11,7 @@ LONGEST_FILE, LONGEST_CLASS, LONGEST_WHOLE = 500, 300, 300
 OTHERS = {"supervisor/supervisor.hpp": 90}
 CODE = (".cpp", ".hpp", ".py", ".js", ".mjs", ".xsd")
 CLASS = re.compile(r"^(?:template <.*> *)?(?:class|struct) (?:\[\[\w+\]\] )?((?:\w+::)*\w+)[^;(]*\{", re.M)
+JS_CLASS = re.compile(r"^([ \t]*)(?:export )?(?:default )?(?:(?:const|let) \w+ = )?class\b ?(\w*)[^\n{]*\{[ \t]*$", re.M)
 MEMBER = re.compile(r"^(?:[A-Za-z_\[][^\n;#/]*?[ *&])?((?:\w+(?:<[^\n()]*?>)?::)+)~?(?:operator[^\n(]*|\w+)\(", re.M)
 # Braces, but for those of comments, strings and characters, and which of them open a namespace.
 BRACE = re.compile(r"""//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])+'"""
@@ -30,12 +31,22 @@ def too_long(texts):
         limit = OTHERS.get(name, LONGEST_FILE)
         if (lines := text.count("\n")) > limit:
             yield f"{name}: {lines} lines, {limit} at most"
-        if not name.endswith((".hpp", ".cpp")):
-            continue
+        for what, lines in classes(name, text):
+            if lines > LONGEST_CLASS:
+                yield f"{name}: {what} has {lines} lines, {LONGEST_CLASS} at most"
+
+
+def classes(name, text):
+    """Each with its lines from brace to brace, or in Python from the first to the last."""
+    if name.endswith(".py"):
+        yield from ((node.name, node.end_lineno - node.lineno + 1) for node in ast.walk(ast.parse(text, name)) if isinstance(node, ast.ClassDef))
+    elif name.endswith((".js", ".mjs")):
+        for begin in JS_CLASS.finditer(text):
+            yield begin[2], text.count("\n", begin.start(), text.find(f"\n{begin[1]}}}", begin.end()))
+    elif name.endswith((".hpp", ".cpp")):
         for begin in CLASS.finditer(text):
             end = text.find("\n};", begin.start())
-            if end > 0 and (lines := text.count("\n", begin.start(), end)) > LONGEST_CLASS:
-                yield f"{name}: {begin.group(1)} has {lines} lines, {LONGEST_CLASS} at most"
+            yield begin[1], text.count("\n", begin.start(), end) if end > 0 else 0
 
 
 def namespaces(name, text):
@@ -154,6 +165,9 @@ def problems(texts):
 
 PLANTED = [({"hirosco/a.cpp": "\n" * 501}, "501 lines"), ({"hirosco/a.xsd": "\n" * 501}, "a.xsd: 501 lines"), ({"supervisor/supervisor.hpp": "\n" * 91}, "91 lines"),
            ({"hirosco/a.hpp": "class Big final : Base {\n" + "  int a;\n" * 301 + "};\n"}, "Big has 30"),
+           ({"tests/a.py": "@b\nclass Big(c):\n" + "    a = 1\n\n" * 151 + "e = 2\n"}, "a.py: Big has 302"),
+           ({"ground/a.js": "export class Big extends A {\n" + "  a() {\n  }\n" * 151 + "}\n"}, "a.js: Big has 302"),
+           ({"ground/a.mjs": "  class Inner {\n" + "    a() {\n    }\n" * 151 + "  }\n"}, "a.mjs: Inner has 302"),
            ({"hirosco/a.hpp": "class Spread {\n" + "  int a;\n" * 250 + "};\n",
              "hirosco/a.cpp": "int Spread::a() {\n" + "  b();\n" * 250 + "}\n",
              "hirosco/b.cpp": "Spread::~Spread() {\n" + "  b();\n" * 250 + "}\n"}, "Spread has 7"),
@@ -172,7 +186,8 @@ PLANTED = [({"hirosco/a.cpp": "\n" * 501}, "501 lines"), ({"hirosco/a.xsd": "\n"
            ({"supervisor/a.cpp": ""}, "no a_test.cpp"), ({"ground/shell/a.cpp": ""}, "which there is not"),
            ({"ground/a.cpp": "", "ground/a_test.cpp": "", "ground/shell/b.cpp": ""}, "has its test beside it, or is no more")]
 # Two classes of one name are no breach, be it in two namespaces or each in a file of its own; nor is a folder with its detail/, nor what tests include.
-SOUND = {"hirosco/e/e.hpp": '#include "hirosco/e/detail/e.hpp"\n', "hirosco/e/detail/e.hpp": '#include "hirosco/e/f.hpp"\n', "hirosco/e/f.hpp": "",
+SOUND = {"tests/a.py": ("class Twin:\n" + "    a = 1\n" * 200) * 2, "ground/a.js": ("class Twin {\n" + "  a;\n" * 200 + "}\n") * 2,
+         "hirosco/e/e.hpp": '#include "hirosco/e/detail/e.hpp"\n', "hirosco/e/detail/e.hpp": '#include "hirosco/e/f.hpp"\n', "hirosco/e/f.hpp": "",
          "hirosco/e/example.cpp": '#include "hirosco/e/g/g.hpp"\n', "hirosco/e/f_test.cpp": '#include "hirosco/e/g/g.hpp"\n',
          "hirosco/e/g/g.hpp": '#include "hirosco/e/f.hpp"\n',
          "hirosco/a.hpp": "namespace hirosco::a {\nclass Twin {\n" + "  int a;\n" * 200 + "};\n}  // namespace hirosco::a\n",
