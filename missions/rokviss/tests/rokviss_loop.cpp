@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/figures/rokviss_loop.hpp"
+#include "missions/rokviss/tests/rokviss_loop.hpp"
 
 #include <algorithm>
 

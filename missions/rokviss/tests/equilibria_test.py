@@ -56,7 +56,7 @@ def spring(anchor):
 
 class Equilibria(unittest.TestCase):
     def setUp(self):
-        file = pathlib.Path(__file__).resolve().parents[2] / "missions" / "rokviss" / "expected.csv"
+        file = pathlib.Path(__file__).resolve().parents[1] / "expected.csv"
         with file.open(encoding="utf-8") as lines:
             self.table = {row["name"]: row for row in csv.DictReader(lines)}
 

@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "missions/rokviss/tests/rokviss_loop.hpp"
 #include "simulation/figures/expected.hpp"
-#include "tests/figures/rokviss_loop.hpp"
 
 namespace hirosco::simulation {
 namespace {

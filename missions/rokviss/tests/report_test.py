@@ -11,7 +11,7 @@ import unittest
 import xml.etree.ElementTree as xml
 
 HIROSCO = str(pathlib.Path(os.environ["HIROSCO_BIN"]) / "hirosco")
-MISSION = str(pathlib.Path(__file__).resolve().parents[2] / "missions" / "rokviss")
+MISSION = str(pathlib.Path(__file__).resolve().parents[1])
 RUNS = "RO1,RO2,RO3"
 
 
