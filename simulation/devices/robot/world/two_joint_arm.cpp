@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/world/two_joint_arm.hpp"
+#include "simulation/devices/robot/world/two_joint_arm.hpp"
 
 #include <algorithm>
 #include <cmath>
