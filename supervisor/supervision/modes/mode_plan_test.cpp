@@ -3,7 +3,6 @@
 #include "supervisor/supervision/modes/mode_plan.hpp"
 
 #include "supervisor/supervision/testing/parts_rig.hpp"
-#include "supervisor/supervision/testing/played_desk.hpp"
 
 namespace hirosco::supervisor {
 namespace {

@@ -21,7 +21,7 @@ const there_s = 0.02;
 
 /// The goal that is to be shown: {angles: {joint: angle}, duration_s, speed, by_speed, sent}; null when none is. Where a speed is said, a share of
 /// what each joint may, nobody has said how long it takes: `by_speed`.
-export function goal_of(about, typed, commands) {
+function goal_of(about, typed, commands) {
   if (!about.goal) return null;
   const read = (values, sent) => {
     const angles = Object.fromEntries(Object.entries(about.goal.joints).map(([joint, argument]) => [joint, led_value(values, argument)]));
