@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "bench/figures.hpp"
-#include "hirosco/data_transfer/link/internet_address.hpp"
+#include "hirosco/data_transfer/address/internet_address.hpp"
 #include "hirosco/data_transfer/link/latest_link.hpp"
 #include "hirosco/data_transfer/link/link_datagram.hpp"
 #include "hirosco/data_transfer/link/udp_link.hpp"

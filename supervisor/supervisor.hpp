@@ -15,9 +15,9 @@
 #include "supervisor/platform/storage/log_readings.hpp"
 #include "supervisor/platform/storage/packet_log.hpp"
 #include "supervisor/platform/storage/value_store.hpp"
+#include "supervisor/supervision/members/member.hpp"
 #include "supervisor/supervision/observer.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
-#include "supervisor/supervision/subsystem_handling/member.hpp"
 #include "supervisor/supervision/succession/journal.hpp"
 
 namespace hirosco::supervisor {

@@ -4,10 +4,11 @@
 """The framework knows no mission, no subsystem and no simulated device by name (adr 0054). Prints where it does, and says it of
 itself once for each kind of place, to be caught.
 
-Nor does a folder of tests/ bear one: tests of one mission, subsystem or device alone stand in its own folder, as tests/ (adr 0198).
+Nor does a folder or file of tests/, templates/ or bench/ bear one: tests of one mission, subsystem or device alone stand in its own folder, as
+tests/ (adr 0198), and what is of several is called by what it tests (adr 0212).
 
 Names are those of the folders in missions/, subsystems/ and simulation/devices/, and of the programs that a folder further within makes of its module.cpp. One is found wherever it is a word of a path, an
-identifier, a text or a comment, however written: for a folder `lamp` these are lamp, LAMP_LOST, LampData and hirosco-lamp.
+identifier, a text or a comment, however written: for a folder `lamp` these are lamp, lamps, LAMP_LOST, LampData and hirosco-lamp.
 A name that docs/glossary.md has under "Names that are words, too" may be said in prose and be part of an identifier. It is found
 where only the name can be meant: in capitals, as a program (hirosco-NAME, hirosco-sim-NAME), as a path (subsystems/NAME).
 The code of a subsystem or a simulated device names no mission, and no other of them either (its tests and descriptors may: who is flown with whom is theirs). Its descriptors,
@@ -51,16 +52,20 @@ def parts_of(text):
     return [part.lower() for part in PART.findall(text)]
 
 
+def plural(word):
+    return word[:-1] + "ies" if word.endswith("y") else word + "es" if word.endswith(("s", "x", "ch")) else word + "s"
+
+
 def says(line, name, is_word):
     wanted = name.split("_")
-    if any(part not in line.lower() for part in wanted):
+    if any(part.removesuffix("y") not in line.lower() for part in wanted):
         return False  # most lines, told in a tenth of the time
     if is_word:
         one = "[-_]".join(map(re.escape, wanted))
         return bool(re.search(rf"(?<![A-Z]){one.upper()}(?![A-Z])", line)
                     or re.search(rf"\bhirosco-(sim-|mission-)?{one}\b|\b({'|'.join(HOMES)})/{one}\b", line))
-    parts = parts_of(line)
-    return any(parts[i:i + len(wanted)] == wanted for i in range(len(parts)))
+    parts, several = parts_of(line), [*wanted[:-1], plural(wanted[-1])]
+    return any(parts[i:i + len(wanted)] in (wanted, several) for i in range(len(parts)))
 
 
 def found(texts, every, words):
@@ -131,22 +136,26 @@ def among_missions(root=ROOT):
                 yield from found({path.relative_to(root).as_posix(): path.read_text()}, [other for other in every if other != name], set())
 
 
-def test_folders(every, words, root=ROOT):
-    """Folders of tests/ that bear a name."""
-    held = {folder for path in (root / "tests").rglob("*") if path.is_file() and not OUTSIDE & set(path.relative_to(root).parts)
-            for folder in path.relative_to(root).parents}
-    for folder in sorted(held):
-        if told := [name for name in every if folder.name == name or says(folder.name, name, name in words)]:
-            yield f"{folder.as_posix()}: {', '.join(told)}: what is of one alone stands in its own folder, as tests/"
+NAMELESS = ("tests", "templates", "bench")
+
+
+def bearing_names(every, words, root=ROOT):
+    """Folders and files of these that bear a name. One of tests/ that is called by a word, which is a name, too, means it."""
+    held = {place for part in NAMELESS for path in (root / part).rglob("*") if path.is_file() and not OUTSIDE & set(path.relative_to(root).parts)
+            for place in (path.relative_to(root), *path.relative_to(root).parents)}
+    for place in sorted(held):
+        called = place.name.partition(".")[0]
+        if told := [name for name in every if called == name and place.parts[0] == NAMELESS[0] or says(called, name, name in words)]:
+            yield f"{place.as_posix()}: {', '.join(told)}: what is of one alone stands in its own folder, as tests/, and other names say what is tested"
 
 
 # `lamp` is a name, `beam` a word, too. The first must be found in each of these, the second in none.
-CAUGHT = ["the lamp", "LAMP_LOST", "class LampData", '"LAMP.LEVEL"', "hirosco-lamp", "lamp_test", 'name="Lamp"', "hirosco-beam", "hirosco-sim-beam",
+CAUGHT = ["the lamp", "LAMP_LOST", "class LampData", '"LAMP.LEVEL"', "hirosco-lamp", "lamp_test", "two lamps", "of LAMPS", "spare lamp batteries", 'name="Lamp"', "hirosco-beam", "hirosco-sim-beam",
           "subsystems/beam/beam.hpp", '"BEAM"', "BEAM_LOST", "<Mission name='BEAM'>"]
-SPARED = ["a beam of light", "class BeamView", "beam_width", "lamps", "BEAMS", "clamp", "CLAMP"]
+SPARED = ["a beam of light", "class BeamView", "beam_width", "lampshade", "two beams", "BEAMS", "clamp", "CLAMP"]
 if __name__ == "__main__":
     planted = {f"hirosco/{i}.cpp": text for i, text in enumerate(CAUGHT + SPARED)}
-    seen = {line.partition(":")[0] for line in found(planted, ["lamp", "beam"], {"beam"})}
+    seen = {line.partition(":")[0] for line in found(planted, ["lamp", "lamp_battery", "beam"], {"beam"})}
     wrong = [f"planted and not seen: {text}" for path, text in planted.items() if text in CAUGHT and path not in seen]
     wrong += [f"seen and no name: {text}" for path, text in planted.items() if text in SPARED and path in seen]
     ours, every, words = dict(framework(names())), names(), words_too()
@@ -173,12 +182,14 @@ if __name__ == "__main__":
             wrong.append(f"a mission planted in another one's folder, and seen in {sorted(others)}")
         if (planted_names := names(pathlib.Path(made))) != ["beam", "hut", "shed", "wide_beam"]:
             wrong.append(f"a module planted within a folder, and the names are {planted_names}")
-        for path in ("tests/beam/a.py", "tests/lit/lamp_in_sun/a.xml", "tests/beams/a.py", "tests/lit/lamp_test.py", "tests/lamp/__pycache__/a.pyc"):
+        for path in ("tests/beam/a.py", "tests/lit/lamp_in_sun/a.xml", "tests/beams/a.py", "tests/lit/lamp_test.py", "tests/lit/beam_width_test.py",
+                     "tests/lamp/__pycache__/a.pyc", "templates/part/two_lamps.xml", "templates/beam/a.xml", "bench/lampshade.cpp"):
             (pathlib.Path(made) / path).parent.mkdir(parents=True, exist_ok=True)
             (pathlib.Path(made) / path).write_text("")
-        if (bearing := {line.partition(":")[0] for line in test_folders(["lamp", "beam"], {"beam"}, pathlib.Path(made))}) != {"tests/beam", "tests/lit/lamp_in_sun"}:
-            wrong.append(f"names planted in folders of tests, and seen in {sorted(bearing)}")
+        if (bearing := {line.partition(":")[0] for line in bearing_names(["lamp", "beam"], {"beam"}, pathlib.Path(made))}) != {
+                "tests/beam", "tests/lit/lamp_in_sun", "tests/lit/lamp_test.py", "templates/part/two_lamps.xml"}:
+            wrong.append(f"names planted in places of tests, templates and bench, and seen in {sorted(bearing)}")
         if caught != {"subsystems/beam/lit.cpp", "simulation/devices/lamp/lamp.cpp"}:
             wrong.append(f"planted in folders of their own, and seen in {sorted(caught)}")
     wrong += [f"the glossary has a word that is no name: {word}" for word in words - set(every) - {"word", "---"}]
-    sys.exit("\n".join([*found(ours, every, words), *in_homes(theirs, every, words), *naming_missions(), *among_missions(), *test_folders(every, words), *wrong]) or ("no files" if not ours or not every else None))
+    sys.exit("\n".join([*found(ours, every, words), *in_homes(theirs, every, words), *naming_missions(), *among_missions(), *bearing_names(every, words), *wrong]) or ("no files" if not ours or not every else None))

@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""The shape of the house: no file over 500 lines, no class over 300, with its members in whatever files neither, `supervisor.hpp` under
+"""The shape of the house: no file over 500 lines, be it code or a page, no class over 300 in any language, with its members in whatever files neither, `supervisor.hpp` under
 90, no circle of folders, a test beside each file of the supervisor and the ground station. Prints what breaks it, and breaks each rule once itself, to be caught."""
-import bisect, collections, pathlib, re, sys
+import ast, bisect, collections, pathlib, re, sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PARTS = ("hirosco", "robotics", "supervisor", "subsystems", "simulation", "missions", "ground", "tools", "tests", "bench")
+PARTS = ("hirosco", "robotics", "supervisor", "subsystems", "simulation", "missions", "ground", "tools", "tests", "bench", "templates", "docs")
 LONGEST_FILE, LONGEST_CLASS, LONGEST_WHOLE = 500, 300, 300
 OTHERS = {"supervisor/supervisor.hpp": 90}
-CODE = (".cpp", ".hpp", ".py", ".js", ".mjs", ".xsd")
+# A log, which grows with each version, and what tools/check_schema.py makes, a row for each attribute.
+UNCOUNTED = ("CHANGELOG.md", "docs/interfaces/schema.md")
+CODE = (".cpp", ".hpp", ".py", ".js", ".mjs", ".xsd", ".md")
 CLASS = re.compile(r"^(?:template <.*> *)?(?:class|struct) (?:\[\[\w+\]\] )?((?:\w+::)*\w+)[^;(]*\{", re.M)
+JS_CLASS = re.compile(r"^([ \t]*)(?:export )?(?:default )?(?:(?:const|let) \w+ = )?class\b ?(\w*)[^\n{]*\{[ \t]*$", re.M)
 MEMBER = re.compile(r"^(?:[A-Za-z_\[][^\n;#/]*?[ *&])?((?:\w+(?:<[^\n()]*?>)?::)+)~?(?:operator[^\n(]*|\w+)\(", re.M)
 # Braces, but for those of comments, strings and characters, and which of them open a namespace.
 BRACE = re.compile(r"""//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])+'"""
@@ -20,7 +23,7 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"([^">]+)"', re.M)
 
 def files():
     for part in PARTS:
-        for path in sorted((ROOT / part).rglob("*")):
+        for path in sorted(ROOT.glob("*.md") if part == "docs" else []) + sorted((ROOT / part).rglob("*")):
             if path.suffix in CODE and not {"node_modules", "__pycache__", "build"} & set(path.relative_to(ROOT).parts):
                 yield path.relative_to(ROOT).as_posix(), path.read_text()
 
@@ -28,14 +31,24 @@ def files():
 def too_long(texts):
     for name, text in texts.items():
         limit = OTHERS.get(name, LONGEST_FILE)
-        if (lines := text.count("\n")) > limit:
+        if name not in UNCOUNTED and (lines := text.count("\n")) > limit:
             yield f"{name}: {lines} lines, {limit} at most"
-        if not name.endswith((".hpp", ".cpp")):
-            continue
+        for what, lines in classes(name, text):
+            if lines > LONGEST_CLASS:
+                yield f"{name}: {what} has {lines} lines, {LONGEST_CLASS} at most"
+
+
+def classes(name, text):
+    """Each with its lines from brace to brace, or in Python from the first to the last."""
+    if name.endswith(".py"):
+        yield from ((node.name, node.end_lineno - node.lineno + 1) for node in ast.walk(ast.parse(text, name)) if isinstance(node, ast.ClassDef))
+    elif name.endswith((".js", ".mjs")):
+        for begin in JS_CLASS.finditer(text):
+            yield begin[2], text.count("\n", begin.start(), text.find(f"\n{begin[1]}}}", begin.end()))
+    elif name.endswith((".hpp", ".cpp")):
         for begin in CLASS.finditer(text):
             end = text.find("\n};", begin.start())
-            if end > 0 and (lines := text.count("\n", begin.start(), end)) > LONGEST_CLASS:
-                yield f"{name}: {begin.group(1)} has {lines} lines, {LONGEST_CLASS} at most"
+            yield begin[1], text.count("\n", begin.start(), end) if end > 0 else 0
 
 
 def namespaces(name, text):
@@ -120,20 +133,17 @@ def untested(texts):
 
 
 def folder(name):
-    return name.rsplit("/", 1)[0]
-
-
-def within(one, other):
-    return one == other or one.startswith(other + "/") or other.startswith(one + "/")
+    """Whose detail/ is nobody else's to include (check_layers.py), so the two are one."""
+    return name.rsplit("/", 1)[0].removesuffix("/detail")
 
 
 def circles(texts):
-    """Folders that include each other, over however many; a folder and those in it are one. Tests may look up and down, and
-    testing/ belongs to them."""
+    """Folders that include each other, over however many; the files of a folder itself are one, those of each folder in it another.
+    Tests may look up and down, testing/ belongs to them, and an example is run as a test."""
     edges = collections.defaultdict(set)
     for name, text in texts.items():
-        if name.endswith((".hpp", ".cpp")) and "_test." not in name and "/testing/" not in name:
-            edges[folder(name)] |= {folder(to) for to in INCLUDE.findall(text) if to in texts and not within(folder(name), folder(to))}
+        if name.endswith((".hpp", ".cpp")) and "_test." not in name and "/testing/" not in name and not name.endswith("/example.cpp"):
+            edges[folder(name)] |= {folder(to) for to in INCLUDE.findall(text) if to in texts and folder(to) != folder(name)}
     seen, found = {}, []
 
     def visit(place, way):
@@ -154,8 +164,11 @@ def problems(texts):
     return list(too_long(texts)) + list(too_large(texts)) + circles(texts) + list(untested(texts))
 
 
-PLANTED = [({"hirosco/a.cpp": "\n" * 501}, "501 lines"), ({"hirosco/a.xsd": "\n" * 501}, "a.xsd: 501 lines"), ({"supervisor/supervisor.hpp": "\n" * 91}, "91 lines"),
+PLANTED = [({"hirosco/a.cpp": "\n" * 501}, "501 lines"), ({"hirosco/a.xsd": "\n" * 501}, "a.xsd: 501 lines"), ({"docs/a.md": "\n" * 501}, "a.md: 501 lines"), ({"supervisor/supervisor.hpp": "\n" * 91}, "91 lines"),
            ({"hirosco/a.hpp": "class Big final : Base {\n" + "  int a;\n" * 301 + "};\n"}, "Big has 30"),
+           ({"tests/a.py": "@b\nclass Big(c):\n" + "    a = 1\n\n" * 151 + "e = 2\n"}, "a.py: Big has 302"),
+           ({"ground/a.js": "export class Big extends A {\n" + "  a() {\n  }\n" * 151 + "}\n"}, "a.js: Big has 302"),
+           ({"ground/a.mjs": "  class Inner {\n" + "    a() {\n    }\n" * 151 + "  }\n"}, "a.mjs: Inner has 302"),
            ({"hirosco/a.hpp": "class Spread {\n" + "  int a;\n" * 250 + "};\n",
              "hirosco/a.cpp": "int Spread::a() {\n" + "  b();\n" * 250 + "}\n",
              "hirosco/b.cpp": "Spread::~Spread() {\n" + "  b();\n" * 250 + "}\n"}, "Spread has 7"),
@@ -166,10 +179,19 @@ PLANTED = [({"hirosco/a.cpp": "\n" * 501}, "501 lines"), ({"hirosco/a.xsd": "\n"
             "hirosco::a::Whole has 32"),
            ({"hirosco/a/a.hpp": '#include "hirosco/b/b.hpp"\n', "hirosco/b/b.hpp": '#include "hirosco/c/c.hpp"\n',
              "hirosco/c/c.hpp": '#include "hirosco/a/a.hpp"\n'}, "hirosco/a -> hirosco/b -> hirosco/c -> hirosco/a"),
+           # A folder and one in it, at once or by way of another one.
+           ({"hirosco/a/a.hpp": '#include "hirosco/a/b/b.hpp"\n', "hirosco/a/b/b.cpp": '#include "hirosco/a/a.hpp"\n', "hirosco/a/b/b.hpp": ""},
+            "hirosco/a -> hirosco/a/b -> hirosco/a"),
+           ({"hirosco/a/a.hpp": '#include "hirosco/a/b/b.hpp"\n', "hirosco/a/b/b.hpp": '#include "hirosco/c/c.hpp"\n',
+             "hirosco/c/c.hpp": '#include "hirosco/a/a.hpp"\n'}, "hirosco/a -> hirosco/a/b -> hirosco/c -> hirosco/a"),
            ({"supervisor/a.cpp": ""}, "no a_test.cpp"), ({"ground/shell/a.cpp": ""}, "which there is not"),
            ({"ground/a.cpp": "", "ground/a_test.cpp": "", "ground/shell/b.cpp": ""}, "has its test beside it, or is no more")]
-# Two classes of one name are no breach, be it in two namespaces or each in a file of its own.
-SOUND = {"hirosco/a.hpp": "namespace hirosco::a {\nclass Twin {\n" + "  int a;\n" * 200 + "};\n}  // namespace hirosco::a\n",
+# Two classes of one name are no breach, be it in two namespaces or each in a file of its own; nor is a folder with its detail/, nor what tests include.
+SOUND = {"CHANGELOG.md": "\n" * 501, "tests/a.py": ("class Twin:\n" + "    a = 1\n" * 200) * 2, "ground/a.js": ("class Twin {\n" + "  a;\n" * 200 + "}\n") * 2,
+         "hirosco/e/e.hpp": '#include "hirosco/e/detail/e.hpp"\n', "hirosco/e/detail/e.hpp": '#include "hirosco/e/f.hpp"\n', "hirosco/e/f.hpp": "",
+         "hirosco/e/example.cpp": '#include "hirosco/e/g/g.hpp"\n', "hirosco/e/f_test.cpp": '#include "hirosco/e/g/g.hpp"\n',
+         "hirosco/e/g/g.hpp": '#include "hirosco/e/f.hpp"\n',
+         "hirosco/a.hpp": "namespace hirosco::a {\nclass Twin {\n" + "  int a;\n" * 200 + "};\n}  // namespace hirosco::a\n",
          "hirosco/b.hpp": "namespace hirosco::b {\nclass Twin {\n" + "  int a;\n" * 200 + "};\n}\n",
          "hirosco/c.cpp": "namespace hirosco::a {\nnamespace {\nclass Twin {\n" + "  int a;\n" * 200 + "};\n}  // namespace\n}\n",
          "hirosco/d.cpp": "namespace hirosco::a {\nnamespace {\nvoid Twin::a() {\n" + "  b();\n" * 200 + "}\n}\n}\n"}

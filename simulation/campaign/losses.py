@@ -17,61 +17,61 @@ ALONE_S = 1.1              # from there on the craft is left alone before it los
 EPISODE_S = 9.0            # of which all else is taken out
 
 
-def dice_of(draw):
-    return random.Random(f"losses of the supervisor {draw.flight_seed}")
+def dice_of(flight_seed):
+    return random.Random(f"losses of the supervisor {flight_seed}")
 
 
-def loses(draw):
-    return dice_of(draw).random() < LOSSES
+def loses(flight_seed):
+    return dice_of(flight_seed).random() < LOSSES
 
 
-def lose_supervisor(draw, begin_s, finale_s):
-    dice = dice_of(draw)
+def lose_supervisor(plan, flight_seed, begin_s, finale_s):
+    dice = dice_of(flight_seed)
     dice.random()
     what = dice.choice(LOST_IN)
     if what == "anything":
-        crossed = [time for time, _ in draw.lines if begin_s + 0.4 < time < finale_s - 2]
+        crossed = [time for time, _ in plan.lines if begin_s + 0.4 < time < finale_s - 2]
         for _ in range(dice.choice([1, 1, 2, 3]) if crossed else 0):
-            lose(draw, dice, dice.choice(crossed) + dice.choice([0.0, 0.0002, 0.001, 0.002, 0.005, 0.02, 0.1]))
+            lose(plan, dice, dice.choice(crossed) + dice.choice([0.0, 0.0002, 0.001, 0.002, 0.005, 0.02, 0.1]))
         return
-    time = left_alone(draw, dice.uniform(begin_s + 0.4, finale_s - EPISODE_S - 0.5)) + ALONE_S + dice.uniform(0, 0.02)
+    time = left_alone(plan, dice.uniform(begin_s + 0.4, finale_s - EPISODE_S - 0.5)) + ALONE_S + dice.uniform(0, 0.02)
     after = dice.choice([0.0, 0.0005, dice.uniform(0, 0.02), dice.uniform(0, 0.2), dice.uniform(0, 0.6)])
     if what == "nothing for long":
-        return lose(draw, dice, time, LONG)
-    begin_what(draw, dice, what, time)
-    lose(draw, dice, time + after)
+        return lose(plan, dice, time, LONG)
+    begin_what(plan, dice, what, time)
+    lose(plan, dice, time + after)
     if dice.random() < 0.3:  # and the next one, too, as it goes on or soon after
-        lose(draw, dice, time + after + NEXT_ONE_S + dice.choice([0.0001, dice.uniform(0, 0.03), dice.uniform(0, 0.3)]))
+        lose(plan, dice, time + after + NEXT_ONE_S + dice.choice([0.0001, dice.uniform(0, 0.03), dice.uniform(0, 0.3)]))
 
 
-def lose(draw, dice, time, ways=SHORT):
-    draw.add(time, dice.choice(ways).format(draw.mission.supervisor.name))
+def lose(plan, dice, time, ways=SHORT):
+    plan.add(time, dice.choice(ways).format(plan.mission.supervisor.name))
 
 
-def left_alone(draw, begin):
+def left_alone(plan, begin):
     """Nothing else happens for the time of an episode: the faults end, what the mission itself moves rests, what ground silenced is heard again, so that a
     member that stops for a reason of its own says so, and all who act are brought up. When they are."""
-    draw.lines = [line for line in draw.lines if not begin <= line[0] < begin + EPISODE_S]
-    draw.struck = {"LOG", *(member.name for member in draw.mission.members)}
-    draw.calm(begin)
-    for device in draw.mission.devices:  # who has nothing of that kind refuses it
-        for line in draw.its.rests:
-            draw.add(begin + 0.02, f"fault {device} {line}")
-    for member in draw.acting:
-        draw.hear(begin + 0.03, member)
-    return draw.drive(begin + BEGINS_S, OPERATIONAL, draw.its.usual)
+    plan.lines = [line for line in plan.lines if not begin <= line[0] < begin + EPISODE_S]
+    plan.struck = {"LOG", *(member.name for member in plan.mission.members)}
+    plan.calm(begin)
+    for device in plan.mission.devices:  # who has nothing of that kind refuses it
+        for line in plan.its.rests:
+            plan.add(begin + 0.02, f"fault {device} {line}")
+    for member in plan.acting:
+        plan.hear(begin + 0.03, member)
+    return plan.drive(begin + BEGINS_S, OPERATIONAL, plan.its.usual)
 
 
-def begin_what(draw, dice, what, time):
-    mission = draw.mission
+def begin_what(plan, dice, what, time):
+    mission = plan.mission
     if what == "mode":
-        mode = dice.choice([mode for mode in mission.modes if mode == mission.initial_mode or mode in draw.its.flown])
-        draw.function(time, mission.supervisor, "SET_MODE", mission.mode_ids[mode])
+        mode = dice.choice([mode for mode in mission.modes if mode == mission.initial_mode or mode in plan.its.flown])
+        plan.function(time, mission.supervisor, "SET_MODE", mission.mode_ids[mode])
     elif what == "stop":
-        draw.function(time, mission.supervisor, "SAFE_ALL")
+        plan.function(time, mission.supervisor, "SAFE_ALL")
     elif what == "plan" and not mission.devices:
-        draw.add(time, f"kill {dice.choice(draw.acting).name}")
+        plan.add(time, f"kill {dice.choice(plan.acting).name}")
     elif what == "plan":
         device, (owner, _) = dice.choice(sorted(mission.devices.items()))
-        draw.add(time, dice.choice([f"kill {owner}", f"fault {device} unplug"]))
-        draw.add(time + 4, f"fault {device} plug")
+        plan.add(time, dice.choice([f"kill {owner}", f"fault {device} unplug"]))
+        plan.add(time + 4, f"fault {device} plug")

@@ -12,7 +12,7 @@
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/utilities/octets.hpp"
 #include "hirosco/utilities/time.hpp"
-#include "supervisor/supervision/data_handling/waiting_for_disk.hpp"
+#include "supervisor/supervision/telecommand/waiting_for_disk.hpp"
 
 namespace hirosco::supervisor {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "hirosco/descriptor/model/plan_steps.hpp"
-#include "supervisor/supervision/data_handling/permission.hpp"
+#include "supervisor/supervision/telecommand/called_function.hpp"
 
 namespace hirosco::supervisor {
 namespace {

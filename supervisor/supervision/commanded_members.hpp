@@ -11,9 +11,9 @@
 
 #include "supervisor/supervision/commanded_state.hpp"
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/data_handling/origin.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/succession/journal.hpp"
+#include "supervisor/supervision/telecommand/origin.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {

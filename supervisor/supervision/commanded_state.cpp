@@ -9,7 +9,7 @@
 #include "hirosco/pus/st05_event/event_service.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
-#include "supervisor/supervision/data_handling/permission.hpp"
+#include "supervisor/supervision/telecommand/called_function.hpp"
 
 namespace hirosco::supervisor {
 namespace {

@@ -13,8 +13,8 @@
 #include "supervisor/guard/guard.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
 #include "supervisor/platform/storage/packet_log.hpp"
+#include "supervisor/supervision/members/member.hpp"
 #include "supervisor/supervision/observer.hpp"
-#include "supervisor/supervision/subsystem_handling/member.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {

@@ -90,7 +90,7 @@ def typed():
     lines, judged = [], collections.Counter()
     for number in range(CALLS):
         function = draw.random.choice(list(member.functions.values()))
-        data = draw.call(function.name, function.arguments)
+        data = draw.plan.data.call(function.name, function.arguments)
         judged[function.name, function.refusal(data)] += 1
         lines.append(f"{2 + number * 0.005:.6f} tc ground {member.apid} 8 1 15 {data.hex()}")
     for function in member.functions:

@@ -6,8 +6,9 @@ import collections, dataclasses, pathlib, struct, sys, unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "simulation" / "campaign")]
-from draw import DEVICE_FAULTS, Draw, faults_of  # noqa: E402
+from draw import Draw, faults_of  # noqa: E402
 from of_mission import NOTHING_SAID, OfMission  # noqa: E402
+from plan_lines import DEVICE_FAULTS  # noqa: E402
 from descriptors import OPERATIONAL, read_mission  # noqa: E402
 
 # Every mission that lies in a folder of its own and that the judge's own reader takes.
@@ -17,10 +18,10 @@ MISSIONS = sorted(file.parent for place in PLACES for file in ROOT.glob(f"{place
 
 def driven(draw, mode):
     """What ground says to bring the craft up in a mode: {function: [data behind its name]}, by the subsystem in front of CONFIGURE."""
-    draw.lines.clear()
-    draw.drive(1.0, OPERATIONAL, mode)
+    draw.plan.lines.clear()
+    draw.plan.drive(1.0, OPERATIONAL, mode)
     said = collections.defaultdict(list)
-    for _, line in draw.lines:
+    for _, line in draw.plan.lines:
         words, _, remark = line.partition("  # ")
         subsystem, function = remark.split()
         said[f"{subsystem} {function}" if function == "CONFIGURE" else function].append(bytes.fromhex(words.split()[6])[16:])
@@ -45,7 +46,7 @@ class Drawn(unittest.TestCase):
             draw = Draw(mission, 1, 0)
             for mode in OfMission.of(mission).flown:
                 said = driven(draw, mode)
-                for member in draw.acting:
+                for member in draw.plan.acting:
                     ids = arguments(said[f"{member.name} CONFIGURE"])
                     if not member.configurations:
                         continue

@@ -332,9 +332,9 @@ DEFECTS = [
            "robot_device_test", "RobotDevice.SpeaksTheByteOrderOfItsEndnode"),
 
     # A pressed finger crept for the step's sake.
-    Defect("creeping finger", "simulation/world/two_joint_arm.cpp", "const int pieces = pieces_of(x, h);",
+    Defect("creeping finger", "simulation/devices/robot/world/two_joint_arm.cpp", "const int pieces = pieces_of(x, h);",
            "const int pieces = std::min(pieces_of(x, h), PLANTED ? 1 : 1'000'000);",
-           "simulation_world_test", "TwoJointArm.AFingerThatSticksDoesNotCreepForTheStepSizesSakeHoweverHardItPresses"),
+           "robot_world_test", "TwoJointArm.AFingerThatSticksDoesNotCreepForTheStepSizesSakeHoweverHardItPresses"),
 
     # --- ground link, log, descriptors -----------------------------------------------------------------------------------
     # A packet cut off by the end of its stream was in no counter.

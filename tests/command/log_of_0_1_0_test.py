@@ -66,13 +66,13 @@ class LogOf010(unittest.TestCase):
         self.assertIn("TM[5,1] COMMUNICATION info 204", words)
 
     def test_the_database_is_read_record_by_record(self):
-        self.judge("hello.db", "hello.sqlite", of_database(HERE / "log_of_0_1_0" / "hello.sqlite"), 112)
+        self.judge("hello.db", "database.sqlite", of_database(HERE / "log_of_0_1_0" / "database.sqlite"), 112)
 
     def test_the_text_is_read_record_by_record(self):
-        self.judge("hello.log", "hello.txt", of_text(HERE / "log_of_0_1_0" / "hello.txt"), 114)
+        self.judge("hello.log", "lines.txt", of_text(HERE / "log_of_0_1_0" / "lines.txt"), 114)
 
     def test_what_is_asked_for_is_found(self):
-        pings = self.read("hello.db", "hello.sqlite", "--apid", "7", "--service", "17")
+        pings = self.read("hello.db", "database.sqlite", "--apid", "7", "--service", "17")
         self.assertEqual([line["kind"] for line in pings], ["telecommand-forwarded", "telecommand-received", "telemetry"])
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""RO8 and RO9 once each on the real processes; figures are judged in simulation (tests/figures), the way is judged here."""
+"""RO8 and RO9 once each on the real processes; figures are judged in simulation (missions/rokviss/tests), the way is judged here."""
 import time
 import unittest
 

@@ -23,22 +23,19 @@ import threading
 import time
 
 import flight
-import floods
 import pages
 import punctual
-import said_again
+from demands import BACK_S, Demands, Unready, Violation, expect
 
 SPINNABLE = {"hirosco-joystick": "hirosco-spinnable-joystick", "hirosco-manipulator": "hirosco-spinnable-manipulator"}
 RESTARTS = {"60": "1"}              # three deaths in a minute are many for a mission, few for a campaign
 ROBOT, JOYSTICK, GROUND = "hirosco-spinnable-manipulator", "hirosco-spinnable-joystick", "hirosco-telepresence-relay"
-# What the supervisor may take to answer, and what `hirosco tc` itself takes to start on a busy computer.
-ANSWER_S, TOOL_S = 0.2, 0.3
 CYCLE_S = 0.0005
 # How long a cycle may stand still until it hangs (20 looks of the guard, 10 ms apart, and the one that it moved in), until the
 # others cycle again once it has lost its priority, and what the watch's own grid adds. The robot does not wait for that: it
 # obeys nobody once its watchdog has run out.
 HANG_S, AGAIN_S, GRID_S, WATCHDOG_S, LOOK_S = 0.220, 0.005, 2 * pages.PERIOD_S, 0.010, 0.010
-BACK_S, ADOPTED_S = 2.0, 1.0                    # who died is there again; another supervisor goes on with what runs
+ADOPTED_S = 1.0                                 # another supervisor goes on with what runs
 STILL_S, STILL_PACE_S = 3.0, 0.5                # of a keeper: supervisor/keeper/kept.hpp
 MODES = {"standalone": 2, "telepresence": 3}
 # What took how long, and the deadline that it was held to.
@@ -47,23 +44,11 @@ DEADLINES_S = {"the robot obeys nobody": WATCHDOG_S + LOOK_S, "network fenced": 
                "a still keeper is told of": STILL_S + STILL_PACE_S}
 
 
-class Violation(Exception):
-    pass
-
-
-class Unready(Violation):
-    """What was brought up did not stay so. Of a host that is late that is no violation: devices let go, as they must."""
-
-
-def expect(good, what, otherwise=Violation):
-    if not good:
-        raise otherwise(what)
-
-
-class Trial:
+class Trial(Demands):
     """One flight: some faults, what they must lead to, and a bring-up after each."""
 
     def __init__(self, seed, number, kind=None, times=3):
+        super().__init__()
         self.random = random.Random(f"{seed}/{number}")
         self.number = number
         kinds = [self.spinning, self.stopped, self.killed, self.unplugged, self.ground_killed, self.safe_by_signal,
@@ -71,12 +56,8 @@ class Trial:
                  self.supervisor_killed_in_a_stop, self.killed_in_a_mode_change]
         self.random.shuffle(kinds)
         self.steps = [getattr(self, kind)] * times if kind else kinds[:times]
-        self.figures = {}           # what took how long: [seconds]
         self.done = 0
-        self.host = punctual.Lateness()  # that of the flight, where one is flown
         self.turn = self.random.random() < 0.5
-        self.reach = 0.01           # of the hand, to and fro
-        self.supervisors_lost = 0
 
     def fly(self, craft):
         self.craft = craft
@@ -97,16 +78,6 @@ class Trial:
         expect(held <= self.baseline + 2, f"I7: {held} descriptors where {self.baseline} were")
         expect(craft.end() in (0, 1, 5), f"exit code, {craft.errors}")
 
-    def still_up(self):
-        """Nothing of its own may take the craft down between a bring-up and the next fault: that fault would find nobody to stop."""
-        down = [line.told for line in self.craft.told(self.up_since) if ": network {" in line.told]
-        expect(not down, f"before the next fault: {down[:1]}", Unready)
-
-    def taken(self):
-        return len(list(pathlib.Path(f"/proc/{self.craft.pid_of('hirosco-supervisor')}/fd").iterdir()))
-
-    # What happens.
-
     def victim(self):
         """Either in turn, so that as many of each are."""
         self.turn = not self.turn
@@ -114,9 +85,6 @@ class Trial:
 
     def name(self, program):
         return "MANIPULATOR" if program == ROBOT else "JOYSTICK"
-
-    def took(self, what, seconds):
-        self.figures.setdefault(what, []).append(seconds)
 
     def spinning(self):
         victim = self.victim()
@@ -157,10 +125,6 @@ class Trial:
         died = self.craft.wait_told(f"{name} died: signal 9", 4.0, self.begin)
         expect(0.9 < died.at_s - hang.at_s < 1.5, f"grace was {died.at_s - hang.at_s:.2f} s")
         self.only_died(name)
-
-    def late_s(self, watch, begin, end):
-        """Nobody was earlier than the watch could see, nor did anybody run on a processor while the host gave it to nobody."""
-        return max(watch.worst_s, self.host.stood_still_s(begin, end))
 
     def others_go_on_without_its_priority(self, watch, victim, other, _):
         expect(victim in watch.demoted, f"{victim} has kept its priority")
@@ -297,73 +261,6 @@ class Trial:
         back = self.craft.tc("supervisor", "SET_MODE", MODES["telepresence"])
         expect(back[0] == 0, f"back to telepresence: {back[1]}; {[line.told for line in self.craft.told(begin)][-3:]}")
         self.only_died(self.name(victim))
-
-    # What must hold.
-
-    def answers(self):
-        begin = time.monotonic()
-        code, reports = self.craft.tc("supervisor", "ping")
-        took = time.monotonic() - begin
-        expect(code == 0, f"I6: ping was answered {reports}")
-        late = self.host.stood_still_s(begin, begin + took)
-        expect(took < ANSWER_S + TOOL_S + late, f"I6: ping took {took:.2f} s")
-
-    def what_was_said_comes_again(self):
-        """All reports of this flight but housekeeping, as its log has them: in order, each once, and its end says so."""
-        begun = time.monotonic()
-        try:
-            came, end = said_again.all_again(20.0)
-        except (AssertionError, OSError) as problem:
-            raise Violation(f"I14: {problem}") from problem
-        self.took("what was said comes again", time.monotonic() - begun)
-        numbers = [number for number, _ in came]
-        expect(numbers == sorted(set(numbers)), "I14: what was said did not come in order, each once")
-        records = self.craft.log()
-        # A report goes to the ground before it is on the disk: of a supervisor that dies in between a gap tells, which is counted.
-        gaps = [floods.lost_in(record) for record in records if record["kind"] == "gap"]
-        expect(len(gaps) <= self.supervisors_lost, f"I14: {len(gaps)} gaps of the log where {self.supervisors_lost} supervisors died")
-        expect(end == (len(came), 0, sum(gaps), 0, ""), f"I14: {len(came)} reports came, {sum(gaps)} stand in gaps, its end tells of {end}")
-        stored = [record["number"] for record in records if record["kind"] in ("telemetry", "event") and "TM[3,25]" not in record["text"]]
-        expect(numbers, "I14: nothing of what was said came")
-        lacking = set(number for number in stored if number <= numbers[-1]) ^ set(numbers)
-        expect(not lacking, f"I14: {len(lacking)} reports stand in the log or came, and not both, the first {min(lacking, default=0)}")
-
-    def only_died(self, *victims):
-        words = [line.told.split() for line in self.craft.told(self.begin)]
-        died = {told[0] for told in words if told[1:2] == ["died:"] and told[0] != "plan"}
-        expect(died <= set(victims), f"I1: {died} died where {victims} were to")
-
-    def bring_up(self):
-        """The one bring-up of an operator; whoever died must be back within 2 s. Who is further on already refuses a step:
-        the states in the end decide."""
-        craft = self.craft
-        for line in craft.told(self.begin):
-            if line.told.split()[1:2] == ["died:"] and line.told.split()[0] != "plan":
-                back = craft.wait_told(f"started {line.told.split()[0]}", BACK_S, self.begin)
-                expect(back.at_s - line.at_s < BACK_S, f"{line.told.split()[0]} was back after 2 s only")
-                self.took("back after its death", back.at_s - line.at_s)
-        time.sleep(0.5)
-        self.up_since = craft.count()
-        craft.bring_up(self.do)
-        self.reach = -self.reach
-        craft.fault("joystick", "hand", "cartesian", 0, self.reach, 0.5)
-        pushed = 0
-        end = time.monotonic() + 1.0
-        while time.monotonic() < end and not pushed:
-            truth = craft.truth("robot")
-            pushed = abs(truth["motor_1"]) + abs(truth["motor_2"])
-        for name in ("MANIPULATOR", "JOYSTICK"):
-            expect(self.state(name) == "Operational", f"{name} is {self.state(name)} after the bring-up", Unready)
-        expect(pushed, f"the robot does not follow after the bring-up: {truth}", Unready)
-
-    def do(self, subsystem, function, *arguments):
-        code, reports = self.craft.tc(subsystem, function, *arguments)
-        expect(code == 0, f"{subsystem} {function} {arguments}: {reports}")
-
-    def state(self, name):
-        status = self.craft.wait_status(lambda s: True, 3.0)
-        return {member["name"]: member for member in status["subsystems"]}[name]["state"]
-
 
 # killed: two subsystems in turn
 KINDS = {"spinning": 1, "stopped": 1, "unplugged": 1, "killed": 2, "ground_killed": 1, "supervisor_killed": 1, "supervisor_stopped": 1}

@@ -18,9 +18,10 @@ import time
 import xml.etree.ElementTree
 
 sys.dont_write_bytecode = True
+from metronome_links import CYCLIC, ERROR, OFFLINE, OPERATIONAL, POST, PRE, SAFE  # noqa: E402
+from metronome_packets import BUSY, NOT_NOW, UNKNOWN, Refusal, bad, say  # noqa: E402
 from metronome_parts import Structure, Value, Words  # noqa: E402
-from metronome_services import (BUSY, CYCLIC, ERROR, NOT_NOW, OFFLINE, OPERATIONAL, POST, PRE, SAFE, UNKNOWN, Refusal, Services,  # noqa: E402
-                                bad, say)
+from metronome_services import Services  # noqa: E402
 
 WAYS = {(0, 3): [1, 2, 3], (3, 0): [7, 8, 9, 0], (3, 4): [4], (3, 6): [6], (3, 7): [7], (4, 0): [7, 8, 9, 0], (4, 3): [7, 3], (4, 5): [5],
         (4, 6): [6], (4, 7): [7], (5, 4): [4], (5, 6): [6], (6, 0): [7, 8, 9, 0], (6, 3): [7, 3], (6, 7): [7], (7, 0): [8, 9, 0], (7, 3): [3]}

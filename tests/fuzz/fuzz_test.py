@@ -75,7 +75,7 @@ TARGETS = {"arguments": (
      "a switch of power goes off before it is on":
          (POWER, 'if (found.off_after_ms == 0) return fail(ErrorCode::Malformed, "power frame time", 0);', "")}),
     "words": (
-    ["hirosco/data_transfer/link/internet_address.cpp", NETWORK, "hirosco/data_transfer/device/serial_line.cpp", "hirosco/parameter/exact_number.cpp", LOCK],
+    ["hirosco/data_transfer/address/internet_address.cpp", NETWORK, "hirosco/data_transfer/device/serial_line.cpp", "hirosco/parameter/exact_number.cpp", LOCK],
     {"a network may have bits behind its prefix":
          (NETWORK, "if (!made.contains(made.network))", "if (made.prefix == 0)"),
      "a flight may be of no process":

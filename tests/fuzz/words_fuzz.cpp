@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "hirosco/data_transfer/address/internet_address.hpp"
 #include "hirosco/data_transfer/device/device_network.hpp"
 #include "hirosco/data_transfer/device/serial_line.hpp"
-#include "hirosco/data_transfer/link/internet_address.hpp"
 #include "hirosco/parameter/exact_number.hpp"
 #include "supervisor/guard/safe_answer.hpp"
 #include "tests/fuzz/fuzz.hpp"

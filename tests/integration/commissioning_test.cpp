@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "hirosco/pus/st08_function/function_service.hpp"
-#include "supervisor/supervision/data_handling/permission.hpp"
+#include "supervisor/supervision/telecommand/called_function.hpp"
 #include "tests/integration/flight.hpp"
 
 namespace hirosco::testing {

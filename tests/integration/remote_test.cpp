@@ -21,7 +21,7 @@ using pus::FailureCode;
 using simulation::JoystickDevice;
 using simulation::RobotDevice;
 
-/// Of the independent loop (tests/figures/independent_loop_test.cpp), with friction and a hand that takes 3 s.
+/// Of the independent loop (missions/rokviss/tests/independent_loop_test.cpp), with friction and a hand that takes 3 s.
 constexpr double undelayed_n = 45.80;
 
 struct Remote : ::testing::Test {

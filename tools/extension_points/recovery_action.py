@@ -36,14 +36,14 @@ inline constexpr StepKind dismiss{
 }  // namespace hirosco::supervisor::steps
 """}
 EDITS = [
-    ("supervisor/supervision/procedures/step_kinds.hpp", '#include "supervisor/supervision/procedures/steps/link.hpp"\n',
+    ("supervisor/supervision/procedures/steps/step_kinds.hpp", '#include "supervisor/supervision/procedures/steps/link.hpp"\n',
      '#include "supervisor/supervision/procedures/steps/dismiss.hpp"\n#include "supervisor/supervision/procedures/steps/link.hpp"\n'),
-    ("supervisor/supervision/procedures/step_kinds.hpp", "step_kinds{", "step_kinds{&steps::dismiss, "),
+    ("supervisor/supervision/procedures/steps/step_kinds.hpp", "step_kinds{", "step_kinds{&steps::dismiss, "),
     ("hirosco/descriptor/model/plan_steps.hpp", '    StepWord{.name = "log"},\n', '    StepWord{.name = "log"},\n    StepWord{.name = "dismiss"},\n'),
 ]
 SOURCES = ["hirosco/descriptor/read/read_plans.cpp", "supervisor/supervision/event_handling/reactions.cpp"]
 TRY = """\
-#include "supervisor/supervision/procedures/step_kinds.hpp"
+#include "supervisor/supervision/procedures/steps/step_kinds.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
 namespace hirosco::supervisor {

@@ -127,6 +127,12 @@ int make_new(const NewOptions& options) {
     fmt::print(stderr, "hirosco new: there are no templates with this program: sudo apt install --reinstall hirosco\n");
     return exit_environment;
   }
+  if (carries_ground_link(from, *name)) {
+    fmt::print(stderr,
+               "hirosco new: '{}' is no name for it: what carries the ground link of its mission is called so\n",
+               options.name);
+    return exit_usage;
+  }
   const fs::path target = fs::path{options.to} / name->lower;
   NewParts parts;
   if (kind->of_urdf) {

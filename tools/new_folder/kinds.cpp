@@ -30,8 +30,8 @@ constexpr std::array kinds{
 constexpr std::string_view lower_word = "newpart", upper_word = "NEWPART", camel_word = "NewPart";
 constexpr std::size_t longest_name = 24;
 /// Other parts of every mission, and targets that a build has already.
-constexpr std::array taken{"supervisor", "communication", "ground",  "all",   "test",    "install", "clean",
-                           "help",       "package",       "hirosco", "build", "rebuild", "edit",    "codegen"};
+constexpr std::array taken{"supervisor", "ground",  "all",   "test",    "install", "clean",  "help",
+                           "package",    "hirosco", "build", "rebuild", "edit",    "codegen"};
 
 [[nodiscard]] bool is_upper(char letter) { return std::isupper(static_cast<unsigned char>(letter)) != 0; }
 [[nodiscard]] char lower(char letter) { return static_cast<char>(std::tolower(static_cast<unsigned char>(letter))); }
@@ -120,6 +120,10 @@ std::expected<NewName, std::string> new_name(const std::string& text) {
     return std::unexpected{fmt::format("'{}' is a name of the framework or of its build", name.lower)};
   std::ranges::transform(name.lower, std::back_inserter(name.upper), upper);
   return name;
+}
+
+bool carries_ground_link(const fs::path& from, const NewName& name) {
+  return read(from / "mission.xml").find("<Ground subsystem=\"" + name.upper + '"') != std::string::npos;
 }
 
 std::string without_licence(const std::string& text) {

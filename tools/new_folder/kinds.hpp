@@ -32,6 +32,9 @@ struct NewName {
 /// or by the build.
 [[nodiscard]] std::expected<NewName, std::string> new_name(const std::string& text);
 
+/// The mission of this template has a part of this name, which carries its ground link: none of one's own can have it.
+[[nodiscard]] bool carries_ground_link(const std::filesystem::path& from, const NewName& name);
+
 /// What a folder has besides its name.
 struct NewParts {
   std::map<std::string, std::string> words;  ///< by what stands for them in the template: "@joints@"

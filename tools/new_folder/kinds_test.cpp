@@ -29,8 +29,7 @@ TEST(NewName, RefusesWhatIsNoNameOrIsTaken) {
   for (const char* text : {"", "2lamps", "_lamp", "lamp_", "a__b", "a b", "../lamp", "lamp.xml", "l\xC3\xA4mp", "-x",
                            "a_name_that_is_much_too_long_for_it"})
     EXPECT_FALSE(new_name(text)) << text;
-  for (const char* text : {"supervisor", "SUPERVISOR", "Communication", "test", "all"})
-    EXPECT_FALSE(new_name(text)) << text;
+  for (const char* text : {"supervisor", "SUPERVISOR", "Ground", "test", "all"}) EXPECT_FALSE(new_name(text)) << text;
 }
 
 TEST(NewFolder, PutsTheNameInAndTheLicenceOfThisRepositoryOut) {
@@ -93,6 +92,23 @@ TEST(NewFolder, OfEachKindHasAMissionWhoseInitialModePermitsToReadADescriptorAga
     EXPECT_NE(mission.find("<Modes initial=\"commissioning\""), std::string::npos) << kind.name;
     const std::string initial = mission.substr(begin, mission.find("</Mode>", begin) - begin);
     EXPECT_NE(initial.find(" REREAD "), std::string::npos) << kind.name;
+  }
+}
+
+TEST_F(Made, NothingIsCalledAsWhatCarriesTheGroundLinkOfItsTemplate) {
+  std::ofstream{folder_ / "mission.xml"} << R"(<Ground subsystem="RADIO_LINK" telemetry="127.0.0.1:10015"/>)";
+  EXPECT_TRUE(carries_ground_link(folder_, new_name("radio-link").value()));
+  for (const char* free : {"radio", "link", "pipe"}) EXPECT_FALSE(carries_ground_link(folder_, new_name(free).value()));
+  for (const NewKind& kind : new_kinds()) {
+    const fs::path from = fs::path{HIROSCO_SOURCE_DIR} / "templates" / kind.name;
+    std::stringstream text;
+    text << std::ifstream{from / "mission.xml"}.rdbuf();
+    const std::string mission = text.str();
+    const std::string_view before = "<Ground subsystem=\"";
+    ASSERT_NE(mission.find(before), std::string::npos) << kind.name;
+    const auto begin = mission.find(before) + before.size();
+    const std::string carrier = mission.substr(begin, mission.find('"', begin) - begin);
+    EXPECT_TRUE(carries_ground_link(from, new_name(carrier).value())) << kind.name << ": " << carrier;
   }
 }
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hirosco/data_transfer/link/internet_address.hpp"
+#include "hirosco/data_transfer/address/internet_address.hpp"
 #include "hirosco/utilities/result.hpp"
 
 namespace hirosco {

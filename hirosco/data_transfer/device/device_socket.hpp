@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "hirosco/data_transfer/address/socket_address.hpp"
 #include "hirosco/data_transfer/device/flow_means.hpp"
-#include "hirosco/data_transfer/socket_address.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 
 /// What UDP and TCP have in common: where a device is, and that nothing goes beyond the network that the mission permits.

@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "hirosco/data_transfer/link/internet_address.hpp"
-#include "hirosco/data_transfer/socket_address.hpp"
+#include "hirosco/data_transfer/address/internet_address.hpp"
+#include "hirosco/data_transfer/address/socket_address.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/sandbox.hpp"
 

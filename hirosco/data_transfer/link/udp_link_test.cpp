@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-#include "hirosco/data_transfer/link/internet_address.hpp"
+#include "hirosco/data_transfer/address/internet_address.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "hirosco/data_transfer/link/internet_address.hpp"
+#include "hirosco/data_transfer/address/internet_address.hpp"
 #include "hirosco/descriptor/read/detail/mission_link_reader.hpp"
 
 /// How a mission wants a link to travel, and from where to where.

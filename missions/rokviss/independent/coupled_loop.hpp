@@ -8,7 +8,7 @@
 #include <vector>
 
 /// The coupled robot and joystick a second time, written from the mission's note alone, to judge the craft by. Shares no
-/// line and no number with simulation/world, the devices or the control laws: other coordinates (absolute angles of the
+/// line and no number with simulation/devices/robot/world, the devices or the control laws: other coordinates (absolute angles of the
 /// links), another integrator (Dormand and Prince 5(4), step sizes from its own error), no framework, no frames, no
 /// sensors with steps. What both say alike is the physics; what only one says is a mistake.
 namespace hirosco::independent {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What stands for the links of arm.urdf and joystick.urdf, and what is around them: an arm on its module on a spacecraft's top, as ROKVISS
-// was, with the rail and the springs that it works at. `kit` is what ground/web/page/scene/kit.js offers; lengths as in simulation/world.
+// was, with the rail and the springs that it works at. `kit` is what ground/web/page/scene/kit.js offers; lengths as in simulation/devices/robot/world.
 
 const elbow_m = 0.25, plane_z_m = 0.075;
 

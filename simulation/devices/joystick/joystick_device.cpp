@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "simulation/world/two_joint_arm.hpp"
+#include "simulation/devices/robot/world/two_joint_arm.hpp"
 
 namespace hirosco::simulation {
 namespace {

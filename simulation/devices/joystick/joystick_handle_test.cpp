@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "simulation/world/two_joint_arm.hpp"
+#include "simulation/devices/robot/world/two_joint_arm.hpp"
 
 namespace hirosco::simulation {
 namespace {

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "simulation/devices/robot/world/two_joint_arm.hpp"
 #include "simulation/devices/simulated_device.hpp"
 #include "simulation/world/random.hpp"
-#include "simulation/world/two_joint_arm.hpp"
 
 namespace hirosco::simulation {
 

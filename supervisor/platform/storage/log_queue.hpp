@@ -14,7 +14,7 @@
 namespace hirosco::supervisor {
 
 /// What somebody asks to be logged; the log adds number and times. Records wait here; telecommands that wait until theirs is on the
-/// disk do so in supervision/data_handling/waiting_for_disk.hpp.
+/// disk do so in supervision/telecommand/waiting_for_disk.hpp.
 struct LogEntry {
   LogKind kind{LogKind::Telemetry};
   std::uint16_t source{};

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/data_handling/origin.hpp"
 #include "supervisor/supervision/data_handling/permission.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/telecommand/origin.hpp"
 
 namespace hirosco::supervisor {
 

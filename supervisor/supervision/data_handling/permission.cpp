@@ -13,6 +13,7 @@
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
 #include "hirosco/pus/standard_services.hpp"
+#include "supervisor/supervision/telecommand/called_function.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -21,8 +22,6 @@ using descriptor::State;
 using descriptor::Thing;
 using pus::FailureCode;
 using pus::FailureNotice;
-
-constexpr std::size_t name_octets = 16;
 
 [[nodiscard]] bool listed(const std::vector<std::string>& names, std::string_view name) {
   return std::ranges::any_of(names, [&](const std::string& entry) { return entry == "*" || entry == name; });
@@ -380,19 +379,6 @@ constexpr std::array rules{is_known,          is_the_senders, spares_safety, is_
                            crosses_no_change, is_in_mode,     is_in_state};
 
 }  // namespace
-
-std::optional<CalledFunction> called_function(const pus::TelecommandView& telecommand) {
-  if (telecommand.service() != 8 || telecommand.subtype() != 1) return std::nullopt;
-  const Octets data = telecommand.application_data();
-  if (data.size() < name_octets) return std::nullopt;
-  const auto* letters = reinterpret_cast<const char*>(data.data());
-  CalledFunction call;
-  call.name = std::string_view{letters, name_octets};
-  call.name = call.name.substr(0, call.name.find('\0'));
-  // N u8, argument id u8, value u8: the shape of SET_STATE and its kin.
-  if (data.size() == name_octets + 3) call.first_argument = std::to_integer<std::uint8_t>(data[name_octets + 2]);
-  return call;
-}
 
 FailureNotice is_down() {
   FailureNotice notice{FailureCode::UnknownApid};

@@ -13,9 +13,9 @@
 #include "hirosco/descriptor/model/response_time.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/packet/packet.hpp"
-#include "supervisor/supervision/data_handling/origin.hpp"
 #include "supervisor/supervision/realtime_links/link_graph.hpp"
 #include "supervisor/supervision/resource_management/power_ledger.hpp"
+#include "supervisor/supervision/telecommand/origin.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 /// Whether a telecommand may be executed, by sender, state, mode and what its addressee needs (paper 4.3): rules in a table, and
@@ -62,12 +62,5 @@ struct Permitted {
 /// into TM[1,10], every other into TM[1,2].
 [[nodiscard]] std::expected<Permitted, pus::FailureNotice> decide(const pus::TelecommandView& telecommand,
                                                                   const Origin& origin, const Situation& situation);
-
-/// The function of TC[8,1] and its first argument, as far as they can be read; for logs and decisions.
-struct CalledFunction {
-  std::string_view name;  ///< views the telecommand
-  std::optional<std::uint8_t> first_argument;
-};
-[[nodiscard]] std::optional<CalledFunction> called_function(const pus::TelecommandView& telecommand);
 
 }  // namespace hirosco::supervisor

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "supervisor/supervision/data_handling/origin.hpp"
+#include "supervisor/supervision/telecommand/origin.hpp"
 
 /// Everything that can be asked of anybody, and where it is permitted: made by asking `decide()` (permission.hpp), so that
 /// the table is what is in force. For an engineer who reviews a mission, and for the test that compares it with the

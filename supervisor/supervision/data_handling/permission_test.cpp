@@ -479,20 +479,5 @@ TEST(Permission, APermitOfOneSubsystemOpensNoFunctionOfAnotherWhicheverComesFirs
   }
 }
 
-TEST(CalledFunction, IsReadFromTheFunctionServiceOnly) {
-  const auto packet = testing::telecommand(arm, 8, 1, testing::call_data("SET_STATE", 5));
-  const auto view = pus::TelecommandView::parse(packet).value();
-  const auto called = called_function(view);
-  ASSERT_TRUE(called);
-  EXPECT_EQ(called->name, "SET_STATE");
-  EXPECT_EQ(called->first_argument, 5);
-  const auto other = testing::telecommand(arm, 20, 1, testing::call_data("SET_STATE", 5));
-  EXPECT_FALSE(called_function(pus::TelecommandView::parse(other).value()));
-  const auto report = testing::telecommand(arm, 8, 2, testing::call_data("SET_STATE", 5));
-  EXPECT_FALSE(called_function(pus::TelecommandView::parse(report).value()));
-  const auto without = testing::telecommand(arm, 8, 1, testing::call_data("HOLD"));
-  EXPECT_FALSE(called_function(pus::TelecommandView::parse(without).value())->first_argument);
-}
-
 }  // namespace
 }  // namespace hirosco::supervisor

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "supervisor/supervision/craft.hpp"
-#include "supervisor/supervision/data_handling/origin.hpp"
 #include "supervisor/supervision/data_handling/traffic.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/telecommand/origin.hpp"
 
 namespace hirosco::supervisor {
 

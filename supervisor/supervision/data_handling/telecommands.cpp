@@ -12,6 +12,7 @@
 #include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
 #include "supervisor/supervision/data_handling/telecommand_copy.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
+#include "supervisor/supervision/telecommand/called_function.hpp"
 
 namespace hirosco::supervisor {
 namespace {

@@ -16,9 +16,9 @@
 #include "supervisor/supervision/data_handling/supervision_service.hpp"
 #include "supervisor/supervision/data_handling/traffic.hpp"
 #include "supervisor/supervision/data_handling/unanswered.hpp"
-#include "supervisor/supervision/data_handling/waiting_for_disk.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/succession/journal.hpp"
+#include "supervisor/supervision/telecommand/waiting_for_disk.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {

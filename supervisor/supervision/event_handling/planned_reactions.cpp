@@ -9,7 +9,7 @@
 #include "hirosco/descriptor/model/plan_steps.hpp"
 #include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "supervisor/supervision/event_handling/plan_rank.hpp"
-#include "supervisor/supervision/procedures/step_kinds.hpp"
+#include "supervisor/supervision/procedures/steps/step_kinds.hpp"
 
 namespace hirosco::supervisor {
 namespace {

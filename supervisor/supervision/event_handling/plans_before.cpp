@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "supervisor/supervision/procedures/step_kinds.hpp"
+#include "supervisor/supervision/procedures/steps/step_kinds.hpp"
 
 namespace hirosco::supervisor {
 

@@ -8,7 +8,7 @@
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "hirosco/pus/st05_event/event_message.hpp"
-#include "supervisor/supervision/procedures/step_kinds.hpp"
+#include "supervisor/supervision/procedures/steps/step_kinds.hpp"
 
 namespace hirosco::supervisor {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "supervisor/supervision/data_handling/reception.hpp"
-#include "supervisor/supervision/procedures/step_kinds.hpp"
+#include "supervisor/supervision/procedures/steps/step_kinds.hpp"
 
 namespace hirosco::supervisor {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/supervision/procedures/step_kinds.hpp"
+#include "supervisor/supervision/procedures/steps/step_kinds.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 #include "supervisor/supervision/testing/played_desk.hpp"
 

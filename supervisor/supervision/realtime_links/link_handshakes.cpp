@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "hirosco/data_transfer/address/internet_address.hpp"
 #include "hirosco/data_transfer/channel/channel.hpp"
-#include "hirosco/data_transfer/link/internet_address.hpp"
 
 namespace hirosco::supervisor {
 

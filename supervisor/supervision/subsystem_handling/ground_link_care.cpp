@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "hirosco/descriptor/model/plan_steps.hpp"
-#include "supervisor/supervision/modes/mode_plan.hpp"
+#include "supervisor/supervision/procedures/steps/way_there.hpp"
 
 namespace hirosco::supervisor {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "supervisor/supervision/modes/mode_plan.hpp"
-#include "supervisor/supervision/procedures/step_kinds.hpp"
+#include "supervisor/supervision/procedures/steps/step_kinds.hpp"
+#include "supervisor/supervision/procedures/steps/way_there.hpp"
 
 namespace hirosco::supervisor {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "supervisor/supervision/modes/mode_plan.hpp"
+#include "supervisor/supervision/procedures/steps/way_there.hpp"
 
 namespace hirosco::supervisor {
 

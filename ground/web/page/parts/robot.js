@@ -149,7 +149,6 @@ export function Robot() {
     view.current.hand_allowed = Boolean(hand) && operator.value;
     view.current.goal_allowed = operator.value;
   }
-  slow.value;
   const from = description?.camera, movable = description?.robots.find((one) => one.goal);
   const goal_typed = Boolean(typed.value?.numbers) && description?.robots.some((one) => one.goal?.function === typed.value.action && one.subsystem === typed.value.subsystem);
   const goal_sent = commands.value.some((one) => description?.robots.some((robot) => robot.goal?.function === one.function && robot.subsystem === one.subsystem) && !['completed', 'failed'].includes(outcome_of(one).stage));

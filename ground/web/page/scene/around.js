@@ -14,8 +14,53 @@ import {hider_of} from './plain.js';
 import {lights, mirrored_cube, sky} from './sky.js';
 import {module_of, module_places, usual_surroundings} from './usual.js';
 
-/// The steps in which it is made, one for each moment that is free.
-export function surroundings_in_steps(view) {
+/// It is made once so many of the robot's poses were drawn, or after as long.
+const first_poses = 7, patience_ms = 1500;
+
+/// The robot moves first; what is around it takes a second to make without a graphics card.
+export class Surroundings {
+  #timer = null;
+
+  /// `card_code()`: what draws by a graphics card, and what stands still where there is none.
+  constructor(view, card_code) {
+    Object.assign(this, {view, card_code});
+  }
+
+  begin() {
+    if (this.view.software) this.#timer = setTimeout(() => this.#make(), patience_ms);
+    else this.#make();
+  }
+
+  /// So many poses of the robot, until now.
+  drawn(poses) {
+    if (this.#timer && poses >= first_poses) this.#make();
+  }
+
+  #make() {
+    const {view} = this;
+    clearTimeout(this.#timer);
+    this.#timer = null;
+    if (!view.still?.renderer && view.context) return this.card_code().then((card) => {
+      if (view.closed) return;
+      view.renderer = view.still.renderer = card.unseen_renderer(view.context);
+      view.renderer.setSize(view.size.x, view.size.y, false);
+      this.#make();
+    });
+    const later = globalThis.requestIdleCallback ?? ((then) => setTimeout(then, 50));
+    const steps = in_steps(view);
+    const next = () => {
+      if (view.closed) return;
+      steps.shift()();
+      view.draw_soon();
+      if (steps.length) later(next, {timeout: 300});
+      else view.nodes.stage.dataset.surroundings = 'yes';
+    };
+    later(next, {timeout: 500});
+  }
+}
+
+/// One for each moment that is free.
+function in_steps(view) {
   const {software, far, scale, description, own} = view, light_at = new Vector3().fromArray(description.camera.to_m);
   return [
     ...(software ? [() => view.finish()] : []),

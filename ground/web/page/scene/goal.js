@@ -4,12 +4,13 @@
 // Where a motion that is typed, or sent and not ended, would lead: the robot's ghost at its goal, the path of its tip, red where it cannot be.
 import {Group, Mesh, MeshBasicMaterial, SphereGeometry} from 'three';
 import {fixed_text} from '../format.js';
-import {outcome_of} from '../store.js';
+import {commands, outcome_of} from '../store.js';
 import {surface_x_m} from '../parts/hand.js';
 import {led_value} from '../parts/numbers.js';
 import {colours, GoalPath} from './instruments.js';
 import {Phantom} from './robot_model.js';
 import {ghost_skin, make_ghost} from './skins.js';
+import {goal_says, typed} from '../parts/typed.js';
 
 const points = 48;
 /// The smooth path of on-board motions: a polynomial of the fifth degree.
@@ -20,7 +21,7 @@ const there_s = 0.02;
 
 /// The goal that is to be shown: {angles: {joint: angle}, duration_s, speed, by_speed, sent}; null when none is. Where a speed is said, a share of
 /// what each joint may, nobody has said how long it takes: `by_speed`.
-export function goal_of(about, typed, commands) {
+function goal_of(about, typed, commands) {
   if (!about.goal) return null;
   const read = (values, sent) => {
     const angles = Object.fromEntries(Object.entries(about.goal.joints).map(([joint, argument]) => [joint, led_value(values, argument)]));
@@ -101,4 +102,20 @@ export class Goal {
     if (this.contour && tip.y > this.contour.from_y_m && tip.y < this.contour.to_y_m && tip.x > surface_x_m(this.contour, tip.y) - this.contour.finger_radius_m + 1e-3) return 'meets the rail';
     return this.wrong_at?.(tip) ?? '';
   }
+}
+
+/// The goal of a robot as it is typed or sent now, in the scene of `view`; what is wrong with it is told to its form.
+export function show_goal(robot, view) {
+  const wanted = view.show.goal ? goal_of(robot.about, typed.value, commands.value) : null;
+  if (!wanted && !robot.goal) return;
+  if (!robot.goal) {
+    robot.goal = robot.make_goal();
+    view.scene.add(robot.goal.group);
+  }
+  robot.goal.may_be_led = view.may_set_goal();
+  robot.goal_told = robot.goal.show(wanted, view.camera);
+  robot.goal_wanted = wanted;
+  const wrong = wanted && !wanted.sent ? robot.goal_told?.wrong ?? '' : '';
+  const {subsystem, goal} = robot.about, before = goal_says.peek();
+  if (before?.subsystem !== subsystem || before.action !== goal.function || before.wrong !== wrong) goal_says.value = {subsystem, action: goal.function, wrong};
 }

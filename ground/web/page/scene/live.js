@@ -29,6 +29,14 @@ function lit(c, at, colour_r, colour_g, colour_b, gloss, nx, ny, nz, shine) {
   c[at + 2] = shade(-0.00327 * p - 0.07276 * q + 1.07602 * s);
 }
 
+/// What one draws into, in `stage` where there is one.
+export function live_canvas(stage) {
+  const canvas = document.createElement('canvas');
+  canvas.className = 'live';
+  stage?.append(canvas);
+  return canvas;
+}
+
 export class LivePicture {
   #raster = new Raster();
   #canvas;

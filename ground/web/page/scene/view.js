@@ -5,22 +5,22 @@
 // card all of it at each frame; a processor that draws by itself draws what moves (live.js) before a picture of what stands still, which is drawn
 // once for a camera. It is made once: a view that is left leaves it behind, and finds it as it was. A chunk of its own: three.js is loaded by
 // the views that show it. Realtime: none.
-import {Color, PerspectiveCamera, Scene, Vector2, Vector3} from 'three';
-import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import {Color, Scene, Vector2, Vector3} from 'three';
 import {clock_text, iso_text} from '../format.js';
 import {mission_code, mission_text} from '../mission_files.js';
-import {columns, commands, mission, now_s, replay, values, with_picture} from '../store.js';
-import {surroundings_in_steps} from './around.js';
+import {columns, mission, now_s, replay, values, with_picture} from '../store.js';
+import {Surroundings} from './around.js';
 import {Contact} from './contact.js';
-import {Goal, goal_of} from './goal.js';
+import {Goal, show_goal} from './goal.js';
 import {Grips} from './grips.js';
-import {Arrow, colours} from './instruments.js';
+import {Inset} from './inset.js';
 import {Kit, merged} from './kit.js';
-import {LivePicture} from './live.js';
+import {LivePicture, live_canvas} from './live.js';
 import {Pace} from './pace.js';
 import {Picker} from './pick.js';
 import {Readout} from './readout.js';
 import {RobotModel} from './robot_model.js';
+import {Sight} from './sight.js';
 import {cast_on_plane} from './skins.js';
 import {snapshot_of} from './snapshot.js';
 import {lights, sun_from} from './sky.js';
@@ -31,12 +31,10 @@ import {surface_x_m} from '../parts/hand.js';
 import {plots_address, plots_of_link} from '../parts/joint_plots.js';
 import {open} from '../parts/opening.js';
 import {save} from '../parts/save.js';
-import {goal_says, typed} from '../parts/typed.js';
+import {goal_says} from '../parts/typed.js';
 
 const still_after_ms = 250, resized_after_ms = 200;
-/// What is around the robot waits until it was seen to move, or for as long.
-const first_poses = 7, patience_ms = 1500;
-/// And what is beside it until so many of its poses were drawn, or it has stood there for as long.
+/// What is beside the robot waits until so many of its poses were drawn, or it has stood there for as long.
 const seen_poses = 5, unmoved_ms = 400;
 
 /// A context of WebGL, or null where the browser has none, and whether a processor draws it by itself.
@@ -46,13 +44,6 @@ function probe() {
   return [context, !context || /swiftshader|llvmpipe|software/i.test(name)];
 }
 const card_code = () => import('./card.js');
-
-function live_canvas(stage) {
-  const canvas = document.createElement('canvas');
-  canvas.className = 'live';
-  stage?.append(canvas);
-  return canvas;
-}
 
 export class RobotView {
   /// `nodes`: {stage, still, tags, leads, cube}: where it draws, the canvas behind, what lies above; `window`, where the inset is, comes with each view.
@@ -69,28 +60,23 @@ export class RobotView {
     this.far = this.software ? new Scene() : this.scene;
     if (!this.software) this.scene.background = new Color(0x04060a);
     this.still = this.software && this.context ? new StillPicture(this.far, nodes.still) : null;
-    const {camera} = description;
-    this.scale = new Vector3().fromArray(camera.from_m).distanceTo(new Vector3().fromArray(camera.to_m));
+    this.sight = new Sight(description.camera);
+    Object.assign(this, {scale: this.sight.scale, camera: this.sight.camera});
     // Lines are as thick as seen from a metre away.
     this.thick = this.scale > 0.75 ? Math.max(1, Math.round(this.scale)) : this.scale;
-    this.camera = new PerspectiveCamera(camera.fov_deg ?? 34, 1, 0.05 * this.scale, 900 * this.scale);
-    this.camera.up.set(0, 0, 1);
-    this.camera.position.fromArray(camera.from_m);
     this.size = new Vector2();
     this.pace = new Pace((now_ms) => this.draw(now_ms), this.software);
     // Until it is entered.
     this.pace.close();
+    this.surroundings = new Surroundings(this, card_code);
     this.readout = new Readout(this, () => this.draw_soon());
-    this.make_inset();
-    const target = new Vector3().fromArray(camera.to_m);
+    this.inset = description.inset ? new Inset(description.inset, this.software) : null;
+    const target = new Vector3().fromArray(description.camera.to_m);
     this.scene.add(...lights({target, reach_m: 0.62 * this.scale, shadow: !this.software}));
     this.contact = new Contact(this.scene, description, this.thick);
-    this.controls = new OrbitControls(this.camera, this.canvas);
-    this.controls.target.fromArray(camera.to_m);
-    Object.assign(this.controls, {maxDistance: 4 * this.scale, minDistance: 0.15 * this.scale, maxPolarAngle: Math.PI / 2 - 0.02, zoomToCursor: true});
-    this.controls.addEventListener('change', () => this.camera_moved());
-    this.controls.update();
-    this.cube = new ViewCube(nodes.cube, (direction) => this.look_from(direction), () => this.view_from(camera.from_m));
+    this.sight.be_led_on(this.canvas, () => this.camera_moved());
+    this.controls = this.sight.controls;
+    this.cube = new ViewCube(nodes.cube, (direction) => this.look_from(direction), () => this.view_from(description.camera.from_m));
     this.grips = new Grips(this);
     this.picker = new Picker(this, (robot, link) => {
       const groups = plots_of_link(link, {about: robot.about, links: robot.body.links}, columns.value);
@@ -99,19 +85,6 @@ export class RobotView {
     this.observer = new ResizeObserver(() => this.resize());
     this.observer.observe(nodes.stage);
     this.values = values;
-  }
-
-  make_inset() {
-    const {inset} = this.description;
-    if (!inset) return;
-    this.inset = {scene: new Scene(), camera: new PerspectiveCamera(28, 1, 0.02, 5), box: {left: 0, top: 0, width: 0, height: 0}};
-    this.inset.camera.up.set(0, 0, 1);
-    this.inset.camera.position.fromArray(inset.from_m);
-    this.inset.camera.lookAt(...inset.to_m);
-    if (this.software) this.inset.live = new LivePicture(this.inset.canvas = live_canvas(null));
-    this.inset.scene.add(...lights({target: new Vector3(), reach_m: 0.3, shadow: false}));
-    this.felt = new Arrow(colours.felt, 0.0036);
-    this.inset.scene.add(this.felt.group);
   }
 
   async load() {
@@ -141,8 +114,7 @@ export class RobotView {
     this.update();
     this.pace.anew();
     setTimeout(open, unmoved_ms);
-    if (this.software) this.surroundings_timer = setTimeout(() => this.add_surroundings_later(), patience_ms);
-    else this.add_surroundings_later();
+    this.surroundings.begin();
   }
 
   take_card({renderer, mirror}) {
@@ -163,47 +135,16 @@ export class RobotView {
     this.finished = true;
   }
 
-  /// The robot moves first; what is around it takes a second to make without a graphics card.
-  add_surroundings_later() {
-    clearTimeout(this.surroundings_timer);
-    this.surroundings_timer = null;
-    if (!this.still?.renderer && this.context) return card_code().then((card) => {
-      if (this.closed) return;
-      this.renderer = this.still.renderer = card.unseen_renderer(this.context);
-      this.renderer.setSize(this.size.x, this.size.y, false);
-      this.add_surroundings_later();
-    });
-    const later = globalThis.requestIdleCallback ?? ((then) => setTimeout(then, 50));
-    const steps = surroundings_in_steps(this);
-    const next = () => {
-      if (this.closed) return;
-      steps.shift()();
-      this.draw_soon();
-      if (steps.length) later(next, {timeout: 300});
-      else this.nodes.stage.dataset.surroundings = 'yes';
-    };
-    later(next, {timeout: 500});
-  }
-
   resize() {
     const {clientWidth: width, clientHeight: height} = this.nodes.stage;
     if (!width || !height) return;
-    const {width: wide_before, height: tall_before} = this.inset?.box ?? {}, same = this.size.x === width && this.size.y === height;
+    const same = this.size.x === width && this.size.y === height;
     this.size.set(width, height);
     if (!same) this.renderer?.setSize(width, height, false);
-    const fov = this.description.camera.fov_deg ?? 34;
-    this.camera.aspect = width / height;
-    // The robot keeps its size in a narrow panel.
-    this.camera.fov = this.camera.aspect < 1.4 ? fov * 1.4 / this.camera.aspect : fov;
-    this.camera.updateProjectionMatrix();
-    if (this.inset && this.window) {
-      const stage = this.nodes.stage.getBoundingClientRect(), box = this.window.getBoundingClientRect();
-      this.inset.box = {left: box.left - stage.left, top: box.top - stage.top, width: box.width, height: box.height};
-      this.inset.camera.aspect = box.width / Math.max(1, box.height);
-      this.inset.camera.updateProjectionMatrix();
-    }
+    this.sight.fit(width / height);
+    const inset_same = !this.inset || !this.window || this.inset.lay(this.nodes.stage, this.window);
     // Back in its place: what stands still does so in its picture, too.
-    if (same && this.inset?.box.width === wide_before && this.inset?.box.height === tall_before) return this.draw_soon();
+    if (same && inset_same) return this.draw_soon();
     // The picture of before is stretched meanwhile: a window that is dragged has many sizes.
     if (!this.still?.whole) return this.camera_moved(true);
     this.still.hold();
@@ -245,26 +186,8 @@ export class RobotView {
     this.draw_soon();
   }
 
-  follow_goal(robot) {
-    const wanted = this.show.goal ? goal_of(robot.about, typed.value, commands.value) : null;
-    if (!wanted && !robot.goal) return;
-    if (!robot.goal) {
-      robot.goal = robot.make_goal();
-      this.scene.add(robot.goal.group);
-    }
-    robot.goal.may_be_led = this.may_set_goal();
-    robot.goal_told = robot.goal.show(wanted, this.camera);
-    robot.goal_wanted = wanted;
-    const wrong = wanted && !wanted.sent ? robot.goal_told?.wrong ?? '' : '';
-    const {subsystem, goal} = robot.about, before = goal_says.peek();
-    if (before?.subsystem !== subsystem || before.action !== goal.function || before.wrong !== wrong) goal_says.value = {subsystem, action: goal.function, wrong};
-  }
-
   follow_stick(robot) {
-    if (!this.felt || !robot.about.torque) return;
-    const [x, y] = robot.about.torque.map((name) => values.get(name)?.v ?? 0), size = Math.hypot(x, y);
-    this.felt.group.visible = this.show.force && size > 0.004;
-    if (this.felt.group.visible) this.felt.point(new Vector3(0, 0, 0.19), new Vector3(x / size, y / size, 0), Math.min(0.1, 0.03 + 0.5 * size));
+    if (robot.about.torque) this.inset?.feel(robot.about.torque.map((name) => values.get(name)?.v ?? 0), this.show.force);
   }
 
   /// Nothing is drawn before there is something.
@@ -281,7 +204,7 @@ export class RobotView {
       if (robot.frame) robot.frame.visible = this.show.frames || !robot.about.inset && limits;
       if (!robot.tip || !robot.body.visible) { this.follow_stick(robot); continue; }
       this.contact.follow(robot, posed, this.camera, this.show);
-      if (robot.make_goal) this.follow_goal(robot);
+      if (robot.make_goal) show_goal(robot, this);
     }
     this.grips.stretch();
     this.cube.follow(this.camera);
@@ -297,7 +220,7 @@ export class RobotView {
     const moving = this.robots.some((robot) => robot.motion.moving());
     if (moved) ++this.poses;
     if (this.poses >= seen_poses) open();
-    if (this.surroundings_timer && this.poses >= first_poses) this.add_surroundings_later();
+    this.surroundings.drawn(this.poses);
     return {unfinished, moving};
   }
 
@@ -306,7 +229,7 @@ export class RobotView {
     const {renderer, inset, live} = this, {x: width, y: height} = this.size;
     if (live) {
       live.draw(this.scene, this.camera, width, height, {leads});
-      if (inset?.box.width) inset.live.draw(inset.scene, inset.camera, Math.round(inset.box.width), Math.round(inset.box.height));
+      inset?.draw();
       return;
     }
     if (!renderer) return;
@@ -315,22 +238,13 @@ export class RobotView {
     renderer.setClearColor(0, 1);
     renderer.clear();
     renderer.render(this.scene, this.camera);
-    if (!inset || !inset.box.width) return;
-    const {left, top, width: wide, height: tall} = inset.box, bottom = height - top - tall;
-    renderer.setScissorTest(true);
-    renderer.setScissor(left, bottom, wide, tall);
-    renderer.setViewport(left, bottom, wide, tall);
-    renderer.setClearColor(0x14171b, 1);
-    renderer.clear();
-    renderer.render(inset.scene, inset.camera);
-    renderer.setScissorTest(false);
+    inset?.draw(renderer, height);
   }
 
   is_in_inset(event) {
     if (!this.inset) return false;
-    const stage = this.canvas.getBoundingClientRect(), {left, top, width, height} = this.inset.box;
-    const x = event.clientX - stage.left - left, y = event.clientY - stage.top - top;
-    return x >= 0 && y >= 0 && x <= width && y <= height;
+    const stage = this.canvas.getBoundingClientRect();
+    return this.inset.has(event.clientX - stage.left, event.clientY - stage.top);
   }
 
   /// Where a pointer is in the picture of one camera: [x, y, camera], both from -1 to 1.
@@ -351,24 +265,22 @@ export class RobotView {
   }
 
   /// From above, x to the right; or from where the mission looks.
-  view_from(from_m, to_m = this.description.camera.to_m) {
-    this.camera.position.fromArray(from_m);
-    this.controls.target.fromArray(to_m);
-    // Straight above, the azimuth of before would turn the picture.
-    if (Math.hypot(from_m[0] - to_m[0], from_m[1] - to_m[1]) < 0.05 * this.scale) this.camera.position.set(to_m[0], to_m[1] - 1e-3, from_m[2]);
-    this.controls.update();
+  view_from(from_m) {
+    this.sight.from(from_m);
     this.camera_moved(true);
   }
 
   /// From the side where `direction`, a unit vector, points, as far away as before.
   look_from(direction) {
-    const {target} = this.controls, far = this.camera.position.distanceTo(target);
-    this.view_from(new Vector3().fromArray(direction).multiplyScalar(far).add(target).toArray(), target.toArray());
+    this.sight.along(direction);
+    this.camera_moved(true);
   }
 
   view_tip() {
-    const robot = this.robots.find((one) => one.tip), from = this.description.camera.tip_from_m;
-    if (robot?.body.visible && from) this.view_from(new Vector3().fromArray(from).sub(new Vector3().fromArray(this.description.camera.to_m)).add(robot.tip).toArray(), robot.tip.toArray());
+    const robot = this.robots.find((one) => one.tip);
+    if (!robot?.body.visible || !this.description.camera.tip_from_m) return;
+    this.sight.near(robot.tip);
+    this.camera_moved(true);
   }
 
   /// Stands in the place of a view, whose picture of the hand is in `window`.

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "hirosco/data_transfer/link/internet_address.hpp"
+#include "hirosco/data_transfer/address/internet_address.hpp"
 #include "hirosco/descriptor/read/detail/mission_draft.hpp"
 
 namespace hirosco::descriptor::detail {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
-#include "supervisor/supervision/data_handling/permission.hpp"
+#include "supervisor/supervision/telecommand/called_function.hpp"
 
 namespace hirosco::supervisor {
 

@@ -6,9 +6,9 @@
 #include <memory>
 
 #include "hirosco/descriptor/model/plan_steps.hpp"
-#include "supervisor/supervision/modes/mode_plan.hpp"
 #include "supervisor/supervision/procedures/procedure_runner.hpp"
-#include "supervisor/supervision/procedures/step_kinds.hpp"
+#include "supervisor/supervision/procedures/steps/step_kinds.hpp"
+#include "supervisor/supervision/procedures/steps/way_there.hpp"
 
 namespace hirosco::supervisor::steps::task {
 namespace {
