@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "ground/commands/foreign_command.hpp"
+#include "ground/commands/question_source.hpp"
 #include "ground/model/json.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
@@ -25,12 +26,6 @@ constexpr std::size_t most_open = 10'000;
 
 constexpr std::uint16_t asked_apid(std::uint32_t request_id) {
   return static_cast<std::uint16_t>(request_id >> 16 & 0x7FF);
-}
-
-/// Of another station, for what was said before, while one is being answered: no telecommand of anybody, and asked again by itself.
-bool is_question_refused(const Verdict& verdict) {
-  return verdict.last && asked_apid(verdict.request_id) == pus::supervisor_apid &&
-         verdict.code == static_cast<int>(pus::FailureCode::Busy);
 }
 
 [[nodiscard]] std::string hex_of(Octets octets) {
@@ -126,7 +121,7 @@ void Commands::preview(const json& body, std::function<void(Answered<json>)> don
 
 std::optional<std::uint32_t> Commands::ask(std::uint8_t subtype, Octets data) {
   const auto query = make_telecommand({parts_.catalogue.mission().supervisor.id, pus::st129::service_type, subtype, 0},
-                                      parts_.source, next_count(), data);
+                                      question_source(parts_.source), next_count(), data);
   if (!parts_.connected() || !query || !parts_.send(*query, Way::InTurn)) return std::nullopt;
   return pus::read_primary_header(*query)->request_id;
 }
@@ -166,9 +161,10 @@ void Commands::take_verdict(const Verdict& verdict, OnboardTime t) {
   const auto key = std::pair{verdict.destination, verdict.request_id};
   auto found = open_.find(key);
   if (found == open_.end()) {
-    // The supervisor's own are its business; of ours that have ended, nothing more is wanted.
-    if (verdict.destination == pus::supervisor_apid || verdict.destination == parts_.source) return;
-    if (is_question_refused(verdict)) return;
+    // The supervisor's own are its business; of ours that have ended, nothing more is wanted; a question is no telecommand of anybody.
+    if (verdict.destination == pus::supervisor_apid || verdict.destination == parts_.source ||
+        is_question_source(verdict.destination))
+      return;
     if (open_.size() >= most_open) return;
     found = open_.emplace(key, add_foreign(verdict, t)).first;
   }
@@ -206,7 +202,7 @@ Commands::Open Commands::add_foreign(const Verdict& verdict, OnboardTime t) {
 }
 
 void Commands::take_answer(const PermissionAnswer& answer) {
-  if (answer.destination != parts_.source) return;
+  if (answer.destination != question_source(parts_.source)) return;
   const auto found = questions_.find(answer.request_id);
   if (found == questions_.end()) return;
   const Question question = std::move(found->second);
@@ -224,7 +220,7 @@ void Commands::take_answer(const PermissionAnswer& answer) {
 }
 
 void Commands::take_answer(const ModeAnswer& answer) {
-  if (answer.destination != parts_.source) return;
+  if (answer.destination != question_source(parts_.source)) return;
   const descriptor::Mission& mission = parts_.catalogue.mission();
   const auto mode = std::ranges::find(mission.modes, answer.preview.mode, &descriptor::Mode::id);
   json result{{"mode", mode != mission.modes.end() ? mode->name : ""},
