@@ -44,7 +44,7 @@ struct LampMission {
   LampMission() {
     fs::permissions(folder.path(), fs::perms{0755});
     const fs::path program = folder.path() / "hirosco-test-lamp";
-    std::ofstream{program} << "#!/bin/sh\nexec sleep 600\n";
+    std::ofstream{program} << "#!/bin/sh\nread nothing <&3\n";  // its channel, where nobody says anything
     fs::permissions(program, fs::perms{0755});
     std::ofstream{folder.path() / "lamp.xml"} << "<Subsystem/>";
     descriptor::MissionSubsystem lamp;
