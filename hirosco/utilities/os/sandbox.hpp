@@ -21,7 +21,7 @@ struct SandboxSockets {
 };
 
 /// How a system call is refused.
-enum class Refusal : std::uint8_t {
+enum class CallRefusal : std::uint8_t {
   Signal,  ///< SIGSYS: it is named (name_refused_calls()) and fails with EPERM, or the process is ended
   Error,   ///< it fails with EPERM: for a program that does not have it named (docs/adr/0210)
 };
@@ -35,7 +35,7 @@ struct Sandbox {
   SandboxSockets sockets{};
   bool queues{false};  ///< POSIX message queues, whosever of its user
   std::vector<std::string> listable{};  ///< folders: the names in them, and nothing of what bears them
-  Refusal refusal{Refusal::Signal};
+  CallRefusal refusal{CallRefusal::Signal};
 };
 
 /// What this computer or build cannot keep a process from, in words; empty: all of it.

@@ -195,7 +195,7 @@ void let_in(const Interpreter& interpreter, Sandbox& sandbox) {
   append(interpreter.executable, sandbox.executable);
   append(interpreter.readable, sandbox.readable);
   append(interpreter.listable, sandbox.listable);
-  sandbox.refusal = Refusal::Error;
+  sandbox.refusal = CallRefusal::Error;
 }
 
 }  // namespace hirosco::supervisor

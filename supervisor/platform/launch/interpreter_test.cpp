@@ -44,7 +44,7 @@ struct ScriptTest : ::testing::Test {
       before[variable] = text != nullptr ? std::optional<std::string>{text} : std::nullopt;
     }
     ::setenv("PATH", (at("bin").string() + ":/usr/bin:/bin").c_str(), 1);
-    ::setenv("HOME", folder.path().c_str(), 1);
+    ::setenv("HOME", fs::canonical(folder.path()).c_str(), 1);
     ::unsetenv("PYTHONPATH");
     put("bin/python3.11", elf, fs::perms::owner_all);
     fs::create_symlink("python3.11", at("bin/python3"));
@@ -173,7 +173,7 @@ TEST_F(ScriptTest, IsLetInBesideWhatItsSandboxHasAndHearsOfNoSignal) {
   EXPECT_THAT(sandbox.readable, ElementsAre("/a", "/y"));
   EXPECT_THAT(sandbox.listable, ElementsAre("/z"));
   EXPECT_THAT(sandbox.writable, ElementsAre("/c"));
-  EXPECT_EQ(sandbox.refusal, Refusal::Error);
+  EXPECT_EQ(sandbox.refusal, CallRefusal::Error);
 }
 
 /// The first in PATH that is no script; empty: there is none.

@@ -378,7 +378,7 @@ constexpr void filter_opening(Filter& made, bool queues) noexcept {
   made.add(bpf_any_of, CLONE_THREAD, 1, 0);
   made.add(bpf_answer, refused);
   made.add(bpf_answer, SECCOMP_RET_ALLOW);
-  if (sandbox.refusal == Refusal::Error) made.refuse_without_signal();
+  if (sandbox.refusal == CallRefusal::Error) made.refuse_without_signal();
   return made;
 }
 

@@ -116,7 +116,7 @@ TEST_F(SandboxTest, ReachesNoOtherProcessAndStartsNone) {
 
 TEST_F(SandboxTest, ToldSoACallThatItRefusesFailsWithoutASignalOfWhichNobodyWouldHear) {
   Sandbox sandbox;
-  sandbox.refusal = Refusal::Error;
+  sandbox.refusal = CallRefusal::Error;
   EXPECT_EQ(inside(sandbox, [] { return ::fork() < 0 && errno == EPERM ? 0 : 1; }), 0);
   EXPECT_EQ(inside(sandbox, [] { return ::socket(AF_INET, SOCK_STREAM, 0) < 0 && errno == EPERM ? 0 : 1; }), 0);
   EXPECT_EQ(inside({}, [] { return ::fork() < 0 ? 0 : 1; }), by_filter);
