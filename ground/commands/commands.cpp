@@ -28,6 +28,12 @@ constexpr std::uint16_t asked_apid(std::uint32_t request_id) {
   return static_cast<std::uint16_t>(request_id >> 16 & 0x7FF);
 }
 
+/// Of whichever station: no telecommand of anybody. Questions go to the supervisor alone; a program beyond our ranges may have such a source
+/// id, too.
+constexpr bool is_on_question(const Verdict& verdict) {
+  return is_question_source(verdict.destination) && asked_apid(verdict.request_id) == pus::supervisor_apid;
+}
+
 [[nodiscard]] std::string hex_of(Octets octets) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   std::string text;
@@ -161,9 +167,8 @@ void Commands::take_verdict(const Verdict& verdict, OnboardTime t) {
   const auto key = std::pair{verdict.destination, verdict.request_id};
   auto found = open_.find(key);
   if (found == open_.end()) {
-    // The supervisor's own are its business; of ours that have ended, nothing more is wanted; a question is no telecommand of anybody.
-    if (verdict.destination == pus::supervisor_apid || verdict.destination == parts_.source ||
-        is_question_source(verdict.destination))
+    // The supervisor's own are its business; of ours that have ended, nothing more is wanted.
+    if (verdict.destination == pus::supervisor_apid || verdict.destination == parts_.source || is_on_question(verdict))
       return;
     if (open_.size() >= most_open) return;
     found = open_.emplace(key, add_foreign(verdict, t)).first;

@@ -253,6 +253,13 @@ TEST_F(ACommander, AStationsQuestionIsNoTelecommandOfAnybodyWhateverItWasRefused
   EXPECT_THAT(told, IsEmpty());
 }
 
+TEST_F(ACommander, WhoTakesASourceIdOfQuestionsForATelecommandToASubsystemIsKnownAllTheSame) {
+  constexpr std::uint32_t to_drill = 0x180A'C006;
+  reports_on(to_drill, 0xFFFF, "failed", true, static_cast<int>(pus::FailureCode::Busy));
+  EXPECT_THAT(stages_told(), ElementsAre("failed"));
+  EXPECT_EQ(told.at(0).sender, "another ground (65535)");
+}
+
 TEST_F(ACommander, AnotherStationsTelecommandThatFoundTheSupervisorBusyIsKnownThoughTheLinkLostItsCopy) {
   constexpr std::uint32_t to_supervisor = 0x1801'C005;
   constexpr std::uint16_t station = 0x2002;
