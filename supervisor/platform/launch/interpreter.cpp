@@ -51,7 +51,7 @@ constexpr std::array module_variables{ModuleVariable{python, "PYTHONPATH"}, Modu
 [[nodiscard]] std::optional<std::string_view> started_by_env(std::string_view words) noexcept {
   std::string_view word = next_word(words);
   if (word.starts_with("-S")) word = word.size() > 2 ? word.substr(2) : next_word(words);
-  while (word.contains('=') && !word.starts_with("PATH=")) word = next_word(words);
+  while (word.contains('=') && !word.starts_with('-') && !word.starts_with("PATH=")) word = next_word(words);
   if (word.empty() || word.starts_with('-') || word.find_first_of("=\"'\\$") != std::string_view::npos)
     return std::nullopt;
   return word;
@@ -126,6 +126,8 @@ void add_installed(const fs::path& program, const fs::path& real, Interpreter& m
     add(prefix / "pyvenv.cfg", made.readable);
     add_called(stem, prefix / "share", made.readable);
   }
+  // Beside "/usr/local/lib", which every sandbox has.
+  add_called(stem, "/usr/local/share", made.readable);
   add_called(stem, "/etc", made.readable);
   if (const auto home = text_of("HOME"); !home.empty()) add_called(stem, fs::path{home} / ".local/lib", made.readable);
   for (const auto& [interpreter, variable] : module_variables)
@@ -134,20 +136,23 @@ void add_installed(const fs::path& program, const fs::path& real, Interpreter& m
         if (const auto folder = part(folders, ":"); !folder.empty()) add(whole(folder), made.readable);
 }
 
-/// Files beside it that are called as its modules are, and packages of Python. Not all that stands there: keys may, too.
+/// Files beside it that are called as its modules are, and packages of Python. Not all that stands there: keys may, too. Their folder is listed by
+/// Python alone, and by a script that has some.
 void add_beside(const fs::path& script, bool of_python, Interpreter& made) {
   std::error_code failed;
-  const fs::path folder = fs::canonical(script, failed).parent_path(), extension = script.extension();
+  const fs::path own = fs::canonical(script, failed), folder = own.parent_path(), extension = script.extension();
   if (failed) return;
   const auto is_module = [&](const fs::path& file) {
     return (!extension.empty() && file.extension() == extension) ||
            (of_python && (file.extension() == ".py" || file.extension() == ".so"));
   };
-  add(folder, made.listable);
   for (const fs::directory_entry& entry : entries_of(folder)) {
     const bool package = of_python && (entry.path().filename() == "__pycache__" ||
                                        fs::is_regular_file(entry.path() / "__init__.py", failed));
-    if (package || (is_module(entry.path()) && entry.is_regular_file(failed))) add(entry.path(), made.readable);
+    const bool another = is_module(entry.path()) && entry.path() != own && entry.is_regular_file(failed);
+    if (!package && !another) continue;
+    add(entry.path(), made.readable);
+    if (of_python) add(folder, made.listable);
   }
 }
 
@@ -155,7 +160,7 @@ void add_beside(const fs::path& script, bool of_python, Interpreter& made) {
 
 std::optional<Interpreter> interpreter_of(std::string_view begin, const fs::path& script) {
   if (!begin.starts_with(script_mark)) return std::nullopt;
-  begin.remove_prefix(script_mark.size());
+  begin = begin.substr(script_mark.size(), begin_octets - script_mark.size());
   std::string_view line = part(begin, "\n");
   Interpreter made;
   fs::path program{next_word(line)};
