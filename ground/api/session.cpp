@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ground/commands/question_source.hpp"
 #include "ground/model/json.hpp"
 #include "ground/model/views.hpp"
 
@@ -40,7 +41,7 @@ Session::Session(Parts parts)
       catch_up_{{.catalogue = parts_.catalogue,
                  .archive = parts_.archive,
                  .clock = parts_.clock,
-                 .source = parts_.source,
+                 .source = question_source(parts_.source),
                  .ask =
                      [this](const pus::st129::Retrieve& wanted) {
                        return commands_.ask(pus::st129::retrieve, pus::st129::write_retrieve(wanted));

@@ -45,7 +45,7 @@ class Session {
     Archive& archive;
     const Clock& clock;
     Surroundings outside;
-    std::uint16_t source{0x2000};  ///< of its telecommands (decision 27)
+    std::uint16_t source{0x2000};  ///< of its telecommands, 0x2000 to 0x3FFF (decision 27)
     std::uint16_t first_count{0};
   };
   explicit Session(Parts parts);

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -58,7 +59,18 @@ TEST_F(ASession, TellsWhatWasLostBetweenTwoLinks) {
   ASSERT_THAT(archive->gaps({}), SizeIs(1));
   pass(batch);
   ASSERT_FALSE(sent.empty());
-  EXPECT_EQ(pus::TelecommandView::parse(sent.back())->subtype(), pus::st129::retrieve) << "and asks the log on board";
+  const auto question = pus::TelecommandView::parse(sent.back());
+  EXPECT_EQ(question->subtype(), pus::st129::retrieve) << "and asks the log on board";
+  const auto missed = testing::torque_high(catalogue, opening + 30s);
+  std::array<std::byte, pus::max_telemetry_octets> data{};
+  hears(testing::packet_of({.apid = pus::supervisor_apid,
+                            .service = pus::st129::service_type,
+                            .subtype = pus::st129::retrieved,
+                            .destination = question->source(),
+                            .time = opening + 61s},
+                           pus::st129::write_retrieved(data, {1, missed})));
+  pass(batch);
+  EXPECT_EQ(page.last("event")["t"], 2'145'916'930) << "what comes to the source id of its question is its own";
 }
 
 TEST_F(ASession, OfAStreamThatIsNoTelemetryWantsAnotherLink) {

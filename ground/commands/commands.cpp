@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "ground/commands/foreign_command.hpp"
+#include "ground/commands/question_source.hpp"
 #include "ground/model/json.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
@@ -27,10 +28,10 @@ constexpr std::uint16_t asked_apid(std::uint32_t request_id) {
   return static_cast<std::uint16_t>(request_id >> 16 & 0x7FF);
 }
 
-/// Of another station, for what was said before, while one is being answered: no telecommand of anybody, and asked again by itself.
-bool is_question_refused(const Verdict& verdict) {
-  return verdict.last && asked_apid(verdict.request_id) == pus::supervisor_apid &&
-         verdict.code == static_cast<int>(pus::FailureCode::Busy);
+/// Of whichever station: no telecommand of anybody. Questions go to the supervisor alone; a program beyond our ranges may have such a source
+/// id, too.
+constexpr bool is_on_question(const Verdict& verdict) {
+  return is_question_source(verdict.destination) && asked_apid(verdict.request_id) == pus::supervisor_apid;
 }
 
 [[nodiscard]] std::string hex_of(Octets octets) {
@@ -126,7 +127,7 @@ void Commands::preview(const json& body, std::function<void(Answered<json>)> don
 
 std::optional<std::uint32_t> Commands::ask(std::uint8_t subtype, Octets data) {
   const auto query = make_telecommand({parts_.catalogue.mission().supervisor.id, pus::st129::service_type, subtype, 0},
-                                      parts_.source, next_count(), data);
+                                      question_source(parts_.source), next_count(), data);
   if (!parts_.connected() || !query || !parts_.send(*query, Way::InTurn)) return std::nullopt;
   return pus::read_primary_header(*query)->request_id;
 }
@@ -167,8 +168,8 @@ void Commands::take_verdict(const Verdict& verdict, OnboardTime t) {
   auto found = open_.find(key);
   if (found == open_.end()) {
     // The supervisor's own are its business; of ours that have ended, nothing more is wanted.
-    if (verdict.destination == pus::supervisor_apid || verdict.destination == parts_.source) return;
-    if (is_question_refused(verdict)) return;
+    if (verdict.destination == pus::supervisor_apid || verdict.destination == parts_.source || is_on_question(verdict))
+      return;
     if (open_.size() >= most_open) return;
     found = open_.emplace(key, add_foreign(verdict, t)).first;
   }
@@ -206,7 +207,7 @@ Commands::Open Commands::add_foreign(const Verdict& verdict, OnboardTime t) {
 }
 
 void Commands::take_answer(const PermissionAnswer& answer) {
-  if (answer.destination != parts_.source) return;
+  if (answer.destination != question_source(parts_.source)) return;
   const auto found = questions_.find(answer.request_id);
   if (found == questions_.end()) return;
   const Question question = std::move(found->second);
@@ -224,7 +225,7 @@ void Commands::take_answer(const PermissionAnswer& answer) {
 }
 
 void Commands::take_answer(const ModeAnswer& answer) {
-  if (answer.destination != parts_.source) return;
+  if (answer.destination != question_source(parts_.source)) return;
   const descriptor::Mission& mission = parts_.catalogue.mission();
   const auto mode = std::ranges::find(mission.modes, answer.preview.mode, &descriptor::Mode::id);
   json result{{"mode", mode != mission.modes.end() ? mode->name : ""},

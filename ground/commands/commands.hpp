@@ -32,7 +32,7 @@ class Commands {
     std::function<bool(Octets, Way)> send;
     /// Each stage of each command, as it is now.
     std::function<void(const StoredCommand&)> tell;
-    std::uint16_t source{};  ///< of ours
+    std::uint16_t source{};  ///< of ours; our questions have question_source() of it
     std::uint16_t first_count{};
   };
   explicit Commands(Parts parts) : parts_{std::move(parts)}, count_{parts_.first_count} {}

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "ground/commands/question_source.hpp"
 #include "ground/testing/workshop.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
 
@@ -62,14 +63,14 @@ class ACommander : public ::testing::Test {
     commands.hear(heard, clock.onboard());
   }
   /// The supervisor's answer to the question in this place; 0: it is permitted.
-  void judged(std::size_t place, std::uint16_t code, std::uint16_t destination = own) {
+  void judged(std::size_t place, std::uint16_t code, std::uint16_t destination = question_source(own)) {
     const auto asked = pus::read_primary_header(sent_as(place).application_data());
     ASSERT_TRUE(asked);
     Heard heard;
     heard.answer = PermissionAnswer{destination, asked->request_id, code == 0, code};
     commands.hear(heard, clock.onboard());
   }
-  void previewed(std::uint8_t mode, std::uint16_t destination = own) {
+  void previewed(std::uint8_t mode, std::uint16_t destination = question_source(own)) {
     Heard heard;
     heard.mode_answer = ModeAnswer{destination, {mode, {"LAMP is down"}, {{1, testing::drill_apid, "CONFIGURE RUN"}}}};
     commands.hear(heard, clock.onboard());
@@ -243,14 +244,38 @@ TEST_F(ACommander, OfAForeignTelecommandWithoutACopyTellsWhomItWentToAndWhatBeca
   EXPECT_THAT(told, SizeIs(3)) << "the supervisor's own are its business";
 }
 
-/// Each asks by itself for what was said before it came, and asks again.
-TEST_F(ACommander, AnotherStationsQuestionThatFoundTheSupervisorBusyIsNoTelecommandOfAnybody) {
-  constexpr int busy = 0x0108;
-  constexpr std::uint32_t to_supervisor = 0x1801'C005, to_drill = 0x180A'C006;
-  reports_on(to_supervisor, elsewhere, "failed", true, busy);
+/// Each asks by itself for what was said before it came, and asks again; its own are answered by themselves.
+TEST_F(ACommander, AStationsQuestionIsNoTelecommandOfAnybodyWhateverItWasRefusedFor) {
+  constexpr std::uint32_t to_supervisor = 0x1801'C005;
+  for (const std::uint16_t station : {std::uint16_t{0x2000}, std::uint16_t{0x3FFF}, own})
+    for (const auto code : {pus::FailureCode::Busy, pus::FailureCode::QueueFull, pus::FailureCode::NotPermittedNow})
+      reports_on(to_supervisor, question_source(station), "failed", true, static_cast<int>(code));
   EXPECT_THAT(told, IsEmpty());
-  reports_on(to_drill, elsewhere, "failed", true, busy);
-  EXPECT_THAT(told, SizeIs(1));
+}
+
+TEST_F(ACommander, WhoTakesASourceIdOfQuestionsForATelecommandToASubsystemIsKnownAllTheSame) {
+  constexpr std::uint32_t to_drill = 0x180A'C006;
+  reports_on(to_drill, 0xFFFF, "failed", true, static_cast<int>(pus::FailureCode::Busy));
+  EXPECT_THAT(stages_told(), ElementsAre("failed"));
+  EXPECT_EQ(told.at(0).sender, "another ground (65535)");
+}
+
+TEST_F(ACommander, AnotherStationsTelecommandThatFoundTheSupervisorBusyIsKnownThoughTheLinkLostItsCopy) {
+  constexpr std::uint32_t to_supervisor = 0x1801'C005;
+  constexpr std::uint16_t station = 0x2002;
+  reports_on(to_supervisor, station, "failed", true, static_cast<int>(pus::FailureCode::Busy));
+  EXPECT_THAT(stages_told(), ElementsAre("failed"));
+  EXPECT_EQ(told.at(0).sender, "another ground station (8194)");
+  EXPECT_EQ(told.at(0).apid, pus::supervisor_apid);
+}
+
+TEST(AQuestionsSource, IsAnotherOneThanThatOfAnybodysTelecommands) {
+  for (const std::uint32_t source : {0x0U, 0x1000U, 0x2000U, 0x3FFFU, 0x4000U, 0x7FFFU, 0x8000U, 0xBFFFU})
+    EXPECT_FALSE(is_question_source(static_cast<std::uint16_t>(source))) << source;
+  EXPECT_EQ(question_source(0x2000), 0xE000);
+  EXPECT_EQ(question_source(0x3FFF), 0xFFFF);
+  EXPECT_TRUE(is_question_source(question_source(0x2000)));
+  EXPECT_TRUE(is_question_source(question_source(0x3FFF)));
 }
 
 TEST_F(ACommander, ForgetsOneOfWhichNothingIsHeardForTenMinutes) {
@@ -270,11 +295,14 @@ TEST_F(ACommander, AsksTheSupervisorWhetherOneWouldBePermittedWithoutReportsOnTh
   EXPECT_EQ(sent_as(0).service(), 129);
   EXPECT_EQ(sent_as(0).subtype(), 1);
   EXPECT_EQ(sent_as(0).ack(), 0);
+  EXPECT_EQ(sent_as(0).source(), question_source(own));
   const auto asked = pus::TelecommandView::parse(sent_as(0).application_data());
   ASSERT_TRUE(asked) << "the whole packet is asked about";
   EXPECT_EQ(asked->apid(), testing::drill_apid);
+  EXPECT_EQ(asked->source(), own) << "as it would be sent";
   EXPECT_THAT(answers, IsEmpty());
   judged(0, 0, elsewhere);
+  judged(0, 0, own);
   EXPECT_THAT(answers, IsEmpty()) << "that was for another ground";
   judged(0, 0);
   ASSERT_THAT(answers, SizeIs(1));

@@ -23,7 +23,7 @@ class CatchUp {
     const Catalogue& catalogue;
     Archive& archive;
     const Clock& clock;
-    std::uint16_t source{};  ///< of the station's telecommands
+    std::uint16_t source{};  ///< of the station's questions
     /// TC[129,11]: its request id; empty: it certainly does not leave.
     std::function<std::optional<std::uint32_t>(const pus::st129::Retrieve&)> ask;
     /// What a packet said that was missed and is in the archive now.

@@ -19,7 +19,7 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 namespace st129 = pus::st129;
 
-constexpr std::uint16_t us = 0x2000;
+constexpr std::uint16_t us = 0xE000;
 constexpr OnboardTime midday{std::chrono::seconds{2'145'916'900}};
 
 class AStationThatMissedSomething : public ::testing::Test {

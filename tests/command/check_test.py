@@ -60,19 +60,25 @@ class Check(unittest.TestCase):
             self.assertEqual(code, 3, told)
             self.assertIn(f"no {what} hirosco-hallo", told)
 
-    def test_a_script_is_told_to_fly_in_no_sandbox_and_is_an_error_where_each_must_have_one(self):
-        script = self.folder / "hallo.py"
-        script.write_text("#!/usr/bin/env python3\n")
-        script.chmod(0o755)
+    def test_a_script_whose_interpreter_is_one_is_told_to_fly_in_no_sandbox_and_is_an_error_where_each_must_have_one(self):
+        script, shim = self.folder / "hallo.py", self.folder / "shim"
+        for file, line in ((script, f"#!{shim}\n"), (shim, "#!/bin/sh\n")):
+            file.write_text(line)
+            file.chmod(0o755)
         path = f"{self.folder}:{os.environ['PATH']}"
         mission = self.mission("hello", old='"hirosco-hello"', new='"hallo.py"')
         code, told = hirosco("check", mission, PATH=path)
         self.assertEqual(code, 0, told)
-        self.assertIn("mission.xml:10:3: warning: E0411: hallo.py of subsystem HELLO is a script: it flies in no sandbox", told)
+        self.assertIn("mission.xml:10:3: warning: E0411: hallo.py of subsystem HELLO is a script that flies in no sandbox: "
+                      "its interpreter is a script, too", told)
         mission = self.mission("hello", old='<Modes', new='<Isolation required="yes"/>\n  <Modes')
         code, told = hirosco("check", mission, PATH=path)
         self.assertEqual(code, 1, told)
-        self.assertIn('error: E0411: hallo.py of subsystem HELLO is a script, which <Isolation required="yes"/> does not let fly', told)
+        self.assertIn('error: E0411: hallo.py of subsystem HELLO is a script that <Isolation required="yes"/> does not let fly: its interpreter', told)
+        script.write_text("#!/bin/sh\n")
+        code, told = hirosco("check", mission, PATH=path)
+        self.assertEqual(code, 0, told)
+        self.assertNotIn("E0411", told)
 
     def test_a_device_is_asked_for_its_settings(self):
         mission = self.mission("rokviss", old='value="wander"', new='value="hold"')

@@ -21,6 +21,7 @@ class Rokviss(unittest.TestCase):
             with flight.Telemetry() as telemetry:
                 self.the_robot_follows_the_hand(rokviss, telemetry)
                 self.the_wall_is_felt(rokviss, telemetry)
+            self.what_it_takes_now_stands_between(rokviss)
             code = rokviss.end()
             self.assertEqual(code, 0, rokviss.errors)
             self.assertEqual(rokviss.wait_until_gone(5.0), {})
@@ -75,6 +76,19 @@ class Rokviss(unittest.TestCase):
                       for state in ("SafeOperational", "PostOperational", "HardwareDeinit", "SoftwareDeinit", "Offline")]
             self.assertEqual(places, sorted(places), after)
 
+    def what_it_takes_now_stands_between(self, rokviss):
+        told = rokviss.hirosco("resources", rokviss.mission, "--json")
+        rows = {(row["subsystem"], row["resource"]): row for row in map(json.loads, told.stdout.splitlines())}
+        for name, watts in (("MANIPULATOR", 60), ("JOYSTICK", 25)):
+            self.assertEqual({key: rows[name, "power_W"][key] for key in ("declared", "now", "high")}, dict.fromkeys(("declared", "now", "high"), watts))
+            self.assertEqual((rows[name, "processes"]["declared"], rows[name, "processes"]["now"]), (1, 1))
+            memory = rows[name, "memory_kB"]
+            self.assertGreater(memory["now"], 1000, told.stderr)
+            self.assertGreaterEqual(memory["high"], memory["now"])
+            self.assertLessEqual(rows[name, "descriptors"]["now"], rows[name, "descriptors"]["declared"])
+        craft = rows["SUPERVISOR", "power_W"]
+        self.assertEqual((craft["declared"], craft["now"]), (120, 105), "with the ground link and the supervisor itself")
+        self.assertIn("declared       now most used", rokviss.hirosco("resources", rokviss.mission).stdout.splitlines()[0])
 
     def what_it_took_stands_beside_what_it_declares(self, rokviss):
         told = rokviss.hirosco("resources", rokviss.mission, "--json")

@@ -46,17 +46,21 @@ def mission(addresses=None, age=None):
 
 @contextlib.contextmanager
 def programs(wrapped):
-    """The built programs, those of `wrapped` behind the words that they are to be started with."""
+    """The built programs, those of `wrapped` behind the words that they are to be started with. In a sandbox nobody would start another program:
+    the interpreter of these alone is a script, too, so that they fly in none (docs/adr/0210), and the others in theirs."""
     with tempfile.TemporaryDirectory(prefix="hirosco-far-", dir=flight.BINARIES) as folder:
         for program in flight.BINARIES.glob("hirosco*"):
             if program.is_file():
                 os.link(program, pathlib.Path(folder) / program.name)
+        shell = pathlib.Path(folder) / "far-shell"
+        shell.write_text('#!/bin/sh\nexec /bin/sh "$@"\n')
+        shell.chmod(0o755)
         for name, words in wrapped.items():
             far = pathlib.Path(folder) / "far" / name
             far.parent.mkdir(exist_ok=True)
             near = pathlib.Path(folder) / name
             near.rename(far)
-            near.write_text(f'#!/bin/sh\nexec {" ".join(words)} {far} "$@"\n')
+            near.write_text(f'#!{shell}\nexec {" ".join(words)} {far} "$@"\n')
             near.chmod(0o755)
         yield folder
 
@@ -123,6 +127,8 @@ class BetweenNetworks(Coupled):
                 programs({"hirosco-manipulator": cable.inside(0), "hirosco-joystick": cable.inside(1)}) as folder, \
                 flight.Flight(path, binaries=folder) as rokviss:
             rokviss.wait_commissioned()
+            open_ones = {line.told for line in rokviss.told() if "is not isolated: its" in line.told}
+            self.assertLessEqual(open_ones, {f"{name} is not isolated: its interpreter is a script, too" for name in ("MANIPULATOR", "JOYSTICK")})
             cable.treat(lost=20, doubled=20, overtaken=20)
             self.stays_coupled(rokviss, 5.0)
             self.feels(rokviss)

@@ -5,6 +5,7 @@ produces what the joystick (C++) and the lantern (C) consume."""
 import contextlib
 import os
 import pathlib
+import platform
 import select
 import signal
 import struct
@@ -108,13 +109,22 @@ class Mission(unittest.TestCase):
         self.wait(lambda: self.swings(ground), 20, f"the links are not back after {name} was killed")
         flights.measure(f"{name} brought the craft back into its mode after {time.monotonic() - killed:.1f} s")
 
+    def is_in_a_sandbox(self, flight):
+        """The script, too: by the filter of its calls that the kernel tells of (docs/adr/0210)."""
+        self.assertFalse([line.told for line in flight.told() if "METRONOME is not isolated" in line.told])
+        if platform.machine() == "x86_64" and os.environ.get("HIROSCO_SANDBOX") != "off":
+            status = pathlib.Path(f"/proc/{pid_of(flight, 'metronome.py')}/status").read_text()
+            self.assertIn("\nSeccomp:\t2\n", status)
+
     def test_a_subsystem_in_python_and_one_in_c_fly_beside_those_in_cpp(self):
         with tempfile.TemporaryDirectory(prefix="hirosco-foreign-") as place:
             folder = pathlib.Path(place)
             compiled(str(HERE / "lantern.c"), place)
-            path = f"{place}:{HERE}:{os.environ['PATH']}"
+            # This interpreter, before a script of its name that starts one: such flies in no sandbox.
+            path = f"{place}:{HERE}:{os.path.dirname(sys.executable)}:{os.environ['PATH']}"
             with Lamp(folder) as lamp, Flight(mission_in(folder), environment={"PATH": path}, folder=folder, instance=INSTANCE) as flight:
                 flight.wait_told("commissioned: mode swing", 30)
+                self.is_in_a_sandbox(flight)
                 honest.TELEMETRY_PORT = int(flight.place()["telemetry"].rpartition(":")[2])
                 ground = honest.Honest()
                 self.wait(lambda: self.swings(ground), 20, "no set arrives")

@@ -145,7 +145,8 @@ struct ResourcesOptions {
   bool all{false};  ///< of all flights that the log has, not of the newest alone
   bool json{false};
 };
-/// What each subsystem declares in <Resources> beside the most that it has taken, from the log (adr 0188). 1: of one nothing is there.
+/// What each subsystem declares in <Resources> beside the most that it has taken, from the log (adr 0188), and while it flies what it takes now, with
+/// its process and power. 1: of one nothing is there.
 int resources(const ResourcesOptions& options);
 
 struct FaultOptions {

@@ -198,7 +198,7 @@ std::expected<FoundLog, int> find_log(const char* command, const std::string& mi
   auto found = find_flight(command, mission, instance);
   if (!found) return std::unexpected{found.error()};
   auto path = found->flight ? found->flight->log : found->mission.database.path;
-  return FoundLog{std::move(found->mission), std::move(path)};
+  return FoundLog{std::move(found->mission), std::move(path), std::move(found->flight)};
 }
 
 std::expected<GroundLinkPlace, int> find_ground_link(const char* command, const Connection& connection) {

@@ -98,6 +98,7 @@ struct FoundFlight {
 struct FoundLog {
   descriptor::Mission mission;
   std::filesystem::path path;
+  std::optional<FlightEntry> flight{};  ///< the one that is in the air
 };
 [[nodiscard]] std::expected<FoundLog, int> find_log(const char* command, const std::string& mission,
                                                     const std::string& instance);

@@ -251,8 +251,10 @@ int read_and_do(int argc, char** argv) {
   log_command->add_flag("--json", log_options.json, "One JSON object a line");
 
   ResourcesOptions resources_options;
-  auto* resources_command = app.add_subcommand(
-      "resources", "What each subsystem declares in <Resources> beside the most that it took in the newest flight");
+  auto* resources_command = app.add_subcommand("resources",
+                                               "What each subsystem declares in <Resources> beside the most that it "
+                                               "took in the newest flight; while it flies what "
+                                               "it takes now, too, and its process and power");
   resources_command->add_option("mission", resources_options.mission, whose_log);
   resources_command->add_option("--mission", resources_options.mission, whose_log);
   resources_command->add_option("--instance", resources_options.instance,

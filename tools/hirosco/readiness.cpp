@@ -14,9 +14,9 @@
 #include "hirosco/utilities/os/installation.hpp"
 #include "simulation/devices/device_arguments.hpp"
 #include "simulation/spacecraft/modules.hpp"
+#include "supervisor/platform/launch/interpreter.hpp"
 #include "supervisor/platform/launch/own_users.hpp"
 #include "supervisor/platform/launch/program_image.hpp"
-#include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -190,14 +190,16 @@ std::vector<Diagnostic> unisolated(const descriptor::Mission& mission) {
   const auto grade = mission.isolation_required ? descriptor::Grade::Error : descriptor::Grade::Warning;
   for (const auto& member : mission.subsystems) {
     const auto program = find_program(member.executable);
-    if (program.empty() || !supervisor::is_script(program)) continue;
+    const auto interpreter = supervisor::interpreter_of(program);
+    if (!interpreter || interpreter->open.empty()) continue;
     found.push_back(
         {mission.file, member.at, "E0411",
-         fmt::format("{} of subsystem {} is a script{}", member.executable, member.subsystem.name,
-                     mission.isolation_required ? ", which <Isolation required=\"yes\"/> does not let fly"
-                                                : ": it flies in no sandbox"),
-         "what its interpreter needs nobody declares: files, calls and processes of others are open to it; a compiled "
-         "program has a sandbox",
+         fmt::format("{} of subsystem {} is a script {}: {}", member.executable, member.subsystem.name,
+                     mission.isolation_required ? "that <Isolation required=\"yes\"/> does not let fly"
+                                                : "that flies in no sandbox",
+                     interpreter->open),
+         "files, calls and processes of others are open to it; a first line that names the interpreter itself, as "
+         "#!/usr/bin/python3, has a sandbox",
          1, grade});
   }
   return found;

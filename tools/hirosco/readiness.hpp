@@ -24,7 +24,7 @@ enum class FlownAs : std::uint8_t {
 /// configurations and the settings that nobody reads (E0405) among them. A flight finds the same, later.
 [[nodiscard]] std::vector<descriptor::Diagnostic> unintroduced(const descriptor::Mission& mission);
 
-/// Whose program here is a script, which flies in no sandbox (E0411, docs/adr/0081): warnings, and errors where the mission wants each in one.
+/// Whose program here is a script that flies in no sandbox (E0411, docs/adr/0210): warnings, and errors where the mission wants each in one.
 [[nodiscard]] std::vector<descriptor::Diagnostic> unisolated(const descriptor::Mission& mission);
 
 /// Prints what keeps the mission from flying to standard error; true when nothing does.

@@ -58,6 +58,32 @@ TEST_F(ResourceMarksTest, AreTheHighestOfAllProcessesThatItHadOneAfterTheOther) 
   EXPECT_EQ(marks.rows(subsystem)[0].high, 12'000U);
 }
 
+TEST_F(ResourceMarksTest, WhatIsTakenNowIsWhatWasToldLastWhateverWasHeardLast) {
+  const auto now = [&](const char* attribute) -> std::optional<std::uint64_t> {
+    for (const ResourceRow& row : marks.rows(subsystem))
+      if (row.attribute == attribute) return row.now;
+    ADD_FAILURE() << attribute;
+    return {};
+  };
+  EXPECT_EQ(now("memory_kB"), std::nullopt) << "nobody has told it";
+  const OnboardTime at = OnboardTime{} + std::chrono::hours{1};
+  marks.hear(std::vector<pus::HousekeepingValue>{{"RESOURCE_STATS.MEMORY", "kB", {11'000}},
+                                                 {"RESOURCE_STATS.SHARED_MEMORY", "kB", {300}},
+                                                 {"RESOURCE_STATS.PROCESSOR", "%", {7}},
+                                                 {"RESOURCE_STATS.POOL_USED", "", {12, 0}},
+                                                 {"RESOURCE_STATS.WAITING", "", {1, 2, 3}},
+                                                 {"RESOURCE_STATS.QUEUES", "%", {25, 0, 80, 1, 0, 0}}},
+             at);
+  marks.hear(std::vector<pus::HousekeepingValue>{{"RESOURCE_STATS.MEMORY", "kB", {9'000}}}, at - 1s);
+  for (const auto& [attribute, wanted] :
+       {std::pair{"memory_kB", 11'000U}, std::pair{"shared_memory_kB", 300U}, std::pair{"processor_percent", 7U},
+        std::pair{"Pool 64", 12U}, std::pair{"waiting_events", 2U}, std::pair{"cycle_events_kB", 13U}})
+    EXPECT_EQ(now(attribute), wanted) << attribute;
+  EXPECT_EQ(now("threads"), std::nullopt);
+  marks.forget_now();
+  EXPECT_EQ(now("memory_kB"), std::nullopt);
+}
+
 TEST_F(ResourceMarksTest, OfLoopsOfServicesAreThereWhereItHasSome) {
   subsystem.service_loops.push_back({.name = "SLOW", .queue = 4});
   marks.hear(std::vector<pus::HousekeepingValue>{{"RESOURCE_STATS.QUEUES_HIGH", "%", {0, 0, 0, 0, 75, 2}}});

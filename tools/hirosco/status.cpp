@@ -4,16 +4,14 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
-#include <map>
 
-#include "hirosco/pus/st03_housekeeping/housekeeping_decoder.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 #include "tools/hirosco/instance.hpp"
 #include "tools/hirosco/json_line.hpp"
+#include "tools/hirosco/listening.hpp"
 #include "tools/terminal/columns.hpp"
 #include "tools/terminal/heard_overview.hpp"
 #include "tools/terminal/terminal.hpp"
@@ -21,37 +19,6 @@
 
 namespace hirosco::tools {
 namespace {
-
-/// Long enough for every structure of the shipped missions to come once.
-constexpr Duration listening = 1500ms;
-
-struct Listened {
-  std::map<std::uint16_t, terminal::HeardValues> values;
-  std::map<std::uint16_t, std::size_t> packets;
-};
-
-/// Until the time is over or `enough` says so. False: the link is closed.
-template <class Enough>
-[[nodiscard]] bool listen(const descriptor::Mission& mission, GroundConnection& link, Listened& listened,
-                          Enough&& enough) {
-  std::map<std::uint16_t, pus::HousekeepingDecoder> decoders;
-  for (const auto* member : mission.everybody()) decoders.emplace(member->id, pus::HousekeepingDecoder{*member});
-  const auto end = std::chrono::steady_clock::now() + listening;
-  while (std::chrono::steady_clock::now() < end && !enough()) {
-    const auto left = std::chrono::duration_cast<Duration>(end - std::chrono::steady_clock::now());
-    const auto packet = link.receive(std::max(left, Duration{0}));
-    if (!packet) return false;
-    if (!*packet) break;
-    const auto report = pus::TelemetryView::parse(**packet);
-    if (!report) continue;
-    ++listened.packets[report->apid()];
-    const auto decoder = decoders.find(report->apid());
-    if (report->service() != 3 || report->subtype() != 25 || decoder == decoders.end()) continue;
-    if (const auto values = decoder->second.decode(report->source_data()))
-      for (const auto& value : *values) listened.values[report->apid()][value.name] = value;
-  }
-  return true;
-}
 
 void print_newest_text(const descriptor::SubsystemDescriptor& subsystem, Listened& listened) {
   fmt::print("{} (APID {}): {} packets in {} s\n", subsystem.name, subsystem.id, listened.packets[subsystem.id],
@@ -135,7 +102,7 @@ int status(const StatusOptions& options) {
   Listened listened;
   const bool everything = options.all || connection.json || only != nullptr;
   const auto known = [&] { return terminal::heard_overview(mission, listened.values[mission.supervisor.id]); };
-  if (!listen(mission, *link, listened, [&] { return !everything && known(); })) {
+  if (!listen(mission, *link, listened, [&] { return !everything && known().has_value(); })) {
     fmt::print(stderr, "hirosco status: the ground link was closed\n");
     return exit_environment;
   }

@@ -20,6 +20,12 @@ struct SandboxSockets {
   friend bool operator==(const SandboxSockets&, const SandboxSockets&) = default;
 };
 
+/// How a system call is refused.
+enum class CallRefusal : std::uint8_t {
+  Signal,  ///< SIGSYS: it is named (name_refused_calls()) and fails with EPERM, or the process is ended
+  Error,   ///< it fails with EPERM: for a program that does not have it named (docs/adr/0210)
+};
+
 /// What of its computer a started process reaches (docs/adr/0081). Files and folders with all below; what is not there counts as
 /// not named.
 struct Sandbox {
@@ -28,6 +34,8 @@ struct Sandbox {
   std::vector<std::string> writable;  ///< also made and removed, and read
   SandboxSockets sockets{};
   bool queues{false};  ///< POSIX message queues, whosever of its user
+  std::vector<std::string> listable{};  ///< folders: the names in them, and nothing of what bears them
+  CallRefusal refusal{CallRefusal::Signal};
 };
 
 /// What this computer or build cannot keep a process from, in words; empty: all of it.
@@ -52,7 +60,7 @@ class PreparedSandbox {
 };
 
 /// From now on each system call that the sandbox refuses is named on standard error, at most ten times, and fails with EPERM; without this
-/// it ends the process.
+/// it ends the process, as long as it is refused by a signal.
 void name_refused_calls(const char* program) noexcept;
 
 }  // namespace hirosco

@@ -14,6 +14,7 @@
 
 #include "hirosco/descriptor/model/member_reach.hpp"
 #include "hirosco/utilities/os/own_user.hpp"
+#include "supervisor/platform/launch/interpreter.hpp"
 #include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
 namespace hirosco::supervisor {
@@ -101,6 +102,12 @@ std::string what_is_closed(const descriptor::MissionSubsystem& subsystem, std::u
   std::vector<Wish> wishes;
   for (const auto& place : sandbox.executable) wishes.push_back({"execute", place, to_execute, to_read | to_execute});
   for (const auto& place : sandbox.readable) wishes.push_back({"read", place, to_read, to_read | to_execute});
+  // Modules that it may have beside these it may do without.
+  if (const auto interpreter = interpreter_of(program)) {
+    for (const auto& place : interpreter->executable)
+      wishes.push_back({"execute", place, to_execute, to_read | to_execute});
+    for (const auto& place : interpreter->listable) wishes.push_back({"list", place, to_read, to_read | to_execute});
+  }
   // Folders of its own are made for it, or refused.
   std::error_code failed;
   for (const auto& place : sandbox.writable)

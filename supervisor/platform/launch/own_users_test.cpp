@@ -44,7 +44,8 @@ struct LampMission {
   LampMission() {
     fs::permissions(folder.path(), fs::perms{0755});
     const fs::path program = folder.path() / "hirosco-test-lamp";
-    std::ofstream{program} << "#!/bin/sh\nexec sleep 600\n";
+    // In its sandbox it starts no other program that would rest for it, and its channel lets nobody wait.
+    std::ofstream{program} << "#!/bin/sh\nkill -STOP $$\n";
     fs::permissions(program, fs::perms{0755});
     std::ofstream{folder.path() / "lamp.xml"} << "<Subsystem/>";
     descriptor::MissionSubsystem lamp;

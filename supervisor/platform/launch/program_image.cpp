@@ -80,7 +80,7 @@ Result<ProgramImage> ProgramImage::read(const std::filesystem::path& file) {
   HIROSCO_TRY_LET(const auto mapped, MappedMemory::map(image.memory_.get(), image.octets_, MapMode::ReadOnly));
   const Octets octets{mapped.octets()};
   image.digest_ = sha256(octets);
-  image.is_script_ = octets.size() > 1 && octets[0] == std::byte{'#'} && octets[1] == std::byte{'!'};
+  image.interpreter_ = interpreter_of({reinterpret_cast<const char*>(octets.data()), octets.size()}, {});
   return image;
 }
 

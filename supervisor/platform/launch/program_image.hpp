@@ -3,10 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/result.hpp"
+#include "supervisor/platform/launch/interpreter.hpp"
 
 namespace hirosco::supervisor {
 
@@ -25,15 +27,15 @@ class ProgramImage {
   /// For Process::spawn.
   [[nodiscard]] int descriptor() const noexcept { return memory_.get(); }
   [[nodiscard]] std::size_t octets() const noexcept { return octets_; }
-  /// It names an interpreter, which is a file of its own.
-  [[nodiscard]] bool is_script() const noexcept { return is_script_; }
+  /// Which is a file of its own; nothing: it is no script.
+  [[nodiscard]] const std::optional<Interpreter>& interpreter() const noexcept { return interpreter_; }
 
  private:
   std::filesystem::path file_;
   std::string digest_;
   FileDescriptor memory_;
   std::size_t octets_{0};
-  bool is_script_{false};
+  std::optional<Interpreter> interpreter_;
 };
 
 }  // namespace hirosco::supervisor

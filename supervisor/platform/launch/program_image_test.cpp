@@ -40,7 +40,7 @@ void write_program(const fs::path& file, const std::string& text) {
   ProcessStart start;
   start.executable = image.file().string();
   start.image = image.descriptor();
-  if (image.is_script()) start.inherited = {{image.descriptor(), 6}};
+  if (image.interpreter()) start.inherited = {{image.descriptor(), 6}};
   auto process = Process::spawn(start);
   if (!process) {
     ADD_FAILURE() << process.error().text << " " << process.error().value;
@@ -58,7 +58,7 @@ TEST(ProgramImageTest, HasTheDigestThatTheOperatorsToolTells) {
     ASSERT_TRUE(image) << image.error().text;
     EXPECT_EQ(image->digest(), sha256sum(file));
     EXPECT_EQ(image->octets(), fs::file_size(file));
-    EXPECT_FALSE(image->is_script());
+    EXPECT_FALSE(image->interpreter());
   }
 }
 
@@ -82,7 +82,7 @@ TEST(ProgramImageTest, OfAScriptIsReadByItsInterpreterToo) {
   write_program(file, "#!/bin/sh\nexit 7\n");
   const auto image = ProgramImage::read(file);
   ASSERT_TRUE(image) << image.error().text;
-  EXPECT_TRUE(image->is_script());
+  EXPECT_TRUE(image->interpreter());
   write_program(file, "#!/bin/sh\nexit 8\n");
   EXPECT_EQ(exit_code_of(*image), 7);
 }

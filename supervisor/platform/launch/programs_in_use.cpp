@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "hirosco/utilities/os/installation.hpp"
-#include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -31,12 +30,12 @@ Result<ProgramsInUse::Found> ProgramsInUse::find(const descriptor::MissionSubsys
   if (held_) {
     const auto image = held_->find(name_of(subsystem));
     if (!image) return fail(image.error().why);
-    return Found{(*image)->file(), (*image)->is_script(), *image};
+    return Found{(*image)->file(), (*image)->interpreter(), *image};
   }
   Found& found = files_[subsystem.executable];
   if (found.file.empty()) {
     found.file = find_program(subsystem.executable);
-    found.script = is_script(found.file);
+    found.interpreter = interpreter_of(found.file);
   }
   if (found.file.empty()) return fail(ErrorCode::NotFound, "its executable is neither beside this program nor in PATH");
   return found;

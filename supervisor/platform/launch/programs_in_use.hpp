@@ -11,6 +11,7 @@
 
 #include "hirosco/descriptor/model/mission.hpp"
 #include "supervisor/platform/launch/held_programs.hpp"
+#include "supervisor/platform/launch/interpreter.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
 
 namespace hirosco::supervisor {
@@ -21,7 +22,7 @@ class ProgramsInUse {
  public:
   struct Found {
     std::filesystem::path file;
-    bool script{false};
+    std::optional<Interpreter> interpreter{};  ///< nothing: it is no script
     const ProgramImage* image{nullptr};  ///< null: there is no manifest
   };
   /// From now on what the manifest of this mission lists, and nothing else. Reads all of it first.

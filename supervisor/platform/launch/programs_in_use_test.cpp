@@ -51,7 +51,7 @@ TEST_F(ProgramsInUseTest, WithoutAManifestItIsTheFileOfThatNameWhereItWasFoundFi
   ASSERT_TRUE(found);
   EXPECT_EQ(found->file.filename(), own().filename());
   EXPECT_EQ(found->image, nullptr);
-  EXPECT_FALSE(found->script);
+  EXPECT_FALSE(found->interpreter);
   EXPECT_FALSE(programs.refuse(lamp()));
   std::filesystem::remove(own());
   EXPECT_EQ(programs.find(lamp())->file, found->file) << "the disk is not asked again";
@@ -66,6 +66,26 @@ TEST_F(ProgramsInUseTest, WithAManifestItIsWhatWasReadBeforeTheFlight) {
   ASSERT_TRUE(found);
   ASSERT_NE(found->image, nullptr);
   EXPECT_EQ(found->image->digest(), mission.manifest->listed[0].digest);
+}
+
+TEST_F(ProgramsInUseTest, AScriptIsWhatWasReadBeforeTheFlightTooAndAnotherOneIsRefused) {
+  const auto write = [&](const char* text) {
+    std::ofstream{own()} << text;
+    std::filesystem::permissions(own(), std::filesystem::perms::owner_all);
+  };
+  std::filesystem::remove(own());
+  write("#!/bin/sh\nexit 7\n");
+  EXPECT_TRUE(programs.find(lamp())->interpreter);
+  mission.manifest->listed[0].digest = ProgramImage::read(own())->digest();
+  programs.hold_to(mission);
+  write("#!/bin/sh\nexit 8\n");
+  const auto held = found();
+  ASSERT_TRUE(held);
+  EXPECT_EQ(held->image->digest(), mission.manifest->listed[0].digest);
+  ASSERT_TRUE(held->interpreter);
+  EXPECT_TRUE(held->interpreter->listable.empty()) << "it runs from memory, where nothing stands beside it";
+  programs.hold_to(mission);
+  EXPECT_EQ(found().error().code, ErrorCode::Mismatch);
 }
 
 TEST_F(ProgramsInUseTest, BesideAFlightItIsTheSameAsSoonAsItHasBeenRead) {

@@ -3,7 +3,6 @@
 #include "supervisor/platform/launch/subsystem_sandbox.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -67,11 +66,6 @@ ProcessLimits limits_of(const descriptor::Resources& resources) noexcept {
     limits.memory_octets = *memory_kb * octets_per_kb;
   if (const auto descriptors = amount_of(resources.most, Resource::Descriptors)) limits.descriptors = *descriptors;
   return limits;
-}
-
-bool is_script(const std::filesystem::path& program) {
-  std::ifstream file{program, std::ios::binary};
-  return file.get() == '#' && file.get() == '!';
 }
 
 Sandbox sandbox_of(const descriptor::MissionSubsystem& subsystem, const std::filesystem::path& program,

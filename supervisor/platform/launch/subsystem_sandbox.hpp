@@ -33,7 +33,4 @@ namespace hirosco::supervisor {
 /// What of `wants` is not let through by `had`, in words; empty: nothing.
 [[nodiscard]] std::string shut_out(const Sandbox& had, const Sandbox& wants);
 
-/// A script reaches what its interpreter needs, which nobody says.
-[[nodiscard]] bool is_script(const std::filesystem::path& program);
-
 }  // namespace hirosco::supervisor

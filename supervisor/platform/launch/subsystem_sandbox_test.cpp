@@ -324,12 +324,6 @@ TEST(SubsystemInItsSandbox, OpensTheFramesOfItsDeviceAndNoSecondInhibitNorThoseO
   for (const FlowAddress& made : {frames, others}) remove_device_memory_folder(made.address);
 }
 
-TEST(SubsystemSandbox, KnowsAScriptByItsFirstLine) {
-  EXPECT_TRUE(is_script(HIROSCO_SOURCE_DIR "/tools/check_layers.py"));
-  EXPECT_FALSE(is_script("/proc/self/exe"));
-  EXPECT_FALSE(is_script("/no/such/program"));
-}
-
 TEST(SubsystemLimits, AreThoseOfItsDescriptor) {
   descriptor::Resources resources;
   EXPECT_FALSE(limits_of(resources).memory_octets);

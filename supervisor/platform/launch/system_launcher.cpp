@@ -148,7 +148,7 @@ std::string SystemLauncher::isolation_not_asked() const {
 
 Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsystem& subsystem) {
   HIROSCO_TRY_LET(const auto found, programs_.find(subsystem));
-  const auto& [program, script, image] = found;
+  const auto& [program, interpreter, image] = found;
   HIROSCO_TRY_LET(auto vital, make_page<VitalPage>(memory_, "hirosco-vital"));
   HIROSCO_TRY_LET(auto permit, make_page<PermitPage>(memory_, "hirosco-permit"));
   // Its counts go on where those of the process before it ended (decision 8b).
@@ -186,12 +186,14 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   }
   std::optional<PreparedSandbox> sandbox;
   if (image != nullptr) start.image = image->descriptor();
-  if (image != nullptr && script) start.inherited.push_back({image->descriptor(), script_number});
-  if (!sandbox_is_off() && !script) {
+  if (image != nullptr && interpreter) start.inherited.push_back({image->descriptor(), script_number});
+  if (!sandbox_is_off() && (!interpreter || interpreter->open.empty())) {
     // Of one that runs from memory no file is executed.
     const std::filesystem::path file = image != nullptr ? "" : program;
-    sandbox.emplace(start.user ? sandbox_of(subsystem, file, instance_, ProcessUser::ItsOwn)
-                               : make_sandbox(subsystem, file, instance_));
+    Sandbox made = start.user ? sandbox_of(subsystem, file, instance_, ProcessUser::ItsOwn)
+                              : make_sandbox(subsystem, file, instance_);
+    if (interpreter) let_in(*interpreter, made);
+    sandbox.emplace(std::move(made));
     start.sandbox = &*sandbox;
   }
   // What it writes is shown with its name, within limits. The terminal of whoever flies is not its own: by it, whoever has it stops him (docs/adr/0164).
@@ -215,8 +217,8 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   }
   LaunchedSubsystem& launched = *held;
   keep(subsystem.subsystem.name, launched, vital.first, permit.first, errors_read);
-  if (script && image != nullptr) launched.not_held = "it is a script, whose interpreter is another file";
-  if (script && !sandbox_is_off()) launched.not_isolated = "it is a script";
+  if (interpreter && image != nullptr) launched.not_held = "it is a script, whose interpreter is another file";
+  if (interpreter && !sandbox_is_off()) launched.not_isolated = interpreter->open;
   return held;
 }
 

@@ -85,7 +85,9 @@ constexpr std::uint64_t of_plain_files = LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_A
   landlock_path_beneath_attr rule{};
   rule.allowed_access = ::fstat(place, &status) == 0 && S_ISDIR(status.st_mode) ? rights : rights & of_plain_files;
   rule.parent_fd = place;
-  const bool added = ::syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &rule, 0) == 0;
+  // A right that this is not about, as to list what is no folder, would be none at all.
+  const bool added =
+      rule.allowed_access == 0 || ::syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &rule, 0) == 0;
   ::close(place);
   return added;
 }
@@ -121,6 +123,7 @@ constexpr std::uint64_t of_plain_files = LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_A
   const std::uint64_t to_write = known.files & ~std::uint64_t{LANDLOCK_ACCESS_FS_EXECUTE};
   // /proc/self is of this process: another one that has the same number later is outside.
   const bool done = permit_paths(rules, sandbox.readable, to_read) &&
+                    permit_paths(rules, sandbox.listable, LANDLOCK_ACCESS_FS_READ_DIR) &&
                     permit_paths(rules, sandbox.executable, to_execute) &&
                     permit_paths(rules, sandbox.writable, to_write) && permit_path(rules, "/proc/self", to_read) &&
                     permit_ports(rules, known, sandbox.sockets) && ::syscall(SYS_landlock_restrict_self, rules, 0) == 0;

@@ -195,6 +195,11 @@ struct Filter {
     begun = length;
   }
   constexpr void end_of_call() noexcept { code[begun - 1U].jf = static_cast<std::uint8_t>(length - begun); }
+  constexpr void refuse_without_signal() noexcept {
+    for (sock_filter& instruction : code)
+      if (instruction.code == bpf_answer && instruction.k == SECCOMP_RET_TRAP)
+        instruction.k = SECCOMP_RET_ERRNO | static_cast<std::uint32_t>(EPERM);
+  }
   std::uint16_t begun{0};
 };
 
@@ -321,7 +326,7 @@ constexpr void filter_opening(Filter& made, bool queues) noexcept {
   }
 }
 
-/// Refused calls raise SIGSYS, which names them (name_refused_calls()).
+/// Refused calls raise SIGSYS, which names them (name_refused_calls()), or fail without.
 [[nodiscard]] Filter call_filter(const Sandbox& sandbox) noexcept {
   constexpr std::uint32_t refused = SECCOMP_RET_TRAP;
   constexpr std::uint32_t foreign_numbers = 0x40000000;  // of another way to call the same kernel
@@ -373,6 +378,7 @@ constexpr void filter_opening(Filter& made, bool queues) noexcept {
   made.add(bpf_any_of, CLONE_THREAD, 1, 0);
   made.add(bpf_answer, refused);
   made.add(bpf_answer, SECCOMP_RET_ALLOW);
+  if (sandbox.refusal == CallRefusal::Error) made.refuse_without_signal();
   return made;
 }
 

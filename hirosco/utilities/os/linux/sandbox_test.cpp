@@ -114,6 +114,27 @@ TEST_F(SandboxTest, ReachesNoOtherProcessAndStartsNone) {
   EXPECT_EQ(wrong, 0);
 }
 
+TEST_F(SandboxTest, ToldSoACallThatItRefusesFailsWithoutASignalOfWhichNobodyWouldHear) {
+  Sandbox sandbox;
+  sandbox.refusal = CallRefusal::Error;
+  EXPECT_EQ(inside(sandbox, [] { return ::fork() < 0 && errno == EPERM ? 0 : 1; }), 0);
+  EXPECT_EQ(inside(sandbox, [] { return ::socket(AF_INET, SOCK_STREAM, 0) < 0 && errno == EPERM ? 0 : 1; }), 0);
+  EXPECT_EQ(inside({}, [] { return ::fork() < 0 ? 0 : 1; }), by_filter);
+}
+
+TEST_F(SandboxTest, ListsAFolderWithoutOpeningWhatIsInIt) {
+  Sandbox sandbox;
+  sandbox.listable = {folder / "own", folder / "secret"};
+  const int wrong = inside(sandbox, [&] {
+    std::error_code failed;
+    if (std::filesystem::directory_iterator{folder / "own", failed} == std::filesystem::directory_iterator{}) return 1;
+    if (opens(folder / "own/data", O_RDONLY)) return 2;
+    if (opens(folder / "secret", O_RDONLY)) return 3;
+    return std::filesystem::directory_iterator{folder, failed} == std::filesystem::directory_iterator{} ? 0 : 4;
+  });
+  EXPECT_EQ(wrong, 0);
+}
+
 /// By the filter alone: not every kernel has rules for signals.
 TEST_F(SandboxTest, SignalsItsOwnThreadsAndNobodyElse) {
   const pid_t other = ::getpid();
