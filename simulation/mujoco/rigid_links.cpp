@@ -185,8 +185,11 @@ class RigidBodies {
 /// Next to nothing more than it has: a point's mass stays what and where it is.
 void fill(Element& link) {
   const auto found = std::ranges::find(link.children, "inertial", &Element::name);
-  Element inertial = found != link.children.end() ? std::move(*found) : element("inertial", {});
-  std::erase_if(link.children, [](const Element& child) { return child.name == "inertial"; });
+  Element inertial = element("inertial", {});
+  if (found != link.children.end()) {
+    inertial = std::move(*found);
+    link.children.erase(found);
+  }
   const mjtNum mass = std::max(one(child_of(inertial, "mass"), "value"), next_to_no_mass);
   std::erase_if(inertial.children,
                 [](const Element& child) { return child.name == "mass" || child.name == "inertia"; });
