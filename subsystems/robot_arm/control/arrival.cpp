@@ -21,10 +21,11 @@ bool Arrival::tell_half(bool behind) noexcept {
 }
 
 void Arrival::end_path(const robotics::Pose& tool) noexcept {
+  path_ended_ = true;
+  if (to_ != To::Goal) return;
   // What an arm without every orientation lacks of its goal's was borne when its line was judged.
   if (tool_to_m_) turned_to_ = tool.rotation;
   else tool_to_m_ = tool.position;
-  path_ended_ = true;
 }
 
 bool Arrival::there(const JointVector& left, double tolerance, const robotics::Pose& tool) const noexcept {

@@ -28,7 +28,8 @@ class Arrival {
   [[nodiscard]] bool tell_half(bool behind) noexcept;
 
   // --- at the end of its path ---------------------------------------------------------------------------------------------
-  /// It has come to its end, which has the tool there: a goal of joints has it nowhere else, and who has a pose for a goal is turned so.
+  /// It has come to its end, which has the tool there: a goal of joints has it nowhere else, and who has a pose for a goal is turned so. Nothing is
+  /// asked of the tool of who has no goal.
   void end_path(const robotics::Pose& tool) noexcept;
   [[nodiscard]] bool path_ended() const noexcept { return path_ended_; }
   /// What the joints have left, rad or m, is no more than `tolerance`, and the tool is as it is to be.

@@ -81,6 +81,17 @@ TEST(Arrival, OfAPostureIsWhereThatHasTheTool) {
   EXPECT_FALSE(arrival.path_ended());
 }
 
+TEST(Arrival, OfWhoHasNoGoalAsksNothingOfTheTool) {
+  for (const Arrival::To to : {Arrival::To::Nowhere, Arrival::To::WayBack}) {
+    Arrival arrival;
+    arrival.begin(to);
+    arrival.end_path(end_of_path);
+    EXPECT_TRUE(arrival.path_ended());
+    EXPECT_TRUE(arrival.there(joints_left(-0.009), tolerance_rad, off_pose(end_of_path, 0.01, 0.01)));
+    EXPECT_FALSE(arrival.there(joints_left(-0.011), tolerance_rad, end_of_path));
+  }
+}
+
 TEST(Arrival, TellsHalfOfItOnceAndOnlyOfWhoHasAGoal) {
   Arrival arrival;
   arrival.begin(Arrival::To::Goal);
