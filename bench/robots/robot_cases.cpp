@@ -240,6 +240,7 @@ class Flown {
       ++found_.goals;
       const std::vector<double> now = positions();
       for (std::size_t i = 0; i < now.size(); ++i) keep_worst(found_.joint_rad, std::abs(now[i] - goal[i]));
+      keep_worst(found_.tool_m, (tip() - by_model(goal).position).norm());
     }
     for (const auto& way : task_.lines) {
       const Vector3 offset{way[0], way[1], way[2]};
@@ -272,6 +273,7 @@ class Flown {
     if (!done) return false;
     ++found_.lines;
     keep_worst(found_.tool_m, (tip() - to).norm());
+    keep_worst(found_.turned_rad, robotics::Quaternion{pose().rotation}.angularDistance(kept));
     return true;
   }
 
@@ -297,13 +299,14 @@ class Flown {
     for (const std::size_t joint : arm_.in_world) now.push_back(word(fmt::format("q{}", joint + 1)));
     return now;
   }
-  [[nodiscard]] robotics::Pose pose() {
+  [[nodiscard]] robotics::Pose by_model(const std::vector<double>& joints) {
     robotics::State state;
-    state.q = vector_of(positions());
+    state.q = vector_of(joints);
     state.qd = JointVector::Zero(state.q.size());
     kinematics_.update(state);
-    return {kinematics_.frame_pose(arm_.tip).rotation, tip()};
+    return kinematics_.frame_pose(arm_.tip);
   }
+  [[nodiscard]] robotics::Pose pose() { return {by_model(positions()).rotation, tip()}; }
 
   const RobotTask& task_;
   const Known& arm_;
@@ -328,10 +331,10 @@ std::vector<RobotCase> robot_cases(double weakest) {
 
 // Not of numbers that are none.
 bool CaseFound::reaches_goals() const noexcept {
-  return problems.empty() && goals > 0 && joint_rad <= most_joint_error_rad;
+  return problems.empty() && goals > 0 && joint_rad <= most_joint_error_rad && tool_m <= most_tool_error_m;
 }
 bool CaseFound::holds() const noexcept {
-  return reaches_goals() && lines > 0 && tool_m <= most_tool_error_m && beside_m <= most_beside_line_m;
+  return reaches_goals() && lines > 0 && turned_rad <= most_joint_error_rad && beside_m <= most_beside_line_m;
 }
 
 namespace {

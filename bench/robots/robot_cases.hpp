@@ -50,8 +50,9 @@ struct RobotTask {
 [[nodiscard]] std::expected<RobotTask, std::string> robot_task(const std::filesystem::path& mission);
 
 struct CaseFound {
-  /// Worst of all goals and lines, by the world. Joints: where MOVE_J was completed; tool: at the end of a line; beside: of the line, on the way.
-  double joint_rad{0}, tool_m{0}, beside_m{0};
+  /// Worst of all goals and lines, by the world. Joints: where MOVE_J was completed; turned: the tool, at the end of a line; tool: off that end, and
+  /// off where a goal of MOVE_J has it; beside: of the line, on the way.
+  double joint_rad{0}, turned_rad{0}, tool_m{0}, beside_m{0};
   int goals{0}, lines{0};  ///< that were reached
   std::vector<std::string> problems;
 

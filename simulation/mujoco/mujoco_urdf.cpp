@@ -241,6 +241,7 @@ std::expected<MujocoSpec, std::string> spec_of_urdf(std::string_view urdf, const
   std::string text;
   Element joined = *tree;
   join_impossible_links(joined);
+  fill_links_between(joined);
   write(joined, text);
   std::array<char, 1000> why{};
   made.spec.reset(mj_parseXMLString(text.c_str(), nullptr, why.data(), why.size()));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -24,6 +25,8 @@ using Matrix = std::array<mjtNum, 9>;
 
 /// What MuJoCo takes as no less than the sum of the others.
 constexpr mjtNum rounding = 1e-12;
+/// Of a link that moves MuJoCo wants some, kg and kg m2: many times as much, and nothing to any robot.
+constexpr mjtNum next_to_no_mass = 1e-9, next_to_no_moment = 1e-12;
 
 [[nodiscard]] std::string said(const Element* element, std::string_view name, const char* otherwise = "") {
   const auto* found = element != nullptr ? element->find(name) : nullptr;
@@ -145,28 +148,78 @@ struct Fixed {
   Frame frame;
 };
 
-}  // namespace
-
-void join_impossible_links(Element& robot) {
-  std::map<std::string, Fixed> fixed;
-  for (const Element& joint : robot.children)
-    if (joint.name == "joint" && said(&joint, "type") == "fixed")
-      fixed[said(child_of(joint, "child"), "link")] = {said(child_of(joint, "parent"), "link"), frame_of(joint)};
-  const auto carried = [&](std::string link) {
+/// Which links are one body, however they are written.
+class RigidBodies {
+ public:
+  explicit RigidBodies(Element& robot) {
+    for (const Element& joint : robot.children)
+      if (joint.name == "joint" && said(&joint, "type") == "fixed")
+        fixed_[said(child_of(joint, "child"), "link")] = {said(child_of(joint, "parent"), "link"), frame_of(joint)};
+    for (Element& link : robot.children)
+      if (link.name == "link") bodies_[carried(said(&link, "name")).carrier].push_back(&link);
+  }
+  /// By the one that carries all others, which carries itself.
+  [[nodiscard]] const std::map<std::string, std::vector<Element*>>& all() const { return bodies_; }
+  [[nodiscard]] Fixed carried(std::string link) const {
     Frame frame;
     // No circle of joints is longer than there are joints.
-    for (std::size_t i = 0; i < fixed.size(); ++i) {
-      const auto found = fixed.find(link);
-      if (found == fixed.end()) break;
+    for (std::size_t i = 0; i < fixed_.size(); ++i) {
+      const auto found = fixed_.find(link);
+      if (found == fixed_.end()) break;
       frame = within(found->second.frame, frame);
       link = found->second.carrier;
     }
     return Fixed{link, frame};
-  };
-  std::map<std::string, std::vector<Element*>> bodies;
-  for (Element& link : robot.children)
-    if (link.name == "link") bodies[carried(said(&link, "name")).carrier].push_back(&link);
-  for (const auto& [carrier, links] : bodies) {
+  }
+
+ private:
+  std::map<std::string, Fixed> fixed_;
+  std::map<std::string, std::vector<Element*>> bodies_;
+};
+
+[[nodiscard]] bool has_moments(const Element* link) {
+  const Element* inertial = child_of(*link, "inertial");
+  return inertial != nullptr && std::ranges::any_of(inertia_of(*inertial), [](mjtNum number) { return number != 0; });
+}
+
+/// Next to nothing more than it has: a point's mass stays what and where it is.
+void fill(Element& link) {
+  const auto found = std::ranges::find(link.children, "inertial", &Element::name);
+  Element inertial = element("inertial", {});
+  if (found != link.children.end()) {
+    inertial = std::move(*found);
+    link.children.erase(found);
+  }
+  const mjtNum mass = std::max(one(child_of(inertial, "mass"), "value"), next_to_no_mass);
+  std::erase_if(inertial.children,
+                [](const Element& child) { return child.name == "mass" || child.name == "inertia"; });
+  const std::string moment = fmt::format("{:.17g}", next_to_no_moment);
+  inertial.children.push_back(element("mass", {{"value", fmt::format("{:.17g}", mass)}}));
+  inertial.children.push_back(element(
+      "inertia", {{"ixx", moment}, {"ixy", "0"}, {"ixz", "0"}, {"iyy", moment}, {"iyz", "0"}, {"izz", moment}}));
+  link.children.push_back(std::move(inertial));
+}
+
+}  // namespace
+
+void fill_links_between(Element& robot) {
+  const RigidBodies bodies{robot};
+  std::set<std::string> moved, moving;
+  for (const Element& joint : robot.children) {
+    if (joint.name != "joint" || said(&joint, "type") == "fixed") continue;
+    moved.insert(said(child_of(joint, "child"), "link"));
+    moving.insert(bodies.carried(said(child_of(joint, "parent"), "link")).carrier);
+  }
+  for (const auto& [carrier, links] : bodies.all()) {
+    if (!moved.contains(carrier) || !moving.contains(carrier) || std::ranges::any_of(links, has_moments)) continue;
+    for (Element* link : links)
+      if (said(link, "name") == carrier) fill(*link);
+  }
+}
+
+void join_impossible_links(Element& robot) {
+  const RigidBodies bodies{robot};
+  for (const auto& [carrier, links] : bodies.all()) {
     const auto impossible = [](const Element* link) {
       const Element* inertial = child_of(*link, "inertial");
       return inertial != nullptr && !may_be(inertia_of(*inertial));
@@ -174,7 +227,8 @@ void join_impossible_links(Element& robot) {
     if (links.size() < 2 || std::ranges::none_of(links, impossible)) continue;
     Weight all;
     for (Element* link : links) {
-      if (const Element* inertial = child_of(*link, "inertial")) add(*inertial, carried(said(link, "name")).frame, all);
+      if (const Element* inertial = child_of(*link, "inertial"))
+        add(*inertial, bodies.carried(said(link, "name")).frame, all);
       std::erase_if(link->children, [](const Element& child) { return child.name == "inertial"; });
     }
     for (Element* link : links)

@@ -54,6 +54,62 @@ TEST(RigidLinks, ThatAreNoBodyTogetherAreRefused) {
   EXPECT_FALSE(MujocoRobot::make(slab(R"(<inertia ixx="5" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/>)")));
 }
 
+/// Two hinges that meet at the origin, about z and y, with a cross between them; the second one moves the slab, if there is any.
+[[nodiscard]] std::string universal(const char* cross, bool with_slab = true) {
+  return fmt::format(
+      R"(<robot name="universal"><link name="base"/><link name="cross">{}</link>
+  <joint name="yaw" type="revolute"><parent link="base"/><child link="cross"/><axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="9" effort="9"/></joint>{}</robot>)",
+      cross,
+      with_slab ? R"(
+  <joint name="pitch" type="revolute"><parent link="cross"/><child link="slab"/><axis xyz="0 1 0"/><limit lower="-3" upper="3" velocity="9" effort="9"/></joint>
+  <link name="slab"><inertial><origin xyz="0.1 0 0"/><mass value="2"/><inertia ixx="0.02" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="0.04"/></inertial></link>)"
+                : "");
+}
+constexpr const char* point =
+    R"(<inertial><mass value="0.5"/><origin xyz="0 0.2 0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>)";
+
+TEST(RigidLinks, OfNothingBetweenTwoJointsHinderNobody) {
+  constexpr double about_z = 0.04 + 2 * 0.1 * 0.1, about_y = 0.03 + 2 * 0.1 * 0.1;
+  constexpr const char* none =
+      R"(<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>)";
+  for (const char* cross : {"", none}) {
+    auto robot = MujocoRobot::make(universal(cross));
+    ASSERT_TRUE(robot) << robot.error();
+    robot->set_gravity(0, 0, 0);
+    for (int i = 0; i < 100; ++i) robot->step(std::array{0.5, 0.0}, MujocoRobot::Brakes::Open, 1ms);
+    EXPECT_NEAR(robot->velocity(0), 0.1 * 0.5 / about_z, 1e-6);
+    EXPECT_NEAR(robot->velocity(1), 0, 1e-6);
+    ASSERT_TRUE(robot->place(std::array{0.0, 0.0}));
+    for (int i = 0; i < 10; ++i) robot->step(std::array{0.0, 0.5}, MujocoRobot::Brakes::Open, 1ms);
+    EXPECT_NEAR(robot->velocity(1), 0.01 * 0.5 / about_y, 1e-6);
+  }
+}
+
+TEST(RigidLinks, ThatArePointsBetweenTwoJointsWeighWhatTheyWeighWhereTheyAre) {
+  auto robot = MujocoRobot::make(universal(point));
+  ASSERT_TRUE(robot) << robot.error();
+  robot->set_gravity(0, 0, 0);
+  for (int i = 0; i < 100; ++i) robot->step(std::array{0.5, 0.0}, MujocoRobot::Brakes::Open, 1ms);
+  EXPECT_NEAR(robot->velocity(0), 0.1 * 0.5 / (0.04 + 2 * 0.1 * 0.1 + 0.5 * 0.2 * 0.2), 1e-6);
+}
+
+TEST(RigidLinks, ThatAreNothingAndCarryNothingAreRefused) {
+  EXPECT_FALSE(MujocoRobot::make(universal("", false)));
+  EXPECT_FALSE(MujocoRobot::make(universal(point, false)));
+}
+
+TEST(RigidLinks, BetweenTwoJointsThatAreABodyWithWhatIsFixedToThemAreLeftAsTheyAre) {
+  std::string text = universal("");
+  text.insert(
+      text.rfind("</robot>"),
+      R"(<link name="motor"><inertial><mass value="1"/><inertia ixx="0.02" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/></inertial></link>
+  <joint name="screw" type="fixed"><parent link="cross"/><child link="motor"/></joint>)");
+  auto tree = xml::read_tree(text).value();
+  fill_links_between(tree);
+  EXPECT_TRUE(tree.children[1].children.empty());
+  EXPECT_TRUE(MujocoRobot::make(text));
+}
+
 TEST(RigidLinks, OfWhichEachIsABodyAreLeftAsTheyAre) {
   const std::string text = slab(R"(<inertia ixx="0.02" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/>)");
   auto tree = xml::read_tree(text).value();

@@ -124,8 +124,9 @@ Guidance::News Guidance::lose_line() noexcept {
 Guidance::End Guidance::arrive(bool gives_way) noexcept {
   const double tolerance = parts_.parameters.goal_tolerance.load();
   const JointVector left = setpoints_->now().position - parts_.drives.measured().position;
-  const auto tool = parts_.parameters.tool.load().position_m;
-  arrival_.wait(gives_way || arrival_.there(left, tolerance, {tool[0], tool[1], tool[2]}), cycle_s_);
+  if (!arrival_.path_ended()) arrival_.end_path(setpoints_->tool());
+  const robotics::Pose tool = pose_of(parts_.parameters.tool.load());
+  arrival_.wait(gives_way || arrival_.there(left, tolerance, tool), cycle_s_);
   if (arrival_.settled()) return End::Reached;
   return arrival_.overdue() ? End::NotReached : End::None;
 }

@@ -49,8 +49,8 @@ TEST_F(MadeRobot, GoesWhereItIsToldToWithALoadThatNobodyDeclared) {
   task->lines.erase(task->lines.begin() + 1, task->lines.end());
   const auto cases = robot_cases(task->weakest);
   const auto found = fly_case(mission, *task, cases.at(4), 1);
-  std::cout << fmt::format("  {}: {:.2f} mrad, {:.2f} mm, {:.2f} mm beside its line\n", cases.at(4).name,
-                           1e3 * found.joint_rad, 1e3 * found.tool_m, 1e3 * found.beside_m);
+  std::cout << fmt::format("  {}: {:.2f} and {:.2f} mrad, {:.2f} mm, {:.2f} mm beside its line\n", cases.at(4).name,
+                           1e3 * found.joint_rad, 1e3 * found.turned_rad, 1e3 * found.tool_m, 1e3 * found.beside_m);
   EXPECT_TRUE(found.holds()) << fmt::format("{}", fmt::join(found.problems, "\n"));
   EXPECT_EQ(found.lines, 2) << "there and back";
 }
@@ -104,7 +104,8 @@ TEST(ArmCycles, HoldWithATenthOfThePeriodAndAllThatBelongsToThemOnly) {
 }
 
 TEST(RobotCases, HoldOnlyWhereSomethingWasFlownAndNothingWasWrong) {
-  CaseFound found{.joint_rad = 1e-3, .tool_m = 1e-3, .beside_m = 2e-3, .goals = 1, .lines = 1, .problems = {}};
+  CaseFound found{
+      .joint_rad = 1e-3, .turned_rad = 1e-3, .tool_m = 1e-3, .beside_m = 2e-3, .goals = 1, .lines = 1, .problems = {}};
   EXPECT_TRUE(found.holds());
   const auto without = [&](auto change) {
     CaseFound other = found;
@@ -112,6 +113,7 @@ TEST(RobotCases, HoldOnlyWhereSomethingWasFlownAndNothingWasWrong) {
     return !other.holds();
   };
   EXPECT_TRUE(without([](CaseFound& one) { one.joint_rad = 1.01e-3; }));
+  EXPECT_TRUE(without([](CaseFound& one) { one.turned_rad = 1.01e-3; }));
   EXPECT_TRUE(without([](CaseFound& one) { one.tool_m = 1.01e-3; }));
   EXPECT_TRUE(without([](CaseFound& one) { one.beside_m = 2.01e-3; }));
   EXPECT_TRUE(without([](CaseFound& one) { one.beside_m = std::nan(""); }));

@@ -13,6 +13,9 @@ namespace hirosco::tools {
 
 namespace {
 
+/// A robot with more different chains than these has more than anybody reads.
+constexpr std::size_t most_tried = 64;
+
 struct NamedJoint {
   std::string name, parent, child, followed;
   const xml::Attribute* type{nullptr};
@@ -49,6 +52,22 @@ void each_below(const std::map<std::string, NamedJoint>& joints, std::string lin
   }
 }
 
+/// Joints that move the link by themselves.
+[[nodiscard]] std::size_t moved_by(const std::map<std::string, NamedJoint>& joints, const std::string& link) {
+  std::size_t count = 0;
+  each_below(joints, link, [&](const NamedJoint& below) { count += below.moves() && below.followed.empty(); });
+  return count;
+}
+
+/// The link at which whatever moves this one hangs; empty: nothing moves it.
+[[nodiscard]] std::string carrier_of(const std::map<std::string, NamedJoint>& joints, const std::string& link) {
+  std::string carrier;
+  each_below(joints, link, [&](const NamedJoint& below) {
+    if (carrier.empty() && below.moves()) carrier = below.parent;
+  });
+  return carrier;
+}
+
 }  // namespace
 
 std::vector<ChainEnd> chain_ends(std::string_view text) {
@@ -58,12 +77,32 @@ std::vector<ChainEnd> chain_ends(std::string_view text) {
   std::vector<ChainEnd> ends;
   for (const auto& [link, joint] : joints) {
     if (std::ranges::any_of(joints, [&](const auto& one) { return one.second.parent == link; })) continue;
-    ChainEnd end{link, 0};
-    each_below(joints, link, [&](const NamedJoint& below) { end.joints += below.moves() && below.followed.empty(); });
-    if (end.joints > 0) ends.push_back(std::move(end));
+    if (const std::size_t count = moved_by(joints, link); count > 0) ends.push_back({link, count});
   }
   std::ranges::stable_sort(ends, std::ranges::greater{}, &ChainEnd::joints);
   return ends;
+}
+
+std::vector<ChainEnd> chains_that_fly(std::string_view text, std::size_t most, const JointsThatFly& joints_that_fly) {
+  const auto robot = xml::read_tree(text);
+  if (!robot) return {};
+  const auto joints = joints_of(*robot);
+  std::set<std::vector<std::string>> tried;
+  std::vector<ChainEnd> found;
+  for (const ChainEnd& end : chain_ends(text)) {
+    for (std::string link = end.link; 2 * moved_by(joints, link) > end.joints; link = carrier_of(joints, link)) {
+      if (found.size() == most || tried.size() == most_tried) break;
+      const Chain chain = keep_chain(text, link, {});
+      // Whoever was the same before either flies, or was followed towards its root already.
+      if (!tried.insert(chain.standing).second) break;
+      const std::size_t count = joints_that_fly(chain.urdf, link);
+      if (count == 0) continue;
+      found.push_back({link, count});
+      break;
+    }
+  }
+  std::ranges::stable_sort(found, std::ranges::greater{}, &ChainEnd::joints);
+  return found;
 }
 
 bool has_link(std::string_view text, const std::string& link) {

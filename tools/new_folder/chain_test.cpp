@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tools/new_folder/robot.hpp"
 
 /// One arm of a robot that has more joints (docs/adr/0131).
@@ -87,6 +89,52 @@ TEST(Chain, IsAnArmOfARobotWithMoreJointsThanAnArmMayHave) {
   ASSERT_TRUE(hand.robot) << hand.problems.front().message;
   EXPECT_EQ(hand.robot->tip, "hand");
   EXPECT_EQ(hand.robot->world_joints.size(), 4u);
+}
+
+TEST(Chain, ThatFliesIsLookedForFromAnEndToMoreThanHalfOfItsJoints) {
+  std::vector<std::string> asked;
+  const auto found = [&](const std::vector<std::string>& flying, std::size_t most = 6) {
+    asked.clear();
+    std::vector<std::string> named;
+    for (const ChainEnd& end :
+         chains_that_fly(two_arms(5), most, [&](const std::string& urdf, const std::string& tip) -> std::size_t {
+           asked.push_back(tip);
+           EXPECT_EQ(urdf, keep_chain(two_arms(5), tip, {}).urdf);
+           return std::ranges::find(flying, tip) != flying.end() ? 10 + asked.size() : 0;
+         }))
+      named.push_back(fmt::format("{} {}", end.link, end.joints));
+    return named;
+  };
+  EXPECT_THAT(found({"right_3", "hand"}), ElementsAre("hand 15", "right_3 13")) << "those with more joints first";
+  EXPECT_THAT(asked, ElementsAre("right_5", "right_4", "right_3", "thumb", "hand", "finger")) << "each once";
+  EXPECT_THAT(found({"right_2", "left"}), IsEmpty()) << "that is half of it, or less";
+  EXPECT_THAT(found({"right_5", "thumb", "finger"}, 1), ElementsAre("right_5 11"));
+  EXPECT_THAT(asked, ElementsAre("right_5"));
+}
+
+TEST(Chain, IsNamedWhereOneJointKeepsTheWholeRobotFromFlying) {
+  std::string text = two_arms();
+  const std::string effort = "effort='99'";
+  text.replace(text.find(effort, text.find("j_thumb")), effort.size(), "effort='0'");
+  const auto refused = judged_chain(text, "hand", "", false);
+  ASSERT_FALSE(refused.robot);
+  ASSERT_EQ(refused.problems.size(), 1u);
+  EXPECT_EQ(refused.problems[0].code, "U0601");
+  EXPECT_THAT(refused.problems[0].hint, HasSubstr("--tip LINK --chain: hand (3 joints), right_1 (2 joints)"));
+  EXPECT_TRUE(judged_chain(text, "hand").robot);
+  // Of a chain, too, that goes too far.
+  const auto thumb = judged_chain(text, "thumb");
+  ASSERT_FALSE(thumb.robot);
+  EXPECT_THAT(thumb.problems[0].hint, HasSubstr("--tip LINK --chain: hand (3 joints)"));
+}
+
+TEST(Chain, IsNotNamedWhereItWouldNotFlyEither) {
+  std::string text = two_arms();
+  const std::string effort = "effort='99'";
+  text.replace(text.find(effort, text.find("j_torso")), effort.size(), "effort='0'");
+  const auto refused = judged_chain(text, "hand", "", false);
+  ASSERT_FALSE(refused.robot);
+  EXPECT_THAT(refused.problems[0].hint, ::testing::Not(HasSubstr("--chain")));
 }
 
 TEST(Chain, OfALinkThatIsNotThereIsSaid) {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <span>
 #include <tuple>
@@ -13,6 +13,7 @@
 #include "hirosco/xml/reader.hpp"
 #include "robotics/shapes/swept.hpp"
 #include "robotics/urdf/named_robot.hpp"
+#include "tools/new_folder/bodies.hpp"
 #include "tools/new_folder/chain.hpp"
 #include "tools/new_folder/meshes.hpp"
 #include "tools/new_folder/postures.hpp"
@@ -24,11 +25,6 @@ namespace {
 
 using descriptor::Diagnostic;
 using robotics::JointVector;
-
-/// Of moments: the world takes what is on the border, and nothing beyond.
-constexpr double rounding = 1e-12;
-/// kg, kg m2: what is less is nothing to the world, which takes a link without any moment, but none with two of them.
-constexpr double least_mass = 1e-15, least_moment = 1e-14;
 
 class Judge {
  public:
@@ -108,6 +104,19 @@ class Judge {
     judged_.robot = std::move(made);
   }
 
+  /// How many joints there are where all of that goes well, but for shapes; else 0.
+  [[nodiscard]] std::size_t flying_joints(const std::string& tip) {
+    judge_bodies();
+    const auto model = robotics::Model::make(robotics::urdf::describe(robot_));
+    if (!model) return 0;
+    judge_drives(*model);
+    judge_haste(*model);
+    judge_word("link", judge_tip(tip));
+    const auto frame = model->find_frame(tip);
+    const bool flies = judged_.problems.empty() && frame && least_load(*model, *frame).share <= most_load;
+    return flies ? model->joints().size() : 0;
+  }
+
  private:
   [[nodiscard]] static descriptor::Location place(const xml::Element& element) {
     return {element.at.line, element.at.column};
@@ -134,48 +143,9 @@ class Judge {
     judged_.warnings.push_back({file_, at, code, std::move(message), std::move(hint), 1, descriptor::Grade::Warning});
   }
 
-  [[nodiscard]] static robotics::Vector3 principal_moments(const robotics::Inertia& inertia) {
-    return Eigen::SelfAdjointEigenSolver<robotics::Matrix3>{inertia.about_centre, Eigen::EigenvaluesOnly}.eigenvalues();
-  }
-
-  [[nodiscard]] static bool may_be(const robotics::Inertia& inertia) {
-    if (inertia.about_centre.isZero(0)) return true;
-    const auto moments = principal_moments(inertia);
-    const double largest = moments.maxCoeff();
-    return moments.minCoeff() >= least_moment && largest <= (moments.sum() - largest) * (1 + rounding);
-  }
-
-  /// Its world takes no inertia that no body has; of links that are fixed to each other that of all of them counts.
   void judge_bodies() {
-    const auto whole = robotics::urdf::describe(robot_);
-    const auto body_of = [&](const std::string& link) -> const robotics::Inertia& {
-      const auto frame = std::ranges::find(whole.frames, link, &robotics::FrameDescription::name);
-      return frame != whole.frames.end() && frame->joint ? whole.joints[*frame->joint].moved : whole.base;
-    };
-    for (const auto& link : robot_.links) {
-      if (!link.inertia || may_be(*link.inertia) || may_be(body_of(link.name))) continue;
-      const auto moments = principal_moments(*link.inertia);
-      problem(place_of("link", link.name, "inertia"), "U0604",
-              fmt::format("no body has the inertia of link '{}': principal moments {:.4g}, {:.4g} and {:.4g} kg m2",
-                          link.name, moments[0], moments[1], moments[2]),
-              "each is above 0 and at most the sum of the others, of it or of all that is fixed to it; the world of a "
-              "simulated flight takes no other: look for a typing error or a wrong unit");
-    }
-    for (const auto& joint : robot_.joints)
-      if (joint.type != robotics::urdf::JointType::Fixed && !has_body(joint.child))
-        problem(place_of("link", robot_.links[joint.child].name, "inertia"), "U0607",
-                fmt::format("joint '{}' moves link '{}', which has no mass or no inertia about some axis", joint.name,
-                            robot_.links[joint.child].name),
-                "the world of a simulated flight wants all of it in one link, this or one that is fixed to it: write "
-                "<inertial> as of a body of this size");
-  }
-  /// All three moments, in the link or in one that is fixed to it.
-  [[nodiscard]] bool has_body(std::size_t link) const {
-    if (const auto& inertia = robot_.links[link].inertia)
-      if (inertia->mass >= least_mass && principal_moments(*inertia).minCoeff() >= least_moment) return true;
-    return std::ranges::any_of(robot_.joints, [&](const auto& joint) {
-      return joint.parent == link && joint.type == robotics::urdf::JointType::Fixed && has_body(joint.child);
-    });
+    for (RefusedBody& body : refused_bodies(robot_))
+      problem(place_of("link", body.link, "inertia"), body.code, std::move(body.message), std::move(body.hint));
   }
 
   /// The one that is named, or the only end that joints move. Empty: told why.
@@ -192,8 +162,7 @@ class Judge {
     if (wanted.empty()) {
       if (ends.size() == 1) return ends.front();
       problem(place(root_), "U0603", fmt::format("the robot has {} ends that move", ends.size()),
-              fmt::format("say which link is the tool, for example --tip {}; {}", ends.empty() ? "LINK" : ends.front(),
-                          all));
+              fmt::format("say which link is the tool, for example --tip {}; {}", likely_tool(ends), all));
       return {};
     }
     if (std::ranges::find(robot_.links, wanted, &robotics::urdf::Link::name) == robot_.links.end())
@@ -202,6 +171,18 @@ class Judge {
       problem(place_of("link", wanted, "name"), "U0603", fmt::format("--tip: no joint moves link '{}'", wanted), all);
     else return wanted;
     return {};
+  }
+
+  /// The first one that nearly as many joints move as any: no wheel, and no finger beside its palm.
+  [[nodiscard]] std::string likely_tool(const std::vector<std::string>& ends) const {
+    constexpr double nearly = 0.7;
+    const std::vector<ChainEnd> all = chain_ends(text_);
+    for (const std::string& end : ends) {
+      const auto found = std::ranges::find(all, end, &ChainEnd::link);
+      const auto most = static_cast<double>(all.empty() ? 0 : all.front().joints);
+      if (found != all.end() && static_cast<double>(found->joints) >= nearly * most) return end;
+    }
+    return "LINK";
   }
 
   /// Few files say it. Who does is kept to it: ACCELERATION and JERK of what is made are no larger.
@@ -300,17 +281,39 @@ class Judge {
   xml::Element root_;
 };
 
-/// Of a robot that has more joints than an arm: which arms there are.
-void say_which_chains(std::string_view text, Diagnostic& problem) {
+/// What of a robot may be in the way of flying all of it, and not in the way of flying one arm.
+constexpr std::array of_single_joints{"U0301", "U0303", "U0304", "U0306", "U0307", "U0308", "U0309",
+                                      "U0310", "U0601", "U0602", "U0604", "U0605", "U0607", "U0612"};
+
+[[nodiscard]] std::size_t flying_joints(const std::filesystem::path& file, const std::string& urdf,
+                                        const std::string& tip) {
+  const auto reading = robotics::urdf::read(file, urdf);
+  JudgedRobot alone;
+  return reading.value ? Judge{file, *reading.value, urdf, alone}.flying_joints(tip) : 0;
+}
+
+/// Which arms of a robot that is none as a whole can be flown: with the first problem that they are without.
+void say_which_chains(const std::filesystem::path& file, std::string_view text, std::vector<Diagnostic>& problems) {
+  const auto first = std::ranges::find_if(problems, [](const Diagnostic& problem) {
+    return std::ranges::find(of_single_joints, problem.code) != of_single_joints.end();
+  });
+  if (first == problems.end()) return;
   constexpr std::size_t most_named = 6;
   std::vector<std::string> named;
-  for (const ChainEnd& end : chain_ends(text)) {
-    if (named.size() == most_named) break;
-    if (end.joints <= robotics::max_joints) named.push_back(fmt::format("{} ({} joints)", end.link, end.joints));
-  }
+  for (const ChainEnd& end : chains_that_fly(text, most_named, [&](const std::string& urdf, const std::string& tip) {
+         return flying_joints(file, urdf, tip);
+       }))
+    named.push_back(fmt::format("{} ({} joints)", end.link, end.joints));
   if (!named.empty())
-    problem.hint += fmt::format("; or fly one arm of it while the others stand still, by --tip LINK --chain: {}",
-                                fmt::join(named, ", "));
+    first->hint += fmt::format("; or fly one arm of it while the others stand still, by --tip LINK --chain: {}",
+                               fmt::join(named, ", "));
+}
+
+/// As somebody reads a file.
+void put_in_order(std::vector<Diagnostic>& problems) {
+  std::ranges::stable_sort(problems, [](const Diagnostic& one, const Diagnostic& other) {
+    return std::pair{one.at.line, one.at.column} < std::pair{other.at.line, other.at.column};
+  });
 }
 
 }  // namespace
@@ -327,19 +330,17 @@ JudgedRobot judge_robot(const std::filesystem::path& file, const descriptor::Fil
   }
   auto reading = text ? robotics::urdf::read(file, *text) : robotics::urdf::read(file, source);
   JudgedRobot judged{.robot = {}, .problems = std::move(reading.problems), .warnings = std::move(reading.warnings)};
-  for (Diagnostic& problem : judged.problems)
-    if (problem.code == "U0309" && text) say_which_chains(*text, problem);
-  if (!reading.value) return judged;
-  Judge judge{file, *reading.value, *text, judged};
-  if (!standing.empty()) judge.say_who_stands(standing);
-  judge.take(take_meshes(file, *text, source, packages));
-  judge.judge(tip, fingers);
-  // Said more gravely by U0604.
-  if (std::ranges::find(judged.problems, std::string_view{"U0604"}, &Diagnostic::code) != judged.problems.end())
-    std::erase_if(judged.warnings, [](const Diagnostic& one) { return one.code == "U0504" || one.code == "U0508"; });
-  std::ranges::stable_sort(judged.problems, [](const Diagnostic& one, const Diagnostic& other) {
-    return std::pair{one.at.line, one.at.column} < std::pair{other.at.line, other.at.column};
-  });
+  if (reading.value) {
+    Judge judge{file, *reading.value, *text, judged};
+    if (!standing.empty()) judge.say_who_stands(standing);
+    judge.take(take_meshes(file, *text, source, packages));
+    judge.judge(tip, fingers);
+    // Said more gravely by U0604.
+    if (std::ranges::find(judged.problems, std::string_view{"U0604"}, &Diagnostic::code) != judged.problems.end())
+      std::erase_if(judged.warnings, [](const Diagnostic& one) { return one.code == "U0504" || one.code == "U0508"; });
+    put_in_order(judged.problems);
+  }
+  if (text) say_which_chains(file, *text, judged.problems);
   return judged;
 }
 

@@ -107,28 +107,12 @@ class Finder {
       : model_{model}, tip_{tip}, statics_{model, tip}, itself_{model, hulls} {}
 
   FoundPostures find() {
-    FoundPostures found;
-    JointVector best = near_zero();
-    RestLoad& least = found.least_loaded;
-    least = statics_.load(best);
-    const auto consider = [&](const JointVector& posture) {
-      const auto load = statics_.load(posture);
-      if (least.share > light_enough && load.share < least.share) best = posture, least = load;
-      return load;
-    };
-    static_cast<void>(consider(middle()));
-    double acceleration = allowed_acceleration(model_);
-    found.too_heavy.assign(model_.joints().size(), 0);
-    for (int i = 0; i < postures_looked_at; ++i) {
-      const auto load = consider(random_posture());
-      found.reach_m = std::max(found.reach_m, statics_.tip().norm());
-      if (load.share > most_load) ++found.too_heavy[load.joint];
-      else acceleration = std::min(acceleration, statics_.acceleration());
-    }
-    if (least.share > most_load) return found;
+    FoundPostures found = look();
+    if (found.least_loaded.share > most_load) return found;
+    JointVector& best = lightest_;
     if (!itself_.is_clear(best)) best = lightest_clear(best);
     found.posture = numbers(best);
-    found.acceleration = std::max(least_acceleration, in_tenths(acceleration));
+    found.acceleration = std::max(least_acceleration, in_tenths(found.acceleration));
     found.jerk = allowed_jerk(model_, found.acceleration);
     if (found.jerk < found.acceleration * jerk_per_acceleration)
       found.jerk = std::max(least_jerk, in_tenths(found.jerk));
@@ -136,6 +120,29 @@ class Finder {
     static_cast<void>(statics_.load(best));
     found.tip_z_m = statics_.tip().z();
     found.reach_m = std::max(found.reach_m, statics_.tip().norm());
+    return found;
+  }
+
+  /// What each posture takes of the drives, and leaves them.
+  FoundPostures look() {
+    FoundPostures found;
+    lightest_ = near_zero();
+    RestLoad& least = found.least_loaded;
+    least = statics_.load(lightest_);
+    const auto consider = [&](const JointVector& posture) {
+      const auto load = statics_.load(posture);
+      if (least.share > light_enough && load.share < least.share) lightest_ = posture, least = load;
+      return load;
+    };
+    static_cast<void>(consider(middle()));
+    found.acceleration = allowed_acceleration(model_);
+    found.too_heavy.assign(model_.joints().size(), 0);
+    for (int i = 0; i < postures_looked_at; ++i) {
+      const auto load = consider(random_posture());
+      found.reach_m = std::max(found.reach_m, statics_.tip().norm());
+      if (load.share > most_load) ++found.too_heavy[load.joint];
+      else found.acceleration = std::min(found.acceleration, statics_.acceleration());
+    }
     return found;
   }
 
@@ -257,6 +264,7 @@ class Finder {
   Statics statics_;
   SelfClearance itself_;
   std::minstd_rand random_{1};
+  JointVector lightest_;
 };
 
 }  // namespace
@@ -278,6 +286,10 @@ bool SelfClearance::is_clear(const JointVector& from, const JointVector& to) {
 
 JointRange range_of(const robotics::Model::Joint& joint) {
   return {joint.limits.lower.value_or(-turn_rad), joint.limits.upper.value_or(turn_rad)};
+}
+
+RestLoad least_load(const robotics::Model& model, robotics::FrameId tip) {
+  return Finder{model, tip, {}}.look().least_loaded;
 }
 
 FoundPostures find_postures(const robotics::Model& model, robotics::FrameId tip,

@@ -43,6 +43,9 @@ struct RestLoad {
   double needed{0};
 };
 
+/// Of all postures that are looked at; above `most_load`: the robot holds itself nowhere.
+[[nodiscard]] RestLoad least_load(const robotics::Model& model, robotics::FrameId tip);
+
 /// Of ACCELERATION and JERK, which hold for all joints of an arm, as its descriptor has them.
 inline constexpr double least_acceleration = 0.1, largest_acceleration = 20, least_jerk = 1, largest_jerk = 1000;
 

@@ -198,6 +198,52 @@ TEST(NewRobot, TakesALinkThatIsNoBodyWhereItIsOneWithWhatItIsFixedTo) {
   EXPECT_TRUE(heavy.warnings.empty()) << "said once";
 }
 
+/// A shoulder of two axes that meet, and whatever is between them; then a forearm.
+[[nodiscard]] std::string shoulder(const char* between, const char* at_end = "") {
+  return fmt::format(R"(<robot name="shoulder"><link name="base"/><link name="cross">{}</link>
+<joint name="yaw" type="revolute"><parent link="base"/><child link="cross"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1" effort="60"/></joint>
+<joint name="pitch" type="revolute"><parent link="cross"/><child link="arm"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" velocity="1" effort="60"/></joint>
+<link name="arm"><inertial><origin xyz="0.3 0 0"/><mass value="2"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>{}</robot>)",
+                     between, at_end);
+}
+
+TEST(NewRobot, TakesALinkOfNothingBetweenTwoJoints) {
+  constexpr const char* point =
+      R"(<inertial><mass value="0.1"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>)";
+  for (const char* cross : {"", point}) {
+    const auto found = judged(shoulder(cross));
+    ASSERT_TRUE(found.robot) << found.problems.front().message;
+    EXPECT_EQ(found.robot->model.joint_count(), 2);
+  }
+  const auto at_end = judged(shoulder("", R"(
+<joint name="roll" type="revolute"><parent link="arm"/><child link="hand"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" velocity="1" effort="60"/></joint>
+<link name="hand"><inertial><mass value="0.1"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>)"));
+  ASSERT_EQ(at_end.problems.size(), 1u) << "what carries nothing has to be a body";
+  EXPECT_EQ(at_end.problems[0].code, "U0607");
+  EXPECT_THAT(at_end.problems[0].message, HasSubstr("joint 'roll' moves link 'hand'"));
+  EXPECT_THAT(at_end.problems[0].hint, HasSubstr("--tip LINK --chain: arm (2 joints)"));
+  const auto half = judged(shoulder(
+      R"(<inertial><mass value="0.1"/><inertia ixx="0" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>)"));
+  ASSERT_FALSE(half.problems.empty()) << "a moment about some axes is an error in the file, wherever it is";
+  EXPECT_EQ(half.problems[0].code, "U0604");
+}
+
+TEST(NewRobot, ProposesAToolThatNearlyAllJointsMove) {
+  const auto part = [](const char* name, const char* parent, const char* type) {
+    return fmt::format(
+        R"(<link name="{0}"><inertial><mass value="0.1"/><inertia ixx="0.001" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="0.001"/></inertial></link>
+<joint name="to_{0}" type="{2}"><parent link="{1}"/><child link="{0}"/><axis xyz="0 1 0"/><limit lower="0" upper="1" velocity="1" effort="60"/></joint>)",
+        name, parent, type);
+  };
+  const auto found = judged("<robot name=\"mobile\"><link name=\"base\"/>" + part("wheel", "base", "revolute") +
+                            part("shoulder", "base", "revolute") + part("elbow", "shoulder", "revolute") +
+                            part("wrist", "elbow", "revolute") + part("flange", "wrist", "fixed") +
+                            part("finger", "wrist", "prismatic") + "</robot>");
+  ASSERT_EQ(found.problems.size(), 1u);
+  EXPECT_EQ(found.problems[0].code, "U0603");
+  EXPECT_THAT(found.problems[0].hint, HasSubstr("--tip flange; ends that move are: wheel, flange, finger"));
+}
+
 TEST(NewRobot, EveryCodeIsExplained) {
   const std::string page = in_repository("docs/urdf-errors.md");
   for (const char* code : {"U0601", "U0602", "U0603", "U0604", "U0605", "U0606", "U0607", "U0608", "U0609", "U0610",

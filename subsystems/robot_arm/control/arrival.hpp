@@ -28,8 +28,12 @@ class Arrival {
   [[nodiscard]] bool tell_half(bool behind) noexcept;
 
   // --- at the end of its path ---------------------------------------------------------------------------------------------
-  /// What the joints have left, rad or m, is no more than `tolerance`, and the tool is where it is to be.
-  [[nodiscard]] bool there(const JointVector& left, double tolerance, const Vector3& tool_m) const noexcept;
+  /// It has come to its end, which has the tool there: a goal of joints has it nowhere else, and who has a pose for a goal is turned so. Nothing is
+  /// asked of the tool of who has no goal.
+  void end_path(const robotics::Pose& tool) noexcept;
+  [[nodiscard]] bool path_ended() const noexcept { return path_ended_; }
+  /// What the joints have left, rad or m, is no more than `tolerance`, and the tool is as it is to be.
+  [[nodiscard]] bool there(const JointVector& left, double tolerance, const robotics::Pose& tool) const noexcept;
   /// Each cycle.
   void wait(bool there, double cycle_s) noexcept;
   [[nodiscard]] bool settled() const noexcept;
@@ -40,6 +44,8 @@ class Arrival {
   To to_{To::Nowhere};
   bool half_told_{false};
   std::optional<Vector3> tool_to_m_;
+  std::optional<robotics::Matrix3> turned_to_;
+  bool path_ended_{false};
   double waited_s_{0};
   double settled_s_{0};
 };

@@ -38,17 +38,58 @@ TEST(Arrival, IsOverdueThreeSecondsAfterTheEndOfThePath) {
   EXPECT_FALSE(arrival.overdue()) << "the next motion has its own time";
 }
 
-TEST(Arrival, OfAPoseIsWhereTheToolIsToo) {
+/// Beside a pose, along y, and turned off it about its z.
+robotics::Pose off_pose(const robotics::Pose& pose, double beside_m, double turned_rad) {
+  return {pose.rotation * Eigen::AngleAxisd{turned_rad, Vector3::UnitZ()}.toRotationMatrix(),
+          pose.position + Vector3{0, beside_m, 0}};
+}
+const robotics::Pose end_of_path{Eigen::AngleAxisd{2.0, Vector3{1, 2, 3}.normalized()}.toRotationMatrix(),
+                                 {0.4, 0.1, 0.3}};
+
+TEST(Arrival, OfAPoseIsWhereTheToolIsTooAndTurnedAsItsPathEnds) {
   Arrival arrival;
   arrival.begin(Arrival::To::Goal);
-  const Vector3 tool_goal_m{0.4, 0.1, 0.3};
-  const Vector3 beside_m = tool_goal_m + Vector3{0, 0.002, 0};
-  EXPECT_TRUE(arrival.there(joints_left(-0.009), tolerance_rad, beside_m)) << "nothing is said of the tool";
-  EXPECT_FALSE(arrival.there(joints_left(-0.011), tolerance_rad, beside_m));
-  arrival.expect_tool(tool_goal_m);
-  EXPECT_FALSE(arrival.there(joints_left(0), tolerance_rad, beside_m));
-  EXPECT_TRUE(arrival.there(joints_left(0), tolerance_rad, tool_goal_m + Vector3{0, 0.0009, 0}));
-  EXPECT_FALSE(arrival.there(joints_left(0.011), tolerance_rad, tool_goal_m));
+  EXPECT_TRUE(arrival.there(joints_left(-0.009), tolerance_rad, off_pose(end_of_path, 0.002, 0.002)))
+      << "nothing is said of the tool";
+  EXPECT_FALSE(arrival.there(joints_left(-0.011), tolerance_rad, end_of_path));
+  // Where it is to be is said; as its path ends it is beside that, by what is borne.
+  const robotics::Pose goal = off_pose(end_of_path, 0.0005, 0.005);
+  arrival.expect_tool(goal.position);
+  EXPECT_FALSE(arrival.there(joints_left(0), tolerance_rad, off_pose(goal, 0.0011, 0)));
+  EXPECT_TRUE(arrival.there(joints_left(0), tolerance_rad, off_pose(goal, 0.0009, 0.1))) << "its path has not ended";
+  EXPECT_FALSE(arrival.path_ended());
+  arrival.end_path(end_of_path);
+  EXPECT_TRUE(arrival.path_ended());
+  EXPECT_TRUE(arrival.there(joints_left(0), tolerance_rad, off_pose(end_of_path, 0.0014, 0.0009)));
+  EXPECT_FALSE(arrival.there(joints_left(0), tolerance_rad, off_pose(end_of_path, -0.0006, 0)));
+  EXPECT_FALSE(arrival.there(joints_left(0), tolerance_rad, off_pose(end_of_path, 0, 0.0011)));
+  EXPECT_FALSE(arrival.there(joints_left(0), tolerance_rad, off_pose(end_of_path, 0, -0.0011)));
+  EXPECT_FALSE(arrival.there(joints_left(0.011), tolerance_rad, end_of_path));
+}
+
+TEST(Arrival, OfAPostureIsWhereThatHasTheTool) {
+  Arrival arrival;
+  arrival.begin(Arrival::To::Goal);
+  arrival.end_path(end_of_path);
+  EXPECT_FALSE(arrival.there(joints_left(0), tolerance_rad, off_pose(end_of_path, 0.0011, 0)));
+  EXPECT_TRUE(arrival.there(joints_left(0), tolerance_rad, off_pose(end_of_path, 0.0009, 0.1)))
+      << "its joints say how it is turned";
+  EXPECT_FALSE(arrival.there(joints_left(0.011), tolerance_rad, end_of_path));
+  arrival.begin(Arrival::To::Goal);
+  EXPECT_TRUE(arrival.there(joints_left(0), tolerance_rad, off_pose(end_of_path, 1, 1)))
+      << "that was the motion before";
+  EXPECT_FALSE(arrival.path_ended());
+}
+
+TEST(Arrival, OfWhoHasNoGoalAsksNothingOfTheTool) {
+  for (const Arrival::To to : {Arrival::To::Nowhere, Arrival::To::WayBack}) {
+    Arrival arrival;
+    arrival.begin(to);
+    arrival.end_path(end_of_path);
+    EXPECT_TRUE(arrival.path_ended());
+    EXPECT_TRUE(arrival.there(joints_left(-0.009), tolerance_rad, off_pose(end_of_path, 0.01, 0.01)));
+    EXPECT_FALSE(arrival.there(joints_left(-0.011), tolerance_rad, end_of_path));
+  }
 }
 
 TEST(Arrival, TellsHalfOfItOnceAndOnlyOfWhoHasAGoal) {

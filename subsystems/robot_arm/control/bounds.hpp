@@ -11,7 +11,8 @@
 
 namespace hirosco::robot_arm {
 
-/// Limits of the URDF file, joint by joint; acceleration and jerk, which it does not have, are 0. In words, with its name, which joint lacks the
+/// Limits of the URDF file, joint by joint; acceleration and jerk, which it does not have, are 0. No joint is led faster than half of what dry
+/// friction leaves of its effort drives it against its damping, whatever the file says (docs/adr/0211). In words, with its name, which joint lacks the
 /// effort or velocity that each must have.  Realtime: allocates.
 [[nodiscard]] std::expected<std::vector<JointBounds>, std::string> bounds_of(const robotics::Model& model);
 

@@ -41,6 +41,7 @@ struct JointBounds {
   double highest{HUGE_VAL};
   double effort{0};
   robotics::MotionLimits motion{};
+  double told_velocity{0};  ///< of its file: who is pushed may have it, though he is led slower
 };
 using Bounds = std::span<const JointBounds>;
 

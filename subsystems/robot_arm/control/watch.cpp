@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/control/watch.hpp"
 
+#include <algorithm>
 #include <bit>
 
 namespace hirosco::robot_arm {
@@ -28,7 +29,7 @@ std::optional<Finding> Watch::update(const Measured& measured, const JointVector
     const double lowest = its.lowest - past, highest = its.highest + past;
     look(Excess::Position, joint, position, position < lowest ? its.lowest : its.highest,
          position >= lowest && position <= highest);
-    const double fastest = limits.speed_share * its.motion.velocity;
+    const double fastest = limits.speed_share * std::max(its.motion.velocity, its.told_velocity);
     look(Excess::Speed, joint, speed, fastest, std::abs(speed) <= fastest);
     const double soft = limits.torque_share * its.effort, hard = limits.torque_hard_share * its.effort;
     look(Excess::Torque, joint, torque, soft, std::abs(torque) <= soft);
