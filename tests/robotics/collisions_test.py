@@ -30,6 +30,7 @@ ROBOTS = {"ur5_robot": ("ur5_robot", "tool0", {}, {}), "panda": ("panda", "panda
           "tiago_no_hand": ("tiago_no_hand", "wrist_ft_tool_link", {"wheel_left_joint": 0, "wheel_right_joint": 0}, {})}
 LEAST_REACHED = 0.95
 TOO_NEAR = "800a"
+NOT_MOVED = 1e-3  # rad or m
 
 
 class Arm:
@@ -102,6 +103,8 @@ def campaign(arm, goals, seed):
             continue
         text, trail = arm.move(start, goal)
         became = outcome_of(text)
+        if became == "stopped" and trail and max(numpy.abs(where - start).max() for where in trail) < NOT_MOVED:
+            became = "refused"  # its way was judged while it stood
         if became in ("reached", "stopped") and (touched := arm.judge.contact(trail)):
             became = f"contact of {touched}"
         kind = became if became in ("reached", "refused", "stopped") else "other"
