@@ -56,17 +56,18 @@ void FloatingGuidance::engage() noexcept {
   error_m_ = 0;
 }
 
+/// Whoever holds from here on keeps what is, of the base, too, where it has turned as it would; while it comes to rest yet it turns on.
 void FloatingGuidance::stand() noexcept {
   joints_goal_ = joints_from_ = parts_.drives.measured().position;
   tool_goal_ = {parts_.craft.tool(), Vector3::Zero()};
+  if (phase_ != Phase::Holds || !base_let_go_) return;
+  base_kept_ = parts_.craft.attitude();
+  base_let_go_ = false;
 }
 
-/// Whoever holds from here on keeps what is, of the base, too, where it has turned as it would.
 void FloatingGuidance::come_to_hold() noexcept {
   phase_ = Phase::Holds;
   stand();
-  if (base_let_go_) base_kept_ = parts_.craft.attitude();
-  base_let_go_ = false;
 }
 
 void FloatingGuidance::end_motion() noexcept {
@@ -100,7 +101,11 @@ FloatingGuidance::News FloatingGuidance::advance() noexcept {
     else stand();
     return News::None;
   }
-  if (phase_ == Phase::GoesOut) return go_out();
+  if (phase_ == Phase::GoesOut) {
+    tool_goal_ = {parts_.craft.tool(),
+                  Vector3::Zero()};  // it is to be nowhere else: ERR tells of no way that nobody goes
+    return go_out();
+  }
   moved_s_ += cycle_s_;
   const Course at = course(moved_s_, duration_s_);
   parts_.parameters.progress.store(at.share);
@@ -114,7 +119,7 @@ FloatingGuidance::News FloatingGuidance::advance() noexcept {
 }
 
 /// A step in a cycle, while it stands. Its course has begun with the telecommand, and is so flat there that it is joined where it has come to by then: of 26 mm in a
-/// second, which is the most, 0.07 mm and 3 mm/s; of 0.2 m in 20 s a thousandth of that. Of joints likewise: of the 0.1 rad that are the most in a second nothing that is seen.
+/// second, which is the most, 0.07 mm and 3 mm/s; of 0.2 m in 20 s a thousandth of that. Of joints likewise: of the 0.1 rad that are the most in a second 0.3 mrad and 12 mrad/s.
 FloatingGuidance::News FloatingGuidance::judge() noexcept {
   moved_s_ = std::min(moved_s_ + cycle_s_, most_missed * duration_s_);
   const bool of_joints = judges_ == Judges::JointsWay;

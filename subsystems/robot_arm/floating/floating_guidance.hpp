@@ -51,7 +51,7 @@ class FloatingGuidance {
   void begin(double cycle_s);
   /// Takes the present place as the reference, to which it came by no way: entering Operational moves nothing. What only judges goes on.
   void engage() noexcept;
-  /// Keeps joints and tool where they are.
+  /// Keeps joints and tool where they are; who holds, his base, too, where it was let go.
   void stand() noexcept;
   /// A motion goes on no further: it keeps to what it came to.
   void end_motion() noexcept;

@@ -16,8 +16,7 @@ constexpr Setpoints::WayBack back{.speed_share = 0.5, .longest_s = 60};
 
 }  // namespace
 
-FloatingWayOut::FloatingWayOut(const Parts& parts) noexcept
-    : parts_{parts}, abort_{parts.abort_path, longest_way_s} {}
+FloatingWayOut::FloatingWayOut(const Parts& parts) noexcept : parts_{parts}, abort_{parts.abort_path, longest_way_s} {}
 
 void FloatingWayOut::begin(double cycle_s) {
   setpoints_.emplace(parts_.known.model(), parts_.known.tip(), parts_.known.bounds(), cycle_s, back);
@@ -89,6 +88,8 @@ FloatingWayOut::At FloatingWayOut::no_way(const NoWayOut& why) noexcept {
 }
 
 double FloatingWayOut::progress() const noexcept {
+  // As far as its way is known may be less than it was to go.
+  if (retreats_ && setpoints_->at_rest() && setpoints_->retreated()) return 1;
   if (retreats_) return std::min(1.0, setpoints_->retracted_by() / retreat_);
   return abort_.goes() ? abort_.progress(*setpoints_) : 0;
 }
