@@ -91,7 +91,9 @@ std::optional<Reason> Beforehand::step_way(Setpoints& setpoints) noexcept {
     return plan(setpoints, way_.goal(), speed_share_);
   }
   auto why = forbids(way_.from(), way_.posture());
-  if (why) blocked_at_ = way_.share();
+  if (!why) return std::nullopt;
+  end();
+  blocked_at_ = way_.share();
   return why;
 }
 

@@ -69,12 +69,17 @@ TEST_F(RobotArmWay, ThatIsFreeIsGoneAMomentLaterHoweverFarItIs) {
   EXPECT_EQ(flown.rig.outcome(request), done);
 }
 
-TEST_F(RobotArmWay, AwayFromWhoIsTooNearAlreadyIsGone) {
-  keep_out(tool_at(turned(-0.05)));
+/// The ball stands 7 mm before the flange, with all other links farther from it on one side.
+TEST_F(RobotArmWay, AwayFromWhoIsTooNearAlreadyIsGoneAndNotThroughHim) {
+  keep_out(tool_at(turned(0.1)));
   operate();
-  const auto request = flown.move_j(turned(0.6));
-  flown.finish(request);
-  EXPECT_EQ(flown.rig.outcome(request), done);
+  const auto through = flown.move_j(turned(0.6));
+  flown.cycle(longest_judged);
+  EXPECT_THAT(flown.rig.outcome(through), StartsWith("1 3 8:800a"));
+  const auto away = flown.move_j(turned(-0.6));
+  flown.finish(away);
+  EXPECT_EQ(flown.rig.outcome(away), done);
+  EXPECT_EQ(flown.rig.events(too_near), 0);
 }
 
 TEST_F(RobotArmWay, IsGoneByNobodyWhoIsToldToHoldOrToStopWhileItIsJudged) {

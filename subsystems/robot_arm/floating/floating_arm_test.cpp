@@ -61,13 +61,16 @@ TEST_F(FloatingArmWay, OnWhichAVolumeIsDeclaredMeanwhileIsStoppedBeforeIt) {
 
 TEST_F(FloatingArmWay, IsGoneByNobodyWhoIsToldToHoldWhileItIsJudged) {
   begin(ready);
-  const auto request = move_tool(0.02, 0, 0, 2);
-  const auto hold = flown.rig.call("HOLD");
-  flown.cycle(200);
-  EXPECT_EQ(flown.rig.outcome(hold), "1 3 7");
-  EXPECT_THAT(flown.rig.outcome(request), StartsWith("1 3 8"));
-  flown.cycle(2000);
-  EXPECT_LT(flown.fastest, 1e-6);
+  for (const char* of : {"tool", "joints"}) {
+    const auto request = of == std::string_view{"tool"} ? move_tool(0.02, 0, 0, 2) : move_joint(turned(0.5), 8);
+    EXPECT_EQ(flown.rig.outcome(request), "1 3") << of;
+    const auto hold = flown.rig.call("HOLD");
+    flown.cycle(200);
+    EXPECT_EQ(flown.rig.outcome(hold), "1 3 7") << of;
+    EXPECT_THAT(flown.rig.outcome(request), StartsWith("1 3 8")) << of;
+    flown.cycle(2000);
+    EXPECT_LT(flown.fastest, 1e-6) << of;
+  }
 }
 
 TEST(FloatingArmThatIsSlow, IsNotConfiguredWithACycleThatLeavesNoLaw) {

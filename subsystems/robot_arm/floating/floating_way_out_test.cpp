@@ -183,6 +183,27 @@ TEST_F(FloatingArmOut, OvercomesNoBrakes) {
   EXPECT_EQ(flown.rig.outcome(goes), aborted);
 }
 
+TEST_F(FloatingArmOut, IsSomethingThatADescriptorMayLeaveOut) {
+  std::string text = robot_arm::testing::floating_descriptor();
+  const auto cut = [&](const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.erase(at, text.find(to, at) + to.size() - at);
+  };
+  cut("<StructRef name=\"ABORT_PATH\"", R"(minimum="1" maximum="30" writable="PreOperational SafeOperational"/>)");
+  for (const char* function : {"RETREAT", "MOVE_ABORT", "CHECK_ABORT"})
+    cut(std::string{"<Function name=\""} + function, "</Function>");
+  cut("<Event name=\"RETRACTED\"", "</Event>");
+  robot_arm::testing::FlownFloating other{text};
+  other.plant.place(ready);
+  other.operate();
+  const JointVector there = turned(0.1);
+  const auto motion =
+      other.rig.call("MOVE_JOINT", {there[0], there[1], there[2], there[3], there[4], there[5], there[6], 3});
+  other.finish(motion);
+  EXPECT_EQ(other.rig.outcome(motion), done);
+}
+
 TEST_F(FloatingArmOut, AWayOfJointsThatSomebodyIsInIsToldWithThePairAndWhereAndNothingMoves) {
   begin(ready);
   keep_out(tool_at(turned(0.45)));

@@ -35,7 +35,8 @@ struct FlownFloating : hirosco::testing::Driven {
   Plant plant{model};
   double fastest{0};
 
-  FlownFloating() : Driven{make_floating_arm(), floating_descriptor(), "mcs-arm"} {
+  explicit FlownFloating(const std::string& descriptor_text = floating_descriptor())
+      : Driven{make_floating_arm(), descriptor_text, "mcs-arm"} {
     plant.set_gravity(robotics::Vector3::Zero());
     plant.step_s = 250e-6;
   }
@@ -82,8 +83,8 @@ struct FloatingWay : ::testing::Test {
     return request;
   }
   hirosco::testing::Sent move_joint(const JointVector& goal, double duration_s) {
-    const auto request = flown.rig.call(
-        "MOVE_JOINT", {goal[0], goal[1], goal[2], goal[3], goal[4], goal[5], goal[6], duration_s});
+    const auto request =
+        flown.rig.call("MOVE_JOINT", {goal[0], goal[1], goal[2], goal[3], goal[4], goal[5], goal[6], duration_s});
     flown.cycle(3);
     return request;
   }
