@@ -52,8 +52,8 @@ AbortMotion::At AbortMotion::set_out(Setpoints& setpoints) noexcept {
   for (std::size_t i = posture_ + 1; i < way.size(); ++i)
     duration_s_ += setpoints.duration_s(way.posture(i - 1), way.posture(i), speed_share_);
   if (duration_s_ > longest_s_)
-    return no_way({NoWayOut::Why::TooSlow, goes ? would_last : would_last_as_usual,
-                   static_cast<std::int64_t>(longest_s_)});
+    return no_way(
+        {NoWayOut::Why::TooSlow, goes ? would_last : would_last_as_usual, static_cast<std::int64_t>(longest_s_)});
   if (!goes) return At::Judged;
   phase_ = Phase::Goes;
   return go(setpoints) ? At::OnWay : no_way({NoWayOut::Why::NoPath, "it is no place"});

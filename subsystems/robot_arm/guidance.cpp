@@ -221,8 +221,7 @@ Outcome Guidance::move_abort(const FunctionValues& values) noexcept {
 Outcome Guidance::check_abort() noexcept { return judge_abort(AbortWay::Judged::PathAlone, usual_share); }
 
 Outcome Guidance::judge_abort(AbortWay::Judged what, double speed_share) noexcept {
-  if (const auto none = parts_.abort_path.begin(setpoints_->now().position, what))
-    return refused_for(reason_of(*none));
+  if (const auto none = parts_.abort_path.begin(setpoints_->now().position, what)) return refused_for(reason_of(*none));
   end_motion();
   arrival_.begin(Arrival::To::Goal);
   abort_.begin(what, speed_share);

@@ -168,8 +168,7 @@ TEST(Servicer, GoesBackByTheWayItsJointsCameAndHoldsWhereItIsThen) {
     ASSERT_TRUE(craft.craft().command("MCS", "MOVE_TOOL", {0.15, 0.0, 0.0, 8.0}, 40s).completed)
         << mode << craft.flight().story().text();
     ASSERT_GT(off(), 0.03) << mode;
-    EXPECT_TRUE(craft.craft().command("MCS", "RETREAT", {1.0}, 40s).completed)
-        << mode << craft.flight().story().text();
+    EXPECT_TRUE(craft.craft().command("MCS", "RETREAT", {1.0}, 40s).completed) << mode << craft.flight().story().text();
     EXPECT_TRUE(craft.flight().story().has("RETRACTED DISTANCE=")) << mode;
     EXPECT_LT(off(), 0.02) << mode;
     const auto tool = craft.tool_m();

@@ -46,8 +46,7 @@ struct FloatingAbortFlown : ::testing::Test {
 /// The tool swings about the base's axis z; the ball is where it would be with 0.8 rad at the first joint, and is told of when it is under way.
 TEST_F(FloatingAbortFlown, IsAStepOfAPlanThatLeadsTheArmOutOnceItStands) {
   EXPECT_TRUE(flown->craft().command("MCS", "CHECK_ABORT", {}, 5s).completed) << flown->story().text();
-  const auto begun =
-      flown->craft().command("MCS", "MOVE_JOINT", {1.0, 0.75, -0.3, -1.25, -0.05, 1.85, 0.0, 20.0}, 3s);
+  const auto begun = flown->craft().command("MCS", "MOVE_JOINT", {1.0, 0.75, -0.3, -1.25, -0.05, 1.85, 0.0, 20.0}, 3s);
   ASSERT_TRUE(begun.started) << flown->story().text();
   std::vector<Value> volumes(28, Value{0.0});
   constexpr std::array ball{0.783, 0.622, 2.602, 0.783, 0.622, 2.602, 0.05};
