@@ -102,8 +102,8 @@ FloatingGuidance::News FloatingGuidance::advance() noexcept {
     return News::None;
   }
   if (phase_ == Phase::GoesOut) {
-    tool_goal_ = {parts_.craft.tool(),
-                  Vector3::Zero()};  // it is to be nowhere else: ERR tells of no way that nobody goes
+    // It is to be nowhere else: ERR tells of no way that nobody goes.
+    tool_goal_ = {parts_.craft.tool(), Vector3::Zero()};
     return go_out();
   }
   moved_s_ += cycle_s_;
