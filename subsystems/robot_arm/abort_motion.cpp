@@ -11,7 +11,7 @@ namespace {
 
 /// A setpoint that is no farther from a posture has gone there.
 constexpr double at_posture = 1e-6;
-constexpr const char* would_last_as_usual = "at a SPEED of 0.25 it would take longer, s";
+constexpr const char* would_last_as_usual = "without a SPEED it would take longer, s";
 
 }  // namespace
 
@@ -37,10 +37,10 @@ AbortMotion::At AbortMotion::judge(Setpoints& setpoints) noexcept {
   switch (path_.judge()) {
     case AbortWay::Found::NotYet: return At::OnWay;
     case AbortWay::Found::Way: return set_out(setpoints);
-    case AbortWay::Found::Nothing: break;
+    case AbortWay::Found::Nothing:
+    case AbortWay::Found::TooLong: break;
   }
-  const auto& near = path_.way().in_the_way();
-  return no_way({Trouble::too_near, near.names, millimetres(near.distance_m)});
+  return no_way(path_.why());
 }
 
 /// Of a path that is judged alone it is seen whether a telecommand could wait for it; the other one goes.
@@ -51,15 +51,15 @@ AbortMotion::At AbortMotion::set_out(Setpoints& setpoints) noexcept {
   duration_s_ = goes ? setpoints.duration_s(way.here(), way.posture(posture_), speed_share_) : 0;
   for (std::size_t i = posture_ + 1; i < way.size(); ++i)
     duration_s_ += setpoints.duration_s(way.posture(i - 1), way.posture(i), speed_share_);
-  if (duration_s_ > longest_motion_s)
+  if (duration_s_ > longest_s_)
     return no_way(
-        {Trouble::too_slow, goes ? would_last : would_last_as_usual, static_cast<std::int64_t>(longest_motion_s)});
+        {NoWayOut::Why::TooSlow, goes ? would_last : would_last_as_usual, static_cast<std::int64_t>(longest_s_)});
   if (!goes) return At::Judged;
   phase_ = Phase::Goes;
-  return go(setpoints) ? At::OnWay : no_way({Trouble::no_goal, "it is no place"});
+  return go(setpoints) ? At::OnWay : no_way({NoWayOut::Why::NoPath, "it is no place"});
 }
 
-AbortMotion::At AbortMotion::no_way(const Reason& why) noexcept {
+AbortMotion::At AbortMotion::no_way(const NoWayOut& why) noexcept {
   why_ = why;
   return At::NoWay;
 }

@@ -7,7 +7,7 @@
 
 #include "subsystems/robot_arm/abort_path.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
-#include "subsystems/robot_arm/trouble.hpp"
+#include "subsystems/robot_arm/no_way_out.hpp"
 
 namespace hirosco::robot_arm {
 
@@ -15,7 +15,8 @@ namespace hirosco::robot_arm {
 /// Realtime: bounded, no allocation. Thread: the cycle, and the service loop while there is none.
 class AbortMotion {
  public:
-  explicit AbortMotion(AbortPath& path) noexcept : path_{path} {}
+  /// `longest_s`: a telecommand is waited for a little longer.
+  AbortMotion(AbortPath& path, double longest_s) noexcept : path_{path}, longest_s_{longest_s} {}
 
   /// The path has begun to be judged; then it is gone with this share of the joints' velocities, where that is to be.
   void begin(AbortWay::Judged what, double speed_share) noexcept;
@@ -36,7 +37,7 @@ class AbortMotion {
   /// Each cycle while it is under way.
   [[nodiscard]] At step(Setpoints& setpoints) noexcept;
   /// Of NoWay.
-  [[nodiscard]] const Reason& why() const noexcept { return why_; }
+  [[nodiscard]] const NoWayOut& why() const noexcept { return why_; }
 
   // --- of all, while it goes ----------------------------------------------------------------------------------------------
   [[nodiscard]] double duration_s() const noexcept { return duration_s_; }
@@ -47,17 +48,18 @@ class AbortMotion {
   enum class Phase : std::uint8_t { None, Judged, Goes };
   [[nodiscard]] At judge(Setpoints& setpoints) noexcept;
   [[nodiscard]] At set_out(Setpoints& setpoints) noexcept;
-  [[nodiscard]] At no_way(const Reason& why) noexcept;
+  [[nodiscard]] At no_way(const NoWayOut& why) noexcept;
   [[nodiscard]] bool go(Setpoints& setpoints) noexcept;
 
   AbortPath& path_;
+  double longest_s_;
   Phase phase_{Phase::None};
   AbortWay::Judged what_{};
   double speed_share_{0};
   std::size_t posture_{0};  ///< to which it goes, from 0
   double gone_s_{0};  ///< behind which it was before
   double duration_s_{0};
-  Reason why_;
+  NoWayOut why_;
 };
 
 }  // namespace hirosco::robot_arm

@@ -13,10 +13,6 @@ constexpr double most_off_line_m = 0.002;
 constexpr double longest_wait_s = 12;
 /// With which MOVE_ABORT goes unless it is told another one: who says that a path is free says it of this.
 constexpr double usual_share = 0.25;
-constexpr const char* ends_range = "on the line ends the range of joint";
-/// No longer: a failure carries 64 octets of words.
-constexpr const char* ends_reach = "a singular posture, or it leads out of reach, after mm";
-constexpr const char* singular_there = "a singular posture has the tool there";
 
 [[nodiscard]] bool in_range(Bounds bounds, const JointVector& goal) noexcept {
   for (std::size_t i = 0; i < bounds.size(); ++i) {
@@ -32,25 +28,21 @@ constexpr const char* singular_there = "a singular posture has the tool there";
   return robotics::Pose{wanted.normalized().toRotationMatrix(), {values[0], values[1], values[2]}};
 }
 
-/// Of a search that has found nothing.
-[[nodiscard]] Reason no_posture(PoseSearch& search) noexcept {
-  if (const auto joint = search.joint_at_its_end())
-    return {Trouble::out_of_range, "before it is there ends the range of joint", static_cast<std::int64_t>(*joint + 1)};
-  if (search.nearly() && search.singular()) return {Trouble::singular, singular_there};
-  return {Trouble::out_of_reach, "as near as it comes, mm", millimetres(search.off_m())};
-}
+[[nodiscard]] Outcome refused_for(const Reason& why) noexcept { return refused(why.trouble, why.text, why.number); }
 
-/// Of a line that was walked along in advance, and ends before its end.
-[[nodiscard]] Reason no_line(const Line& line) noexcept {
-  if (const auto joint = line.joint_in_the_way())
-    return {Trouble::line_lost, ends_range, static_cast<std::int64_t>(*joint + 1)};
-  return {Trouble::line_lost, ends_reach, millimetres(line.free_m())};
+[[nodiscard]] Reason reason_of(const NoWayOut& none) noexcept {
+  using Why = NoWayOut::Why;
+  const Trouble trouble = none.why == Why::OutOfRange ? Trouble::out_of_range
+                          : none.why == Why::TooNear  ? Trouble::too_near
+                          : none.why == Why::TooSlow  ? Trouble::too_slow
+                                                      : Trouble::no_goal;
+  return {trouble, none.text, none.number};
 }
 
 /// What is in the way can be seen from here alone: where it would be, a line needs another posture.
 [[nodiscard]] Reason line_left(const Setpoints& setpoints) noexcept {
   if (const auto joint = setpoints.joint_in_the_way())
-    return {Trouble::line_lost, ends_range, static_cast<std::int64_t>(*joint + 1)};
+    return {Trouble::line_lost, ends_range_on_line, static_cast<std::int64_t>(*joint + 1)};
   return {Trouble::line_lost, "on the line is a singular posture, after mm", millimetres(setpoints.gone_m())};
 }
 
@@ -59,7 +51,8 @@ constexpr const char* singular_there = "a singular posture has the tool there";
 void Guidance::begin(double cycle_s) {
   cycle_s_ = cycle_s;
   setpoints_.emplace(parts_.known.model(), parts_.known.tip(), parts_.known.bounds(), cycle_s_);
-  pose_search_.emplace(parts_.known.model(), parts_.known.tip(), parts_.known.bounds());
+  before_.begin(cycle_s_);
+  parts_.abort_path.begin_cycles(cycle_s_);
   retracting_ = false;
   end_motion();
 }
@@ -81,6 +74,7 @@ void Guidance::advance(bool led) noexcept {
   if (jog_left_s_ > 0 && (jog_left_s_ -= cycle_s_) <= 0) setpoints_->brake();
   if (led) setpoints_->begin(parts_.drives.measured().position);
   static_cast<void>(setpoints_->advance());
+  if (!at_rest()) before_.forget();
 }
 
 std::optional<double> Guidance::end_retract() noexcept {
@@ -94,8 +88,9 @@ void Guidance::tell() noexcept {
   parts_.parameters.motion.store({static_cast<std::uint8_t>(setpoints_->kind()), duration_s, progress()});
 }
 
-/// Of an abort path the whole, and not the way to a posture of it.
+/// Of an abort path the whole, and not the way to a posture of it; of who was not let go, where somebody is in his way.
 double Guidance::progress() const noexcept {
+  if (before_.blocked_at()) return *before_.blocked_at();
   return abort_.goes() ? abort_.progress(*setpoints_) : setpoints_->progress();
 }
 
@@ -103,8 +98,8 @@ Guidance::News Guidance::look(bool gives_way) noexcept {
   if (waiting_) return wait();
   if (abort_.under_way()) return look_at_abort(gives_way);
   if (setpoints_->off_line_m() > most_off_line_m) return lose_line();
-  if (searched_ || !line_judged_) {
-    const std::optional<Reason> why = searched_ ? search() : judge_line();
+  if (before_.under_way()) {
+    const std::optional<Reason> why = before_.step(*setpoints_);
     return why ? News{.end = End::NoWay, .why = *why} : News{};
   }
   News news;
@@ -156,46 +151,24 @@ Outcome Guidance::start_jog(Begin by, double seconds) noexcept {
   return running;
 }
 
-/// Where it may not stand: nearer to itself, or to what it keeps out of, than it may be and than it is.
-std::optional<Reason> Guidance::forbids(const JointVector& goal) noexcept {
-  const auto there = parts_.obstacles.nearer(setpoints_->now().position, goal);
-  if (there.distance_m == HUGE_VAL) return std::nullopt;
-  return Reason{Trouble::too_near, there.names, millimetres(there.distance_m)};
-}
-
 Outcome Guidance::move_j(const FunctionValues& values) noexcept {
   const std::size_t joints = parts_.known.joints();
   const JointVector goal = vector_of(std::span{values}.first(joints));
   if (!in_range(parts_.known.bounds(), goal)) return refused(Trouble::out_of_range);
-  if (const auto why = forbids(goal)) return refused(why->trouble, why->text, why->number);
-  return start(setpoints_->go(goal, values[joints]));
+  end_motion();
+  if (const auto why = before_.judge_way(*setpoints_, goal, values[joints])) return refused_for(*why);
+  arrival_.begin(Arrival::To::Goal);
+  return running;
 }
 
 Outcome Guidance::move_p(const FunctionValues& values) noexcept {
   const Result<robotics::Pose> goal = wanted_pose(values);
   if (!goal) return refused(Trouble::no_goal, goal.error().text);
-  pose_search_->begin(setpoints_->tip_with(*goal), setpoints_->now().position);
   end_motion();
+  before_.search(setpoints_->tip_with(*goal), setpoints_->now().position, values[7]);
   arrival_.begin(Arrival::To::Goal);
-  searched_ = Searched{goal->position, values[7]};
+  arrival_.expect_tool(goal->position);
   return running;
-}
-
-/// It stands meanwhile, and has a reason, or goes, in that cycle in which there is an answer.
-std::optional<Reason> Guidance::search() noexcept {
-  const PoseSearch::Found found = pose_search_->step();
-  if (found == PoseSearch::Found::NotYet) return std::nullopt;
-  const Searched wanted = *searched_;
-  searched_.reset();
-  if (found == PoseSearch::Found::Nothing) return no_posture(*pose_search_);
-  const JointVector& goal = pose_search_->posture();
-  if (pose_search_->singular()) return Reason{Trouble::singular, singular_there};
-  if (auto why = forbids(goal)) return why;
-  const Outcome started = start(setpoints_->go(goal, wanted.speed_share));
-  if (started.kind == Outcome::Kind::Refused)
-    return Reason{static_cast<Trouble>(started.code), started.reason.text, started.reason.value};
-  arrival_.expect_tool(wanted.tool_m);
-  return std::nullopt;
 }
 
 Outcome Guidance::move_l(const FunctionValues& values) noexcept {
@@ -204,21 +177,8 @@ Outcome Guidance::move_l(const FunctionValues& values) noexcept {
   const Outcome started = start(setpoints_->go_straight(*goal, {values[7], values[8]}));
   if (started.kind == Outcome::Kind::Refused) return started;
   arrival_.expect_tool(goal->position);
-  line_judged_ = false;
+  before_.judge_line();
   return started;
-}
-
-/// It stands until it was walked along in advance; whoever may not go stands on.
-std::optional<Reason> Guidance::judge_line() noexcept {
-  const Line& line = setpoints_->line();
-  if (line.found() == Line::Found::NotYet) return std::nullopt;
-  line_judged_ = true;
-  if (line.found() == Line::Found::Nothing) return no_line(line);
-  std::optional<Reason> why = forbids(line.posture());
-  if (!why && line.duration_s() > longest_motion_s)
-    why = Reason{Trouble::too_slow, would_last, static_cast<std::int64_t>(longest_motion_s)};
-  if (why) setpoints_->rest(setpoints_->now().position);
-  return why;
 }
 
 Outcome Guidance::retreat(const FunctionValues& values) noexcept {
@@ -262,8 +222,7 @@ Outcome Guidance::move_abort(const FunctionValues& values) noexcept {
 Outcome Guidance::check_abort() noexcept { return judge_abort(AbortWay::Judged::PathAlone, usual_share); }
 
 Outcome Guidance::judge_abort(AbortWay::Judged what, double speed_share) noexcept {
-  const Outcome stored = parts_.abort_path.begin(setpoints_->now().position, what);
-  if (stored.kind == Outcome::Kind::Refused) return stored;
+  if (const auto none = parts_.abort_path.begin(setpoints_->now().position, what)) return refused_for(reason_of(*none));
   end_motion();
   arrival_.begin(Arrival::To::Goal);
   abort_.begin(what, speed_share);
@@ -282,7 +241,7 @@ Guidance::News Guidance::look_at_abort(bool gives_way) noexcept {
     case At::Judged: news.end = End::Judged; break;
     case At::Last: news.end = arrive(gives_way); break;
     case At::Lost: news.end = End::NotReached; break;
-    case At::NoWay: news.end = End::NoWay, news.why = abort_.why(); break;
+    case At::NoWay: news.end = End::NoWay, news.why = reason_of(abort_.why()); break;
   }
   return news;
 }

@@ -7,8 +7,8 @@
 
 #include "hirosco/subsystem/author/handler.hpp"
 #include "subsystems/robot_arm/abort_motion.hpp"
+#include "subsystems/robot_arm/beforehand.hpp"
 #include "subsystems/robot_arm/control/arrival.hpp"
-#include "subsystems/robot_arm/control/pose_search.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/obstacles.hpp"
@@ -25,7 +25,7 @@ class Guidance {
   struct Parts {
     const UrdfArm& known;
     const Drives& drives;
-    Obstacles& obstacles;  ///< no goal is near them
+    Obstacles& obstacles;  ///< no goal is near them, and no way of joints
     Parameters& parameters;  ///< MOTION tells how far it is
     AbortPath& abort_path;
   };
@@ -61,8 +61,9 @@ class Guidance {
 
   // --- functions: refused, or running; all numbers in the order of the descriptor -----------------------------------------
   using Begin = Outcome (Guidance::*)(const FunctionValues&) noexcept;
+  /// Its way is judged while it stands, in the next cycles, before it goes.
   [[nodiscard]] Outcome move_j(const FunctionValues& values) noexcept;
-  /// The posture is looked for while it stands, in the next cycles, and judged before it goes.
+  /// The posture is looked for while it stands, in the next cycles, and judged; then the way to it, as move_j()'s.
   [[nodiscard]] Outcome move_p(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome move_l(const FunctionValues& values) noexcept;
   /// Back by the way it came.
@@ -87,8 +88,8 @@ class Guidance {
   [[nodiscard]] bool jogs(Begin by) const noexcept { return jog_ == by; }
   /// Whatever its time was, and whatever was looked for: nobody waits for it any more.
   void end_motion() noexcept {
-    jog_left_s_ = 0, jog_ = nullptr, searched_.reset(), line_judged_ = true;
-    waiting_.reset(), abort_.end();
+    jog_left_s_ = 0, jog_ = nullptr;
+    waiting_.reset(), abort_.end(), before_.end();
   }
 
   // --- in each cycle ------------------------------------------------------------------------------------------------------
@@ -106,9 +107,6 @@ class Guidance {
   [[nodiscard]] bool at_rest() const noexcept { return setpoints_->at_rest(); }
 
  private:
-  [[nodiscard]] std::optional<Reason> forbids(const JointVector& goal) noexcept;
-  [[nodiscard]] std::optional<Reason> search() noexcept;
-  [[nodiscard]] std::optional<Reason> judge_line() noexcept;
   [[nodiscard]] News lose_line() noexcept;
   [[nodiscard]] News wait() noexcept;
   [[nodiscard]] Outcome judge_abort(AbortWay::Judged what, double speed_share) noexcept;
@@ -120,14 +118,7 @@ class Guidance {
 
   Parts parts_;
   std::optional<Setpoints> setpoints_;
-  std::optional<PoseSearch> pose_search_;
-  /// MOVE_P whose posture is looked for.
-  struct Searched {
-    Vector3 tool_m{Vector3::Zero()};  ///< where the tool is to be
-    double speed_share{0};
-  };
-  std::optional<Searched> searched_;
-  bool line_judged_{true};
+  Beforehand before_{{parts_.known, parts_.obstacles}};
   /// RETREAT or MOVE_ABORT of who does not stand yet.
   struct Waiting {
     Begin begin{nullptr};
@@ -135,7 +126,7 @@ class Guidance {
     double left_s{0};
   };
   std::optional<Waiting> waiting_;
-  AbortMotion abort_{parts_.abort_path};
+  AbortMotion abort_{parts_.abort_path, longest_motion_s};
   Arrival arrival_;  ///< of the motion that was begun last
   double cycle_s_{0.001};
   double jog_left_s_{0};

@@ -100,6 +100,42 @@ TEST_F(RobotArmAbort, PathThatTakesLongerThanATelecommandMayIsToldByItsCheck) {
   EXPECT_LT(flown.off(start), 1e-3);
 }
 
+/// There and back by 4.8 rad, again and again: 241 cycles each at most.
+TEST_F(RobotArmAbort, PathIsNotJudgedForLongerThanIsDeclaredAndTheBoundIsNamed) {
+  std::vector<JointVector> path{turned(2.4), turned(-2.4), turned(2.4), turned(-2.4)};
+  flown.write("ABORT_JUDGING_LIMIT", 1.0);
+  store(path);
+  EXPECT_EQ(check(), "1 3 7");
+  path.push_back(turned(2.4));
+  path.push_back(turned(-2.4));
+  store(path);
+  const auto longer = flown.rig.call("CHECK_ABORT");
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(longer), StartsWith("1 4:8007"));
+  EXPECT_THAT(flown.rig.outcome(longer), HasSubstr(hex_of("longer than ABORT_JUDGING_LIMIT, ms")));
+  operate();
+  const auto out = flown.ask("MOVE_ABORT", {1});
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(out), StartsWith("1 4:8007")) << "what is not judged is not gone";
+  flown.cycle(300);
+  EXPECT_LT(flown.off(start), 1e-3);
+}
+
+/// One posture is looked at in a cycle, and everybody else is answered meanwhile.
+TEST_F(RobotArmAbort, TellsHowFarItIsJudgedAndKeepsNobodyWaiting) {
+  store({turned(2.4), turned(-2.4)});
+  const auto request = flown.rig.call("CHECK_ABORT");
+  flown.cycle(121);
+  EXPECT_EQ(flown.rig.outcome(request), "1 3");
+  EXPECT_NEAR(flown.told_number("ABORT_JUDGED"), 0.5, 0.05);
+  const auto ping = flown.rig.send(17, 1, {});
+  flown.cycle(3);
+  EXPECT_THAT(flown.rig.outcome(ping), ::testing::EndsWith("7"));
+  flown.finish(request);
+  EXPECT_EQ(flown.rig.outcome(request), "1 3 7");
+  EXPECT_EQ(flown.told_number("ABORT_JUDGED"), 1);
+}
+
 TEST_F(RobotArmAbort, PathIsCheckedForThePowerThatItMayGoWith) {
   store({turned(2.4), turned(-2.4), turned(2.4), turned(-2.4)});
   EXPECT_EQ(check(), "1 3 7");
@@ -238,7 +274,7 @@ TEST_F(RobotArmAbort, IsSomethingThatADescriptorMayLeaveOut) {
     ASSERT_NE(at, std::string::npos) << from;
     text.erase(at, text.find(to, at) + to.size() - at);
   };
-  cut("<StructRef name=\"ABORT_PATH\"", "<ParamRef name=\"ABORT_POSTURE\" id=\"65\" type=\"UINT8\"/>");
+  cut("<StructRef name=\"ABORT_PATH\"", R"(minimum="1" maximum="30" writable="PreOperational SafeOperational"/>)");
   cut("<Function name=\"MOVE_ABORT\"", "</Function>");
   cut("<Function name=\"CHECK_ABORT\"", "</Function>");
   Flown other{robot_arm::testing::model_of(file), text};

@@ -57,22 +57,6 @@ struct SlowlyFlown : Flown {
       numbers.insert(numbers.end(), each->begin(), each->end());
     return numbers;
   }
-  /// As TM[20,2] tells it.
-  double told_number(std::string_view name) {
-    const descriptor::SubsystemDescriptor& its = rig.descriptor();
-    const auto found = std::ranges::find(its.parameters, name, [](const auto& each) { return each.field.name; });
-    std::vector<std::byte> data(1 + 4);
-    OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{its.id, found->field.type, found->id}.wire());
-    rig.forget_telemetry();
-    static_cast<void>(rig.send(20, 1, data));
-    cycle(3);
-    for (const auto& each : rig.telemetry)
-      if (each.service == 20 && each.subtype == 2) {
-        OctetReader reader{Octets{each.data}.last(8)};
-        return reader.get<double>();
-      }
-    return 0;
-  }
 };
 
 TEST(RobotArmThatIsSlow, GoesWhereItIsToldToWithNothingChangedButItsCycleThoughItsLinksAreAFifthHeavierOrLighter) {

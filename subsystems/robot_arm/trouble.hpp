@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "subsystems/robot_arm/no_way_out.hpp"
+
 namespace hirosco::robot_arm {
 
 /// Failure codes of robot_arm.xml: why a function was refused or ended without its effect.
@@ -35,6 +37,5 @@ struct Reason {
 
 /// A telecommand is waited for a little longer.
 inline constexpr double longest_motion_s = 60;
-inline constexpr const char* would_last = "it would take longer, s";
 
 }  // namespace hirosco::robot_arm

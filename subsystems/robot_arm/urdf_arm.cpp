@@ -45,4 +45,11 @@ void UrdfArm::limit_motions(double acceleration, double jerk) noexcept {
   }
 }
 
+void UrdfArm::limit_motions_by_velocity(double span_s, double ramp_share) noexcept {
+  for (auto& bounds : bounds_) {
+    bounds.motion.acceleration = bounds.motion.velocity / span_s;
+    bounds.motion.jerk = bounds.motion.acceleration / (ramp_share * span_s);
+  }
+}
+
 }  // namespace hirosco::robot_arm

@@ -39,6 +39,8 @@ class UrdfArm {
   [[nodiscard]] Result<> take_bounds();
   /// What the file does not say of the joints' motions: rad/s2 or m/s2, and rad/s3 or m/s3, the same for all.
   void limit_motions(double acceleration, double jerk) noexcept;
+  /// Likewise, by its velocity: each joint has it in so many s, and its acceleration in such a share of them.
+  void limit_motions_by_velocity(double span_s, double ramp_share) noexcept;
 
   /// From read() on.
   [[nodiscard]] const robotics::Model& model() const noexcept { return *model_; }

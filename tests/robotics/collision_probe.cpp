@@ -17,7 +17,8 @@
 /// The arm of a URDF file as a judge may ask it: how far its pairs are apart, and what became of a motion that was asked of its subsystem, which flies
 /// on virtual time.
 ///   collision_probe MODEL.urdf TIP [FIXED,...]: first its joints, whose ranges it keeps, and its pairs; then an answer to each line of standard input:
-///   apart Q...: one number for each pair;  time FROM... GOAL...: how long the looks of a cycle take, us;  move FROM... GOAL...: where it was measured each 10 ms, then what its telecommand became.
+///   apart Q...: one number for each pair;  time FROM... GOAL...: how long the looks of a cycle take, us;  move FROM... GOAL...: where it was measured each 10 ms, then what its telecommand became;
+///   jog FROM... GOAL...: likewise, by JOG_J.
 namespace {
 
 using namespace hirosco;
@@ -73,13 +74,48 @@ void say(const JointVector& position) {
   return {taken[looks / 2], taken[looks * 99 / 100], taken.back()};
 }
 
-void move(Flown& flown, const JointVector& from, const JointVector& goal) {
+void stand_at(Flown& flown, const JointVector& from) {
   flown.command(State::SafeOperational);
   flown.plant.place(from);
   flown.cycle(5);
   flown.command(State::Operational);
   flown.rig.forget_telemetry();
   flown.rig.explanations.clear();
+}
+
+/// Whoever brakes comes to rest.
+void say_end(Flown& flown, const hirosco::testing::Sent& request, const JointVector& goal) {
+  for (int i = 0; i < 100; ++i) flown.cycle(cycles_between_places);
+  say(flown.plant.measured().position);
+  fmt::print("ended {} off {} {}\n", flown.rig.outcome(request), flown.off(goal),
+             flown.rig.explanations.empty() ? "" : flown.rig.explanations.back());
+}
+
+/// A quarter as fast as the joint may be that has farthest to go for that, said anew twice a second: nobody judges a way beforehand, and what stops it is who looks ahead.
+void jog(Flown& flown, const JointVector& from, const JointVector& goal) {
+  stand_at(flown, from);
+  const JointVector way = goal - from;
+  double rate_per_s = HUGE_VAL;
+  for (std::size_t i = 0; i < flown.n; ++i)
+    if (const double length = std::abs(way[static_cast<Eigen::Index>(i)]); length > 0)
+      rate_per_s = std::min(rate_per_s, 0.25 * flown.model.joints()[i].limits.velocity.value() / length);
+  const JointVector velocity = rate_per_s * way;
+  std::vector<double> numbers(velocity.begin(), velocity.end());
+  numbers.push_back(1);
+  hirosco::testing::Sent request;
+  constexpr int said_each = 500;
+  say(flown.plant.measured().position);
+  for (int cycles = 0; cycles * 1e-3 * rate_per_s < 1 && cycles < longest_cycles; cycles += cycles_between_places) {
+    if (cycles % said_each == 0) request = flown.ask("JOG_J", numbers);
+    flown.cycle(cycles_between_places);
+    say(flown.plant.measured().position);
+    if (flown.rig.outcome(request).find_first_of("48") != std::string::npos) break;
+  }
+  say_end(flown, request, goal);
+}
+
+void move(Flown& flown, const JointVector& from, const JointVector& goal) {
+  stand_at(flown, from);
   const auto request = flown.move_j(goal);
   int cycles = 0;
   const auto ended = [&] {
@@ -92,11 +128,7 @@ void move(Flown& flown, const JointVector& from, const JointVector& goal) {
     cycles += cycles_between_places;
     say(flown.plant.measured().position);
   }
-  // Whoever brakes comes to rest.
-  for (int i = 0; i < 100; ++i) flown.cycle(cycles_between_places);
-  say(flown.plant.measured().position);
-  fmt::print("ended {} off {} {}\n", flown.rig.outcome(request), flown.off(goal),
-             flown.rig.explanations.empty() ? "" : flown.rig.explanations.back());
+  say_end(flown, request, goal);
 }
 
 }  // namespace
@@ -141,7 +173,7 @@ int main(int argc, char** argv) {
       clearance.set_limit(limit_m);
       const JointVector from = read(in, joints), goal = read(in, joints);
       fmt::print("time {}\n", fmt::join(microseconds(clearance, from, goal), " "));
-    } else if (what == "move") {
+    } else if (what == "move" || what == "jog") {
       if (!flown) {
         flown = std::make_unique<Flown>(model, descriptor_of(model, file, tip, fixed));
         flown->plant.set_gravity({0, 0, 0});
@@ -149,7 +181,8 @@ int main(int argc, char** argv) {
         flown->operate();
       }
       const JointVector from = read(in, joints), goal = read(in, joints);
-      move(*flown, from, goal);
+      if (what == "move") move(*flown, from, goal);
+      else jog(*flown, from, goal);
     }
     std::cout.flush();
     std::fflush(stdout);

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -86,6 +87,20 @@ struct Driven {
     const auto request = rig.send(20, 3, data);
     cycle(3);
     ASSERT_EQ(rig.outcome(request), "1 3 7") << name;
+  }
+  /// A number (DOUBLE) as TM[20,2] tells it.
+  double told_number(std::string_view name) {
+    const descriptor::SubsystemDescriptor& its = rig.descriptor();
+    const auto found = std::ranges::find(its.parameters, name, [](const auto& each) { return each.field.name; });
+    if (found == its.parameters.end()) throw std::runtime_error{"no parameter " + std::string{name}};
+    std::vector<std::byte> data(1 + 4);
+    OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{its.id, found->field.type, found->id}.wire());
+    static_cast<void>(rig.send(20, 1, data));
+    cycle(3);
+    double number = 0;
+    for (const auto& each : rig.telemetry)
+      if (each.service == 20 && each.subtype == 2) number = OctetReader{Octets{each.data}.last(8)}.get<double>();
+    return number;
   }
   /// Cycles until a request has ended.
   int finish(Sent request, int most = 30'000) {

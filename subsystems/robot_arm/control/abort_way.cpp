@@ -8,8 +8,20 @@
 #include "subsystems/robot_arm/control/trail.hpp"
 
 namespace hirosco::robot_arm {
+namespace {
 
-void AbortWay::begin(std::span<const JointVector> postures, const JointVector& here, Judged what) noexcept {
+/// From one posture to the other, at least one. Of what is no number, or farther than anybody goes, more than anybody may look at.
+[[nodiscard]] std::size_t looks_between(const JointVector& from, const JointVector& to) noexcept {
+  constexpr double more_than_any = 1e6;
+  const double looks = std::ceil(apart(from, to) / AbortWay::spacing);
+  return looks < more_than_any ? static_cast<std::size_t>(std::max(1.0, looks))
+                               : static_cast<std::size_t>(more_than_any);
+}
+
+}  // namespace
+
+void AbortWay::begin(std::span<const JointVector> postures, const JointVector& here, Judged what,
+                     std::size_t most_looks) noexcept {
   size_ = std::min(postures.size(), most);
   std::ranges::copy(postures.first(size_), postures_.begin());
   here_ = here;
@@ -20,14 +32,36 @@ void AbortWay::begin(std::span<const JointVector> postures, const JointVector& h
   blocked_ = 0;
   found_ = size_ > 0 ? Found::NotYet : Found::Nothing;
   first_ = size_;
-  if (size_ > 0) look_along(postures_[size_ - 1], size_ - 1);
+  most_looks_ = most_looks;
+  looked_ = 0;
+  if (size_ == 0) return;
+  count_looks();
+  if (found_ == Found::NotYet) look_along(postures_[size_ - 1], size_ - 1);
+}
+
+/// The whole path, and at least the way to the nearest posture of it, is what it takes; the way to each of them is all that there may be.
+void AbortWay::count_looks() noexcept {
+  std::size_t path = 1, nearest = 0, to_all = 0;
+  for (std::size_t i = 1; i < size_; ++i) path += looks_between(postures_[i], postures_[i - 1]);
+  for (std::size_t i = 0; i < size_ && what_ == Judged::FromHere; ++i) {
+    const std::size_t looks = looks_between(here_, postures_[i]);
+    nearest = i == 0 ? looks : std::min(nearest, looks);
+    to_all += looks;
+  }
+  if (path + nearest > most_looks_) found_ = Found::TooLong;
+  all_looks_ = std::min(path + to_all, std::max<std::size_t>(1, most_looks_));
+}
+
+double AbortWay::progress() const noexcept {
+  if (found_ != Found::NotYet) return 1;
+  return std::min(1.0, static_cast<double>(looked_) / static_cast<double>(all_looks_));
 }
 
 void AbortWay::look_along(const JointVector& from, std::size_t to) noexcept {
   from_ = before_ = then_ = from;
   to_ = to;
   step_ = 0;
-  steps_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(apart(from_, postures_[to_]) / spacing)));
+  steps_ = looks_between(from_, postures_[to_]);
   step();
 }
 
@@ -39,6 +73,7 @@ void AbortWay::step() noexcept {
 
 void AbortWay::heed(const robotics::Clearance::Nearest& nearer) noexcept {
   if (found_ != Found::NotYet) return;
+  ++looked_;
   if (nearer.distance_m == HUGE_VAL) {
     if (step_ < steps_) step();
     else end_of_segment();
@@ -70,6 +105,10 @@ void AbortWay::join() noexcept {
     if (!tried_[i] && (nearest == size_ || apart(here_, postures_[i]) < apart(here_, postures_[nearest]))) nearest = i;
   if (nearest == size_) {
     found_ = Found::Nothing;
+    return;
+  }
+  if (looked_ + looks_between(here_, postures_[nearest]) > most_looks_) {
+    found_ = Found::TooLong;
     return;
   }
   tried_[nearest] = true;

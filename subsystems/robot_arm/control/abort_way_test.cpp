@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -28,10 +29,13 @@ struct AbortWayTest : ::testing::Test {
   std::vector<JointVector> looked_at;
   std::vector<bool> by_itself;  ///< of each of them
   double widest{0};
+  std::size_t most_looks{10'000};
+  std::vector<double> progress;  ///< behind each look
 
   Found judge(const std::vector<JointVector>& postures, const JointVector& here, Judged what = Judged::FromHere) {
-    way.begin(postures, here, what);
+    way.begin(postures, here, what, most_looks);
     looked_at.clear();
+    progress.clear();
     by_itself.clear();
     widest = 0;
     for (int cycle = 0; cycle < 10'000 && way.found() == Found::NotYet; ++cycle) {
@@ -40,6 +44,7 @@ struct AbortWayTest : ::testing::Test {
       if (what == Judged::FromHere) widest = std::max(widest, apart(way.before(), way.then()));
       const std::string name = in_the_way(way.then());
       way.heed(name.empty() ? robotics::Clearance::Nearest{} : robotics::Clearance::Nearest{0.01, wall});
+      progress.push_back(way.progress());
     }
     return way.found();
   }
@@ -133,6 +138,49 @@ TEST_F(AbortWayTest, JudgedAloneIsFreeFromItsFirstPostureToItsLastOrNotAtAll) {
   wall_between(-0.1, 0.01);
   EXPECT_EQ(judge(path, at(3, 0), Judged::PathAlone), Found::Nothing);
   EXPECT_EQ(way.blocked(), 0u) << "the first one itself";
+}
+
+/// A posture, a radian to the next and a radian to another: 101 looks.
+TEST_F(AbortWayTest, ThatTakesMoreLooksThanItMayIsNotJudgedAtAll) {
+  const std::vector path{at(0, 0), at(1, 0), at(1, 1)};
+  most_looks = 101;
+  EXPECT_EQ(judge(path, at(-3, 0), Judged::PathAlone), Found::Way);
+  EXPECT_EQ(looked_at.size(), most_looks);
+  most_looks = 100;
+  EXPECT_EQ(judge(path, at(-3, 0), Judged::PathAlone), Found::TooLong);
+  EXPECT_TRUE(looked_at.empty()) << "it is known before";
+  EXPECT_EQ(way.progress(), 1);
+  most_looks = 200;
+  EXPECT_EQ(judge(path, at(-3, 0)), Found::TooLong) << "150 more are the way to the nearest";
+}
+
+/// 176 looks are the path, 25 the way to its nearest posture, which is blocked at the sixth, and 50 that to the next nearest.
+TEST_F(AbortWayTest, IsGivenUpWhereTheNextWayToItTakesMoreThanWhatIsLeft) {
+  const std::vector path{at(-1, 0), at(-1, 1), at(0.5, 1), at(0.5, 0)};
+  in_the_way = [](const JointVector& where) { return where[0] > 0.1 && where[0] < 0.3 && where[1] < 0.5 ? wall : ""; };
+  most_looks = 176 + 25 - 1;
+  EXPECT_EQ(judge(path, at(0, 0)), Found::TooLong);
+  EXPECT_TRUE(looked_at.empty());
+  most_looks = 176 + 6 + 50 - 1;
+  EXPECT_EQ(judge(path, at(0, 0)), Found::TooLong) << "whoever was in the way of the nearest";
+  EXPECT_EQ(looked_at.size(), 176u + 6u);
+  most_looks = 176 + 6 + 50;
+  EXPECT_EQ(judge(path, at(0, 0)), Found::Way);
+  EXPECT_EQ(way.joined(), 0u);
+  EXPECT_EQ(looked_at.size(), most_looks);
+}
+
+TEST_F(AbortWayTest, TellsHowMuchOfWhatThereMayBeWasLookedAt) {
+  const std::vector path{at(1, 0), at(0.5, 0)};
+  ASSERT_EQ(judge(path, at(0, 0)), Found::Way);
+  ASSERT_EQ(progress.size(), 51u);
+  EXPECT_TRUE(std::ranges::is_sorted(progress));
+  EXPECT_NEAR(progress[25], 26.0 / (26 + 25 + 50), 1e-12) << "the path, and the way to either of its postures";
+  EXPECT_EQ(progress.back(), 1);
+}
+
+TEST_F(AbortWayTest, ToWhereNobodyComesIsNotJudged) {
+  EXPECT_EQ(judge({at(0, 0), at(HUGE_VAL, 0)}, at(0, 0), Judged::PathAlone), Found::TooLong);
 }
 
 TEST_F(AbortWayTest, OfNoPostureIsNone) { EXPECT_EQ(judge({}, at(0, 0)), Found::Nothing); }

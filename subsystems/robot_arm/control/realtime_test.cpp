@@ -10,6 +10,7 @@
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
 #include "subsystems/robot_arm/control/pose_search.hpp"
 #include "subsystems/robot_arm/control/setpoints.hpp"
+#include "subsystems/robot_arm/control/straight_way.hpp"
 #include "subsystems/robot_arm/control/watch.hpp"
 #include "subsystems/robot_arm/control/work_watch.hpp"
 #include "subsystems/robot_arm/testing/plant.hpp"
@@ -97,7 +98,7 @@ TEST(Control, UsesNoHeapInACycle) {
   }
 }
 
-/// A way out is judged against the arm itself, and gone.
+/// A way out, and a straight way of joints, are judged against the arm itself, and gone.
 TEST(Control, UsesNoHeapInACycleThatJudgesAnAbortPath) {
   ASSERT_TRUE(RealtimeScope::hook_present());
   const robotics::Model model = testing::model_of(testing::six_axes);
@@ -113,12 +114,16 @@ TEST(Control, UsesNoHeapInACycleThatJudgesAnAbortPath) {
   last[0] += 0.6;
   const std::array path{beside, last};
   AbortWay way;
+  StraightWay straight;
   setpoints.begin(start);
   const RealtimeScope scope;
-  way.begin(path, setpoints.now().position, AbortWay::Judged::FromHere);
+  way.begin(path, setpoints.now().position, AbortWay::Judged::FromHere, 5000);
   while (way.found() == AbortWay::Found::NotYet)
     way.heed(way.by_itself() ? clearance.too_near(way.then()) : clearance.nearer(way.before(), way.then()));
   EXPECT_EQ(way.found(), AbortWay::Found::Way);
+  straight.begin(setpoints.now().position, last, period_s);
+  while (straight.step()) EXPECT_EQ(clearance.nearer(straight.from(), straight.posture()).distance_m, HUGE_VAL);
+  setpoints.pass(setpoints.now().position);
   double all_s = setpoints.duration_s(way.here(), way.posture(way.joined()), 1);
   for (std::size_t i = way.joined(); i < way.size(); ++i) {
     EXPECT_TRUE(setpoints.go(way.posture(i), 1));

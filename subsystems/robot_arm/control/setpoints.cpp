@@ -9,18 +9,18 @@ namespace hirosco::robot_arm {
 namespace {
 
 constexpr double no_way = 1e-9;
-/// It goes back with this share of the velocities, until it is so near to its end, and no longer than so.
-constexpr double retract_share = 0.25;
+/// It goes back until it is so near to its end.
 constexpr double near_enough = 1e-3;
-constexpr double longest_retract_s = 10;
 /// As fast as that it may brake, of the accelerations.
 constexpr double halting = 4;
 
 }  // namespace
 
-Setpoints::Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds bounds, double cycle_s)
+Setpoints::Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds bounds, double cycle_s,
+                     const WayBack& way_back)
     : bounds_{bounds},
       cycle_s_{cycle_s},
+      back_{way_back},
       tool_{model, tip},
       kinematics_{model, tip, {}},
       path_{bounds, cycle_s},
@@ -39,6 +39,11 @@ void Setpoints::rest(const JointVector& position) noexcept {
 void Setpoints::begin(const JointVector& position) noexcept {
   rest(position);
   trail_.clear();
+  trail_.record(position);
+}
+
+void Setpoints::pass(const JointVector& position) noexcept {
+  rest(position);
   trail_.record(position);
 }
 
@@ -113,7 +118,7 @@ void Setpoints::retract(const JointVector& position, const JointVector& velocity
     gone += share * length;
   }
   left_behind_ = places_back_ > 0 ? gone - apart(met_, trail_.newest()) : 0;
-  retract_left_s_ = longest_retract_s;
+  retract_left_s_ = back_.longest_s;
   if (gone < near_enough) return;
   kind_ = Kind::Retract;
   braking_ = false;
@@ -221,7 +226,7 @@ JointVector Setpoints::way_back() noexcept {
     const double share = std::abs(way[i]) / next;
     if (share <= no_way) continue;
     const auto& its = bounds_[joint].motion;
-    rate = std::min({rate, retract_share * its.velocity / share, std::sqrt(its.acceleration / share * left)});
+    rate = std::min({rate, back_.speed_share * its.velocity / share, std::sqrt(its.acceleration / share * left)});
     turned = turned && now_.velocity[i] * way[i] >= 0;
   }
   if (turned) urgency_ = 1;

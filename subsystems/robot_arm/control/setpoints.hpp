@@ -21,7 +21,16 @@ class Setpoints {
  public:
   enum class Kind : std::uint8_t { Rest, JointPath, Line, JointJog, TipJog, Retract, Follow };
 
-  Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds bounds, double cycle_s);
+  /// How it goes back: with which share of the velocities, and for how long at most.
+  struct WayBack {
+    double speed_share{0.25};
+    double longest_s{10};
+  };
+
+  Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds bounds, double cycle_s)
+      : Setpoints{model, tip, bounds, cycle_s, WayBack{}} {}
+  Setpoints(const robotics::Model& model, robotics::FrameId tip, Bounds bounds, double cycle_s,
+            const WayBack& way_back);
 
   /// Stands there from now on.
   void rest(const JointVector& position) noexcept;
@@ -42,11 +51,13 @@ class Setpoints {
   void halt(const JointVector& position, const JointVector& velocity) noexcept;
   /// As halt(), and tells no accelerations: a law that comes into force makes no step of them.
   void settle(const JointVector& position, const JointVector& velocity) noexcept;
-  /// Goes back by the way it came, with a quarter of the velocities, and rests. `distance`: in rad or m of whatever joint has the
+  /// Goes back by the way it came, and rests. `distance`: in rad or m of whatever joint has the
   /// farthest to go, bit by bit; less where the way since begin() is shorter.
   void retract(const JointVector& position, const JointVector& velocity, double distance) noexcept;
   /// Stands there from now on, as rest(), and came by no way.
   void begin(const JointVector& position) noexcept;
+  /// Somebody else has it there, who goes by: as rest(), and a place of the way that it came by.
+  void pass(const JointVector& position) noexcept;
   /// Somebody else finds each setpoint, within the same limits: this is the next cycle's (Following).
   void take(const Setpoint& next) noexcept;
   /// Comes to rest: on its path, where there is one.
@@ -95,6 +106,7 @@ class Setpoints {
 
   Bounds bounds_;
   double cycle_s_;
+  WayBack back_;
   ToolKinematics tool_;
   robotics::InverseKinematics kinematics_;
   PathMotion path_;

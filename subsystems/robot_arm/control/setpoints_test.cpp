@@ -314,5 +314,26 @@ TEST_F(SetpointsTest, GoesBackFromAMotionAndStandsWhereThereIsNoWay) {
   EXPECT_LT(apart(setpoints.now().position, start), 0.05);
 }
 
+/// With the share of the velocities, and for as long, as they were made for.
+TEST_F(SetpointsTest, GoBackByWhereSomebodyElseTookThem) {
+  for (const double longest_s : {60.0, 0.1}) {
+    Setpoints taken{
+        model, model.find_frame("tool").value(), bounds, cycle_s, {.speed_share = 0.5, .longest_s = longest_s}};
+    taken.begin(start);
+    JointVector there = start;
+    for (; there[0] < 0.7; there[0] += 1e-3) taken.pass(there);
+    EXPECT_TRUE(taken.at_rest());
+    EXPECT_LT((taken.now().position - there).cwiseAbs().maxCoeff(), 2e-3);
+    taken.retract(taken.now().position, JointVector::Zero(6), 5);
+    double fastest = 0;
+    for (int i = 0; i < 10'000 && !taken.at_rest(); ++i)
+      fastest = std::max(fastest, std::abs(taken.advance().velocity[0]));
+    EXPECT_EQ(taken.retreated(), longest_s > 1);
+    if (longest_s < 1) continue;
+    EXPECT_LT((taken.now().position - start).cwiseAbs().maxCoeff(), 2e-3);
+    EXPECT_NEAR(fastest, 0.5 * bounds[0].motion.velocity, 0.1 * bounds[0].motion.velocity);
+  }
+}
+
 }  // namespace
 }  // namespace hirosco::robot_arm

@@ -22,6 +22,8 @@ using Trouble = robot_arm::FloatingTrouble;
 namespace {
 
 constexpr std::string_view hold_configuration = "ATTITUDE_HOLD";
+/// On a way out a joint has its velocity in a second, half as hard as what stops it (StopRamp), and that acceleration in a tenth of it.
+constexpr double velocity_within_s = 1, ramp_share = 0.1;
 
 }  // namespace
 
@@ -47,6 +49,7 @@ Result<> FloatingArm::configure(const descriptor::Configuration& configuration) 
   HIROSCO_TRY(check_lengths());
   const double cycle_s = seconds(configuration.sampling);
   HIROSCO_TRY(robotics::check_cycle(cycle_s));
+  known_.limit_motions_by_velocity(velocity_within_s, ramp_share);
   craft_.begin(configuration.requires_.empty()            ? ToolLaw::FixedBase
                : configuration.name == hold_configuration ? ToolLaw::AttitudeHold
                                                           : ToolLaw::InertialTrack,
@@ -76,11 +79,14 @@ Result<> FloatingArm::check_lengths() noexcept {
       return fail(ErrorCode::Mismatch,
                   "an array of CUR, DES_VELOCITY, MOVE_JOINT or ARM is not as long as the robot has joints",
                   static_cast<std::int64_t>(length));
+  if (robot_arm::AbortPath::declared(own_descriptor()) && !abort_path_.has_length(joints))
+    return fail(ErrorCode::Mismatch, "JOINTS of ABORT_PATH has another length than the robot has joints");
   return ok();
 }
 
 Result<> FloatingArm::pre_operational(const Cycle& cycle) noexcept {
   measure(cycle);
+  if (cycle.first && motion_) end_motion(pus::FailureCode::Aborted);  // what was judged in Safe-Operational
   return ok();
 }
 
@@ -92,6 +98,7 @@ Result<> FloatingArm::safe_operational(const Cycle& cycle) noexcept {
     obstacles_.take_limit();  // it may have been written since CONFIGURE
   }
   guidance_.engage();
+  if (motion_) advance();  // CHECK_ABORT moves nothing
   control(false);
   watch();
   return ok();
@@ -148,23 +155,29 @@ void FloatingArm::control(bool moves) noexcept {
 // --- what comes of it, told ----------------------------------------------------------------------------------------------
 
 void FloatingArm::advance() noexcept {
-  switch (guidance_.advance()) {
+  const FloatingGuidance::News news = guidance_.advance();
+  if (const auto gone = guidance_.end_retreat()) raise(retracted_, *gone);
+  switch (news) {
     case FloatingGuidance::News::None: return;
     case FloatingGuidance::News::Reached:
       raise(motion_done_);
-      if (motion_) finish(*motion_);
-      motion_.reset();
+      finish_call();
       return;
     case FloatingGuidance::News::NotReached: end_motion(Trouble::goal_not_reached); return;
     case FloatingGuidance::News::IllConditioned:
       tell_ill_conditioned(parameters_.conditioning.load());
       braked_ = true;
       return;
-    case FloatingGuidance::News::TooNear:
-      end_motion(Trouble::too_near, robot_arm::millimetres(guidance_.in_the_way().distance_m),
-                 guidance_.in_the_way().names);
+    case FloatingGuidance::News::NoWay:
+      end_motion(guidance_.why().trouble, guidance_.why().number, guidance_.why().text);
       return;
+    case FloatingGuidance::News::Judged: finish_call(); return;
   }
+}
+
+void FloatingArm::finish_call() noexcept {
+  if (motion_) finish(*motion_);
+  motion_.reset();
 }
 
 /// What else than its own sensors keeps it from moving.
@@ -175,7 +188,8 @@ bool FloatingArm::may_act() noexcept {
     end_motion(Trouble::base_is_held);
     return false;
   }
-  // It would begin to turn about as soon as it is let go.
+  // Whoever goes out keeps neither tool nor base; who is to keep them would begin to turn about as soon as it is let go.
+  if (guidance_.goes_out()) return true;
   const double conditioning = parameters_.conditioning.load();
   if (craft_.law() != ToolLaw::AttitudeHold || conditioning >= robot_arm::least_conditioning) return true;
   tell_ill_conditioned(conditioning);
@@ -242,12 +256,37 @@ Outcome FloatingArm::may_move() const noexcept {
 
 /// Whoever moves comes to rest first: to ask for no velocity at once would take more torque than limits leave.
 void FloatingArm::hold() noexcept {
-  if (guidance_.stops()) return;
+  if (guidance_.stops()) {  // what waits for that is called off
+    if (motion_) abort(*motion_, pus::FailureCode::Aborted);
+    motion_.reset();
+    return guidance_.call_off();
+  }
   const JointVector rates = guidance_.wanted_rates();
   const bool held = guidance_.holds();
   end_motion(pus::FailureCode::Aborted);
   if (held) guidance_.stand();
   else guidance_.stop(rates);
+}
+
+/// Who comes to rest by itself is let out once it stands.
+Outcome FloatingArm::may_leave() const noexcept {
+  const bool waits = moving_ && !motion_ && !craft_.base_is_held() && guidance_.stops();
+  return waits ? running : may_move();
+}
+
+/// CHECK_ABORT, which moves nothing, keeps nobody in.
+Outcome FloatingArm::leave(Out by, double number, const Call& call) noexcept {
+  if (guidance_.only_judges()) end_motion(pus::FailureCode::Aborted);
+  if (const Outcome may = may_leave(); may.kind == Outcome::Kind::Refused) return may;
+  return started(guidance_.leave(by, number), call);
+}
+
+/// In Safe-Operational it needs no actuators; in Operational without them nothing goes on that was begun.
+Outcome FloatingArm::check_abort(const Call& call) noexcept {
+  const bool operational = parameters_.current.load().state == static_cast<std::int32_t>(State::Operational);
+  if (motion_) return refused(pus::FailureCode::Busy);
+  if (const Outcome may = operational ? may_move() : running; may.kind == Outcome::Kind::Refused) return may;
+  return started(guidance_.check_abort(), call);
 }
 
 Outcome FloatingArm::started(const Outcome& outcome, const Call& call) noexcept {
@@ -270,12 +309,25 @@ void FloatingArm::bind_functions() {
     hold();
     return ok();
   });
+  bind_ways_out();
   on_function("KEEP_OUT", [this](const robot_arm::KeepOut& numbers) { return obstacles_.keep_out(numbers); });
   on_function("BRAKE", [this]() -> Outcome {
     end_motion(pus::FailureCode::Aborted);
     braked_ = true;
     return ok();
   });
+}
+
+/// Whose descriptor does not offer them has none.
+void FloatingArm::bind_ways_out() {
+  if (offers("RETREAT")) {
+    use_event(retracted_);
+    on_function("RETREAT", [this](double distance, Call call) { return leave(Out::WayBack, distance, call); });
+  }
+  if (!robot_arm::AbortPath::declared(own_descriptor())) return;
+  abort_path_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
+  on_function("MOVE_ABORT", [this](double speed, Call call) { return leave(Out::AbortPath, speed, call); });
+  on_function("CHECK_ABORT", [this](Call call) { return check_abort(call); });
 }
 
 }  // namespace hirosco

@@ -7,8 +7,6 @@
 #include <numbers>
 #include <span>
 
-#include "subsystems/robot_arm/floating/floating_trouble.hpp"
-
 namespace hirosco::robot_arm {
 namespace {
 
@@ -24,32 +22,58 @@ constexpr double shakes_m = 0.002;
 /// Share of a course's time that it may stand at its beginning while its way is judged: what a second has in 64 cycles at 1 kHz. Where cycles are longer, it ends later.
 constexpr double most_missed = 0.07;
 
+[[nodiscard]] FloatingReason reason_of(const NoWayOut& none) noexcept {
+  using Why = NoWayOut::Why;
+  const FloatingTrouble trouble = none.why == Why::OutOfRange ? FloatingTrouble::out_of_range
+                                  : none.why == Why::TooNear  ? FloatingTrouble::too_near
+                                  : none.why == Why::TooSlow  ? FloatingTrouble::too_slow
+                                                              : FloatingTrouble::no_goal;
+  return {trouble, none.text, none.number};
+}
+
+[[nodiscard]] Outcome refused_for(const NoWayOut& none) noexcept {
+  const FloatingReason why = reason_of(none);
+  return refused(why.trouble, why.text, why.number);
+}
+
 }  // namespace
 
 void FloatingGuidance::begin(double cycle_s) {
   cycle_s_ = cycle_s;
   way_.emplace(parts_.known.model(), parts_.known.tip());
   joints_goal_ = joints_from_ = parts_.drives.measured().position;
+  out_.begin(cycle_s);
   end_motion();
   parts_.parameters.progress.store(0);
 }
 
 void FloatingGuidance::engage() noexcept {
-  end_motion();
-  stand();
-  base_kept_ = parts_.craft.attitude();
+  if (!out_.only_judges()) end_motion();
+  base_let_go_ = true;
+  come_to_hold();
+  out_.forget_way();
   mean_left_m_.setZero();
   error_m_ = 0;
 }
 
+/// Whoever holds from here on keeps what is, of the base, too, where it has turned as it would; while it comes to rest yet it turns on.
 void FloatingGuidance::stand() noexcept {
   joints_goal_ = joints_from_ = parts_.drives.measured().position;
   tool_goal_ = {parts_.craft.tool(), Vector3::Zero()};
+  if (phase_ != Phase::Holds || !base_let_go_) return;
+  base_kept_ = parts_.craft.attitude();
+  base_let_go_ = false;
+}
+
+void FloatingGuidance::come_to_hold() noexcept {
+  phase_ = Phase::Holds;
+  stand();
 }
 
 void FloatingGuidance::end_motion() noexcept {
   phase_ = Phase::Holds;
-  judges_ = false;
+  judges_ = Judges::Nothing;
+  out_.end();
 }
 
 void FloatingGuidance::stop(const JointVector& rates) noexcept {
@@ -65,15 +89,22 @@ FloatingGuidance::News FloatingGuidance::advance() noexcept {
   const Vector3 left = tool_goal_.pose.position - parts_.craft.tool().position;
   mean_left_m_ += (left - mean_left_m_) * (cycle_s_ / error_filter_s);
   error_m_ = mean_left_m_.norm();
+  if (!out_.goes()) out_.record();
   if (phase_ == Phase::Holds) {
     tool_goal_.velocity_m_s.setZero();
-    return judges_ ? judge() : News::None;
+    if (out_.under_way()) return go_out();
+    return judges_ == Judges::Nothing ? News::None : judge();
   }
   if (phase_ == Phase::Stops) {
     stop_.go_on(cycle_s_);
-    stand();
-    if (stop_.over()) phase_ = Phase::Holds;
+    if (stop_.over()) come_to_hold();
+    else stand();
     return News::None;
+  }
+  if (phase_ == Phase::GoesOut) {
+    // It is to be nowhere else: ERR tells of no way that nobody goes.
+    tool_goal_ = {parts_.craft.tool(), Vector3::Zero()};
+    return go_out();
   }
   moved_s_ += cycle_s_;
   const Course at = course(moved_s_, duration_s_);
@@ -88,19 +119,50 @@ FloatingGuidance::News FloatingGuidance::advance() noexcept {
 }
 
 /// A step in a cycle, while it stands. Its course has begun with the telecommand, and is so flat there that it is joined where it has come to by then: of 26 mm in a
-/// second, which is the most, 0.07 mm and 3 mm/s; of 0.2 m in 20 s a thousandth of that.
+/// second, which is the most, 0.07 mm and 3 mm/s; of 0.2 m in 20 s a thousandth of that. Of joints likewise: of the 0.1 rad that are the most in a second 0.3 mrad and 12 mrad/s.
 FloatingGuidance::News FloatingGuidance::judge() noexcept {
   moved_s_ = std::min(moved_s_ + cycle_s_, most_missed * duration_s_);
-  if (!way_->step(parts_.known.bounds())) {
-    judges_ = false;
-    phase_ = Phase::ToolMoves;
+  const bool of_joints = judges_ == Judges::JointsWay;
+  if (!(of_joints ? straight_.step() : way_->step(parts_.known.bounds()))) {
+    judges_ = Judges::Nothing;
+    phase_ = of_joints ? Phase::JointsMove : Phase::ToolMoves;
+    if (of_joints) joints_from_ = straight_.from(), joints_goal_ = straight_.goal();
     return News::None;
   }
-  const auto ahead = parts_.obstacles.near_at(way_->posture(), shakes_m);
+  const auto ahead = parts_.obstacles.near_at(of_joints ? straight_.posture() : way_->posture(), shakes_m);
   if (!ahead) return News::None;
-  in_the_way_ = *ahead;
-  return News::TooNear;
+  if (of_joints) parts_.parameters.progress.store(straight_.share());
+  return no_way({FloatingTrouble::too_near, ahead->names, millimetres(ahead->distance_m)});
 }
+
+FloatingGuidance::News FloatingGuidance::no_way(const FloatingReason& why) noexcept {
+  why_ = why;
+  return News::NoWay;
+}
+
+// --- out -----------------------------------------------------------------------------------------------------------------
+
+/// Whatever takes the actuators away or stops the arm meanwhile ends this as it ends a motion.
+FloatingGuidance::News FloatingGuidance::go_out() noexcept {
+  const FloatingWayOut::At at = out_.step();
+  if (out_.goes() && phase_ == Phase::Holds) {
+    start(Phase::GoesOut, 0);
+    base_let_go_ = true;
+  }
+  parts_.parameters.progress.store(out_.progress());
+  switch (at) {
+    case FloatingWayOut::At::OnWay: return News::None;
+    case FloatingWayOut::At::Judged: out_.end(); return News::Judged;
+    case FloatingWayOut::At::NoWay: return no_way(reason_of(out_.why()));
+    case FloatingWayOut::At::Lost: come_to_hold(); return News::NotReached;
+    case FloatingWayOut::At::Last: break;
+  }
+  moved_s_ += cycle_s_;
+  joints_from_ = joints_goal_ = out_.now().position;
+  return arrive();
+}
+
+// --- at its end ----------------------------------------------------------------------------------------------------------
 
 /// The end of a path is not yet the goal: a motion is done when it is measured there.
 FloatingGuidance::News FloatingGuidance::arrive() noexcept {
@@ -111,8 +173,18 @@ FloatingGuidance::News FloatingGuidance::arrive() noexcept {
   settled_s_ = there ? settled_s_ + cycle_s_ : 0;
   const bool reached = settled_s_ >= settled_enough_s;
   if (!reached && !(moved_s_ > duration_s_ + patience_s)) return News::None;
-  if (reached && phase_ == Phase::JointsMove) tool_goal_ = {parts_.craft.tool(), Vector3::Zero()};
-  else joints_goal_ = measured;
+  const JointVector goal = joints_goal_;
+  const Phase came_by = phase_;
+  if (came_by == Phase::GoesOut) {
+    out_.end();
+    come_to_hold();
+  }
+  if (reached && came_by != Phase::ToolMoves) {
+    joints_goal_ = goal;
+    tool_goal_ = {parts_.craft.tool(), Vector3::Zero()};
+  } else {
+    joints_goal_ = measured;
+  }
   phase_ = Phase::Holds;
   return reached ? News::Reached : News::NotReached;
 }
@@ -126,6 +198,8 @@ JointVector FloatingGuidance::wanted_rates() const noexcept {
   JointVector rates;
   if (phase_ == Phase::Stops) {
     rates = stop_.rates();
+  } else if (phase_ == Phase::GoesOut) {
+    rates = out_.now().velocity + joint_error_per_s * (out_.now().position - parts_.drives.measured().position);
   } else if (keeps_tool()) {
     rates = tool_rates(craft.law(), craft.model(), parts_.known.bounds(), tool_goal_, craft.attitude(), base_kept_);
   } else {
@@ -178,9 +252,10 @@ Outcome FloatingGuidance::move_joint(const FunctionValues& values) noexcept {
   }
   if (const auto there = parts_.obstacles.nearer(measured, goal); there.distance_m != HUGE_VAL)
     return refused(FloatingTrouble::too_near, there.names, millimetres(there.distance_m));
-  start(Phase::JointsMove, duration_s);
-  joints_from_ = measured;
-  joints_goal_ = goal;
+  start(Phase::Holds, duration_s);
+  parts_.parameters.progress.store(0);
+  straight_.begin(measured, goal, cycle_s_);
+  judges_ = Judges::JointsWay;
   return running;
 }
 
@@ -202,8 +277,23 @@ Outcome FloatingGuidance::move_tool(const std::array<double, 3>& offset_m, doubl
                .tool = tool_goal_.pose,
                .offset_m = offset,
                .duration_s = duration_s});
-  judges_ = true;
+  judges_ = Judges::ToolsWay;
   return running;
+}
+
+Outcome FloatingGuidance::leave(FloatingWayOut::By by, double number) noexcept {
+  if (stops()) {
+    out_.wait(by, number);
+    return running;
+  }
+  const auto none = out_.begin(by, number);
+  return none ? refused_for(*none) : running;
+}
+
+Outcome FloatingGuidance::check_abort() noexcept {
+  if (!out_.begun()) return refused(pus::FailureCode::NotPermittedNow);
+  const auto none = out_.check_abort();
+  return none ? refused_for(*none) : running;
 }
 
 }  // namespace hirosco::robot_arm

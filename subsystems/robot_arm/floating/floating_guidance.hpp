@@ -7,9 +7,12 @@
 #include <optional>
 
 #include "hirosco/subsystem/author/handler.hpp"
+#include "subsystems/robot_arm/control/straight_way.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/floating/floating_craft.hpp"
 #include "subsystems/robot_arm/floating/floating_parameters.hpp"
+#include "subsystems/robot_arm/floating/floating_trouble.hpp"
+#include "subsystems/robot_arm/floating/floating_way_out.hpp"
 #include "subsystems/robot_arm/floating/range_ends.hpp"
 #include "subsystems/robot_arm/floating/stop_ramp.hpp"
 #include "subsystems/robot_arm/floating/tool_way.hpp"
@@ -29,23 +32,26 @@ class FloatingGuidance {
     const FloatingCraft& craft;
     Obstacles& obstacles;  ///< no goal of joints is near them, and no way of the tool
     FloatingParameters& parameters;  ///< PROGRESS, PHASE and ERR tell how far it is
+    AbortPath& abort_path;
   };
-  enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked, Stops };
+  enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked, Stops, GoesOut };
   /// What a cycle has brought to the motion.
   enum class News : std::uint8_t {
     None,
     Reached,
     NotReached,  ///< its path has ended, and it is not there
     IllConditioned,  ///< it cannot move the tool and leave the base unturned
-    TooNear,  ///< its way was judged before it went, and it stands: in_the_way()
+    NoWay,  ///< its way was judged before it went, and it stands: why()
+    Judged,  ///< nothing was to move, and nothing is in the way
   };
-  explicit FloatingGuidance(const Parts& parts) noexcept : parts_{parts} {}
+  explicit FloatingGuidance(const Parts& parts) noexcept
+      : parts_{parts}, out_{{parts.known, parts.drives, parts.abort_path}} {}
 
   /// In configure(), when drives and craft have begun.  Realtime: allocates. Thread: the service loop.
   void begin(double cycle_s);
-  /// Takes the present place as the reference: entering Operational moves nothing.
+  /// Takes the present place as the reference, to which it came by no way: entering Operational moves nothing. What only judges goes on.
   void engage() noexcept;
-  /// Keeps joints and tool where they are.
+  /// Keeps joints and tool where they are; who holds, his base, too, where it was let go.
   void stand() noexcept;
   /// A motion goes on no further: it keeps to what it came to.
   void end_motion() noexcept;
@@ -53,14 +59,24 @@ class FloatingGuidance {
   void stop(const JointVector& rates) noexcept;
 
   // --- functions: refused, or running; numbers in the order of the descriptor ---------------------------------------------
+  /// The way of each is walked along while it stands, in the next cycles, and judged before it goes; PROGRESS tells where somebody is in a way of joints.
   [[nodiscard]] Outcome move_joint(const FunctionValues& values) noexcept;
-  /// Its way is walked along while it stands, in the next cycles, and judged before it goes.
   [[nodiscard]] Outcome move_tool(const std::array<double, 3>& offset_m, double duration_s) noexcept;
+
+  /// Out, by its joints in whatever law. Who comes to rest by stop() begins once it stands, unless end_motion() comes before.
+  [[nodiscard]] Outcome leave(FloatingWayOut::By by, double number) noexcept;
+  /// What waits begins no more; what comes to rest goes on to do so.
+  void call_off() noexcept { out_.end(); }
+  /// The stored path alone is judged; nothing moves.
+  [[nodiscard]] Outcome check_abort() noexcept;
+  [[nodiscard]] bool only_judges() const noexcept { return out_.only_judges(); }
 
   // --- in each cycle ------------------------------------------------------------------------------------------------------
   [[nodiscard]] News advance() noexcept;
-  /// Of TooNear: who, and how near.
-  [[nodiscard]] const Obstacles::Nearest& in_the_way() const noexcept { return in_the_way_; }
+  /// Of NoWay.
+  [[nodiscard]] const FloatingReason& why() const noexcept { return why_; }
+  /// It has come to the end of its way back: how far that was, rad or m. Once.
+  [[nodiscard]] std::optional<double> end_retreat() noexcept { return out_.end_retreat(); }
   /// rad/s or m/s of each joint, none faster than it may be.
   [[nodiscard]] JointVector wanted_rates() const noexcept;
   /// Who of them goes to an end of its range too fast to stand before it. Of a law of the tool alone: both ends of a path of joints are in range, and
@@ -73,9 +89,14 @@ class FloatingGuidance {
   [[nodiscard]] bool holds() const noexcept { return phase_ == Phase::Holds; }
   /// By stop(), not yet at rest.
   [[nodiscard]] bool stops() const noexcept { return phase_ == Phase::Stops; }
+  /// By its joints, so that nothing is kept of what a law of the tool keeps.
+  [[nodiscard]] bool goes_out() const noexcept { return phase_ == Phase::GoesOut; }
 
  private:
   void start(Phase phase, double duration_s) noexcept;
+  void come_to_hold() noexcept;
+  [[nodiscard]] News go_out() noexcept;
+  [[nodiscard]] News no_way(const FloatingReason& why) noexcept;
   [[nodiscard]] News judge() noexcept;
   [[nodiscard]] News arrive() noexcept;
   [[nodiscard]] bool keeps_tool() const noexcept;
@@ -86,9 +107,13 @@ class FloatingGuidance {
   double moved_s_{0}, duration_s_{0}, settled_s_{0};
   JointVector joints_from_, joints_goal_;
   StopRamp stop_;
+  enum class Judges : std::uint8_t { Nothing, JointsWay, ToolsWay };
+  Judges judges_{Judges::Nothing};  ///< while it stands
+  StraightWay straight_;  ///< of joints
   std::optional<ToolWay> way_;
-  bool judges_{false};  ///< its way, while it stands
-  Obstacles::Nearest in_the_way_;
+  FloatingWayOut out_;
+  bool base_let_go_{false};  ///< joints went as no law of the tool has them: what AttitudeHold keeps is what is then
+  FloatingReason why_;
   ToolGoal tool_goal_;
   Vector3 tool_from_{Vector3::Zero()}, tool_offset_{Vector3::Zero()};
   robotics::Matrix3 base_kept_{robotics::Matrix3::Identity()};

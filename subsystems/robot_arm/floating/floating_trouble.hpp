@@ -17,6 +17,15 @@ enum class FloatingTrouble : std::uint16_t {
   base_is_held = 0x8007,  ///< somebody's actuators act on the base
   ill_conditioned = 0x8008,  ///< it cannot move the tool and leave the base unturned; thousandths
   too_near = 0x8009,  ///< to itself, to the base, or to a volume that it keeps out of; mm
+  no_goal = 0x800A,  ///< no way out is stored, or it came by none
+  too_slow = 0x800B,  ///< longer than it may take, to go there or to judge it
+};
+
+/// In words that live as long as the program, or as the shapes of whose names they are.
+struct FloatingReason {
+  FloatingTrouble trouble{};
+  const char* text{""};
+  std::int64_t number{0};
 };
 
 }  // namespace hirosco::robot_arm

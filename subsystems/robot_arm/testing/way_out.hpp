@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "subsystems/robot_arm/testing/flown.hpp"
+#include "subsystems/robot_arm/testing/stored_path.hpp"
 
 namespace hirosco::robot_arm::testing {
 
@@ -30,20 +31,8 @@ struct WayOut : ::testing::Test {
     flown.cycle(5);
     flown.command(State::SafeOperational);
   }
-  /// By TC[20,3], as ground does.
   hirosco::testing::Sent write_path(const std::vector<JointVector>& postures) {
-    const auto& descriptor = flown.rig.descriptor();
-    const auto its = std::ranges::find(descriptor.parameters, std::string_view{"ABORT_PATH"},
-                                       [](const auto& each) { return std::string_view{each.field.name}; });
-    std::vector<std::byte> data(1 + 4 + its->octets());
-    OctetWriter writer{data};
-    writer.put(std::uint8_t{1}).put(ParameterId{descriptor.id, its->field.type, its->id}.wire());
-    writer.put(static_cast<std::uint8_t>(postures.size()));
-    for (const JointVector& posture : postures)
-      for (const double joint : posture) writer.put(static_cast<float>(joint));
-    const auto sent = flown.rig.send(20, 3, data);
-    flown.cycle(3);
-    return sent;
+    return robot_arm::testing::write_path(flown, postures);
   }
   void store(const std::vector<JointVector>& postures) {
     ASSERT_EQ(flown.rig.outcome(write_path(postures)), "1 3 7") << ::testing::PrintToString(flown.rig.explanations);
