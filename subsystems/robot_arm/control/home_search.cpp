@@ -64,6 +64,15 @@ std::optional<std::size_t> HomeSearch::follow_zeros(const Sees& sees) noexcept {
   return lost;
 }
 
+/// Whoever looks has to come to rest now, or he would leave his distance.
+bool HomeSearch::at_its_end() const noexcept {
+  const auto i = static_cast<Eigen::Index>(joint());
+  const Way& way = ways_[joint()];
+  const double speed = std::abs(now_.velocity[i]);
+  const double left = way.distance - std::abs(now_.position[i] - begun_at_);
+  return speed * cycle_s_ + changes_speed_s / 2 * speed * speed / std::abs(way.speed) > left;
+}
+
 HomeSearch::News HomeSearch::search(const Sees& sees) noexcept {
   while (!goes_ && next_ < count_ && sees.referenced[joint()] == 1) ++next_;
   if (next_ == count_) {
@@ -77,11 +86,11 @@ HomeSearch::News HomeSearch::search(const Sees& sees) noexcept {
     begun_at_ = now_.position[i];
     return {};
   }
-  if (!at_mark_ && std::abs(now_.position[i] - begun_at_) > ways_[joint()].distance) {
+  if (sees.referenced[joint()] == 1) at_mark_ = true;
+  if (!at_mark_ && at_its_end()) {
     looks_ = false;
     return {.end = End::NotFound, .joint = joint()};
   }
-  if (sees.referenced[joint()] == 1) at_mark_ = true;
   if (!at_mark_ || now_.velocity[i] != 0) return {};
   goes_ = false;
   ++next_;

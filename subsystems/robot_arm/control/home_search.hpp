@@ -18,7 +18,7 @@ class HomeSearch {
   /// How one joint looks.
   struct Way {
     double speed{0};  ///< rad/s or m/s, to the side of its sign
-    double distance{0};  ///< rad or m, so far at most
+    double distance{0};  ///< rad or m, so far at most, what it takes to come to rest included
   };
   enum class End : std::uint8_t {
     None,  ///< not yet, or nobody looks
@@ -59,6 +59,7 @@ class HomeSearch {
  private:
   [[nodiscard]] std::optional<std::size_t> follow_zeros(const Sees& sees) noexcept;
   [[nodiscard]] News search(const Sees& sees) noexcept;
+  [[nodiscard]] bool at_its_end() const noexcept;
   void move() noexcept;
   void remember(const Sees& sees) noexcept;
   void stand_at(const JointVector& position) noexcept;

@@ -111,7 +111,33 @@ TEST_F(HomeSearchTest, GoesNoFartherThanItsDistanceAndSaysWhoHasNoMark) {
   EXPECT_FALSE(search.at_rest());
   for (int i = 0; i < 300; ++i) EXPECT_EQ(cycle().end, End::None) << "told once";
   EXPECT_TRUE(search.at_rest());
-  EXPECT_NEAR(at[0] - began_at, 0.2, 0.02);
+  EXPECT_NEAR(at[0] - began_at, 0.2, 1e-3);
+  EXPECT_LE(at[0] - began_at, 0.2 + 1e-9) << "what it takes to come to rest is in it";
+}
+
+TEST_F(HomeSearchTest, TakesAMarkOnWhichItStandsAndOneAtTheEndOfItsDistance) {
+  mark = {at[0] + 0.2 - 0.0126, -0.3, at[2]};
+  search.look(order, ways);
+  EXPECT_EQ(until_it_ends().end, End::Done);
+  EXPECT_EQ(found, (std::vector<std::size_t>{1, 2, 3}));
+  EXPECT_NEAR(at[2], mark[2], 1e-3);
+}
+
+TEST_F(HomeSearchTest, EndsWhereAJointLosesItsZeroBeforeItHasComeToRestAtItsMark) {
+  search.look(order, ways);
+  for (int i = 0; i < 20'000 && referenced[2] == 0; ++i) cycle();
+  for (int i = 0; i < 10; ++i) cycle();
+  const double went_through = at[2];
+  referenced[2] = 0;
+  ahead[2] = -1;
+  measure({0, 0, 0.1});
+  const auto news = cycle();
+  EXPECT_EQ(news.end, End::Lost);
+  EXPECT_EQ(news.joint, 2U);
+  for (int i = 0; i < 300; ++i) cycle();
+  EXPECT_TRUE(search.at_rest());
+  EXPECT_TRUE(found.empty());
+  EXPECT_NEAR(at[2], went_through, 0.0126);
 }
 
 TEST_F(HomeSearchTest, StandsWhereItIsWhenSomethingIsInTheWay) {

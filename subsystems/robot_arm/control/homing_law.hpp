@@ -19,7 +19,7 @@ class HomingLaw {
   struct Settings {
     double bandwidth_rad_s{40};
     std::span<const double> rotor{};  ///< of each joint, above 0, kg m2 or kg
-    std::span<const double> most{};  ///< N m or N of each joint
+    std::span<const double> most{};  ///< N m or N of each joint, not below 0
   };
   HomingLaw(const robotics::Model& model, double cycle_s);
 
