@@ -85,7 +85,8 @@ Result<> RobotArm::operational(const Cycle& cycle) noexcept {
   const bool kept = (cycle.first || cycle.active) && keep_from_acting();
   if (stopped_) inhibit_actuators();
   moving_ = cycle.active && !limits_.tripped() && !stopped_ && !kept;
-  parameters_.active.store(moving_ ? 1 : 0);
+  // Nobody is led by places that are from no zero.
+  parameters_.active.store(moving_ && !homing_.in_force() ? 1 : 0);
   return ok();
 }
 
