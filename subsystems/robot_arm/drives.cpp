@@ -55,4 +55,11 @@ void Drives::take_zero(const JointFlags& joints) noexcept {
   });
 }
 
+std::size_t Drives::takes_zeros() noexcept {
+  return with_port(*this, [](auto& port) -> std::size_t {
+    if constexpr (requires { port.output().reference; }) return port.output().reference.size();
+    else return 0;
+  });
+}
+
 }  // namespace hirosco::robot_arm

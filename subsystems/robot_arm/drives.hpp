@@ -60,6 +60,8 @@ class Drives {
   }
   /// Which joints take their zero at their marks, from this cycle on; of a device that does.
   void take_zero(const JointFlags& joints) noexcept;
+  /// Of how many joints it may be told so.
+  [[nodiscard]] std::size_t takes_zeros() noexcept;
 
  private:
   /// That of the fields which the device has.

@@ -47,14 +47,21 @@ bool Homing::declared(const descriptor::SubsystemDescriptor& subsystem) {
   });
 }
 
-Result<> Homing::check_lengths() const noexcept {
+Result<> Homing::check_references() const noexcept {
   const std::size_t joints = parts_.known.joints();
-  const HomingValues values = values_.load();
   if (references_.size() != joints || referenced_.load().size() != joints)
     return fail(ErrorCode::Mismatch, "REFERENCED has another length than the robot has joints");
+  if (parts_.drives.takes_zeros() != joints)
+    return fail(ErrorCode::Mismatch, "REFERENCE has another length than the robot has joints");
+  return ok();
+}
+
+Result<> Homing::check_values() const noexcept {
+  const std::size_t joints = parts_.known.joints();
+  const HomingValues values = values_.load();
   for (const std::size_t length :
        {values.order.size(), values.speed.size(), values.torque.size(), values.distance.size()})
-    if (in_force() && length != joints)
+    if (length != joints)
       return fail(ErrorCode::Mismatch, "a part of HOMING has another length than the robot has joints",
                   static_cast<std::int64_t>(length));
   return ok();
@@ -65,17 +72,16 @@ Result<> Homing::begin(double cycle_s) {
   law_.reset();
   if (!parts_.drives.tells_references()) return ok();
   references_ = parts_.drives.references();
-  parts_.drives.take_zero(JointFlags::zeros(parts_.known.joints()));
+  HIROSCO_TRY(check_references());
+  tell_looking();
   const std::string_view said = parts_.drives.port().setting(setting);
-  if (!said.empty() && said != "on")
+  if (said.empty()) return ok();
+  if (said != "on")
     return fail(ErrorCode::InvalidArgument, "HOMING of ARM is on, or the configuration does not have it");
-  if (!said.empty()) {
-    search_.emplace(cycle_s);
-    law_.emplace(parts_.known.model(), cycle_s);
-  }
-  HIROSCO_TRY(check_lengths());
-  if (!in_force()) return ok();
+  HIROSCO_TRY(check_values());
   if (const auto why = unfit()) return fail(ErrorCode::InvalidArgument, why->text, why->number);
+  search_.emplace(cycle_s);
+  law_.emplace(parts_.known.model(), cycle_s);
   const JointVector zeros = JointVector::Zero(parts_.known.model().joint_count());
   const Measured nothing{zeros, zeros, zeros};
   search_->begin({.measured = nothing, .referenced = references_});
@@ -142,8 +148,24 @@ Homing::News Homing::advance() noexcept {
   return {.failed = reason_of(news)};
 }
 
+void Homing::end() noexcept {
+  if (!search_) return;
+  search_->stop();
+  tell_looking();
+}
+
+/// Whatever was written since it was judged: no more than its effort, and what is no number is none.
+Joints Homing::most_torque() const noexcept {
+  const Joints said = values_.load().torque;
+  const Bounds bounds = parts_.known.bounds();
+  Joints most = Joints::zeros(bounds.size());
+  for (std::size_t joint = 0; joint < bounds.size(); ++joint)
+    if (said[joint] > 0) most[joint] = std::min(said[joint], bounds[joint].effort);
+  return most;
+}
+
 JointVector Homing::torque(const Setpoint& wanted) noexcept {
-  const Joints rotor = parts_.parameters.rotor_inertia.load(), most = values_.load().torque;
+  const Joints rotor = parts_.parameters.rotor_inertia.load(), most = most_torque();
   return law_->torque(wanted, parts_.drives.measured(),
                       {.bandwidth_rad_s = parts_.control.bandwidth_rad_s(), .rotor = rotor, .most = most});
 }
@@ -152,9 +174,15 @@ void Homing::control() noexcept {
   const Setpoint& wanted = search_->now();
   parts_.parameters.desired_position.store(joints_of(wanted.position));
   parts_.parameters.desired_velocity.store(joints_of(wanted.velocity));
+  parts_.parameters.bandwidth_in_force.store(parts_.control.bandwidth_rad_s());
   parts_.drives.put_out(joints_of(torque(wanted)));
+  tell_looking();
+}
+
+/// Device and ground.
+void Homing::tell_looking() noexcept {
   JointFlags takes_zero = JointFlags::zeros(parts_.known.joints());
-  const auto looking = search_->looking();
+  const auto looking = search_ ? search_->looking() : std::nullopt;
   if (looking) takes_zero[*looking] = 1;
   parts_.drives.take_zero(takes_zero);
   goes_.store(static_cast<std::uint8_t>(looking ? *looking + 1 : 0));

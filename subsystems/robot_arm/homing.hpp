@@ -33,7 +33,7 @@ class Homing {
     const UrdfArm& known;
     Drives& drives;
     const TorqueControl& control;  ///< for the bandwidth in force
-    Parameters& parameters;  ///< GRAVITY, ROTOR_INERTIA; DES_POSITION, DES_VELOCITY tell where it is to be
+    Parameters& parameters;  ///< GRAVITY, ROTOR_INERTIA; DES_POSITION, DES_VELOCITY, BANDWIDTH_IN_FORCE tell what it does
   };
   /// Why an arm may not act.
   struct Forbidden {
@@ -72,6 +72,8 @@ class Homing {
   [[nodiscard]] bool knows(std::size_t joint) const noexcept { return parts_.drives.referenced(joint); }
   /// Why it may not act in this configuration.
   [[nodiscard]] std::optional<Forbidden> forbids() const noexcept;
+  /// Of one that is in force: why what is declared, or was written since, homes nobody.
+  [[nodiscard]] std::optional<Reason> unfit() const noexcept;
 
   // --- in each cycle ------------------------------------------------------------------------------------------------------
   /// Behind what is measured: REFERENCED. Whether a joint has found its zero in this cycle, or lost it.
@@ -84,9 +86,7 @@ class Homing {
   [[nodiscard]] Outcome home() noexcept;
   [[nodiscard]] News advance() noexcept;
   /// Who looks comes to rest.
-  void end() noexcept {
-    if (search_) search_->stop();
-  }
+  void end() noexcept;
   [[nodiscard]] bool at_rest() const noexcept { return search_->at_rest(); }
   [[nodiscard]] const JointVector& wanted() const noexcept { return search_->now().position; }
   /// A cycle of the law: what it finds is put out and told.
@@ -96,8 +96,10 @@ class Homing {
 
  private:
   [[nodiscard]] HomeSearch::Sees sees() const noexcept;
-  [[nodiscard]] std::optional<Reason> unfit() const noexcept;
-  [[nodiscard]] Result<> check_lengths() const noexcept;
+  [[nodiscard]] Result<> check_references() const noexcept;
+  [[nodiscard]] Result<> check_values() const noexcept;
+  [[nodiscard]] Joints most_torque() const noexcept;
+  void tell_looking() noexcept;
   [[nodiscard]] JointVector torque(const Setpoint& wanted) noexcept;
 
   Parts parts_;

@@ -29,12 +29,15 @@ Result<Step> SelfCheck::step(const Cycle& cycle) noexcept {
 
 /// Whose posture is not known is not moved by its model; nor does anybody know what holds it, where it weighs something.
 Result<> SelfCheck::check_zeros() const noexcept {
-  const auto forbidden = parts_.homing.forbids();
-  if (!forbidden) return ok();
-  if (!forbidden->joint)
-    return fail(ErrorCode::NotPermitted, "GRAVITY is not 0: what weighs on it before HOME nobody knows");
-  return fail(ErrorCode::NotPermitted, "does not know its zero: HOME where HOMING is on, joint",
-              static_cast<std::int64_t>(*forbidden->joint + 1));
+  if (const auto forbidden = parts_.homing.forbids()) {
+    if (!forbidden->joint)
+      return fail(ErrorCode::NotPermitted, "GRAVITY is not 0: what weighs on it before HOME nobody knows");
+    return fail(ErrorCode::NotPermitted, "does not know its zero: HOME where HOMING is on, joint",
+                static_cast<std::int64_t>(*forbidden->joint + 1));
+  }
+  if (!parts_.homing.in_force()) return ok();
+  const auto why = parts_.homing.unfit();
+  return why ? fail(ErrorCode::NotPermitted, why->text, why->number) : ok();
 }
 
 Result<> SelfCheck::check_sensors() const noexcept {
