@@ -9,167 +9,35 @@
 #include <utility>
 #include <vector>
 
-#include "subsystems/robot_arm/testing/flown.hpp"
-#include "subsystems/robot_arm/testing/homing.hpp"
+#include "subsystems/robot_arm/testing/counting.hpp"
 
-/// An arm whose joints do not know their zero when they are switched on (docs/adr/0208), in orbit; the test is its device.
+/// How an arm finds its zeros, and that it does not act by its model before; what holds it where that fails: robot_arm_homing_barriers_test.cpp.
 namespace hirosco {
 namespace {
 
 using robot_arm::JointVector;
-using robot_arm::vector_of;
+using robot_arm::testing::all_found;
+using robot_arm::testing::counted_joints;
+using robot_arm::testing::Counting;
+using robot_arm::testing::CountingArm;
 using robot_arm::testing::descriptor_for;
 using robot_arm::testing::descriptor_text;
-using robot_arm::testing::Flown;
-using robot_arm::testing::folder;
+using robot_arm::testing::homed_arm;
+using robot_arm::testing::homed_file;
+using robot_arm::testing::homes;
 using robot_arm::testing::homing_numbers;
-using robot_arm::testing::model_of;
+using robot_arm::testing::not_referenced;
 using robot_arm::testing::replace_all;
+using robot_arm::testing::under_gravity;
 using robot_arm::testing::with_homing;
+using robot_arm::testing::works_by_position;
 using ::testing::Contains;
 using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-constexpr std::uint16_t not_referenced = 1070, under_gravity = 1071;
-constexpr std::uint8_t works_by_position = 1, homes = 3;
-constexpr std::size_t counted_joints = 6;
-/// Six joints have been found, one by one.
-constexpr const char* all_found = "1 3 5:0001 5:0002 5:0003 5:0004 5:0005 5:0006 7";
-
-[[nodiscard]] std::string homed_file() { return std::string{folder} + "robot_arm.urdf"; }
-[[nodiscard]] std::string homed_arm() {
-  return with_homing(descriptor_for(counted_joints, homed_file()), homing_numbers());
-}
-
-/// Its encoders count from where they were switched on; frames end with a flag of each joint.
-struct Counting : Flown {
-  std::array<double, counted_joints> mark{};  ///< where it is, as the joint truly stands
-  std::array<double, counted_joints> ahead{0.7, -1.3, 2.1, 0.4, -2.5, 1.1};  ///< of what is told a joint is
-  std::array<bool, counted_joints> has_mark{true, true, true, true, true, true}, knows{}, takes{};
-  std::optional<double> wall;  ///< beyond this the fifth joint meets something
-  JointVector told_position;
-
-  explicit Counting(const std::string& descriptor_text) : Flown{model_of(homed_file()), descriptor_text} {
-    plant.set_gravity({0, 0, 0});
-  }
-  void exchange_once() {
-    std::array<std::byte, max_device_frame_octets> frame{};
-    const auto found = device->receive(frame);
-    if (!found || found->flow != Flow::New) return;
-    const auto command = read_command(Octets{frame}.first(found->octets)).value();
-    mode = command.mode;
-    OctetReader reader{command.payload, std::endian::little};
-    std::vector<double> torques;
-    for (std::size_t i = 0; i < counted_joints; ++i) torques.push_back(reader.get<double>());
-    for (bool& each : takes) each = reader.get<std::uint8_t>() == 1;
-    const std::vector<double> told_now = measured_after(torques);
-    std::vector<std::byte> payload(sizeof(double) * told_now.size() + counted_joints);
-    OctetWriter writer{payload, std::endian::little};
-    for (const double number : told_now) writer.put(number);
-    for (const bool each : knows) writer.put(static_cast<std::uint8_t>(each ? 1 : 0));
-    std::array<std::byte, max_device_frame_octets> answer{};
-    static_cast<void>(
-        device->send(write_status(answer, {.epoch = 1, .sequence = command.sequence, .payload = payload}).value()));
-  }
-  std::vector<double> measured_after(const std::vector<double>& torques) {
-    const JointVector before = plant.measured().position;
-    constexpr double stiffness_n_m_rad = 2000;
-    outside[4] = wall && before[4] > *wall ? -stiffness_n_m_rad * (before[4] - *wall) : 0;
-    std::vector<double> numbers = play(torques);
-    const JointVector& here = plant.measured().position;
-    for (std::size_t i = 0; i < counted_joints; ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      if (takes[i] && has_mark[i] && (before[k] - mark[i]) * (here[k] - mark[i]) <= 0) knows[i] = true, ahead[i] = 0;
-      numbers[i] -= ahead[i];
-    }
-    told_position = vector_of(std::span{numbers}.first(counted_joints));
-    return numbers;
-  }
-  void lose_power() {
-    knows.fill(false);
-    ahead.fill(0.9);
-  }
-  void fly(int count = 1) {
-    for (int i = 0; i < count; ++i) {
-      rig.service();
-      rig.cycle();
-      exchange_once();
-    }
-    rig.service();
-  }
-  /// Steps have numbers, too.
-  [[nodiscard]] bool has_ended(hirosco::testing::Sent request) const {
-    const std::string outcome = rig.outcome(request);
-    return outcome.ends_with(" 7") || outcome.find(" 8:") != outcome.npos || outcome.find(" 4:") != outcome.npos;
-  }
-  std::string asked(hirosco::testing::Sent request, int most = 30'000) {
-    while (!has_ended(request) && most-- > 0) fly();
-    return rig.outcome(request);
-  }
-  std::string asked(const char* function) { return asked(rig.call(function)); }
-  [[nodiscard]] double fastest_joint() const { return plant.measured().velocity.cwiseAbs().maxCoeff(); }
-};
-
-struct RobotArmHoming : ::testing::Test {
-  Counting arm;
-  JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
-
-  explicit RobotArmHoming(const std::string& text = homed_arm()) : arm{text} {
-    constexpr std::array sides{1.0, 1.0, -1.0, 1.0, 1.0, -1.0};
-    for (std::size_t i = 0; i < counted_joints; ++i)
-      arm.mark.at(i) = start[static_cast<Eigen::Index>(i)] + 0.05 * sides.at(i);
-    arm.plant.place(start);
-  }
-  void enter(State state) {
-    const auto request = arm.rig.set_state(state);
-    arm.fly(5);
-    ASSERT_EQ(arm.rig.outcome(request), "1 3 7") << ::testing::PrintToString(arm.rig.explanations);
-  }
-  void bring_up(std::uint8_t configuration) {
-    arm.rig.bring_to(State::PreOperational, configuration);
-    arm.fly(5);
-    enter(State::SafeOperational);
-    arm.fly(5);
-  }
-  void operate(std::uint8_t configuration = homes) {
-    ASSERT_NO_FATAL_FAILURE(bring_up(configuration));
-    ASSERT_NO_FATAL_FAILURE(enter(State::Operational));
-    ASSERT_EQ(arm.rig.inhibited(), 0u);
-    ASSERT_EQ(arm.mode, DeviceMode::Active);
-  }
-  void act_by(std::uint8_t configuration) {
-    enter(State::SafeOperational);
-    enter(State::PreOperational);
-    const auto configured = arm.rig.configure(configuration);
-    arm.fly(20);
-    ASSERT_EQ(arm.rig.outcome(configured), "1 3 7") << ::testing::PrintToString(arm.rig.explanations);
-    enter(State::SafeOperational);
-    arm.fly(5);
-    enter(State::Operational);
-  }
-  [[nodiscard]] static std::string hex_of(const std::string& words) {
-    return testing::hex(std::as_bytes(std::span{words}));
-  }
-  /// Of a failure: the joint's number, then words.
-  [[nodiscard]] static std::string of_joint(int joint, const std::string& words) {
-    return "000000000000000" + std::to_string(joint) + hex_of(words);
-  }
-  [[nodiscard]] std::string self_tested() { return arm.asked(arm.rig.send(17, 128, {}), 200); }
-  void stands() {
-    arm.fly(600);
-    const JointVector there = arm.plant.measured().position;
-    arm.fly(300);
-    EXPECT_LT(arm.off(there), 1e-3);
-    EXPECT_EQ(arm.rig.inhibited(), 0u);
-  }
-  /// Until it looks with this joint, from 1, and has come to its speed.
-  void until_looks_with(std::size_t joint) {
-    for (int i = 0; i < 20'000 && !arm.takes.at(joint - 1); ++i) arm.fly();
-    ASSERT_TRUE(arm.takes.at(joint - 1));
-    arm.fly(200);
-    ASSERT_FALSE(arm.knows.at(joint - 1));
-  }
+struct RobotArmHoming : CountingArm {
+  using CountingArm::CountingArm;
 };
 
 TEST_F(RobotArmHoming, FindsItsZerosOneByOneInItsOrderAndTheOthersStand) {
@@ -353,7 +221,7 @@ TEST_F(RobotArmHoming, IsRefusedInEveryOtherConfigurationWithTheJointThatDoesNot
   EXPECT_EQ(arm.rig.inhibited(), 0u) << "what it tells is beyond no range";
   ASSERT_NO_FATAL_FAILURE(enter(State::Operational));
   EXPECT_EQ(arm.rig.inhibited(), inhibited_by_author);
-  EXPECT_EQ(arm.mode, DeviceMode::Off);
+  EXPECT_FALSE(arm.was_active) << "in no cycle";
   EXPECT_EQ(arm.rig.events(not_referenced), 1);
   EXPECT_THAT(arm.asked("HOME"), StartsWith("1 4:8034"));
 }
@@ -366,7 +234,13 @@ TEST_F(RobotArmHoming, KeepsAConfigurationThatHomesForHomingAlone) {
                                                                         {"TORQUE_J", {1, 0, 0, 0, 0, 0, 0.5}},
                                                                         {"IMPEDANCE_L", {500, 30, 1}},
                                                                         {"RETREAT", {0.1}},
-                                                                        {"MOVE_ABORT", {0.25}}};
+                                                                        {"MOVE_ABORT", {0.25}},
+                                                                        {"MOVE_L", {0.5, 0, 0.5, 1, 0, 0, 0, 0.1, 0.1}},
+                                                                        {"JOG_L", {0.1, 0, 0, 0, 0, 0, 0.5}},
+                                                                        {"IMPEDANCE_J", {9, 9, 9, 9, 9, 9, 1}},
+                                                                        {"POSITION_CONTROL", {}},
+                                                                        {"CHECK_ABORT", {}},
+                                                                        {"FOLLOW", {}}};
   for (const auto& [function, numbers] : others)
     EXPECT_THAT(arm.asked(arm.ask(function, numbers)), StartsWith("1 4:8034")) << function;
   stands();
@@ -393,7 +267,7 @@ TEST_F(RobotArmHomingOnGround, IsRefusedAndNoBrakeOpens) {
   EXPECT_THAT(self_tested(), HasSubstr(hex_of("GRAVITY is not 0")));
   ASSERT_NO_FATAL_FAILURE(enter(State::Operational));
   EXPECT_EQ(arm.rig.inhibited(), inhibited_by_author);
-  EXPECT_EQ(arm.mode, DeviceMode::Off);
+  EXPECT_FALSE(arm.was_active) << "in no cycle";
   EXPECT_EQ(arm.rig.events(under_gravity), 1);
   EXPECT_THAT(arm.asked("HOME"), StartsWith("1 4:8006"));
 }
@@ -432,7 +306,10 @@ INSTANTIATE_TEST_SUITE_P(
         UnfitToHome{"name=\"HOMING\" value=\"on\"", "name=\"HOMING\" value=\"yes\"", "HOMING of ARM is on, or"},
         UnfitToHome{R"(name="REFERENCED" id="66" type="UINT8" count="6")",
                     R"(name="REFERENCED" id="66" type="UINT8" count="5")",
-                    "REFERENCED has another length than the robot has joints"}));
+                    "REFERENCED has another length than the robot has joints"},
+        UnfitToHome{R"(name="REFERENCE" type="UINT8" count="6" minimum="0" maximum="1" safe="0 0 0 0 0 0")",
+                    R"(name="REFERENCE" type="UINT8" count="5" minimum="0" maximum="1" safe="0 0 0 0 0")",
+                    "REFERENCE has another length than the robot has joints"}));
 
 TEST(RobotArmWithAbsoluteEncoders, HasNoHomingAndAConfigurationThatHomesIsRefused) {
   std::string text = descriptor_for(counted_joints, homed_file());
