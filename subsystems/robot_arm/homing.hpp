@@ -33,7 +33,7 @@ class Homing {
     const UrdfArm& known;
     Drives& drives;
     const TorqueControl& control;  ///< for the bandwidth in force
-    Parameters& parameters;  ///< GRAVITY, ROTOR_INERTIA; DES_POSITION, DES_VELOCITY, BANDWIDTH_IN_FORCE tell what it does
+    Parameters& parameters;  ///< GRAVITY, ROTOR_INERTIA; DES_POSITION, DES_VELOCITY, BANDWIDTH_IN_FORCE tell of it
   };
   /// Why an arm may not act.
   struct Forbidden {
