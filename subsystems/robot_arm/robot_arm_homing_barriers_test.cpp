@@ -12,6 +12,7 @@
 namespace hirosco {
 namespace {
 
+using robot_arm::testing::all_found;
 using robot_arm::testing::CountingArm;
 using robot_arm::testing::homes;
 using robot_arm::testing::not_referenced;
@@ -53,6 +54,23 @@ TEST_F(RobotArmHomingBarriers, HoldAJointWhoseDeviceTellsAnotherPlaceWithoutAWor
   EXPECT_THAT(arm.rig.outcome(home), StartsWith("1 3 5:0001 8:8003"));
   EXPECT_THAT(arm.takes, Each(false));
   EXPECT_NEAR(arm.plant.measured().position[4], there, 5e-3);
+}
+
+/// Of those that have not been found yet no flag tells that they count anew.
+TEST_F(RobotArmHomingBarriers, HoldAnArmThatLosesItsPowerWhileItLooksAndItIsHomedAgain) {
+  ASSERT_NO_FATAL_FAILURE(operate());
+  const auto home = arm.rig.call("HOME");
+  ASSERT_NO_FATAL_FAILURE(until_looks_with(5));
+  const auto there = arm.plant.measured().position;
+  arm.lose_power();
+  arm.fly(10);
+  expect_that_brakes_hold();
+  EXPECT_THAT(arm.rig.outcome(home), StartsWith("1 3 5:0001 8:8030"));
+  EXPECT_LT(arm.off(there), 5e-3);
+  arm.mark[5] = arm.plant.measured().position[5] - 0.05;
+  ASSERT_NO_FATAL_FAILURE(enter(State::SafeOperational));
+  ASSERT_NO_FATAL_FAILURE(enter(State::Operational));
+  EXPECT_EQ(arm.asked("HOME"), all_found);
 }
 
 /// Too little for that: it has all of its torque for it, and not for long.
