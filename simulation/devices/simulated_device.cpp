@@ -68,6 +68,7 @@ void SimulatedDevice::begin_anew() noexcept {
   inhibit_.forget();
   endnodes_.forget();
   answers_.forget();
+  do_forget();
 }
 
 /// True when an acceptable command came.

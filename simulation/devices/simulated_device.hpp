@@ -163,6 +163,8 @@ class SimulatedDevice {
   /// A fault line of the device's own. InvalidArgument: not known here either.
   [[nodiscard]] virtual Result<> do_fault(const Words& words) = 0;
   [[nodiscard]] virtual std::string do_truth() const = 0;
+  /// Forgets what it does not know without power.
+  virtual void do_forget() noexcept {}
   /// Takes back what do_fault() did to the device.
   virtual void do_heal() noexcept {}
   /// Which stops it has.

@@ -17,6 +17,8 @@ Result<> JointBus::take(OctetReader payload) noexcept {
     torque = payload.get<double>();
     if (!std::isfinite(torque)) torque = 0;
   }
+  if (encoders_)
+    for (const std::size_t i : joints_) encoders_->take_zero(i, payload.get<std::uint8_t>() == 1);
   if (!payload.exhausted()) return fail(ErrorCode::Malformed, "torque command size");
   return ok();
 }
@@ -29,10 +31,21 @@ void JointBus::drive(MujocoRobot& robot, DeviceOutput output) const noexcept {
 }
 
 void JointBus::write_sensors(const MujocoRobot& robot, OctetWriter& payload) noexcept {
-  for (const std::size_t i : joints_) payload.put(robot.position(i));
+  for (const std::size_t i : joints_)
+    payload.put(encoders_ ? encoders_->read(i, robot.position(i)) : robot.position(i));
   for (const std::size_t i : joints_) payload.put(robot.velocity(i));
   for (const std::size_t i : joints_)
     payload.put(robot.torque(i) + (noise_n_m_ > 0 ? noise_n_m_ * random_.normal() : 0));
+}
+
+void JointBus::count(const MujocoRobot& robot) noexcept {
+  if (!encoders_) return;
+  for (const std::size_t i : joints_) static_cast<void>(encoders_->read(i, robot.position(i)));
+}
+
+void JointBus::write_references(OctetWriter& payload) const noexcept {
+  if (!encoders_) return;
+  for (const std::size_t i : joints_) payload.put(static_cast<std::uint8_t>(encoders_->knows_zero(i) ? 1 : 0));
 }
 
 }  // namespace hirosco::simulation

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "simulation/mujoco/robot_files.hpp"
+#include "simulation/mujoco/shapes.hpp"
 
 namespace hirosco::simulation {
 namespace {
@@ -40,6 +41,7 @@ void MujocoDevice::advance(Duration cycle) noexcept {
   driven_ = output() == DeviceOutput::Active;
   bus_.drive(*robot_, output());
   robot_->step(cycle);
+  bus_.count(*robot_);
   if (!has_force_sensor_) return;
   force_age_ms_ = force_silent_ ? force_age_ms_ + 1e3 * seconds(cycle) : 0;
   if (!force_silent_) force_ = robot_->tip_force();
@@ -47,9 +49,11 @@ void MujocoDevice::advance(Duration cycle) noexcept {
 
 void MujocoDevice::write_sensors(OctetWriter& payload) noexcept {
   bus_.write_sensors(*robot_, payload);
-  if (!has_force_sensor_) return;
-  for (const double number : force_) payload.put(number);
-  payload.put(static_cast<std::uint32_t>(std::min(force_age_ms_, 1e9)));
+  if (has_force_sensor_) {
+    for (const double number : force_) payload.put(number);
+    payload.put(static_cast<std::uint32_t>(std::min(force_age_ms_, 1e9)));
+  }
+  bus_.write_references(payload);
 }
 
 Result<std::vector<std::size_t>> MujocoDevice::hand_over(std::string_view names) {
@@ -152,6 +156,31 @@ Result<> MujocoDevice::feel(const Words& words) {
   return ok();
 }
 
+/// As the sensor: there from the beginning.
+Result<> MujocoDevice::count(const Words& words) {
+  if (words[1] == "forget" && words.count() == 2 && bus_.counts()) {
+    bus_.forget_zeros();
+    return ok();
+  }
+  if (cycles() > 0 || bus_.counts())
+    return fail(ErrorCode::NotPermitted, "encoders MARK,... [BEGIN,...] is a <Setting> of its mission; with it forget");
+  HIROSCO_TRY(words.expect(words.count() > 2 ? 3 : 2));
+  const auto each = [&](std::string_view text) -> Result<std::vector<double>> {
+    auto numbers = listed_numbers(text);
+    if (!numbers) return refuse(ErrorCode::InvalidArgument, std::move(numbers.error()));
+    if (numbers->size() != robot_->joints())
+      return fail(ErrorCode::InvalidArgument, "another number of joints", static_cast<std::int64_t>(robot_->joints()));
+    return std::move(*numbers);
+  };
+  HIROSCO_TRY_LET(std::vector<double> marks, each(words[1]));
+  std::optional<std::vector<double>> begin_at;
+  if (words.count() == 3) {
+    HIROSCO_TRY_LET(begin_at, each(words[2]));
+  }
+  bus_.count_with(RelativeEncoders{std::move(marks), std::move(begin_at), settings().seed});
+  return ok();
+}
+
 Result<> MujocoDevice::differ(const Words& words) {
   const std::string_view what = words[0];
   if (what == "gravity") {
@@ -188,6 +217,7 @@ Result<> MujocoDevice::do_fault(const Words& words) {
   if (words[0].starts_with(obstacle_word)) return stand_around(words);
   if (words[0].starts_with(body_word) || words[0].starts_with(pull_word)) return lie_around(words);
   if (words[0] == "force_sensor") return feel(words);
+  if (words[0] == "encoders") return count(words);
   if (words[0] == "base") {
     if (words.count() != 2 || words[1] != "free")
       return fail(ErrorCode::InvalidArgument, "a base stands, or it is free: base free");
@@ -211,6 +241,9 @@ std::string MujocoDevice::do_truth() const {
   if (!robot_) return "no_world=1";
   std::string text;
   for (std::size_t i = 0; i < robot_->joints(); ++i) text += RobotLines::truth_of_joint(*robot_, i, i);
+  if (bus_.counts())
+    for (std::size_t i = 0; i < robot_->joints(); ++i)
+      text += fmt::format("referenced_{}={} ", i + 1, bus_.knows_zero(i) ? 1 : 0);
   for (std::size_t i = 0; i < robot_->bodies(); ++i) {
     const auto body = robot_->body(i);
     const auto& place = body.place_m;

@@ -29,6 +29,8 @@ namespace hirosco::simulation {
 ///   body_NAME SHAPE SIZES MASS X,Y,Z [FRICTION [ROLL,PITCH,YAW]] | body_NAME none | pull_NAME X Y Z   (8 at most)
 ///   softness SECONDS
 ///   force_sensor on   (as a <Setting> alone: behind TORQUE it tells FORCE and MOMENT DOUBLE[3] at the tip and FORCE_AGE UINT32) | force_sensor silent|tells
+///   encoders MARK,... [BEGIN,...]   (as a <Setting> alone, all joints: they count from where they are switched on and tell REFERENCED UINT8[n] last; behind TORQUE they
+///     are told REFERENCE UINT8[n]; relative_encoders.hpp) | encoders forget
 ///   gravity X Y Z | noise N_M, and those of its robot (robot_lines.hpp)
 class MujocoDevice final : public SimulatedDevice {
  public:
@@ -74,6 +76,7 @@ class MujocoDevice final : public SimulatedDevice {
   void write_sensors(OctetWriter& payload) noexcept override;
   [[nodiscard]] Result<> do_fault(const Words& words) override;
   [[nodiscard]] std::string do_truth() const override;
+  void do_forget() noexcept override { bus_.forget_zeros(); }
   void do_heal() noexcept override;
   [[nodiscard]] bool can(Stop) const noexcept override { return true; }
   /// `why` stays until it refuses again.
@@ -82,6 +85,7 @@ class MujocoDevice final : public SimulatedDevice {
   [[nodiscard]] Result<> lie_around(const Words& words);
   [[nodiscard]] Result<> differ(const Words& words);
   [[nodiscard]] Result<> feel(const Words& words);
+  [[nodiscard]] Result<> count(const Words& words);
 
   std::optional<MujocoRobot> robot_;
   JointBus bus_;

@@ -139,6 +139,53 @@ TEST_F(MujocoDeviceTest, TellsWhichShapesAreNotInItsWorld) {
             std::vector<std::string>{"its world leaves out a shape of link 'lower': lower.stl does not exist"});
 }
 
+/// Its frames end with a flag of each joint, in both directions.
+TEST(MujocoDevice, WithEncodersThatCountTellsWhoKnowsItsZeroAndForgetsItWithoutPower) {
+  LocalFlows flows;
+  const FlowAddress address{Transfer::SharedMemory, "device"};
+  MujocoDevice device{flows, address, {.cycle = 1ms, .files = {{"MODEL_FILE", rods()}}}};
+  ASSERT_TRUE(device.plug());
+  for (const char* wrong : {"encoders 0.55", "encoders 0.55,x", "encoders 0.55,0.8 0", "encoders forget"})
+    EXPECT_FALSE(device.fault(wrong)) << wrong;
+  for (const char* line : {"posture 0.5,0.7", "gravity 0 0 0", "friction 0", "encoders 0.55,0.8 0.25,-1"})
+    ASSERT_TRUE(device.fault(line)) << line;
+  const auto flow = std::move(flows.open(address, FlowSide::Subsystem).value());
+  TimePoint now{1s};
+  std::uint32_t sequence = 0;
+  std::array<double, 3 * joints> told{};
+  std::array<std::uint8_t, joints> knows{};
+  const auto exchange = [&](DeviceMode mode, double torque) {
+    std::array<std::byte, 9 * joints> payload{};
+    OctetWriter writer{payload, std::endian::little};
+    writer.put(torque).put(0.0).put(std::uint8_t{1}).put(std::uint8_t{0});
+    std::array<std::byte, max_device_frame_octets> frame;
+    ASSERT_TRUE(flow->send(write_command(frame, {mode, 1, ++sequence, 0, payload}).value()));
+    device.step(now += 1ms);
+    const auto received = flow->receive(frame);
+    ASSERT_TRUE(received && received->flow == Flow::New);
+    const auto status = read_status(Octets{frame}.first(received->octets));
+    ASSERT_TRUE(status);
+    ASSERT_EQ(status->payload.size(), 25 * joints);
+    OctetReader reader{status->payload, std::endian::little};
+    for (double& number : told) number = reader.get<double>();
+    for (std::uint8_t& flag : knows) flag = reader.get<std::uint8_t>();
+  };
+  ASSERT_NO_FATAL_FAILURE(exchange(DeviceMode::Off, 0));
+  EXPECT_NEAR(told[0], 0.25, 1e-6);
+  EXPECT_NEAR(told[1], -1, 1e-6);
+  EXPECT_EQ(knows, (std::array<std::uint8_t, joints>{0, 0}));
+  EXPECT_FALSE(device.fault("encoders 0.55,0.8")) << "it flies";
+  for (int i = 0; i < 2000 && knows[0] == 0; ++i) ASSERT_NO_FATAL_FAILURE(exchange(DeviceMode::Active, 5));
+  EXPECT_EQ(knows, (std::array<std::uint8_t, joints>{1, 0}));
+  EXPECT_NEAR(told[0], device.robot().position(0), 1e-12);
+  EXPECT_NEAR(told[0], 0.55, 0.01);
+  EXPECT_NE(device.truth().find("referenced_1=1 referenced_2=0 "), std::string::npos) << device.truth();
+  ASSERT_TRUE(device.fault("reboot"));
+  ASSERT_NO_FATAL_FAILURE(exchange(DeviceMode::Off, 0));
+  EXPECT_EQ(knows, (std::array<std::uint8_t, joints>{0, 0}));
+  EXPECT_NEAR(told[0], 0.25, 0.01);
+}
+
 TEST(MujocoDevice, WithoutAFileOrWithOneThatIsNoneIsNotPluggedIn) {
   LocalFlows flows;
   using Files = std::map<std::string, std::string>;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "hirosco/parameter/parameter.hpp"
 #include "hirosco/subsystem/author/ports.hpp"
@@ -21,12 +22,16 @@ class Drives {
   /// Before port(): the device tells force and moment at the tip, too.
   void take_force() noexcept { tells_force_ = true; }
   [[nodiscard]] bool tells_force() const noexcept { return tells_force_; }
+  /// Before port(): the device tells which joints know their zero, too, and takes it where it is told to (docs/adr/0208).
+  void take_references() noexcept { tells_references_ = true; }
+  [[nodiscard]] bool tells_references() const noexcept { return tells_references_; }
   /// For use_device().
   [[nodiscard]] DevicePortBase& port() noexcept {
-    if (tells_force_) return sensing_port_;
-    return port_;
+    return with_port(*this, [](auto& port) -> DevicePortBase& { return port; });
   }
-  [[nodiscard]] bool alive() const noexcept { return tells_force_ ? sensing_port_.alive() : port_.alive(); }
+  [[nodiscard]] bool alive() const noexcept {
+    return with_port(*this, [](const auto& port) { return port.alive(); });
+  }
 
   /// As if so many joints stood at 0.
   void forget(std::size_t joints) noexcept;
@@ -39,17 +44,45 @@ class Drives {
   /// Of a device that tells it.
   [[nodiscard]] TipForce force() const noexcept;
 
+  /// Likewise: 1 where POSITION is from the joint's zero.
+  [[nodiscard]] JointFlags references() const noexcept;
+  /// Whose device tells nothing of it is always.
+  [[nodiscard]] bool referenced(std::size_t joint) const noexcept;
+  /// The first that is not.
+  [[nodiscard]] std::optional<std::size_t> not_referenced(std::size_t joints) const noexcept;
+
   /// N m or N, from this cycle on.
-  void put_out(const Joints& torque) noexcept { output().torque = torque; }
-  [[nodiscard]] const Joints& puts_out() noexcept { return output().torque; }
+  void put_out(const Joints& torque) noexcept {
+    with_port(*this, [&](auto& port) { port.output().torque = torque; });
+  }
+  [[nodiscard]] const Joints& puts_out() noexcept {
+    return with_port(*this, [](auto& port) -> const Joints& { return port.output().torque; });
+  }
+  /// Which joints take their zero at their marks, from this cycle on; of a device that does.
+  void take_zero(const JointFlags& joints) noexcept;
+  /// Of how many joints it may be told so.
+  [[nodiscard]] std::size_t takes_zeros() noexcept;
 
  private:
-  [[nodiscard]] ArmOutput& output() noexcept { return tells_force_ ? sensing_port_.output() : port_.output(); }
+  /// That of the fields which the device has.
+  template <class Self, class Do>
+  static auto with_port(Self& self, const Do& what) -> decltype(what(self.port_)) {
+    if (self.tells_references_) {
+      if (self.tells_force_) return what(self.sensing_referenced_port_);
+      return what(self.referenced_port_);
+    }
+    if (self.tells_force_) return what(self.sensing_port_);
+    return what(self.port_);
+  }
 
   Parameter<CurrentValues>& current_;
   DevicePort<ArmInput, ArmOutput> port_;
-  DevicePort<SensingArmInput, ArmOutput> sensing_port_;  ///< in its place, where the device tells a force
+  // In its place, where the device has more.
+  DevicePort<SensingArmInput, ArmOutput> sensing_port_;
+  DevicePort<ReferencedArmInput, ReferencedArmOutput> referenced_port_;
+  DevicePort<SensingReferencedArmInput, ReferencedArmOutput> sensing_referenced_port_;
   bool tells_force_{false};
+  bool tells_references_{false};
   Measured measured_;
 };
 

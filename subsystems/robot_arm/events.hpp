@@ -38,6 +38,15 @@ struct Events {
     use(wrist_contact);
     use(force_sensor_lost);
   }
+  /// Calls `use(event)` for each of an arm whose device tells which joints know their zero, and of one that homes besides.
+  template <class Use>
+  void each_of_references(const Use& use) {
+    use(not_referenced);
+  }
+  template <class Use>
+  void each_of_homing(const Use& use) {
+    use(homing_under_gravity);
+  }
   /// Calls `use(event)` for each of whoever leads.
   template <class Use>
   void each_of_lead(const Use& use) {
@@ -73,6 +82,9 @@ struct Events {
 
   Event<double, double, std::uint8_t> wrist_contact{"WRIST_CONTACT"};  ///< N, N m, how it reacts
   Event<std::uint32_t> force_sensor_lost{"FORCE_SENSOR_LOST"};  ///< ms
+
+  Event<std::uint8_t> not_referenced{"NOT_REFERENCED"};  ///< joint from 1
+  Event<double> homing_under_gravity{"HOMING_UNDER_GRAVITY"};  ///< m/s2
 
   Event<std::uint32_t> lead_lost{"LEAD_LOST"};  ///< cycles
   Event<> lead_let_go{"LEAD_LET_GO"};

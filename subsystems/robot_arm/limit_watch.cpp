@@ -24,8 +24,16 @@ std::optional<Finding> LimitWatch::update(const JointVector* setpoint) noexcept 
   const Watch::Limits limits{.speed_share = values.speed_limit.load(),
                              .torque_share = values.torque_limit.load(),
                              .torque_hard_share = values.torque_hard.load(),
-                             .following = values.following_limit.load()};
+                             .following = values.following_limit.load(),
+                             .without_zero = without_zero()};
   return watch_.update(parts_.drives.measured(), setpoint, parts_.known.bounds(), limits);
+}
+
+std::uint32_t LimitWatch::without_zero() const noexcept {
+  std::uint32_t joints = 0;
+  for (std::size_t joint = 0; joint < parts_.known.joints(); ++joint)
+    if (!parts_.drives.referenced(joint)) joints |= std::uint32_t{1} << joint;
+  return joints;
 }
 
 WorkLimits LimitWatch::work_limits() const noexcept {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "hirosco/subsystem/author/handler.hpp"
@@ -48,6 +49,7 @@ class LimitWatch {
   [[nodiscard]] Outcome set_power_limits(double power_w, double tool_power_w) noexcept;
 
  private:
+  [[nodiscard]] std::uint32_t without_zero() const noexcept;
   [[nodiscard]] WorkWatch::Is work() const noexcept;
   [[nodiscard]] bool feels() const noexcept;
   [[nodiscard]] bool gives() const noexcept;

@@ -10,6 +10,7 @@ Outcome MotionRules::is_free(const Now& now) const noexcept {
 }
 
 Outcome MotionRules::may_change_law(const Now& now) const noexcept {
+  if (parts_.homing.in_force()) return refused(Trouble::other_configuration, "this configuration homes alone");
   return now.moving ? is_free(now) : refused(Trouble::actuators_inhibited);
 }
 
@@ -24,7 +25,14 @@ Outcome MotionRules::may_move(const Now& now) const noexcept {
 
 Outcome MotionRules::may_check(const Now& now, bool operational) const noexcept {
   if (!parts_.guidance.begun()) return refused(pus::FailureCode::NotPermittedNow);
-  return operational ? may_change_law(now) : is_free(now);
+  return operational || parts_.homing.in_force() ? may_change_law(now) : is_free(now);
+}
+
+Outcome MotionRules::may_home(const Now& now) const noexcept {
+  if (!parts_.homing.in_force()) return refused(Trouble::other_configuration, "CONFIGURE one that homes first");
+  if (!now.moving) return refused(Trouble::actuators_inhibited);
+  if (now.called || !parts_.homing.at_rest()) return refused(pus::FailureCode::Busy);
+  return running;
 }
 
 bool MotionRules::may_wait_for_rest(const Now& now) const noexcept {

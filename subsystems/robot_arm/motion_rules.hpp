@@ -4,6 +4,7 @@
 
 #include "hirosco/subsystem/author/handler.hpp"
 #include "subsystems/robot_arm/guidance.hpp"
+#include "subsystems/robot_arm/homing.hpp"
 #include "subsystems/robot_arm/lead.hpp"
 #include "subsystems/robot_arm/torque_control.hpp"
 
@@ -17,6 +18,7 @@ class MotionRules {
     const Guidance& guidance;
     const TorqueControl& control;
     const Lead& lead;
+    const Homing& homing;
   };
   struct Now {
     bool moving{false};  ///< what is put out reaches the actuators
@@ -33,6 +35,9 @@ class MotionRules {
   /// Whoever wants the arm out of where it is need not wait until it stands, where it comes to rest by itself. A stop is none of that: it ends in brakes. Who is inhibited, or
   /// floats, is refused as for any motion.
   [[nodiscard]] bool may_wait_for_rest(const Now& now) const noexcept;
+
+  /// HOME, and nothing else in a configuration that homes.
+  [[nodiscard]] Outcome may_home(const Now& now) const noexcept;
 
  private:
   [[nodiscard]] Outcome is_free(const Now& now) const noexcept;

@@ -88,6 +88,16 @@ struct AbortPathValues {
 inline constexpr std::size_t volume_numbers = 7;
 using KeepOut = std::array<double, robotics::Clearance::most_volumes * volume_numbers>;
 
+/// One for each joint: 0 or 1.
+using JointFlags = Sized<std::uint8_t, max_joints>;
+/// Of the search for references, joint by joint (docs/adr/0208).
+struct HomingValues {
+  JointFlags order;  ///< joints from 1, each once
+  Joints speed;  ///< rad/s or m/s; its sign is the way to the mark
+  Joints torque;  ///< N m or N that the joint is given at most
+  Joints distance;  ///< rad or m within which its mark is
+};
+
 struct ArmInput {
   Joints position;
   Joints velocity;
@@ -107,6 +117,23 @@ struct SensingArmInput {
   std::array<double, 3> moment_n_m;
   std::uint32_t age_ms;
 };
+/// Of one whose device tells which joints know their zero, and takes it at their marks.
+struct ReferencedArmInput {
+  Joints position;
+  Joints velocity;
+  Joints torque;
+  JointFlags referenced;
+};
+/// Of one with both.
+struct SensingReferencedArmInput {
+  Joints position;
+  Joints velocity;
+  Joints torque;
+  std::array<double, 3> force_n;
+  std::array<double, 3> moment_n_m;
+  std::uint32_t age_ms;
+  JointFlags referenced;
+};
 /// What the sensor at the tip feels from outside, in the axes of the base.
 struct WristValues {
   std::array<double, 3> force_n;
@@ -120,6 +147,11 @@ struct WristRange {
 };
 struct ArmOutput {
   Joints torque;
+};
+/// REFERENCE: this joint takes its zero when it comes to its mark.
+struct ReferencedArmOutput {
+  Joints torque;
+  JointFlags reference;
 };
 
 }  // namespace hirosco::robot_arm

@@ -21,13 +21,28 @@ Result<Step> SelfCheck::step(const Cycle& cycle) noexcept {
     HIROSCO_TRY(check_sensors());
   }
   const auto checked = check_law(tried_ / 2, tried_ % 2 == 0 ? 1.0 : -1.0);
-  parts_.yielding.engage();
+  if (parts_.homing.in_force()) parts_.homing.engage();
+  else parts_.yielding.engage();
   if (!checked) return fail(checked.error());
   return ++tried_ < 2 * parts_.known.joints() ? again : done;
 }
 
+/// Whose posture is not known is not moved by its model; nor does anybody know what holds it, where it weighs something.
+Result<> SelfCheck::check_zeros() const noexcept {
+  if (const auto forbidden = parts_.homing.forbids()) {
+    if (!forbidden->joint)
+      return fail(ErrorCode::NotPermitted, "GRAVITY is not 0: what weighs on it before HOME nobody knows");
+    return fail(ErrorCode::NotPermitted, "does not know its zero: HOME where HOMING is on, joint",
+                static_cast<std::int64_t>(*forbidden->joint + 1));
+  }
+  if (!parts_.homing.in_force()) return ok();
+  const auto why = parts_.homing.unfit();
+  return why ? fail(ErrorCode::NotPermitted, why->text, why->number) : ok();
+}
+
 Result<> SelfCheck::check_sensors() const noexcept {
   if (!parts_.drives.alive()) return fail(ErrorCode::Unavailable, "the arm says nothing");
+  HIROSCO_TRY(check_zeros());
   const Bounds bounds = parts_.known.bounds();
   const Measured& measured = parts_.drives.measured();
   for (std::size_t joint = 0; joint < bounds.size(); ++joint) {
@@ -38,7 +53,8 @@ Result<> SelfCheck::check_sensors() const noexcept {
     if (!(std::abs(measured.velocity[i]) < (slides ? rest_m_s : rest_rad_s)))
       return fail(ErrorCode::Internal, "it moves though nothing drives it, joint", number);
     const double past = past_end(bounds[joint], most_past_end);
-    if (!(measured.position[i] > bounds[joint].lowest - past && measured.position[i] < bounds[joint].highest + past))
+    if (parts_.homing.knows(joint) &&
+        !(measured.position[i] > bounds[joint].lowest - past && measured.position[i] < bounds[joint].highest + past))
       return fail(ErrorCode::Internal, "measured outside of its range, joint", number);
     if (!(std::abs(measured.torque[i]) < parts_.parameters.torque_limit.load() * bounds[joint].effort))
       return fail(ErrorCode::Internal, "its load at rest is above its limit, joint", number);
@@ -52,6 +68,7 @@ Result<> SelfCheck::check_law(std::size_t joint, double side) noexcept {
   Setpoints& setpoints = parts_.guidance.setpoints();
   setpoints.rest(measured);
   const auto answer = [&](double deviation) {
+    if (parts_.homing.in_force()) return parts_.homing.answer(joint, deviation);
     parts_.control.laws().reset();
     JointVector deviated = measured;
     deviated[i] += deviation;

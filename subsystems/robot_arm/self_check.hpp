@@ -7,6 +7,7 @@
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/guidance.hpp"
+#include "subsystems/robot_arm/homing.hpp"
 #include "subsystems/robot_arm/parameters.hpp"
 #include "subsystems/robot_arm/torque_control.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
@@ -25,6 +26,7 @@ class SelfCheck {
     Guidance& guidance;
     TorqueControl& control;
     Yielding& yielding;
+    Homing& homing;
     const Parameters& parameters;
   };
   explicit SelfCheck(const Parts& parts) noexcept : parts_{parts} {}
@@ -33,6 +35,7 @@ class SelfCheck {
   [[nodiscard]] Result<Step> step(const Cycle& cycle) noexcept;
 
  private:
+  [[nodiscard]] Result<> check_zeros() const noexcept;
   [[nodiscard]] Result<> check_sensors() const noexcept;
   [[nodiscard]] Result<> check_law(std::size_t joint, double side) noexcept;
 

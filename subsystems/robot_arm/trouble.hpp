@@ -26,6 +26,11 @@ enum class Trouble : std::uint16_t {
   out_of_reach = 0x800E,  ///< no posture has the tool there
   singular = 0x800F,  ///< a small way of the tool would be a long one of joints there
   not_led = 0x8020,  ///< nobody leads, or not to where it may go
+  not_referenced = 0x8030,  ///< a joint does not know its zero
+  mark_not_found = 0x8031,  ///< a joint has gone all of its distance
+  homing_pressed = 0x8032,  ///< a joint has met something, or what it moves is harder to move than was said
+  homing_unfit = 0x8033,  ///< what is declared homes nobody
+  other_configuration = 0x8034,  ///< one that homes is for HOME alone, and HOME is for such a one
 };
 
 /// In words that live as long as the program, or as the shapes of whose names they are.

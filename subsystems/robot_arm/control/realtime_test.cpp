@@ -6,6 +6,8 @@
 #include "robotics/shapes/clearance.hpp"
 #include "subsystems/robot_arm/control/abort_way.hpp"
 #include "subsystems/robot_arm/control/following.hpp"
+#include "subsystems/robot_arm/control/home_search.hpp"
+#include "subsystems/robot_arm/control/homing_law.hpp"
 #include "subsystems/robot_arm/control/laws.hpp"
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
 #include "subsystems/robot_arm/control/pose_search.hpp"
@@ -96,6 +98,35 @@ TEST(Control, UsesNoHeapInACycle) {
     }
     EXPECT_EQ(scope.count(), AllocationCount{}) << static_cast<int>(kind);
   }
+}
+
+/// One joint after the other finds its mark, each after half a radian.
+TEST(Control, UsesNoHeapInACycleThatHomes) {
+  ASSERT_TRUE(RealtimeScope::hook_present());
+  const robotics::Model model = testing::model_of(testing::six_axes);
+  HomingLaw law{model, period_s};
+  HomeSearch search{period_s};
+  const std::array rotor{0.1, 0.1, 0.1, 0.1, 0.1, 0.1}, most{15.0, 15.0, 12.0, 5.0, 5.0, 5.0};
+  const std::array<std::uint8_t, 6> order{5, 4, 3, 2, 1, 0};
+  std::array<HomeSearch::Way, 6> ways;
+  ways.fill({.speed = 0.2, .distance = 1});
+  const JointVector zeros = JointVector::Zero(6);
+  Measured measured{zeros, zeros, zeros};
+  std::array<std::uint8_t, 6> referenced{};
+  const RealtimeScope scope;
+  search.begin({measured, referenced});
+  search.look(order, ways);
+  HomeSearch::News news;
+  for (int i = 0; i < 30'000 && news.end == HomeSearch::End::None; ++i) {
+    news = search.advance({measured, referenced, law.presses()});
+    EXPECT_TRUE(law.torque(search.now(), measured, {.rotor = rotor, .most = most}).allFinite());
+    measured.position = search.now().position;
+    measured.velocity = search.now().velocity;
+    if (const auto joint = search.looking(); joint && measured.position[static_cast<Eigen::Index>(*joint)] > 0.5)
+      referenced[*joint] = 1;
+  }
+  EXPECT_EQ(news.end, HomeSearch::End::Done);
+  EXPECT_EQ(scope.count(), AllocationCount{});
 }
 
 /// A way out, and a straight way of joints, are judged against the arm itself, and gone.

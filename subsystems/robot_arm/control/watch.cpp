@@ -25,10 +25,11 @@ std::optional<Finding> Watch::update(const Measured& measured, const JointVector
     const auto i = static_cast<Eigen::Index>(joint);
     const JointBounds& its = bounds[joint];
     const double position = measured.position[i], speed = measured.velocity[i], torque = measured.torque[i];
+    const bool without_zero = (limits.without_zero >> joint & 1) != 0;
     const double past = past_end(its, limits.past_end);
     const double lowest = its.lowest - past, highest = its.highest + past;
     look(Excess::Position, joint, position, position < lowest ? its.lowest : its.highest,
-         position >= lowest && position <= highest);
+         without_zero ? std::isfinite(position) : position >= lowest && position <= highest);
     const double fastest = limits.speed_share * std::max(its.motion.velocity, its.told_velocity);
     look(Excess::Speed, joint, speed, fastest, std::abs(speed) <= fastest);
     const double soft = limits.torque_share * its.effort, hard = limits.torque_hard_share * its.effort;

@@ -35,6 +35,7 @@ class Watch {
     double torque_share{0.8};  ///< of its effort, that is told softly
     double torque_hard_share{0.95};
     double following{0.1};  ///< rad or m between setpoint and joint
+    std::uint32_t without_zero{0};  ///< bit n: what is measured of joint n is no place of its range
   };
   void arm() noexcept { *this = {}; }
   /// What is to be told now, the gravest first; nothing mostly. `setpoint` null: nobody is to follow it.
