@@ -63,6 +63,11 @@ TEST(Schema, RefusesWhatTheReaderRefuses) {
   std::filesystem::remove(file);
 }
 
+TEST(Schema, TakesWhatAMissionChangesOfADeviceWithSeveralEndnodes) {
+  ASSERT_TRUE(run("xmllint --version")) << "libxml2-utils is not installed";
+  EXPECT_TRUE(validates("mission.xsd", folder / "../../tests/endnodes/two_imagers.xml"));
+}
+
 /// With the parts that it includes.
 std::string text_of(const std::string& schema) {
   std::ifstream stream{folder / schema};
