@@ -170,9 +170,9 @@ TEST_F(TwoImagers, FlyBesideEachOtherEachByFallBacksAndASwitchOfItsOwn) {
     EXPECT_EQ(flight.state(name), State::Operational) << name << flight.story().text();
     EXPECT_EQ(flight.inhibited(name), 0) << name;
   }
-  ASSERT_TRUE(flight.craft().command("SECOND", "POINT", {0.2}).completed) << flight.story().text();
+  ASSERT_TRUE(flight.craft().command("SECOND", "POINT", {0.1}).completed) << flight.story().text();
   flight.craft().run(3s);
-  EXPECT_NEAR(truth("second", "angle"), 0.2, 0.001) << "by its own fall-back";
+  EXPECT_NEAR(truth("second", "angle"), 0.1, 0.001) << "by its own fall-back";
   EXPECT_NEAR(truth("imager", "angle"), 0, 0.001);
   for (const State down : {State::SafeOperational, State::PostOperational, State::Offline})
     ASSERT_TRUE(flight.set_state("SECOND", down).completed) << to_text(down);
