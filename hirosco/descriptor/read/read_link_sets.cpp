@@ -55,7 +55,8 @@ void check_pairs(Attributes& attributes, Problems& problems, const LinkTerms& te
   if (const auto* at = attributes.optional("methods"))
     for (const LinkMethod method : terms.methods) {
       const std::string carries = carried_with(method, all_words<LinkKind>(), pair);
-      if (carries.empty() || !carried_with(method, terms.kinds, pair).empty()) continue;
+      if (carries.empty()) return;  // it is not built in at all, and that was told
+      if (!carried_with(method, terms.kinds, pair).empty()) continue;
       return problems.add(
           *at, "E0224",
           fmt::format("{} carries no set of kind=\"{}\"", in_quotes(to_text(method)),

@@ -126,8 +126,7 @@ struct LoopRings {
             fill(events_mark, events.capacity()), fill(housekeeping_mark, housekeeping.capacity())};
   }
   SpscRing<CycleCommand> commands;
-  RecordRing
-      answers;  ///< somebody waits for them: at most two for each command, progress, failed or not, and framework events
+  RecordRing answers;  ///< somebody waits: at most two for each command, progress, failed or not, framework events
   RecordRing events;  ///< the author's
   RecordRing housekeeping;
   FillMark commands_mark, answers_mark, events_mark, housekeeping_mark;  ///< the service loop's
