@@ -55,7 +55,7 @@ struct WatchedDevice {
   std::unique_ptr<DataFlow> flow;
   Duration stop_within{};
   descriptor::StopKind stop{};  ///< as its descriptor declares
-  bool acts{false};  ///< it has said so since it was let go last
+  bool acts{false};  ///< it has said so since it was let go last, and has had power since
   std::uint32_t sequence{0};
   KeptInhibit* note{nullptr};  ///< of what it was told last; null: nobody would go on telling it
   EnableStatus last{};
