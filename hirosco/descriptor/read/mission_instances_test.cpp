@@ -134,6 +134,9 @@ TEST(MissionInstances, MeetByAFallBackOrASwitchThatTheMissionLeaves) {
   EXPECT_EQ(told(owned + R"(<FallBack address="orbiter-stick-3"/></Device>)").substr(0, 5), "E0105");
   EXPECT_EQ(told(of_stick + R"(power="left">)" + moved_ends + end),
             "E0222 address 'left' of device 'STICK' belongs to the power switch of device 'STICK'");
+  EXPECT_EQ(told(R"(<Device name="STICK" address="orbiter-stick-3" power="left-power">)"
+                 R"(<FallBack address="orbiter-stick-2" to="left-2"/></Device>)"),
+            "E0222 'orbiter-stick-3' is tried already");
   const std::string plain = with_second_flywheel(of_stick + R"(power="left-power"/>)");
   const auto unswitched = read_mission(data / "mission.xml", overlay({{"mission.xml", plain}}));
   ASSERT_FALSE(unswitched.problems.empty());

@@ -108,6 +108,19 @@ void read_device_change(const xml::Element& element, MissionSubsystem& member, U
   member.devices.push_back(std::move(changed));
 }
 
+/// What it has is apart in its descriptor, and perhaps no more by what is changed.
+void check_ends(const SubsystemDescriptor& subsystem, MissionDraft& draft) {
+  Problems met{subsystem.file};
+  check_addresses(subsystem, met);
+  for (const Configuration& configuration : subsystem.configurations)
+    for (const DeviceUse& use : configuration.devices)
+      for (const Endnode& other : use.fall_backs)
+        if (other.transfer == use.endnode.transfer && other.address == use.endnode.address)
+          met.add(other.at, "E0222", in_quotes(other.address) + " is tried already",
+                  "a fall-back has an address of its own");
+  if (met.count() != 0) draft.subsystem_problems.push_back(met.take());
+}
+
 void read_override(const xml::Element& element, MissionSubsystem& member, Unique& names, Problems& problems) {
   Attributes attributes{element, problems};
   no_children(element, problems);
@@ -190,12 +203,7 @@ void MemberReader::read_member(const xml::Element& element) {
        {"Commands", [&](const auto& child) { others_.read_redirected(child, member, Commands, commanded); }, 255},
        {"Subscribes", [&](const auto& child) { others_.read_redirected(child, member, Subscribes, heard); }, 255},
        {"Device", [&](const auto& child) { read_device_change(child, member, devices, problems_); }, 255}});
-  if (!member.devices.empty()) {
-    // What it has is apart in its descriptor, and perhaps no more by what is changed.
-    Problems met{member.subsystem.file};
-    check_addresses(member.subsystem, met);
-    if (met.count() != 0) draft_.subsystem_problems.push_back(met.take());
-  }
+  if (!member.devices.empty()) check_ends(member.subsystem, draft_);
   addresses_.check_endnodes(member.subsystem);
   draft_.mission.subsystems.push_back(std::move(member));
 }
