@@ -74,7 +74,7 @@ void ReportWriter::answer(CycleReport head, Octets payload) noexcept {
   RecordRing& answers = rings_.answers;
   // Progress is all that an author can have without end: it never takes the last half.
   const bool endless = head.kind == ReportKind::Progressed || head.kind == ReportKind::StepFailed;
-  if (endless && answers.used() > answers.capacity() / 2) {
+  if (endless && answers.used() + payload.size() > answers.capacity() / 2) {
     rings_.lost_progress.fetch_add(1, std::memory_order_relaxed);
     return;
   }
