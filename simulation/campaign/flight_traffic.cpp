@@ -109,7 +109,8 @@ void FlightTraffic::received_on_ground(Octets packet) {
   trace_.say("down {} {} {} {} {} {}", report->apid(), report->sequence_count(), report->service(), report->subtype(),
              report->destination(), request);
   if (report->destination() != 0) return;
-  if (report->subtype() % 2 == 0 || report->subtype() == 7)
+  const bool step_failed = report->subtype() == 6;  // it goes on
+  if ((report->subtype() % 2 == 0 && !step_failed) || report->subtype() == 7)
     verdicts_[request] = {.over = true, .completed = report->subtype() == 7};
 }
 

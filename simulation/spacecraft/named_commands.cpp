@@ -56,10 +56,10 @@ void FollowedCommand::receive(Octets packet) {
     case 1: outcome_.accepted = true; return;
     case 3: outcome_.started = true; return;
     case 5: ++outcome_.progress_reports; return;
+    case 6: return;  // one of its steps: it goes on
     case 7: outcome_.completed = true; return;
     default: break;
   }
-  if (report->subtype() == 6) static_cast<void>(reader.get<std::uint16_t>());
   outcome_.failure = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
   outcome_.failure_subtype = report->subtype();
 }

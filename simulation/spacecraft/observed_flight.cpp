@@ -136,7 +136,7 @@ Flight::Verdict Flight::send(Octets packet) {
     if (!report || report->service() != 1) return;
     OctetReader reader{report->source_data()};
     if (reader.get<std::uint32_t>() != id) return;
-    const bool failure = report->subtype() % 2 == 0;
+    const bool failure = report->subtype() % 2 == 0 && report->subtype() != 6;  // of a step: it goes on
     if (!failure && report->subtype() != 7) return;
     verdict = {report->subtype(), failure ? reader.get<std::uint16_t>() : std::uint16_t{0}, report->apid()};
   });

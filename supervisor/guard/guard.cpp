@@ -164,8 +164,10 @@ TimePoint Guard::step(TimePoint now) {
     stop_number_.renew(member);
     for (WatchedDevice& device : member.devices) {
       device.hear(watched);
-      // What has no power moves nothing, and cannot say so.
-      const bool still = device.rests() || (!member.power.none() && member.power.said() == power_off);
+      // What has no power moves nothing, and cannot say so; how it rests when it has some again is no matter of what it did before.
+      const bool unpowered = !member.power.none() && member.power.said() == power_off;
+      if (unpowered) device.acts = false;
+      const bool still = device.rests() || unpowered;
       if (!member.released && still && !device.stopped) device.stopped = now - member.stop_begun;
       const bool acts = member.seen_operational && member.released && member.uses(device.place);
       if (acts && device.falls_silent(member.released_at, watched))

@@ -25,6 +25,7 @@ Result<GuardedMember> GuardRoster::open(const descriptor::MissionSubsystem& desc
     watched.place = own_place;
     watched.flow = std::move(flow);
     watched.stop_within = device.stop_within;
+    watched.stop = device.stop;
     watched.note = notes_.of(described.subsystem.id, device.name);
     if (watched.note != nullptr) watched.sequence = watched.note->sequence.load(std::memory_order_acquire);
     member.devices.push_back(std::move(watched));

@@ -33,10 +33,11 @@ constexpr Duration say_pause = std::chrono::milliseconds{10};
 
 [[nodiscard]] std::string line_of(const StopAnswer& answer) {
   if (!answer.stopped) return safe_line(false, answer.name + " did not confirm that it stopped");
-  return safe_line(true, fmt::format("{} stopped {:.0f} ms{}{}", answer.name,
+  return safe_line(true, fmt::format("{} stopped {:.0f} ms{}{}{}{}", answer.name,
                                      std::chrono::duration<double, std::milli>(*answer.stopped).count(),
                                      answer.asked_device ? ", says the device" : "",
-                                     answer.killed ? ", its subsystem was ended" : ""));
+                                     answer.killed ? ", its subsystem was ended" : "",
+                                     answer.otherwise.empty() ? "" : ", but ", answer.otherwise));
 }
 
 /// The code of a program or library as it is in memory.

@@ -56,28 +56,29 @@ class HandClock final : public Clock {
 class OneDevice final : public FlowFactory {
  public:
   std::atomic<bool> mute{false};
+  std::atomic<bool> acts{false};  ///< it says so; else that it holds
 
  private:
   struct Line final : DataFlow {
-    explicit Line(const std::atomic<bool>& is_mute) : mute{is_mute} {}
+    explicit Line(const OneDevice& of_it) : device{of_it} {}
     [[nodiscard]] Result<> do_send(Octets frame) noexcept override {
       if (const auto command = read_enable_command(frame)) answer = command->sequence;
       return ok();
     }
     [[nodiscard]] Result<Received> do_receive(MutableOctets buffer) noexcept override {
-      if (mute || !answer) return Received{};
-      HIROSCO_TRY_LET(
-          const Octets written,
-          write_enable_status(buffer, {.output = DeviceOutput::Holding, .flags = 0, .epoch = 0, .sequence = *answer}));
+      if (device.mute || !answer) return Received{};
+      const auto output = device.acts ? DeviceOutput::Active : DeviceOutput::Holding;
+      HIROSCO_TRY_LET(const Octets written,
+                      write_enable_status(buffer, {.output = output, .flags = 0, .epoch = 0, .sequence = *answer}));
       answer.reset();
       return Received{Flow::New, written.size()};
     }
     [[nodiscard]] bool do_wait(Duration) noexcept override { return false; }
-    const std::atomic<bool>& mute;
+    const OneDevice& device;
     std::optional<std::uint32_t> answer;
   };
   [[nodiscard]] Result<std::unique_ptr<DataFlow>> do_open(const FlowAddress&, FlowSide) override {
-    return std::make_unique<Line>(mute);
+    return std::make_unique<Line>(*this);
   }
 };
 
@@ -209,6 +210,20 @@ TEST_F(GuardShellTest, TheAnswerComesWhenTheLastHasStoppedAndSaysAfterHowLong) {
   device.mute = false;
   EXPECT_THAT(lines(client), ElementsAre("STOPPED MOTOR stopped 40 ms, says the device\n",
                                          "STOPPED HAND stopped 0 ms\n", "END 1 2\n"));
+}
+
+TEST_F(GuardShellTest, WhatRestsOtherwiseThanItsDescriptorDeclaresIsToldWithItsStop) {
+  device.acts = true;
+  start();
+  for (int step = 0; step < 4; ++step) pass(Guard::period);
+  const FileDescriptor client = connect();
+  ask(client, "SAFE");
+  until([this] { return !arm_may_move(); });
+  device.acts = false;
+  EXPECT_THAT(lines(client),
+              ElementsAre("STOPPED MOTOR stopped 0 ms, says the device, but it holds, and its descriptor "
+                          "declares that it lets go\n",
+                          "STOPPED HAND stopped 0 ms\n", "END 1 2\n"));
 }
 
 TEST_F(GuardShellTest, WhoDidNotConfirmThatItStoppedIsNamed) {

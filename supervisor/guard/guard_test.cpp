@@ -222,6 +222,30 @@ TEST_F(GuardTest, AStopOfEverythingIsAnsweredByTheDevicesAndSparesTheGroundLink)
   EXPECT_LE(answers->at(1).stopped.value(), 10ms);
 }
 
+/// ARM's motor is one that keeps its position, as its descriptor says.
+struct MotorThatHolds : GuardTest {
+  MotorThatHolds() { mission.subsystems[0].subsystem.devices[0].stop = descriptor::StopKind::Hold; }
+  /// What is told of how it rests after a stop.
+  std::string_view told_when_it_rests(DeviceOutput output) {
+    run(50ms, {arm, hand, camera}, DeviceOutput::Active);
+    const auto stop = guard.stop_all();
+    lives[arm].vital->inhibited = inhibited_by_stop;
+    run(50ms, {arm, hand, camera}, output);
+    const auto answers = guard.stop_outcome(stop);
+    EXPECT_TRUE(answers);
+    return answers ? answers->at(0).otherwise : "nobody answered";
+  }
+};
+
+TEST_F(MotorThatHolds, IsToldOfWhereItIsOffAfterAStop) {
+  cycling(arm);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  EXPECT_EQ(told_when_it_rests(DeviceOutput::Off), "it is off, and its descriptor declares that it holds");
+  lives[arm].vital->inhibited = 0;
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  EXPECT_EQ(told_when_it_rests(DeviceOutput::Holding), "");
+}
+
 TEST_F(GuardTest, WhoIsLetGoAgainBeforeTheOthersHaveStoppedIsNotEndedForMovingThen) {
   for (const std::uint16_t apid : {arm, hand}) {
     cycling(apid);

@@ -34,6 +34,16 @@ bool WatchedDevice::rests() const noexcept {
   return knows() && (last.output == DeviceOutput::Off || last.output == DeviceOutput::Holding);
 }
 
+std::string_view WatchedDevice::rests_otherwise() const noexcept {
+  if (!acts || !rests()) return {};
+  using descriptor::StopKind;
+  const bool holds = last.output == DeviceOutput::Holding;
+  // What comes to rest by a controlled stop may hold then, or not.
+  if (stop == StopKind::Hold && !holds) return "it is off, and its descriptor declares that it holds";
+  if (stop == StopKind::Drop && holds) return "it holds, and its descriptor declares that it lets go";
+  return {};
+}
+
 void WatchedDevice::hear(TimePoint now) noexcept {
   std::array<std::byte, enable_frame_octets> frame;
   const auto received = flow->receive(frame);
@@ -45,6 +55,7 @@ void WatchedDevice::hear(TimePoint now) noexcept {
   heard = true;
   heard_at = now;
   silence_told = false;
+  acts = acts || last.output == DeviceOutput::Active;
 }
 
 bool WatchedDevice::falls_silent(TimePoint since, TimePoint now) noexcept {
@@ -161,8 +172,8 @@ void GuardedMember::release(TimePoint now) noexcept {
   released = true;
   seen_operational = false;
   released_at = now;
-  // Whoever lets it move is told again of whom nobody would hear.
-  for (WatchedDevice& device : devices) device.silence_told = false;
+  // Whoever lets it move is told again of whom nobody would hear; what it stops is what has acted since.
+  for (WatchedDevice& device : devices) device.silence_told = device.acts = false;
 }
 
 void GuardedMember::end_permission(TimePoint now) noexcept {

@@ -54,6 +54,8 @@ struct WatchedDevice {
   std::uint16_t place{0};  ///< in the descriptor of its member
   std::unique_ptr<DataFlow> flow;
   Duration stop_within{};
+  descriptor::StopKind stop{};  ///< as its descriptor declares
+  bool acts{false};  ///< it has said so since it was let go last, and has had power since
   std::uint32_t sequence{0};
   KeptInhibit* note{nullptr};  ///< of what it was told last; null: nobody would go on telling it
   EnableStatus last{};
@@ -67,6 +69,8 @@ struct WatchedDevice {
   [[nodiscard]] bool knows() const noexcept;
   /// It knows, and moves nothing.
   [[nodiscard]] bool rests() const noexcept;
+  /// It acted and rests now, otherwise than its descriptor declares: in words; empty: it does as it is declared, or nobody knows.
+  [[nodiscard]] std::string_view rests_otherwise() const noexcept;
   void hear(TimePoint now) noexcept;
   /// Once for each silence: it has not answered for `inhibit_silence`, counted from `since` at the earliest.
   [[nodiscard]] bool falls_silent(TimePoint since, TimePoint now) noexcept;

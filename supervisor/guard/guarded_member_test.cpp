@@ -85,6 +85,44 @@ TEST_F(WatchedDeviceTest, RestsOnlyOffOrHoldingAndOnlyWhereItKnows) {
   }
 }
 
+TEST_F(WatchedDeviceTest, ThatActedAndRestsOtherwiseThanItsDescriptorDeclaresIsTold) {
+  using enum descriptor::StopKind;
+  constexpr std::string_view off = "it is off, and its descriptor declares that it holds",
+                             holds = "it holds, and its descriptor declares that it lets go";
+  struct Rest {
+    descriptor::StopKind declared;
+    DeviceOutput output;
+    std::string_view told;
+  };
+  device.fenced_at_sequence = 7;
+  answer(6, DeviceOutput::Active);
+  for (const Rest& rest : {Rest{Drop, DeviceOutput::Off, ""},
+                           {Drop, DeviceOutput::Holding, holds},
+                           {Drop, DeviceOutput::Stopping, ""},
+                           {Hold, DeviceOutput::Off, off},
+                           {Hold, DeviceOutput::Holding, ""},
+                           {Hold, DeviceOutput::Active, ""},
+                           {Controlled, DeviceOutput::Off, ""},
+                           {Controlled, DeviceOutput::Holding, ""}}) {
+    device.stop = rest.declared;
+    answer(8, rest.output);
+    EXPECT_EQ(device.rests_otherwise(), rest.told) << to_text(rest.declared) << static_cast<int>(rest.output);
+  }
+  device.stop = Hold;
+  answer(7, DeviceOutput::Off);
+  EXPECT_EQ(device.rests_otherwise(), "") << "it has not heard of the stop";
+}
+
+TEST_F(WatchedDeviceTest, ThatHasNotActedSinceItWasLetGoMayRestAsItLikes) {
+  device.fenced_at_sequence = 7;
+  device.stop = descriptor::StopKind::Hold;
+  answer(8, DeviceOutput::Off);
+  EXPECT_EQ(device.rests_otherwise(), "");
+  answer(9, DeviceOutput::Active);
+  answer(10, DeviceOutput::Off);
+  EXPECT_NE(device.rests_otherwise(), "");
+}
+
 TEST_F(WatchedDeviceTest, FallsSilentOnceForEachSilenceAndNoSoonerThanItsTimeAfterItMayAct) {
   answer(1);
   EXPECT_FALSE(device.falls_silent(now - 5s, now + inhibit_silence - 1ns));

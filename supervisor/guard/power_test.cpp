@@ -158,6 +158,28 @@ TEST_F(PowerTest, WhatHasNoPowerHasStoppedThoughItCannotSaySo) {
   EXPECT_TRUE(answer->stopped);
 }
 
+/// As the descriptor of ARM's motor declares it.
+struct SwitchedMotorThatHolds : PowerTest {
+  SwitchedMotorThatHolds() { mission.subsystems[0].subsystem.devices[0].stop = descriptor::StopKind::Hold; }
+};
+
+TEST_F(SwitchedMotorThatHolds, MayBeOffInAStopWhereItHasHadNoPowerSinceItActed) {
+  enter(State::Operational);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  static_cast<void>(told_in(50ms, DeviceOutput::Active));
+  enter(State::Offline);
+  static_cast<void>(told_in(1s, DeviceOutput::Holding));
+  ASSERT_EQ(said(), power_off);
+  enter(State::HardwareInit);
+  static_cast<void>(told_in(50ms, DeviceOutput::Off));
+  const auto stop = guard.stop_all();
+  static_cast<void>(told_in(50ms, DeviceOutput::Off));
+  const auto answers_to_it = guard.stop_outcome(stop);
+  ASSERT_TRUE(answers_to_it);
+  EXPECT_TRUE(answers_to_it->at(0).stopped);
+  EXPECT_EQ(answers_to_it->at(0).otherwise, "");
+}
+
 TEST_F(PowerTest, WhatALivingMemberLeavesMovingHasPowerUntilItRests) {
   enter(State::Operational);
   ASSERT_TRUE(guard.release(arm, guard.fences(arm)));

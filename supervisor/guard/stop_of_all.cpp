@@ -51,7 +51,8 @@ std::optional<std::vector<StopAnswer>> StopOfAll::outcome(std::uint64_t stop) co
   for (const GuardedMember& member : parts_.guarded.members()) {
     if (member.spared) continue;
     for (const WatchedDevice& device : member.devices)
-      answers.push_back({member.apid(), device.name, true, device.stopped, member.stop_killed});
+      answers.push_back({member.apid(), device.name, true, device.stopped, member.stop_killed,
+                         device.stopped ? device.rests_otherwise() : std::string_view{}});
     for (const std::string& device : member.not_asked)
       answers.push_back({member.apid(), device, false, member.stopped, member.stop_killed});
     if (member.devices.empty() && member.not_asked.empty())

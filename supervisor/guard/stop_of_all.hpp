@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "supervisor/guard/guard_findings.hpp"
@@ -21,6 +22,7 @@ struct StopAnswer {
   bool asked_device{false};  ///< the device said it, on the endnode of its second inhibit; else its member did
   std::optional<Duration> stopped;  ///< after the stop was ordered; empty: it did not
   bool killed{false};  ///< its member was ended, as it had not stopped in time
+  std::string_view otherwise{};  ///< it has stopped, but not as its descriptor declares: a literal that says so
 };
 
 /// The stop of everything: who is fenced, who has answered, who is ended for not stopping, and when it has ended.

@@ -141,7 +141,11 @@ class Check(unittest.TestCase):
                 (hand, 'name="PASSIVITY" id="3"', 'name="force_scale" id="3"', "in case only"),
                 (hand, 'transfer="shared_memory"', 'transfer="ethercat"', "'ethercat' is not built in"),
                 (hand, 'methods="shared_memory"', 'methods="tcp"', "'tcp' is not built in"),
-                (hand, 'kind="latest"', 'kind="queued"', "no common kind"),
+                (hand, 'methods="shared_memory udp" byte_order="native" kind="latest"', 'methods="shared_memory" byte_order="native" kind="queued"',
+                 "no common kind"),
+                (hand, 'kind="latest"', 'kind="queued"', "'udp' carries no set of kind"),
+                (hand, 'name="COUPLED" id="2" priority="80" sampling_us="500"', 'name="COUPLED" id="2" priority="80" sampling_us="750"',
+                 "one period has to be a multiple of the other, of"),
                 (hand, 'watchdog_ms="10"', 'watchdog_ms="0.4"', "trips between cycles"),
                 (hand, '"joystick-handle"', '"manipulator-robot"', "'manipulator-robot' is a device's of 'MANIPULATOR'"),
                 ("mission.xml", '<Establish link="2"/>', "", "brings up no link into 'MANIPULATOR.JOYSTICK_STATE'")):

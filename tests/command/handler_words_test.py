@@ -60,6 +60,23 @@ class Handlers(unittest.TestCase):
         self.assertIn("text comes as std::string_view", self.first_error(
             'on_function("X", [](const std::string&) -> Result<> { return ok(); })'))
 
+    def test_one_that_is_noexcept_is_a_handler(self):
+        good = ('on_function("X", [](double) noexcept -> Result<> { return ok(); })',
+                'on_function("X", [](const FunctionValues&, Call) noexcept -> Outcome { return running; })',
+                'book.on_request("X", [](const std::uint16_t&) noexcept -> Result<> { return ok(); })')
+        self.assertEqual(self.first_error(";\n".join(good)), "")
+        self.assertIn("a handler returns Result<> or Outcome", self.first_error('on_function("X", [](double) noexcept {})'))
+
+    def test_one_that_would_give_an_argument_back_is_told_that_nobody_takes_it(self):
+        for argument in ("double&", "Sized<float, 4>&", "std::uint16_t&&"):
+            self.assertIn("a handler takes its arguments by value or as const&", self.first_error(
+                f'on_function("X", []({argument}) -> Result<> {{ return ok(); }})'))
+
+    def test_one_whose_call_is_not_the_last_is_told_where_it_belongs(self):
+        for arguments in ("Call, double", "double, Call, bool", "Call, const FunctionValues&", "Call, Call"):
+            self.assertIn("a handler takes one Call at most, behind all arguments", self.first_error(
+                f'on_function("X", []({arguments}) -> Outcome {{ return running; }})'))
+
     def test_one_that_changes_itself_or_takes_anything_is_told_what_a_handler_is(self):
         for handler in ('on_function("X", [n = 0](double) mutable -> Result<> { ++n; return ok(); })',
                         'on_function("X", [](auto) -> Result<> { return ok(); })'):

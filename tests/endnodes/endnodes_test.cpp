@@ -148,6 +148,38 @@ TEST_P(EachEndnode, FailsAloneAndTheFlightGoesOnByItsFallBacksOrEndsSafelyAndFli
   EXPECT_TRUE(operational());
 }
 
+/// Two of them, of one descriptor: where each is the mission says.
+struct TwoImagers : ::testing::Test {
+  simulation::Flight flight{{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "tests/endnodes/two_imagers.xml",
+                             .subsystems = {},
+                             .devices = {}}};
+
+  double truth(std::string_view device, std::string_view name) {
+    const std::string words = flight.craft().device(device)->truth();
+    const auto at = words.find(std::string{name} + "=");
+    return at == words.npos ? -1000 : std::atof(words.c_str() + at + name.size() + 1);
+  }
+};
+
+TEST_F(TwoImagers, FlyBesideEachOtherEachByFallBacksAndASwitchOfItsOwn) {
+  ASSERT_TRUE(flight.commission()) << flight.story().text();
+  ASSERT_TRUE(flight.craft().device("second")->fault("endnode POINTING 0 silent"));
+  flight.craft().run(1s);
+  EXPECT_EQ(flight.story().count("IMAGER_POINTING_FALL_BACK"), 1U) << flight.story().text();
+  for (const char* name : {"IMAGER", "SECOND"}) {
+    EXPECT_EQ(flight.state(name), State::Operational) << name << flight.story().text();
+    EXPECT_EQ(flight.inhibited(name), 0) << name;
+  }
+  ASSERT_TRUE(flight.craft().command("SECOND", "POINT", {0.1}).completed) << flight.story().text();
+  flight.craft().run(3s);
+  EXPECT_NEAR(truth("second", "angle"), 0.1, 0.001) << "by its own fall-back";
+  EXPECT_NEAR(truth("imager", "angle"), 0, 0.001);
+  for (const State down : {State::SafeOperational, State::PostOperational, State::Offline})
+    ASSERT_TRUE(flight.set_state("SECOND", down).completed) << to_text(down);
+  EXPECT_EQ(truth("second", "powered"), 0);
+  EXPECT_EQ(truth("imager", "powered"), 1);
+}
+
 std::vector<OneFault> all_faults() {
   std::vector<OneFault> all;
   for (const auto& [endnode, ways] : {std::pair{"POINTING", 2}, {"COMMAND", 1}, {"STATUS", 1}, {"IMAGE", 3}})

@@ -242,7 +242,9 @@ TEST(UnixLink, BringsASlowConsumerEverySampleInOrder) {
 TEST(UnixLink, ADescriptorMayAskForIt) {
   const descriptor::FileSource source = [](const std::filesystem::path& file) {
     auto text = descriptor::file_system()(file);
-    constexpr std::string_view now = "methods=\\"shared_memory\\"", then = "methods=\\"unix shared_memory\\"";
+    constexpr std::string_view now = "methods=\\"shared_memory\\" byte_order=\\"native\\" kind=\\"latest\\"",
+                               then = "methods=\\"unix shared_memory\\" kind=\\"latest queued\\"";
+    if (text->find(now) == std::string::npos) return text;
     text->replace(text->find(now), now.size(), then);
     return text;
   };

@@ -97,6 +97,7 @@ struct TelecommandOptions {
   std::string subsystem;
   std::string function;  ///< or "ping"
   std::vector<std::string> arguments;  ///< values in order, or NAME=VALUE
+  bool yes{false};  ///< what asks for a confirmation is sent without one
   Duration limit{std::chrono::seconds{70}};
 };
 int telecommand(const TelecommandOptions& options);

@@ -177,6 +177,8 @@ int read_and_do(int argc, char** argv) {
   tc_command->add_option("function", tc_options.function,
                          "Name of the function, or ping; without one, those that it has are listed");
   tc_command->add_option("arguments", tc_options.arguments, "Values in order, or NAME=VALUE")->allow_extra_args();
+  tc_command->add_flag("--yes", tc_options.yes,
+                       "Send without asking what its descriptor wants confirmed at a terminal");
   tc_command->add_option("--limit", tc_limit, "How long to wait for the end")->capture_default_str();
   add_connection(*tc_command, tc_options.connection, "One JSON object a line, for each report");
 

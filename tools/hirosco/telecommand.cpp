@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/requests.hpp"
@@ -17,6 +18,7 @@
 #include "hirosco/utilities/lower_case.hpp"
 #include "supervisor/platform/storage/database.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/confirmation.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 #include "tools/hirosco/instance.hpp"
 #include "tools/hirosco/json_line.hpp"
@@ -193,6 +195,13 @@ void print_against(const pus::TelemetryView& report, bool json) {
   }
 }
 
+/// What a person at the terminal says; nothing at its end.
+[[nodiscard]] std::string ask(const descriptor::SubsystemDescriptor& subsystem, const descriptor::Function& request) {
+  fmt::print(stderr, "{} {} wants to be confirmed: send it? [y/N] ", subsystem.name, request.name);
+  std::array<char, 16> answer{};
+  return std::fgets(answer.data(), static_cast<int>(answer.size()), stdin) != nullptr ? answer.data() : "";
+}
+
 }  // namespace
 
 int telecommand(const TelecommandOptions& options) {
@@ -204,6 +213,11 @@ int telecommand(const TelecommandOptions& options) {
   const auto encoded = encode(options, mission, *subsystem);
   if (!encoded) return exit_usage;
   const descriptor::Function& request = encoded->request;
+  const bool person = ::isatty(STDIN_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0;
+  if (!may_be_sent(request.confirm, options.yes, person, [&] { return ask(*subsystem, request); })) {
+    fmt::print(stderr, "hirosco tc: not sent\n");
+    return exit_finding;
+  }
   auto connection = GroundConnection::open(place->host, place->port);
   if (!connection) {
     fmt::print(stderr, "hirosco tc: {}:{}: {}\n", place->host, place->port, connection.error().text);

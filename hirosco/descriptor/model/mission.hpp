@@ -34,11 +34,19 @@ struct Override {
 /// member, as words stand alone.
 [[nodiscard]] std::vector<Override> overrides_of(const Parameter& parameter);
 
-/// A device of this instance has another address, or other settings, than its subsystem's descriptor says, in every configuration.
+/// A fall-back of a device is elsewhere than the descriptor says, by the same way.
+struct MovedFallBack {
+  std::string address;  ///< as the descriptor says
+  std::string to;  ///< of this instance
+};
+
+/// A device of this instance has other addresses, or other settings, than its subsystem's descriptor says, in every configuration.
 struct DeviceChange {
   std::string device;
   std::string address;  ///< empty = the descriptor's
   std::string enable;  ///< of the second inhibit; empty = the descriptor's
+  std::string power{};  ///< of what switches its power; empty = the descriptor's
+  std::vector<MovedFallBack> fall_backs{};
   std::vector<Setting> settings{};  ///< in place of those that the descriptor gives it
 };
 
@@ -68,15 +76,15 @@ struct MissionSubsystem {
 };
 
 /// What makes an instance of the descriptor in its file the subsystem of the mission, as words for its process: pairs
-/// "--as" "NAME:12", "--set" "PARAMETER=1 2.5", "--address" "DEVICE=address", "--enable" "DEVICE=address", "--setting"
-/// "DEVICE:NAME=value", "--commands" and "--subscribes" "NAME=12:FILE".
+/// "--as" "NAME:12", "--set" "PARAMETER=1 2.5", "--address", "--enable" and "--power" "DEVICE=address", "--fall-back"
+/// "DEVICE=address=address", "--setting" "DEVICE:NAME=value", "--commands" and "--subscribes" "NAME=12:FILE".
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsystem& member);
 /// Words of it that need the other's descriptor: "NAME=12:FILE".
 [[nodiscard]] constexpr bool needs_other(std::string_view word) noexcept {
   return word == "--commands" || word == "--subscribes";
 }
-/// One of them, into `subsystem`. NotFound: no such parameter, device or setting, or it has no second inhibit; OutOfRange: the
-/// values do not fit; InvalidArgument: not of this form. All but "--commands" and "--subscribes", which need the other's
+/// One of them, into `subsystem`. NotFound: no such parameter, device, setting or fall-back, or it has no second inhibit, or nothing
+/// switches its power; OutOfRange: the values do not fit; Mismatch: two ends would have one address; InvalidArgument: not of this form. All but "--commands" and "--subscribes", which need the other's
 /// descriptor.
 [[nodiscard]] Result<> apply_change(SubsystemDescriptor& subsystem, std::string_view word, std::string_view text);
 

@@ -154,7 +154,8 @@ struct Endnode {
   Location at;
 };
 
-/// What a device does by itself when its command is taken away: the inhibit falls, or its frames stay out. Its own duty; on board nobody checks it.
+/// What a device does by itself when its command is taken away: the inhibit falls, or its frames stay out. Its own duty; the guard compares it with
+/// what the device says after a stop of everything (docs/adr/0213).
 enum class StopKind : std::uint8_t {
   Drop,  ///< no force at once
   Controlled,  ///< comes to rest within `stop_within`, then no force or brake

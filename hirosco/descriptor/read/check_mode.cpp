@@ -37,7 +37,9 @@ std::string refuse_link(const Mission& mission, const Mode& mode, const MissionL
                        link.requires_);
   if (!required->from.empty() && required->from != link.from)
     return fmt::format("'{}' is required from '{}'", required->name, required->from);
-  return mismatch(*producer.subsystem, *provided, *required, link.method);
+  return mismatch({*producer.subsystem, *producer.configuration, *provided, *consumer.subsystem,
+                   *consumer.configuration, *required},
+                  link.method);
 }
 
 }  // namespace

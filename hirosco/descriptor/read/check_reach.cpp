@@ -4,24 +4,18 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "hirosco/data_transfer/device/flow_access.hpp"
+#include "hirosco/descriptor/model/common_link_way.hpp"
 #include "hirosco/descriptor/model/member_reach.hpp"
+#include "hirosco/descriptor/read/detail/mission_link_reader.hpp"
 #include "hirosco/descriptor/read/detail/mission_parts.hpp"
 
 /// How each subsystem's links may travel, and that nobody's sandbox lets it in where the supervisor's side holds an endnode (docs/adr/0150, 0175).
 namespace hirosco::descriptor::detail {
 namespace {
-
-/// The first method that both have, in the producer's order.
-[[nodiscard]] std::optional<LinkMethod> agreed_method(const Provides& provides, const Requires& requires_) {
-  for (const LinkMethod method : provides.terms.methods)
-    if (std::ranges::find(requires_.terms.methods, method) != requires_.terms.methods.end()) return method;
-  return std::nullopt;
-}
 
 void note_method(LinkMethod method, MissionSubsystem& member) {
   auto& known = member.link_methods;
@@ -36,7 +30,8 @@ void note_methods(const MissionLink& link, const SubsystemDescriptor& producer, 
       for (const Configuration& other : consumer.configurations)
         for (const Requires& requires_ : other.requires_) {
           if (provides.name != link.provides || requires_.name != link.requires_) continue;
-          if (const auto method = agreed_method(provides, requires_)) note_method(*method, member);
+          const auto way = first_common_way(provides.terms, requires_.terms, requires_.starts, carried_here);
+          if (way) note_method(way->method, member);
         }
 }
 

@@ -87,6 +87,53 @@ TEST(LinkWay, HasAMethodThatBothEndsHave) {
   EXPECT_NE(reading.problems[0].message.find("not both ends have method 'udp'"), std::string::npos);
 }
 
+/// The example's mission with these terms of PLATE_STATE where it is given and where it is taken.
+Reading<Mission> with_terms(const std::string& given, const std::string& taken,
+                            const std::string& cycle = R"(sampling_us="500")") {
+  const std::string robot = file_system()(data / "coronagraph.xml").value();
+  const std::string wheel =
+      changed(R"(name="COUPLED" id="2" priority="80" sampling_us="500")",
+              R"(name="COUPLED" id="2" priority="80" )" + cycle, file_system()(data / "flywheel.xml").value());
+  return read_mission(data / "mission.xml",
+                      overlay({{"coronagraph.xml",
+                                changed(R"(methods="shared_memory" byte_order="native" kind="latest")", given, robot)},
+                               {"flywheel.xml", changed(R"(name="PLATE_STATE" from)",
+                                                        R"(name="PLATE_STATE" )" + taken + " from", wheel)}}));
+}
+
+TEST(LinkWay, IsOneThatCarriesMethodAndKindTogether) {
+  EXPECT_TRUE(with_terms(R"(methods="udp shared_memory" kind="latest queued")", R"(kind="queued")").value);
+  EXPECT_TRUE(with_terms(R"(methods="udp shared_memory" kind="queued latest")", R"(methods="udp")").value);
+  const auto deaf = with_terms(R"(methods="udp" byte_order="little")", R"(methods="shared_memory udp")",
+                               R"(sampling_us="500" started_by="PLATE_STATE" least_us="250")");
+  EXPECT_FALSE(deaf.value);
+  ASSERT_FALSE(deaf.problems.empty());
+  EXPECT_EQ(deaf.problems[0].code, "E0308");
+  EXPECT_EQ(deaf.problems[0].message,
+            "link 1 does not fit: nothing wakes a cycle between 'CORONAGRAPH.PLATE_STATE' (methods \"udp\", kind "
+            "\"latest\") and 'FLYWHEEL.PLATE_STATE' (methods \"shared_memory udp\", kind \"latest\")");
+}
+
+TEST(LinkWay, NeedsPeriodsOfWhichOneIsAMultipleOfTheOther) {
+  for (const char* fitting : {"1000", "250", "5000"}) {
+    const auto reading = with_terms("", "", std::string{"sampling_us=\""} + fitting + "\"");
+    EXPECT_TRUE(reading.value) << fitting << rendered(reading.problems, file_system());
+  }
+  const auto reading = with_terms("", "", R"(sampling_us="750")");
+  EXPECT_FALSE(reading.value);
+  ASSERT_FALSE(reading.problems.empty());
+  EXPECT_EQ(reading.problems[0].code, "E0308");
+  EXPECT_EQ(
+      reading.problems[0].message,
+      "link 1 does not fit: one period has to be a multiple of the other, of 'CORONAGRAPH.PLATE_STATE' (500 us in "
+      "'COUPLED') and 'FLYWHEEL.PLATE_STATE' (750 us in 'COUPLED')");
+  // Who waits for samples has their rate; what it gives itself comes at its own.
+  const auto started = with_terms("", "", R"(sampling_us="750" started_by="PLATE_STATE" least_us="250")");
+  ASSERT_FALSE(started.problems.empty());
+  for (const Diagnostic& problem : started.problems)
+    EXPECT_EQ(problem.message.find("link 1 "), std::string::npos) << problem.message;
+}
+
 TEST(LinkWay, TakesNoAddressTwice) {
   const auto file = R"(method="udp" from_address="127.0.0.1:4000" to_address="127.0.0.1:4000")";
   const auto reading = with_way(file);

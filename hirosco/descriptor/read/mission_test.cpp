@@ -455,7 +455,8 @@ TEST(MissionErrors, ALentSetHasTheSameFieldsInTheSameOrderAtBothEnds) {
     const auto reading = testing::read_text(text + "</RealTimeLinkService></Configuration></Subsystem>");
     if (!reading.value) return rendered(reading.problems, file_system());
     const Configuration& configuration = reading.value->configurations.front();
-    return detail::mismatch(*reading.value, configuration.provides.front(), configuration.requires_.front(),
+    return detail::mismatch({*reading.value, configuration, configuration.provides.front(), *reading.value,
+                             configuration, configuration.requires_.front()},
                             std::nullopt);
   };
   const std::string both = std::string{a} + std::string{b}, reverse = std::string{b} + std::string{a};
@@ -478,7 +479,8 @@ TEST(MissionErrors, AQueueOfAllThatIsProvidedFitsItsMemory) {
     const auto reading = testing::read_text(text + "</RealTimeLinkService></Configuration></Subsystem>");
     if (!reading.value) return rendered(reading.problems, file_system());
     const Configuration& configuration = reading.value->configurations.front();
-    return detail::mismatch(*reading.value, configuration.provides.front(), configuration.requires_.front(),
+    return detail::mismatch({*reading.value, configuration, configuration.provides.front(), *reading.value,
+                             configuration, configuration.requires_.front()},
                             std::nullopt);
   };
   EXPECT_EQ(why("1024"), "");

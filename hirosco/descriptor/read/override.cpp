@@ -87,6 +87,9 @@ std::vector<std::pair<std::string, std::string>> changes_of(const MissionSubsyst
   for (const DeviceChange& device : member.devices) {
     if (!device.address.empty()) changes.emplace_back("--address", device.device + "=" + device.address);
     if (!device.enable.empty()) changes.emplace_back("--enable", device.device + "=" + device.enable);
+    if (!device.power.empty()) changes.emplace_back("--power", device.device + "=" + device.power);
+    for (const MovedFallBack& moved : device.fall_backs)
+      changes.emplace_back("--fall-back", fmt::format("{}={}={}", device.device, moved.address, moved.to));
     for (const Setting& setting : device.settings)
       changes.emplace_back("--setting", fmt::format("{}:{}={}", device.device, setting.name, setting.value));
   }
@@ -128,6 +131,36 @@ namespace {
   return given ? ok() : fail(ErrorCode::NotFound, "no configuration gives the device such a setting");
 }
 
+/// The switch is a whole device's, which may have several endnodes.
+[[nodiscard]] Result<> move_power(SubsystemDescriptor& subsystem, std::string_view device, std::string_view address) {
+  const auto power = std::ranges::find(subsystem.power_switches, device, &PowerSwitch::device);
+  if (power == subsystem.power_switches.end()) return fail(ErrorCode::NotFound, "nothing switches its power");
+  power->endnode.address = address;
+  return ok();
+}
+
+/// In each configuration that falls back to it.
+[[nodiscard]] Result<> move_fall_back(SubsystemDescriptor& subsystem, std::size_t device, std::string_view text) {
+  const auto equals = text.find('=');
+  if (equals == 0 || equals == text.npos || equals + 1 == text.size())
+    return fail(ErrorCode::InvalidArgument, "DEVICE=ADDRESS=ADDRESS is wanted");
+  const std::string_view from = text.substr(0, equals), to = text.substr(equals + 1);
+  bool moved = false;
+  for (Configuration& configuration : subsystem.configurations)
+    for (DeviceUse& use : configuration.devices) {
+      if (use.device != device) continue;
+      for (Endnode& other : use.fall_backs) {
+        if (other.address != from) continue;
+        const auto there = [&](const Endnode& end) { return end.transfer == other.transfer && end.address == to; };
+        if (there(use.endnode) || std::ranges::any_of(use.fall_backs, there))
+          return fail(ErrorCode::Mismatch, "the device has that address already");
+        other.address = to;
+        moved = true;
+      }
+    }
+  return moved ? ok() : fail(ErrorCode::NotFound, "no configuration falls back to this address");
+}
+
 }  // namespace
 
 Result<> apply_change(SubsystemDescriptor& subsystem, std::string_view word, std::string_view text) {
@@ -135,20 +168,24 @@ Result<> apply_change(SubsystemDescriptor& subsystem, std::string_view word, std
   if (word == "--set") return apply_override(subsystem, text);
   if (word == "--setting") return set_setting(subsystem, text);
   const auto equals = text.find('=');
-  if (equals == text.npos || equals + 1 == text.size() || (word != "--address" && word != "--enable"))
+  const bool known = word == "--address" || word == "--enable" || word == "--power" || word == "--fall-back";
+  if (equals == text.npos || equals + 1 == text.size() || !known)
     return fail(ErrorCode::InvalidArgument, "DEVICE=ADDRESS is wanted");
-  const std::string_view name = text.substr(0, equals);
+  const std::string_view name = text.substr(0, equals), rest = text.substr(equals + 1);
+  if (word == "--power") return move_power(subsystem, name, rest);
   const auto device = std::ranges::find(subsystem.devices, name, &Device::name);
-  if (device == subsystem.devices.end()) return fail(ErrorCode::NotFound, "no such device");
+  if (device == subsystem.devices.end())
+    return fail(ErrorCode::NotFound, "no such device; one of several endnodes is DEVICE.ENDNODE");
   if (word == "--enable") {
     if (!device->enable) return fail(ErrorCode::NotFound, "the device has no second inhibit");
-    device->enable->address = text.substr(equals + 1);
+    device->enable->address = rest;
     return ok();
   }
-  const auto index = device - subsystem.devices.begin();
+  const auto index = static_cast<std::size_t>(device - subsystem.devices.begin());
+  if (word == "--fall-back") return move_fall_back(subsystem, index, rest);
   for (Configuration& configuration : subsystem.configurations)
     for (DeviceUse& use : configuration.devices)
-      if (use.device == index) use.endnode.address = text.substr(equals + 1);
+      if (use.device == index) use.endnode.address = rest;
   return ok();
 }
 

@@ -29,6 +29,49 @@ void expect_built_in(Attributes& attributes, Problems& problems, std::string_vie
       problems.not_built_in(*given, word, are_built_in(standard_link_mechanisms(), has));
 }
 
+/// The words of `others` with which `one` is carried.
+template <class One, class Other, class Pair>
+std::string carried_with(One one, const std::vector<Other>& others, Pair pair) {
+  std::string found;
+  for (const Other other : others) {
+    const auto [method, kind] = pair(one, other);
+    if (find_link_mechanism(standard_link_mechanisms(), method, kind) == nullptr) continue;
+    found += (found.empty() ? "" : " ") + std::string{to_text(other)};
+  }
+  return found;
+}
+
+template <class E>
+std::vector<E> all_words() {
+  std::vector<E> all;
+  for (const auto& row : EnumTexts<E>::table) all.push_back(row.value);
+  return all;
+}
+
+/// Each method is there for one of the kinds, and each kind has a method: a word that nothing carries in this company is in vain.
+void check_pairs(Attributes& attributes, Problems& problems, const LinkTerms& terms) {
+  const auto pair = [](LinkMethod method, LinkKind kind) { return std::pair{method, kind}; };
+  const auto turned = [](LinkKind kind, LinkMethod method) { return std::pair{method, kind}; };
+  if (const auto* at = attributes.optional("methods"))
+    for (const LinkMethod method : terms.methods) {
+      const std::string carries = carried_with(method, all_words<LinkKind>(), pair);
+      if (carries.empty()) return;  // it is not built in at all, and that was told
+      if (!carried_with(method, terms.kinds, pair).empty()) continue;
+      return problems.add(
+          *at, "E0224",
+          fmt::format("{} carries no set of kind=\"{}\"", in_quotes(to_text(method)),
+                      attributes.optional("kind") != nullptr ? attributes.text("kind") : "latest"),
+          fmt::format("'{}' carries {}: leave the method out, or say this kind", to_text(method), carries));
+    }
+  if (const auto* at = attributes.optional("kind"))
+    for (const LinkKind kind : terms.kinds) {
+      const std::string by = carried_with(kind, all_words<LinkMethod>(), turned);
+      if (by.empty() || !carried_with(kind, terms.methods, turned).empty()) continue;
+      return problems.add(*at, "E0224", fmt::format("none of its methods carries kind {}", in_quotes(to_text(kind))),
+                          fmt::format("'{}' goes by {}", to_text(kind), by));
+    }
+}
+
 }  // namespace
 
 LinkTerms LinkSetReader::read_terms(Attributes& attributes) {
@@ -37,6 +80,7 @@ LinkTerms LinkSetReader::read_terms(Attributes& attributes) {
   terms.kinds = attributes.list_of<LinkKind>("kind", terms.kinds);
   expect_built_in<&LinkMechanism::method>(attributes, problems_, "methods");
   expect_built_in<&LinkMechanism::kind>(attributes, problems_, "kind");
+  check_pairs(attributes, problems_, terms);
   const auto* orders = attributes.optional("byte_order");
   constexpr auto native = std::endian::native == std::endian::little ? ByteOrder::Little : ByteOrder::Big;
   if (std::ranges::find(terms.kinds, LinkKind::Loaned) != terms.kinds.end()) {

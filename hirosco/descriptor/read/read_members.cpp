@@ -18,6 +18,8 @@ namespace {
 
 /// A mission stands in missions/NAME/, what it may name in the tree two folders above.
 constexpr int folders_above = 3;
+/// Of a device, in all its configurations together.
+constexpr std::size_t max_moved_fall_backs = 256;
 
 /// A file that comes with HIROSCO, by its name there.
 bool is_shipped(std::string_view text) { return text.starts_with(shipped_prefix); }
@@ -41,38 +43,82 @@ void read_changed_setting(const xml::Element& element, MissionSubsystem& member,
                did_you_mean(setting.name, known));
 }
 
-/// Another address or other settings for a device of this instance: what it is and how it is carried stays the
+/// What the mission changes of the device in `text`, as its process is told; where it stands is what is refused.
+void apply_to_device(const xml::Attribute& at, std::string_view word, const std::string& text, MissionSubsystem& member,
+                     Problems& problems) {
+  if (const auto applied = apply_change(member.subsystem, word, text); !applied)
+    problems.add(at, "E0217", fmt::format("{}: {}", in_quotes(at.value), applied.error().text));
+}
+
+void read_moved_fall_back(const xml::Element& element, MissionSubsystem& member, DeviceChange& changed, Unique& names,
+                          Problems& problems) {
+  Attributes attributes{element, problems};
+  no_children(element, problems);
+  const auto* address = attributes.required("address");
+  const auto* to = attributes.required("to");
+  if (address == nullptr || to == nullptr) return;
+  names.add(address->value, place(address->value_at), problems, address->value.size());
+  const std::size_t before = problems.count();
+  for (const auto* at : {address, to})
+    if (at->value.empty() || at->value.find('=') != std::string::npos)
+      problems.add(*at, "E0217", in_quotes(at->value) + " is no address");
+  if (problems.count() != before) return;
+  apply_to_device(*address, "--fall-back", fmt::format("{}={}={}", changed.device, address->value, to->value), member,
+                  problems);
+  changed.fall_backs.push_back({address->value, to->value});
+}
+
+/// Other addresses or other settings for a device of this instance: what it is and how it is carried stays the
 /// descriptor's.
 void read_device_change(const xml::Element& element, MissionSubsystem& member, Unique& names, Problems& problems) {
   Attributes attributes{element, problems};
   const auto* name = attributes.required("name");
   const auto* address = attributes.optional("address");
   const auto* enable = attributes.optional("enable");
+  const auto* power = attributes.optional("power");
   if (name == nullptr) return no_children(element, problems);
-  DeviceChange changed{name->value, address != nullptr ? address->value : "", enable != nullptr ? enable->value : ""};
+  const auto text_of = [](const xml::Attribute* at) { return at != nullptr ? at->value : std::string{}; };
+  DeviceChange changed{name->value, text_of(address), text_of(enable), text_of(power)};
   std::vector<std::string_view> known;
   for (const Device& device : member.subsystem.devices) known.push_back(device.name);
+  // A device with several endnodes is itself in no configuration; its power is.
+  for (const PowerSwitch& switched : member.subsystem.power_switches)
+    if (std::ranges::find(known, switched.device) == known.end()) known.push_back(switched.device);
   names.add(name->value, place(name->value_at), problems, name->value.size());
   const bool exists = std::ranges::find(known, name->value) != known.end();
   if (!exists)
     problems.add(*name, "E0312", fmt::format("'{}' has no device {}", member.subsystem.name, in_quotes(name->value)),
                  did_you_mean(name->value, known));
-  Unique settings{"setting", "E0201"};
-  bool sets = false;
-  const auto read_one = [&](const xml::Element& child) {
-    sets = true;
+  // Before its fall-backs, which must not meet it; its process does the same in this order.
+  for (const auto& [at, word] : {std::pair{address, "--address"}, {enable, "--enable"}, {power, "--power"}})
+    if (at != nullptr && exists) apply_to_device(*at, word, name->value + "=" + at->value, member, problems);
+  Unique settings{"setting", "E0201"}, fall_backs{"fall-back", "E0201"};
+  const auto read_one_setting = [&](const xml::Element& child) {
     if (exists) read_changed_setting(child, member, changed, settings, problems);
   };
-  each_child(element, problems, {{"Setting", read_one, 256}});
-  if (address == nullptr && enable == nullptr && !sets)
-    return problems.add(element, "E0105",
-                        "<Device> of a mission's <Subsystem> needs 'address', 'enable' or a <Setting>");
-  for (const auto& [at, word] : {std::pair{address, "--address"}, std::pair{enable, "--enable"}}) {
-    if (at == nullptr || !exists) continue;
-    if (const auto applied = apply_change(member.subsystem, word, name->value + "=" + at->value); !applied)
-      problems.add(*at, "E0217", fmt::format("{}: {}", in_quotes(at->value), applied.error().text));
-  }
+  const auto read_one_fall_back = [&](const xml::Element& child) {
+    if (exists) read_moved_fall_back(child, member, changed, fall_backs, problems);
+  };
+  each_child(element, problems,
+             {{"Setting", read_one_setting, 256}, {"FallBack", read_one_fall_back, max_moved_fall_backs}});
+  if (address == nullptr && enable == nullptr && power == nullptr && element.children.empty())
+    return problems.add(
+        element, "E0105",
+        "<Device> of a mission's <Subsystem> needs 'address', 'enable', 'power', a <FallBack> or a <Setting>");
   member.devices.push_back(std::move(changed));
+}
+
+/// What it has is apart in its descriptor, and perhaps no more by what is changed.
+void check_ends(const SubsystemDescriptor& subsystem, MissionDraft& draft) {
+  Problems met{subsystem.file};
+  check_addresses(subsystem, met);
+  for (const Configuration& configuration : subsystem.configurations)
+    for (const DeviceUse& use : configuration.devices)
+      for (const Endnode& other : use.fall_backs)
+        if (other.transfer == use.endnode.transfer && other.address == use.endnode.address)
+          met.add(other.at, "E0222", in_quotes(other.address) + " is tried already",
+                  "a fall-back has an address of its own");
+  if (met.count() != 0) draft.subsystem_problems.push_back(met.take());
 }
 
 void read_override(const xml::Element& element, MissionSubsystem& member, Unique& names, Problems& problems) {
@@ -157,6 +203,7 @@ void MemberReader::read_member(const xml::Element& element) {
        {"Commands", [&](const auto& child) { others_.read_redirected(child, member, Commands, commanded); }, 255},
        {"Subscribes", [&](const auto& child) { others_.read_redirected(child, member, Subscribes, heard); }, 255},
        {"Device", [&](const auto& child) { read_device_change(child, member, devices, problems_); }, 255}});
+  if (!member.devices.empty()) check_ends(member.subsystem, draft_);
   addresses_.check_endnodes(member.subsystem);
   draft_.mission.subsystems.push_back(std::move(member));
 }

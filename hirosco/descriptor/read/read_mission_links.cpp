@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "hirosco/descriptor/model/common_link_way.hpp"
 #include "hirosco/descriptor/read/detail/mission_link_reader.hpp"
 
 /// Which sets a mission joins, and whether they fit.
@@ -29,10 +30,49 @@ std::string describe(const Field& field) {
                      field.unit.empty() ? "" : " " + field.unit);
 }
 
+template <class E>
+std::string joined_words(const std::vector<E>& list) {
+  std::string text;
+  for (const E each : list) text += (text.empty() ? "" : " ") + std::string{to_text(each)};
+  return text;
+}
+
+/// An end as the reason names it, with the way on which it insists.
+std::string describe(const SubsystemDescriptor& subsystem, const std::string& set, const LinkTerms& terms) {
+  return fmt::format("'{}.{}' (methods \"{}\", kind \"{}\")", subsystem.name, set, joined_words(terms.methods),
+                     joined_words(terms.kinds));
+}
+
+std::string describe(const SubsystemDescriptor& subsystem, const std::string& set, const Configuration& in) {
+  return fmt::format("'{}.{}' ({} us in '{}')", subsystem.name, set, in.sampling / 1us, in.name);
+}
+
+/// Of methods and kinds of which some are common: why nothing goes all the same, and the mechanism by which it does.
+std::string no_way(const LinkEnds& ends, std::optional<LinkMethod> method, const LinkMechanism*& mechanism) {
+  const Requires& wanted = ends.requires_;
+  LinkTerms offered = ends.provides.terms;
+  if (method) offered.methods = {*method};
+  if (const auto way = first_common_way(offered, wanted.terms, wanted.starts, carried_here)) {
+    mechanism = find_link_mechanism(standard_link_mechanisms(), way->method, way->kind);
+    return {};
+  }
+  const bool only_deaf = wanted.starts && first_common_way(offered, wanted.terms, false, carried_here);
+  if (method && only_deaf) return fmt::format("its samples start a cycle, and '{}' wakes nobody", to_text(*method));
+  if (method) return fmt::format("'{}' does not carry '{}'", to_text(*method), to_text(wanted.kind()));
+  return fmt::format("nothing {} {} and {}", only_deaf ? "wakes a cycle between" : "carries what is common to",
+                     describe(ends.producer, ends.provides.name, offered),
+                     describe(ends.consumer, wanted.name, wanted.terms));
+}
+
 }  // namespace
 
-std::string mismatch(const SubsystemDescriptor& producer, const Provides& provides, const Requires& requires_,
-                     std::optional<LinkMethod> method) {
+bool carried_here(LinkMethod method, LinkKind kind, bool wakes) {
+  const LinkMechanism* const mechanism = find_link_mechanism(standard_link_mechanisms(), method, kind);
+  return mechanism != nullptr && (!wakes || mechanism->wakes());
+}
+
+std::string mismatch(const LinkEnds& ends, std::optional<LinkMethod> method) {
+  const auto& [producer, giving, provides, consumer, taking, requires_] = ends;
   std::vector<Field> offered;
   for (const ParameterRef& reference : provides.parameters)
     std::ranges::move(fields_of(producer, reference), std::back_inserter(offered));
@@ -55,15 +95,16 @@ std::string mismatch(const SubsystemDescriptor& producer, const Provides& provid
     const bool known = std::ranges::find(provides.terms.methods, *method) != provides.terms.methods.end() &&
                        std::ranges::find(requires_.terms.methods, *method) != requires_.terms.methods.end();
     if (!known) return fmt::format("not both ends have method '{}'", to_text(*method));
-    const LinkMechanism* mechanism = find_link_mechanism(standard_link_mechanisms(), *method, requires_.kind());
-    if (mechanism == nullptr)
-      return fmt::format("'{}' does not carry '{}'", to_text(*method), to_text(requires_.kind()));
-    if (requires_.starts && !mechanism->wakes())
-      return fmt::format("its samples start a cycle, and '{}' wakes nobody", to_text(*method));
-    if (octets > mechanism->max_payload())
-      return fmt::format("a sample of {} octets is more than the {} of '{}'", octets, mechanism->max_payload(),
-                         to_text(*method));
   }
+  const LinkMechanism* mechanism = nullptr;
+  if (std::string why = no_way(ends, method, mechanism); !why.empty()) return why;
+  if (octets > mechanism->max_payload())
+    return fmt::format("a sample of {} octets is more than the {} of '{}'", octets, mechanism->max_payload(),
+                       to_text(mechanism->method()));
+  // Who waits for samples has the rate at which they come.
+  if (!requires_.starts && !rates_fit(giving.sampling, taking.sampling))
+    return fmt::format("one period has to be a multiple of the other, of {} and {}",
+                       describe(producer, provides.name, giving), describe(consumer, requires_.name, taking));
   if (requires_.depth == 0) return {};
   if (octets * requires_.depth > max_queue_octets)
     return fmt::format("{} samples of {} octets are more than {}", requires_.depth, octets, max_queue_octets);
@@ -110,14 +151,18 @@ const SubsystemDescriptor* MissionLinkReader::read_end(Attributes& attributes, s
 
 void MissionLinkReader::check_link(const xml::Element& element, const SubsystemDescriptor& producer,
                                    const SubsystemDescriptor& consumer, const MissionLink& link) {
-  std::vector<const Provides*> provides, provided;
-  std::vector<const Requires*> requires_, required;
+  std::vector<std::pair<const Configuration*, const Provides*>> provides;
+  std::vector<std::pair<const Configuration*, const Requires*>> requires_;
+  std::vector<const Provides*> provided;
+  std::vector<const Requires*> required;
   for (const Configuration& configuration : producer.configurations)
     for (const Provides& set : configuration.provides)
-      (set.name == link.provides ? provides : provided).push_back(&set);
+      if (set.name == link.provides) provides.emplace_back(&configuration, &set);
+      else provided.push_back(&set);
   for (const Configuration& configuration : consumer.configurations)
     for (const Requires& set : configuration.requires_)
-      (set.name == link.requires_ ? requires_ : required).push_back(&set);
+      if (set.name == link.requires_) requires_.emplace_back(&configuration, &set);
+      else required.push_back(&set);
   if (provides.empty())
     problems_.add(*element.find("from"), "E0307",
                   fmt::format("no configuration of '{}' provides {}", link.from, in_quotes(link.provides)),
@@ -129,11 +174,11 @@ void MissionLinkReader::check_link(const xml::Element& element, const SubsystemD
   if (link.from == link.to) problems_.add(*element.find("to"), "E0308", "a link joins two subsystems");
   // A configuration may change a set; one pair that fits is enough, the handshake decides at run time.
   std::string why;
-  for (const Requires* wanted : requires_)
-    for (const Provides* offered : provides) {
+  for (const auto& [taking, wanted] : requires_)
+    for (const auto& [giving, offered] : provides) {
       std::string reason = !wanted->from.empty() && wanted->from != link.from
                                ? fmt::format("'{}' is required from '{}'", wanted->name, wanted->from)
-                               : mismatch(producer, *offered, *wanted, link.method);
+                               : mismatch({producer, *giving, *offered, consumer, *taking, *wanted}, link.method);
       if (reason.empty()) return;
       if (why.empty()) why = std::move(reason);
     }

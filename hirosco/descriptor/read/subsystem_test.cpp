@@ -399,7 +399,7 @@ TEST(SubsystemDescriptor, CountsAreBounded) {
   EXPECT_TRUE(read_text(configurations(64)).value);
   EXPECT_EQ(read_text(configurations(65)).problems.at(0).code, "E0107");
   const auto provided = [](int members) {
-    std::string text = "<Subsystem name=\"S\" id=\"1\"><StructRef name=\"A\" id=\"0\">";
+    std::string text = "<Subsystem name=\"S\" id=\"10\"><StructRef name=\"A\" id=\"0\">";
     for (int i = 1; i <= members; ++i) {
       const std::string id = std::to_string(i);
       text += "<ParamRef name=\"M" + id + "\" id=\"" + id + "\" type=\"INT8\"/>";

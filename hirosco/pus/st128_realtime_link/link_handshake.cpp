@@ -42,17 +42,15 @@ template <class E>
   return refuse(item, std::string{what} + ": consumer " + list_text(consumer) + ", producer " + list_text(producer));
 }
 
-/// Method and kind go together: each alone may be common while nothing carries both.
-[[nodiscard]] std::expected<std::pair<LinkMethod, LinkKind>, Refusal> first_common_way(
-    const descriptor::LinkTerms& producer, const descriptor::LinkTerms& consumer, bool wakes, const Carried& carried) {
+/// The way that both have, or why there is none.
+[[nodiscard]] std::expected<descriptor::LinkWay, Refusal> way_or_refusal(const descriptor::LinkTerms& producer,
+                                                                         const descriptor::LinkTerms& consumer,
+                                                                         bool wakes, const Carried& carried) {
   const auto method = first_common(Item::Method, "method", producer.methods, consumer.methods);
   if (!method) return std::unexpected{method.error()};
   const auto kind = first_common(Item::Kind, "kind", producer.kinds, consumer.kinds);
   if (!kind) return std::unexpected{kind.error()};
-  const auto has = [](const auto& list, auto value) { return std::ranges::find(list, value) != list.end(); };
-  for (const LinkMethod by : producer.methods)
-    for (const LinkKind of : producer.kinds)
-      if (has(consumer.methods, by) && has(consumer.kinds, of) && carried(by, of, wakes)) return std::pair{by, of};
+  if (const auto way = descriptor::first_common_way(producer, consumer, wakes, carried)) return *way;
   if (wakes && carried(*method, *kind, false))
     return refuse(Item::Wake, "wake: nothing here wakes a consumer by " + std::string{to_text(*method)});
   return refuse(Item::Method, "method and kind: nothing here carries what both sides know, as " +
@@ -60,8 +58,7 @@ template <class E>
 }
 
 [[nodiscard]] std::optional<Refusal> check_rates(Duration producer, Duration consumer) {
-  const bool positive = producer.count() > 0 && consumer.count() > 0;
-  if (positive && (producer % consumer == Duration{} || consumer % producer == Duration{})) return std::nullopt;
+  if (descriptor::rates_fit(producer, consumer)) return std::nullopt;
   return Refusal{static_cast<std::uint8_t>(Item::Rate), "rate: consumer " + std::to_string(consumer.count()) +
                                                             " ns, producer " + std::to_string(producer.count()) +
                                                             " ns"};
@@ -148,23 +145,23 @@ std::uint64_t Agreement::layout_hash() const noexcept {
 }
 
 std::expected<Agreement, Refusal> negotiate(const Offer& producer, const Offer& consumer, const Carried& carried) {
-  const auto way = first_common_way(producer.terms, consumer.terms, consumer.wakes, carried);
+  const auto way = way_or_refusal(producer.terms, consumer.terms, consumer.wakes, carried);
   if (!way) return std::unexpected{way.error()};
   const auto order =
       first_common(Item::ByteOrder, "byte order", producer.terms.byte_orders, consumer.terms.byte_orders);
   if (!order) return std::unexpected{order.error()};
   constexpr auto native = std::endian::native == std::endian::little ? ByteOrder::Little : ByteOrder::Big;
-  if (way->second == LinkKind::Loaned && *order != native)
+  if (way->kind == LinkKind::Loaned && *order != native)
     return refuse(Item::ByteOrder, "byte order: a lent sample has the machine's, not " + std::string{to_text(*order)});
   // Who waits for samples has the rate at which they come.
   if (auto refusal = check_rates(producer.period, consumer.period); refusal && !consumer.wakes)
     return std::unexpected{*std::move(refusal)};
-  if (auto refusal = check_fields(producer.fields, consumer.fields, way->second))
+  if (auto refusal = check_fields(producer.fields, consumer.fields, way->kind))
     return std::unexpected{*std::move(refusal)};
-  if (auto refusal = check_depth(consumer, way->second, sample_octets(producer.fields, way->second)))
+  if (auto refusal = check_depth(consumer, way->kind, sample_octets(producer.fields, way->kind)))
     return std::unexpected{*std::move(refusal)};
-  const std::uint32_t depth = way->second == LinkKind::Queued ? consumer.depth : 0;
-  return Agreement{way->first,      *order,          way->second,     depth,
+  const std::uint32_t depth = way->kind == LinkKind::Queued ? consumer.depth : 0;
+  return Agreement{way->method,     *order,          way->kind,       depth,
                    producer.period, consumer.period, producer.fields, consumer.wakes};
 }
 

@@ -4,11 +4,11 @@
 
 #include <cstdint>
 #include <expected>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "hirosco/data_transfer/link/link.hpp"
+#include "hirosco/descriptor/model/common_link_way.hpp"
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/service/service_kind.hpp"
 #include "hirosco/utilities/octets.hpp"
@@ -87,8 +87,7 @@ struct Refusal {
   std::string text;  ///< "field POSITION: consumer FLOAT[2], producer DOUBLE[2]"
 };
 
-/// Whether a mechanism of the platform carries links of this method and kind, and, where `wakes`, its producer wakes a consumer.
-using Carried = std::function<bool(LinkMethod, LinkKind, bool wakes)>;
+using descriptor::Carried;
 
 /// The handshake's decision, made by the producer: the first method, byte order and kind of the producer's list that the
 /// consumer has too; an integer ratio of the rates either way, but for a consumer whose cycle starts with a sample; every

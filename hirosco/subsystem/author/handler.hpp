@@ -79,6 +79,15 @@ struct HandlerTraits<R (C::*)(A...) const> {
   static constexpr bool takes_string = (std::is_same_v<std::remove_cvref_t<A>, std::string> || ... || false);
   static constexpr bool takes_call = (std::is_same_v<std::remove_cvref_t<A>, Call> || ... || false);
   static constexpr bool takes_values = (std::is_same_v<std::remove_cvref_t<A>, FunctionValues> || ... || false);
+  /// What a call brings is gone with it: a handler gets it as a value, or looks at it.
+  template <class T>
+  static constexpr bool is_by_value = !std::is_reference_v<T> || std::is_same_v<T, const std::remove_cvref_t<T>&>;
+  static constexpr bool takes_by_value = (is_by_value<A> && ...);
+  static constexpr std::size_t calls = (std::size_t{std::is_same_v<std::remove_cvref_t<A>, Call>} + ... + 0);
+  static constexpr bool call_comes_last = [] {
+    if constexpr (calls == 0) return true;
+    else return calls == 1 && std::is_same_v<std::tuple_element_t<sizeof...(A) - 1, Types>, Call>;
+  }();
   static constexpr std::size_t arguments = sizeof...(A) - (takes_call ? 1 : 0);
 
   [[nodiscard]] static constexpr auto natives() noexcept {
@@ -96,6 +105,8 @@ struct HandlerTraits<R (C::*)(A...) const> {
     }(std::make_index_sequence<arguments>{});
   }
 };
+template <class C, class R, class... A>
+struct HandlerTraits<R (C::*)(A...) const noexcept> : HandlerTraits<R (C::*)(A...) const> {};
 /// Not `mutable`, not overloaded, no template.
 template <class H>
 concept Handler = requires { typename HandlerTraits<decltype(&H::operator())>::Answer; };
@@ -112,6 +123,9 @@ template <class H>
   static_assert(Traits::takes_what_a_call_brings,
                 "a handler takes numbers or enumerations, bool, std::array or Sized of those, std::string_view for "
                 "text, or FunctionValues, and last a Call if it reports later");
+  static_assert(Traits::takes_by_value,
+                "a handler takes its arguments by value or as const&: there is nobody to whom it could give them back");
+  static_assert(Traits::call_comes_last, "a handler takes one Call at most, behind all arguments");
   if constexpr (Traits::takes_values) {
     static_assert(Traits::arguments == 1, "FunctionValues are all numbers of a call; beside them there is a Call only");
     return {std::nullopt, [handler](pus::ArgumentReader& reader, Call call) -> Outcome {

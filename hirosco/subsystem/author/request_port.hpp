@@ -37,16 +37,19 @@ struct RequestReport {
     Refused,  ///< nothing was done
     Failed,  ///< it had begun
     TimedOut,  ///< nobody said how it ended
+    StepFailed,  ///< no end: one of its steps has failed, and it goes on
   };
   Stage stage{};
   std::uint32_t request{0};  ///< as request() returned it
-  std::uint16_t step{0};  ///< of Progressed
-  pus::FailureCode code{};  ///< of Refused and Failed
-  std::string_view reason{};  ///< of every end but Completed; valid during the call, like `data`
+  std::uint16_t step{0};  ///< of Progressed and StepFailed
+  pus::FailureCode code{};  ///< of Refused, Failed and StepFailed
+  std::string_view reason{};  ///< of StepFailed and every end but Completed; valid during the call, like `data`
   std::int64_t number{0};  ///< of a reason with words
   std::uint8_t subtype{0};  ///< of Answered
   Octets data{};
-  [[nodiscard]] constexpr bool is_end() const noexcept { return stage >= Stage::Completed; }
+  [[nodiscard]] constexpr bool is_end() const noexcept {
+    return stage >= Stage::Completed && stage != Stage::StepFailed;
+  }
 };
 using RequestHandler = std::function<void(const RequestReport&)>;
 

@@ -150,6 +150,13 @@ class Subsystem {
   void inhibit_actuators() noexcept;
   /// Later reports of a running function.  Realtime: wait-free.
   void progress(const Call& call, std::uint16_t step) noexcept;
+  /// One of its steps has failed, TM[1,6], and it goes on: its end is told by finish() or abort() all the same. Words as of abort().
+  template <FailureEnumeration E>
+  void progress_failed(const Call& call, std::uint16_t step, E code, const char* text = "",
+                       std::int64_t number = 0) noexcept {
+    fail_step(call, step, static_cast<pus::FailureCode>(code), {ErrorCode::Internal, text, number});
+  }
+  void progress_failed(const Call& call, std::uint16_t step, const Error& why) noexcept;
   void finish(const Call& call) noexcept;
   /// `text` is a string literal; it reaches ground with `number`.
   template <FailureEnumeration E>
@@ -208,6 +215,7 @@ class Subsystem {
   void bind_subscription(SubscriptionPort& heard);
   Result<> set_subscription(SubscriptionPort& heard, bool wanted);
   void abort_call(const Call& call, pus::FailureCode code, const Error& why) noexcept;
+  void fail_step(const Call& call, std::uint16_t step, pus::FailureCode code, const Error& why) noexcept;
   /// The number of the newest stop of everything that is known here, never 0 in a flight (PermitPage::newest_stop).
   [[nodiscard]] std::uint32_t newest_stop() const noexcept;
   /// Sends a telecommand that came from the ground link client `client` to the supervisor. `known_stop`: newest_stop() as it was before the

@@ -50,6 +50,7 @@ enum class ReportKind : std::uint8_t {
   Started,
   Refused,        ///< `index` the code; payload: AuthorsError
   Progressed,
+  StepFailed,     ///< `index` the code; payload: FailedStep
   Finished,
   Aborted,        ///< of a function; `index` code or step; payload of Aborted: AuthorsError
   StateEntered,   ///< `index` the State
@@ -78,6 +79,11 @@ struct AuthorsError {
   }
 };
 static_assert(sizeof(AuthorsError) <= descriptor::reason_octets);
+/// A step of a running function, which goes on.
+struct FailedStep {
+  AuthorsError why{};
+  std::uint16_t step{0};
+};
 
 /// Cycle -> service loop; a payload may follow in the same record.
 struct CycleReport {
@@ -120,7 +126,7 @@ struct LoopRings {
             fill(events_mark, events.capacity()), fill(housekeeping_mark, housekeeping.capacity())};
   }
   SpscRing<CycleCommand> commands;
-  RecordRing answers;  ///< somebody waits for them: at most two for each command, progress, and framework events
+  RecordRing answers;  ///< somebody waits: at most two for each command, progress, failed or not, framework events
   RecordRing events;  ///< the author's
   RecordRing housekeeping;
   FillMark commands_mark, answers_mark, events_mark, housekeeping_mark;  ///< the service loop's

@@ -58,6 +58,13 @@ void ReportWriter::fail_call(ReportKind kind, pus::FailureCode code, const pus::
   explain({.kind = kind, .index = static_cast<std::uint16_t>(code), .request = request}, why);
 }
 
+void ReportWriter::fail_step(std::uint16_t step, pus::FailureCode code, const pus::Request& request,
+                             const Error& why) noexcept {
+  const FailedStep failed{AuthorsError{why}, step};
+  answer({.kind = ReportKind::StepFailed, .index = static_cast<std::uint16_t>(code), .request = request},
+         std::as_bytes(std::span{&failed, 1}));
+}
+
 void ReportWriter::explain(const CycleReport& head, const Error& why) noexcept {
   const AuthorsError error{why};
   answer(head, std::as_bytes(std::span{&error, 1}));
@@ -66,7 +73,8 @@ void ReportWriter::explain(const CycleReport& head, const Error& why) noexcept {
 void ReportWriter::answer(CycleReport head, Octets payload) noexcept {
   RecordRing& answers = rings_.answers;
   // Progress is all that an author can have without end: it never takes the last half.
-  if (head.kind == ReportKind::Progressed && answers.used() > answers.capacity() / 2) {
+  const bool endless = head.kind == ReportKind::Progressed || head.kind == ReportKind::StepFailed;
+  if (endless && answers.used() + payload.size() > answers.capacity() / 2) {
     rings_.lost_progress.fetch_add(1, std::memory_order_relaxed);
     return;
   }

@@ -26,6 +26,8 @@ class ReportWriter final : public pus::SampleSink {
   void report(ReportKind kind, std::uint16_t index, const pus::Request& request, AttachedLink* link = nullptr) noexcept;
   /// A function was refused, or ends without success.
   void fail_call(ReportKind kind, pus::FailureCode code, const pus::Request& request, const Error& why) noexcept;
+  /// A step of a function that goes on has failed.
+  void fail_step(std::uint16_t step, pus::FailureCode code, const pus::Request& request, const Error& why) noexcept;
   /// One of the kinds whose payload says why, as AuthorsError; its number is given here.
   void explain(const CycleReport& head, const Error& why) noexcept;
 

@@ -57,6 +57,8 @@ constexpr std::array known_options{ProgramOption{"--descriptor", "FILE"},
                                    ProgramOption{"--set", "PARAMETER=VALUES"},
                                    ProgramOption{"--address", "DEVICE=ADDRESS"},
                                    ProgramOption{"--enable", "DEVICE=ADDRESS"},
+                                   ProgramOption{"--power", "DEVICE=ADDRESS"},
+                                   ProgramOption{"--fall-back", "DEVICE=ADDRESS=ADDRESS"},
                                    ProgramOption{"--setting", "DEVICE:NAME=VALUE"},
                                    ProgramOption{"--commands", "NAME=ID:FILE"},
                                    ProgramOption{"--subscribes", "NAME=ID:FILE"}};
@@ -127,8 +129,9 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     fmt::print(stderr,
                "{}: a subsystem is started by the supervisor (hirosco run MISSION), which passes\n"
                "  --descriptor FILE --channel FD --vital FD --permit FD [--as NAME:ID] [--set PARAMETER=VALUES]\n"
-               "  [--text FD] [--address DEVICE=ADDRESS] [--enable DEVICE=ADDRESS] [--setting DEVICE:NAME=VALUE]\n"
-               "  [--commands NAME=ID:FILE] [--subscribes NAME=ID:FILE]\n",
+               "  [--text FD] [--address DEVICE=ADDRESS] [--enable DEVICE=ADDRESS] [--power DEVICE=ADDRESS]\n"
+               "  [--fall-back DEVICE=ADDRESS=ADDRESS] [--setting DEVICE:NAME=VALUE] [--commands NAME=ID:FILE]\n"
+               "  [--subscribes NAME=ID:FILE]\n",
                argv[0]);
     return exit_usage;
   }

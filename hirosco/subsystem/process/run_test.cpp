@@ -101,8 +101,8 @@ TEST_F(BuiltApart, AWordThatItDoesNotKnowIsRefusedInOneLine) {
 }
 
 TEST_F(BuiltApart, EveryWordByWhichASupervisorChangesADescriptorIsKnown) {
-  for (const std::string& word :
-       std::vector<std::string>{"--as", "--set", "--address", "--enable", "--setting", "--commands", "--subscribes"})
+  for (const std::string& word : std::vector<std::string>{"--as", "--set", "--address", "--enable", "--power",
+                                                          "--fall-back", "--setting", "--commands", "--subscribes"})
     EXPECT_EXIT(run([] { return std::make_unique<Idle>(); }, {word, "?"}), ::testing::ExitedWithCode(3),
                 "^started: " + word + " \\?: ");
 }

@@ -62,6 +62,12 @@ void Subsystem::inhibit_actuators() noexcept { framework_->cycle().inhibit(inhib
 void Subsystem::progress(const Call& call, std::uint16_t step) noexcept {
   framework_->cycle().reports().report(ReportKind::Progressed, step, call.request);
 }
+void Subsystem::progress_failed(const Call& call, std::uint16_t step, const Error& why) noexcept {
+  fail_step(call, step, failure_code(why.code), why);
+}
+void Subsystem::fail_step(const Call& call, std::uint16_t step, pus::FailureCode code, const Error& why) noexcept {
+  framework_->cycle().reports().fail_step(step, code, call.request, why);
+}
 void Subsystem::finish(const Call& call) noexcept {
   framework_->cycle().reports().report(ReportKind::Finished, 0, call.request);
 }

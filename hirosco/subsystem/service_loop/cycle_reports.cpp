@@ -21,6 +21,12 @@ namespace {
   return {failure.code, {failure.text.data(), failure.text_octets}, failure.number};
 }
 
+[[nodiscard]] std::uint16_t step_in(Octets payload) {
+  FailedStep failed;
+  std::memcpy(&failed, payload.data(), std::min(payload.size(), sizeof failed));
+  return failed.step;
+}
+
 }  // namespace
 
 void CycleReports::take() {
@@ -56,6 +62,11 @@ void CycleReports::take_one(const CycleReport& head, Octets payload) {
       parts_.calls.refused(head.request, parts_.reports.notice_of(head.index, failure_in(payload)));
       break;
     case ReportKind::Progressed: parts_.reports.verification().progressed(head.request, head.index); break;
+    case ReportKind::StepFailed:
+      if (parts_.calls.has(head.request))
+        parts_.reports.verification().progress_failed(head.request, step_in(payload),
+                                                      parts_.reports.notice_of(head.index, failure_in(payload)));
+      break;
     case ReportKind::Finished: parts_.calls.completed(head.request); break;
     case ReportKind::Aborted:
       // What nobody waits for is not put into words: they take from the heap.

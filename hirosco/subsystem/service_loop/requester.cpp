@@ -21,12 +21,13 @@ using Stage = RequestReport::Stage;
     case 1: return Stage::Accepted;
     case 3: return Stage::Started;
     case 5: return Stage::Progressed;
+    case 6: return Stage::StepFailed;
     case 7: return Stage::Completed;
     case 2:
     case 4:
     case 10: return Stage::Refused;
     case 8: return Stage::Failed;
-    default: return std::nullopt;  // a step that failed says nothing of the end
+    default: return std::nullopt;
   }
 }
 
@@ -188,12 +189,8 @@ void Requester::hear_verification(const pus::TelemetryView& report) {
   // Only who was asked says how it went, and the supervisor for it.
   if (report.apid() != open->bound->apid && report.apid() != pus::supervisor_apid) return;
   RequestReport heard{.stage = *stage, .request = id};
-  if (*stage == Stage::Progressed) heard.step = reader.get<std::uint16_t>();
-  if (!heard.is_end()) {
-    if (open->bound->handler) open->bound->handler(heard);
-    return;
-  }
-  if (*stage != Stage::Completed) {
+  if (*stage == Stage::Progressed || *stage == Stage::StepFailed) heard.step = reader.get<std::uint16_t>();
+  if (*stage == Stage::Refused || *stage == Stage::Failed || *stage == Stage::StepFailed) {
     heard.code = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
     const bool own = static_cast<std::uint16_t>(heard.code) >= pus::first_own_failure_code;
     heard.reason = own ? std::string_view{"a failure code of its own"} : to_text(heard.code);
@@ -201,6 +198,10 @@ void Requester::hear_verification(const pus::TelemetryView& report) {
       heard.number = why->number;
       if (!why->text.empty()) heard.reason = why->text;
     }
+  }
+  if (!heard.is_end()) {
+    if (open->bound->handler) open->bound->handler(heard);
+    return;
   }
   end(static_cast<std::size_t>(open - open_.begin()), heard);
 }

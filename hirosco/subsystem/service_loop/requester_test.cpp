@@ -47,7 +47,7 @@ struct Porter : Subsystem {
   Result<Step> software_init() override {
     const auto hear = [this](const RequestReport& report) {
       std::string text{std::to_string(static_cast<int>(report.stage))};
-      if (report.stage == Stage::Progressed) text += " step " + std::to_string(report.step);
+      if (report.step != 0) text += " step " + std::to_string(report.step);
       if (report.stage == Stage::Answered) text += " " + std::to_string(report.subtype) + " " + hex(report.data);
       if (!report.reason.empty())
         text += " " + std::to_string(static_cast<int>(report.code)) + " " + std::string{report.reason};
@@ -127,6 +127,22 @@ TEST_F(Requesting, HearsWhyItWasRefusedOrFailed) {
   rig.service();
   EXPECT_THAT(porter.heard,
               ElementsAre("5 13 not permitted in this mode", "6 514 wet 42", "5 32769 a failure code of its own"));
+}
+
+TEST_F(Requesting, HearsOfAStepThatFailedAndOfTheEndAllTheSame) {
+  const auto asked = ring();
+  std::vector<std::byte> wet(2 + 2 + 1 + 1 + 8 + 3);
+  OctetWriter{wet}
+      .put(std::uint16_t{7})
+      .put(std::uint16_t{0x0202})
+      .put(std::uint8_t{0xFF})
+      .put(std::uint8_t{11})
+      .put(std::int64_t{42})
+      .put(std::as_bytes(std::span{"wet", 3}));
+  rig.verify(asked, 6, wet);
+  rig.verify(asked, 7);
+  rig.service();
+  EXPECT_THAT(porter.heard, ElementsAre("8 step 7 514 wet 42", "4"));
 }
 
 TEST_F(Requesting, TheSupervisorMaySayThatItWasRefusedAndNobodyElseWhoWasNotAsked) {

@@ -109,6 +109,7 @@ class Probe : public Subsystem {
   Cycle last{};
   std::optional<Call> move;
   std::optional<std::uint16_t> step_due;
+  std::optional<std::uint16_t> failed_step_due;
   bool finish_due{false};
   std::vector<std::pair<double, double>> gains_seen;  ///< KP and KD of every cycle, where a test asks for them
   bool record_gains{false};
@@ -169,6 +170,8 @@ class Probe : public Subsystem {
     if (raises) raise(own, 2.5);
     if (move && step_due) progress(*move, *step_due);
     step_due.reset();
+    if (move && failed_step_due) progress_failed(*move, *failed_step_due, {ErrorCode::Unavailable, "wet", 42});
+    failed_step_due.reset();
     if (move && finish_due) {
       finish(*move);
       move.reset();

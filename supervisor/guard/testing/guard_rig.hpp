@@ -48,6 +48,7 @@ struct GuardTest : ::testing::Test {
     descriptor::Device device;
     device.name = "MOTOR";
     device.actuator = true;
+    device.stop = descriptor::StopKind::Controlled;
     device.stop_within = 200ms;
     device.enable = descriptor::Endnode{};
     device.enable->address = "motor-enable";

@@ -93,12 +93,12 @@ void OwnTelecommands::hear(std::uint16_t from, const pus::TelemetryView& report)
   // Its end is told by whom it was for, or by the supervisor that did not let it go there.
   if (from != found->second.apid && from != supervisor_apid) return;
   if (report.subtype() == 3) found->second.begins();
+  if (report.subtype() == 6) return;  // one of its steps: it goes on, and the log has why
   const bool failure = report.subtype() % 2 == 0;
   const bool completed = report.subtype() == 7;
   if (!failure && !completed) return;
   const Sent ended = std::move(found->second);
   sent_.erase(found);
-  if (report.subtype() == 6) static_cast<void>(reader.get<std::uint16_t>());
   const auto code = static_cast<pus::FailureCode>(failure ? reader.get<std::uint16_t>() : 0);
   const std::string why = failure ? words_of(code, reader.rest()) : std::string{};
   if (failure) craft_.tell(ended.what + " failed: " + why, report.apid());

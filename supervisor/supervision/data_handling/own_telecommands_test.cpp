@@ -48,6 +48,18 @@ TEST_F(OwnTelecommandsTest, ItsSenderHearsWhyItFailed) {
   EXPECT_TRUE(was_told("ARM SET_STATE 7 failed: "));
 }
 
+TEST_F(OwnTelecommandsTest, AStepThatFailedIsNoEnd) {
+  const auto request = send();
+  verify(arm, request, 1);
+  std::array<std::byte, 8> data;
+  OctetWriter writer{data};
+  writer.put(request).put(std::uint16_t{1}).put(static_cast<std::uint16_t>(pus::FailureCode::ExecutionError));
+  report(arm, 1, 6, writer.written(), supervisor_apid);
+  EXPECT_THAT(ends, IsEmpty());
+  verify(arm, request, 7);
+  EXPECT_THAT(ends, ElementsAre("done"));
+}
+
 TEST_F(OwnTelecommandsTest, ItsSenderHearsTheWordsAndTheNumberOfAnAuthor) {
   const auto request = send();
   std::array<std::byte, 4 + 2 + pus::FailureNotice::max_data_octets> data;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/event_handling/safe_all.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 
@@ -99,6 +101,8 @@ void SafeAll::tell_outcome(const Pending& pending, const std::vector<StopAnswer>
   for (const StopAnswer& answer : answers) {
     const std::string who = craft_.name_of(answer.apid);
     if (answer.killed) craft_.tell(who + " was ended: " + answer.name + " had not stopped in time", answer.apid);
+    if (!answer.otherwise.empty())
+      craft_.tell(fmt::format("{} of {} has stopped, but {}", answer.name, who, answer.otherwise), answer.apid);
     if (answer.stopped) continue;
     all = false;
     craft_.tell(answer.name + " of " + who + " did not confirm that it stopped", answer.apid);

@@ -45,7 +45,8 @@ void PowerHandling::tell_shortage(std::uint16_t apid, const pus::FailureNotice& 
 
 void PowerHandling::hear(std::uint16_t from, const pus::TelemetryView& report) {
   if (measured_ && measured_->hear(from, report, craft_.now)) follow_measurement();
-  if (report.service() != 1 || (report.subtype() % 2 != 0 && report.subtype() != 7)) return;
+  const bool failed = report.subtype() % 2 == 0 && report.subtype() != 6;  // of a step: it goes on
+  if (report.service() != 1 || (!failed && report.subtype() != 7)) return;
   OctetReader reader{report.source_data()};
   const auto id = reader.get<std::uint32_t>();
   if (reader.good()) ledger_.ended({id, report.destination(), 0});

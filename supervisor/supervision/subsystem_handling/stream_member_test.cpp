@@ -16,8 +16,8 @@
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/subsystem/pages/stream_subsystem_port.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
-#include "supervisor/platform/launch/stream_member_port.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
+#include "supervisor/supervision/testing/stream_member_port.hpp"
 #include "supervisor/supervisor.hpp"
 
 /// The proof of docs/adr/0066: a member that shares no page with its supervisor, over a real stream.
@@ -140,7 +140,7 @@ struct StreamMemberTest : ::testing::Test, ProcessLauncher, Observer {
     probe_process = launched.process;
     end.reset();
     auto ends = StreamChannel::make_pair().value();
-    auto port = std::make_unique<StreamMemberPort>(std::move(ends.first));
+    auto port = std::make_unique<testing::StreamMemberPort>(std::move(ends.first));
     launched.vital = port->vital_page();
     launched.permit = port->permit_page();
     launched.port = std::move(port);

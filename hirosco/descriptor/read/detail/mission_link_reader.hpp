@@ -11,9 +11,21 @@
 
 namespace hirosco::descriptor::detail {
 
-/// Why the producer's set cannot feed the consumer's, by this method where there is one; empty when it can.
-[[nodiscard]] std::string mismatch(const SubsystemDescriptor& producer, const Provides& provides,
-                                   const Requires& requires_, std::optional<LinkMethod> method);
+/// Two sets that a link is to join, each as one of the configurations has it.
+struct LinkEnds {
+  const SubsystemDescriptor& producer;
+  const Configuration& giving;
+  const Provides& provides;
+  const SubsystemDescriptor& consumer;
+  const Configuration& taking;
+  const Requires& requires_;
+};
+
+/// What the mechanisms of this platform carry.
+[[nodiscard]] bool carried_here(LinkMethod method, LinkKind kind, bool wakes);
+/// Why the producer's set cannot feed the consumer's, by this method where there is one; empty when it can. By the words of the
+/// handshake in flight, which decides anew.
+[[nodiscard]] std::string mismatch(const LinkEnds& ends, std::optional<LinkMethod> method);
 
 /// Reads <Links>: which sets are joined, how they travel, and what the loss of one does.
 class MissionLinkReader {

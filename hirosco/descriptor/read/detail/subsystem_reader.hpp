@@ -24,8 +24,8 @@ void read_resources(const xml::Element& element, Resources& resources, Problems&
 /// Makes those queues of whose size nothing is said hold what it declares besides. Whether the others do, and its memory all of them.
 void fit_queues(const xml::Element& root, SubsystemDescriptor& subsystem, Problems& problems);
 
-/// Of the supervisor's own descriptor: what is not in force there is refused.
-void check_supervisor(const xml::Element& root, Problems& problems);
+/// Of the supervisor's own descriptor: what is not in force there is refused, wherever it stands in this element.
+void check_supervisor(const xml::Element& element, Problems& problems);
 
 /// One <Commands>, and one <Subscribes>: no subsystem in two of either.
 void read_commands(const xml::Element& element, Problems& problems, Unique& commanded, std::vector<Commands>& all);
