@@ -149,8 +149,8 @@ TEST_P(EachEndnode, FailsAloneAndTheFlightGoesOnByItsFallBacksOrEndsSafelyAndFli
 }
 
 /// Two of them, of one descriptor: where each is the mission says.
-struct TwoImagers : ::testing::Test {
-  simulation::Flight flight{{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "tests/endnodes/two_imagers.xml",
+struct TwoThatPoint : ::testing::Test {
+  simulation::Flight flight{{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "tests/endnodes/two_pointing.xml",
                              .subsystems = {},
                              .devices = {}}};
 
@@ -161,7 +161,7 @@ struct TwoImagers : ::testing::Test {
   }
 };
 
-TEST_F(TwoImagers, FlyBesideEachOtherEachByFallBacksAndASwitchOfItsOwn) {
+TEST_F(TwoThatPoint, FlyBesideEachOtherEachByFallBacksAndASwitchOfItsOwn) {
   ASSERT_TRUE(flight.commission()) << flight.story().text();
   ASSERT_TRUE(flight.craft().device("second")->fault("endnode POINTING 0 silent"));
   flight.craft().run(1s);

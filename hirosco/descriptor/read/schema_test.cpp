@@ -65,7 +65,7 @@ TEST(Schema, RefusesWhatTheReaderRefuses) {
 
 TEST(Schema, TakesWhatAMissionChangesOfADeviceWithSeveralEndnodes) {
   ASSERT_TRUE(run("xmllint --version")) << "libxml2-utils is not installed";
-  EXPECT_TRUE(validates("mission.xsd", folder / "../../tests/endnodes/two_imagers.xml"));
+  EXPECT_TRUE(validates("mission.xsd", folder / "../../tests/endnodes/two_pointing.xml"));
 }
 
 /// With the parts that it includes.
