@@ -162,8 +162,8 @@ TEST_F(ScriptTest, WhoseInterpreterStartsOthersFliesInNoSandboxWhichIsSaid) {
   put("bin/shim", "#!/bin/sh\n", fs::perms::owner_all);
   EXPECT_EQ(of("/usr/bin/env shim").open, "its interpreter is a script, too");
   EXPECT_EQ(of(at("bin/shim").string()).open, "its interpreter is a script, too");
-  for (const char* more : {"-i python3", "-S -u A python3", "-S PATH=/opt python3", "-S 'python3'",
-                           "-S --unset=B python3", ""})
+  for (const char* more :
+       {"-i python3", "-S -u A python3", "-S PATH=/opt python3", "-S 'python3'", "-S --unset=B python3", ""})
     EXPECT_EQ(of(std::string{"/usr/bin/env "} + more).open, "its first line tells env more than is read here") << more;
 }
 
