@@ -21,23 +21,23 @@ using ::testing::ElementsAre;
 using testing::Rig;
 using testing::Sent;
 
-constexpr const char* shelf_descriptor = R"(<Subsystem name="SHELF" id="10">
+constexpr const char* pantry_descriptor = R"(<Subsystem name="PANTRY" id="10">
   <ParamRef name="CYCLES" id="0" type="UINT32"/>
-  <CustomService name="SHELF" type="200">
+  <CustomService name="PANTRY" type="200">
     <Request name="PUT" subtype="1"><Argument name="BOOK" type="UINT32" minimum="0" maximum="9"/></Request>
   </CustomService>
   <ServiceLoop name="SLOW" period_us="20000" priority="12" budget_us="900" queue="8"/>
-  <Service name="SHELF" loop="SLOW"/><Service name="ST03" loop="SLOW"/>
+  <Service name="PANTRY" loop="SLOW"/><Service name="ST03" loop="SLOW"/>
   <HKService id="9" interval="1"><SampledOnce><ParamRef name="CYCLES"/></SampledOnce></HKService>
   <Configuration name="CALM" id="1" sampling_us="1000"/>
   <Configuration name="EAGER" id="2" sampling_us="1000"><ServiceLoop name="SLOW" period_us="5000" priority="30" budget_us="200"/></Configuration>
   <Configuration name="CLOSED" id="3" sampling_us="1000">
-    <Service name="SHELF" offered="no"/><ServiceLoop name="SLOW" period_us="400000"/></Configuration>
+    <Service name="PANTRY" offered="no"/><ServiceLoop name="SLOW" period_us="400000"/></Configuration>
   <Bumpless between="CALM EAGER CLOSED"/>
 </Subsystem>)";
 
-struct Shelf final : Subsystem {
-  CustomService service{"SHELF"};
+struct Pantry final : Subsystem {
+  CustomService service{"PANTRY"};
   Parameter<std::uint32_t> cycles;
   std::vector<std::uint32_t> books;
   std::function<void()> during_step;
@@ -74,8 +74,8 @@ struct Shelf final : Subsystem {
 
 struct LoopPaces : ::testing::Test {
   static constexpr std::uint8_t calm = 1, eager = 2, closed = 3;
-  Shelf author;
-  Rig rig{author, shelf_descriptor};
+  Pantry author;
+  Rig rig{author, pantry_descriptor};
 
   [[nodiscard]] const descriptor::ServiceLoop& pace() const { return rig.subsystem.own_loop(0).in_force(); }
   [[nodiscard]] TimePoint due(TimePoint planned) const { return rig.subsystem.own_loop(0).due(planned); }
