@@ -71,12 +71,6 @@ void Obstacles::tell(const JointVector& position) noexcept {
   parts_.clearance_m.store(clearance_->nearest(position).distance_m);
 }
 
-std::optional<Obstacles::Nearest> Obstacles::watch_way(const JointVector& now, const JointVector& way,
-                                                       double noise_m) noexcept {
-  pass(now);
-  return near_at(now + way, noise_m);
-}
-
 std::optional<Obstacles::Nearest> Obstacles::near_at(const JointVector& posture, double noise_m) noexcept {
   const Nearest ahead = clearance_->nearer(clear_at_, posture, noise_m);
   if (ahead.distance_m == HUGE_VAL) return std::nullopt;

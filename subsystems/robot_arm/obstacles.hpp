@@ -54,23 +54,21 @@ class Obstacles {
 
   /// Tells how near they are with the joints there.
   void tell(const JointVector& position) noexcept;
-  /// Who would be nearer at `goal` than they may, and than they are at `now`; infinitely far: nobody.
-  [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& goal) noexcept {
-    return clearance_->nearer(now, goal);
+  /// Who would be nearer at `goal` than they may, and by more than `by_m` than they are at `now`; infinitely far: nobody.
+  [[nodiscard]] Nearest nearer(const JointVector& now, const JointVector& goal,
+                               double by_m = robotics::Clearance::same_m) noexcept {
+    return clearance_->nearer(now, goal, by_m);
   }
   /// Who is nearer there than they may be, wherever they come from; infinitely far: nobody.
   [[nodiscard]] Nearest too_near(const JointVector& position) noexcept { return clearance_->too_near(position); }
-  /// Each cycle of who goes that way and is measured with noise: who would be too near at its end, and by more than `noise_m` nearer than in the last place
-  /// where nobody was. What shakes about the limit comes no nearer by that, however often it begins.
-  [[nodiscard]] std::optional<Nearest> watch_way(const JointVector& now, const JointVector& way,
-                                                 double noise_m) noexcept;
-  /// Of a posture on his way, that is judged before he goes: likewise.
+  /// Of who is measured with noise: who would be too near in that posture, and by more than `noise_m` nearer than in the last place where nobody was.
+  /// What shakes about the limit comes no nearer by that, however often it begins.
   [[nodiscard]] std::optional<Nearest> near_at(const JointVector& posture, double noise_m) noexcept;
-  /// Of watch_way(): it comes by there on its way to a stop that is under way.
+  /// Of near_at(): it comes by there.
   void pass(const JointVector& now) noexcept {
     if (clearance_->keeps_limits(now)) clear_at_ = now;
   }
-  /// Of watch_way(): it stands there, near or not, and may go away.
+  /// Of near_at(): it stands there, near or not, and may go away.
   void stand_at(const JointVector& position) noexcept { clear_at_ = position; }
   /// Each cycle: who would meet, if it is not braked now. Who is too near already may go away.
   [[nodiscard]] std::optional<Nearest> watch(const Setpoints& setpoints) noexcept;
@@ -80,7 +78,7 @@ class Obstacles {
  private:
   Parts parts_;
   std::optional<robotics::Clearance> clearance_;
-  JointVector clear_at_;  ///< of watch_way()
+  JointVector clear_at_;  ///< of near_at()
   robotics::urdf::NotRead not_read_;  ///< of shapes, for whoever reads the refusal
 };
 

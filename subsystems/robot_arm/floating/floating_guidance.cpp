@@ -129,7 +129,7 @@ FloatingGuidance::News FloatingGuidance::judge() noexcept {
     if (of_joints) joints_from_ = straight_.from(), joints_goal_ = straight_.goal();
     return News::None;
   }
-  const auto ahead = parts_.obstacles.near_at(of_joints ? straight_.posture() : way_->posture(), shakes_m);
+  const auto ahead = near_at(of_joints ? straight_.posture() : way_->posture(), false);
   if (!ahead) return News::None;
   if (of_joints) parts_.parameters.progress.store(straight_.share());
   return no_way({FloatingTrouble::too_near, ahead->names, millimetres(ahead->distance_m)});
@@ -218,8 +218,17 @@ std::optional<EndAhead> FloatingGuidance::end_ahead(const JointVector& rates) co
 
 std::optional<Obstacles::Nearest> FloatingGuidance::near_ahead(const JointVector& rates) noexcept {
   const Measured& measured = parts_.drives.measured();
-  return parts_.obstacles.watch_way(measured.position, StopRamp::way(rates, measured.velocity, cycle_s_),
-                                    holds() ? 2 * shakes_m : shakes_m);
+  parts_.obstacles.pass(measured.position);
+  return near_at(measured.position + StopRamp::way(rates, measured.velocity, cycle_s_), holds());
+}
+
+/// Who was stopped, and has shaken a little farther while he held, may go away from there: within what he shakes, but on no way that comes nearer.
+std::optional<Obstacles::Nearest> FloatingGuidance::near_at(const JointVector& posture, bool shakes) noexcept {
+  if (const auto there = parts_.obstacles.near_at(posture, 2 * shakes_m); there || shakes) return there;
+  const auto there = parts_.obstacles.near_at(posture, shakes_m);
+  if (!there) return std::nullopt;
+  const auto nearer = parts_.obstacles.nearer(parts_.drives.measured().position, posture, shakes_m / 4);
+  return nearer.distance_m == HUGE_VAL ? std::nullopt : there;
 }
 
 void FloatingGuidance::tell(bool braked) noexcept {
