@@ -77,6 +77,15 @@ std::optional<Obstacles::Nearest> Obstacles::near_at(const JointVector& posture,
   return ahead;
 }
 
+std::optional<Obstacles::Nearest> Obstacles::near_on_way(const JointVector& here, const JointVector& posture,
+                                                         double noise_m) noexcept {
+  constexpr double nearer_share = 0.25;  // of the noise: who shakes so much does not come nearer
+  if (const auto there = near_at(posture, 2 * noise_m)) return there;
+  const auto there = near_at(posture, noise_m);
+  if (!there || nearer(here, posture, nearer_share * noise_m).distance_m == HUGE_VAL) return std::nullopt;
+  return there;
+}
+
 std::optional<Obstacles::Nearest> Obstacles::watch(const Setpoints& setpoints) noexcept {
   tell(setpoints.now().position);
   if (setpoints.at_rest() || setpoints.braking()) return std::nullopt;

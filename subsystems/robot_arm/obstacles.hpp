@@ -64,6 +64,10 @@ class Obstacles {
   /// Of who is measured with noise: who would be too near in that posture, and by more than `noise_m` nearer than in the last place where nobody was.
   /// What shakes about the limit comes no nearer by that, however often it begins.
   [[nodiscard]] std::optional<Nearest> near_at(const JointVector& posture, double noise_m) noexcept;
+  /// Likewise of one that is `here` and goes there. Who was stopped, and has shaken a little farther while he held, may go away: within twice the noise, on no way
+  /// that comes nearer.
+  [[nodiscard]] std::optional<Nearest> near_on_way(const JointVector& here, const JointVector& posture,
+                                                   double noise_m) noexcept;
   /// Of near_at(): it comes by there.
   void pass(const JointVector& now) noexcept {
     if (clearance_->keeps_limits(now)) clear_at_ = now;

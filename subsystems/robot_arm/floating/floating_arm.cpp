@@ -210,7 +210,8 @@ void FloatingArm::watch_clearance(const JointVector& rates, bool moves) noexcept
   const JointVector& here = drives_.measured().position;
   obstacles_.tell(here);
   if (!moves) return obstacles_.stand_at(here);
-  if (guidance_.stops()) return obstacles_.pass(here);
+  obstacles_.pass(here);
+  if (guidance_.stops()) return;
   const auto ahead = guidance_.near_ahead(rates);
   if (!ahead) return;
   raise(too_near_, ahead->distance_m, PairNames{std::string_view{ahead->names}});

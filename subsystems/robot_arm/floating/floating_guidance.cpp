@@ -129,7 +129,8 @@ FloatingGuidance::News FloatingGuidance::judge() noexcept {
     if (of_joints) joints_from_ = straight_.from(), joints_goal_ = straight_.goal();
     return News::None;
   }
-  const auto ahead = near_at(of_joints ? straight_.posture() : way_->posture(), false);
+  const auto ahead = parts_.obstacles.near_on_way(parts_.drives.measured().position,
+                                                  of_joints ? straight_.posture() : way_->posture(), shakes_m);
   if (!ahead) return News::None;
   if (of_joints) parts_.parameters.progress.store(straight_.share());
   return no_way({FloatingTrouble::too_near, ahead->names, millimetres(ahead->distance_m)});
@@ -218,17 +219,9 @@ std::optional<EndAhead> FloatingGuidance::end_ahead(const JointVector& rates) co
 
 std::optional<Obstacles::Nearest> FloatingGuidance::near_ahead(const JointVector& rates) noexcept {
   const Measured& measured = parts_.drives.measured();
-  parts_.obstacles.pass(measured.position);
-  return near_at(measured.position + StopRamp::way(rates, measured.velocity, cycle_s_), holds());
-}
-
-/// Who was stopped, and has shaken a little farther while he held, may go away from there: within what he shakes, but on no way that comes nearer.
-std::optional<Obstacles::Nearest> FloatingGuidance::near_at(const JointVector& posture, bool shakes) noexcept {
-  if (const auto there = parts_.obstacles.near_at(posture, 2 * shakes_m); there || shakes) return there;
-  const auto there = parts_.obstacles.near_at(posture, shakes_m);
-  if (!there) return std::nullopt;
-  const auto nearer = parts_.obstacles.nearer(parts_.drives.measured().position, posture, shakes_m / 4);
-  return nearer.distance_m == HUGE_VAL ? std::nullopt : there;
+  const JointVector ahead = measured.position + StopRamp::way(rates, measured.velocity, cycle_s_);
+  return holds() ? parts_.obstacles.near_at(ahead, 2 * shakes_m)
+                 : parts_.obstacles.near_on_way(measured.position, ahead, shakes_m);
 }
 
 void FloatingGuidance::tell(bool braked) noexcept {

@@ -99,8 +99,6 @@ class FloatingGuidance {
   [[nodiscard]] News no_way(const FloatingReason& why) noexcept;
   [[nodiscard]] News judge() noexcept;
   [[nodiscard]] News arrive() noexcept;
-  /// Who would be too near there. `shakes`: of who holds and does not want to go there.
-  [[nodiscard]] std::optional<Obstacles::Nearest> near_at(const JointVector& posture, bool shakes) noexcept;
   [[nodiscard]] bool keeps_tool() const noexcept;
 
   Parts parts_;
