@@ -117,6 +117,7 @@ Result<> Dynamics::forward(const Coordinates& force, Coordinates& acceleration) 
     Moving& parent = bodies_[bodies[i].parent];
     moving.effective.noalias() = moving.articulated.lazyProduct(moving.axis);
     const double inertia = moving.axis.dot(moving.effective);
+    if (!std::isfinite(inertia)) return fail(ErrorCode::OutOfRange, "an inertia is no number: positions are too large");
     if (!(inertia > no_inertia * moving.effective.norm() * moving.axis.norm()))
       return fail(ErrorCode::OutOfRange, "a joint moves nothing that has inertia", bodies[i].coordinate);
     moving.inverse_effective = 1 / inertia;

@@ -55,6 +55,7 @@ class Batch {
 
  private:
   [[nodiscard]] std::string run(const Motion& motion, const Sink& sink);
+  [[nodiscard]] std::string diverged(const Motion& motion);
 
   const robotics::Model* model_;
   robotics::FrameId tip_;

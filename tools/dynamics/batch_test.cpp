@@ -153,7 +153,6 @@ TEST(DynamicsCommand, SaysWhatIsWrongWithALineAndWhichItWas) {
   wrong([](Json& asked) { asked["output_s"] = {2}; }, "not between 0 and 'end_s'");
   wrong([](Json& asked) { asked["output_s"] = {-1}; }, "not between 0 and 'end_s'");
   wrong([](Json& asked) { asked["base_orientation_wxyz"] = {1, 1, 0, 0}; }, "not of length 1");
-  wrong([](Json& asked) { asked["base_twist"] = {0, 0, 1, 0, 0, 0}; }, "the base is fixed");
   wrong([](Json& asked) { asked["torque_table"] = {{0, 0, 0}}; }, "both");
   const auto table = [](Json rows) {
     return [rows](Json& asked) {
@@ -163,7 +162,36 @@ TEST(DynamicsCommand, SaysWhatIsWrongWithALineAndWhichItWas) {
   };
   wrong(table(Json::array()), "no list of rows");
   wrong(table({{0, 0}}), "has 2 numbers instead of 3");
-  wrong(table({{0, 0, 0}, {0, 1, 1}}), "do not ascend");
+  wrong(table({{1, 0, 0}, {0, 1, 1}}), "descend");
+}
+
+/// One record with and without its base fixed, and times that were added up.
+TEST(DynamicsCommand, LetsAFixedBaseRestAndRoundsNoTimeAway) {
+  Json asked = question();
+  asked["base_twist"] = {0, 0, 1, 0, 2, 0};
+  asked["end_s"] = 0.3;
+  asked["output_s"] = {0, 0.1 + 0.2};
+  const auto [good, lines] = answers_to(asked);
+  ASSERT_TRUE(good) << lines[0];
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[1]["base_twist"], Json({0.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(lines[1]["base_position_m"], Json({1.0, 2.0, 3.0}));
+  EXPECT_NEAR(lines[1]["q"][0].get<double>(), 0.8, 1e-14);
+}
+
+/// 3 kg and 1 kg on one axis: nothing for a second, then 3 N at the first of them.
+TEST(DynamicsCommand, TakesTwoRowsOfOneTimeAsAJumpOfTorque) {
+  Json asked = question();
+  asked["qd"] = {0, 0};
+  asked.erase("torque");
+  asked["torque_table"] = {{0, 0, 0}, {1, 0, 0}, {1, 3, 1}, {2, 3, 1}};
+  asked["end_s"] = 2;
+  asked["output_s"] = {0.95, 1, 2};
+  const auto [good, lines] = answers_to(asked);
+  ASSERT_TRUE(good) << lines[0];
+  EXPECT_EQ(lines[0]["qdd"][0], 0.0);
+  EXPECT_NEAR(lines[1]["qdd"][0].get<double>(), 1, 1e-14);
+  EXPECT_NEAR(lines[2]["qd"][0].get<double>(), 1, 0.02) << "the step that ends with the jump may have half of it";
 }
 
 TEST(DynamicsCommand, RefusesWhatIsNoJsonObject) {
@@ -188,7 +216,16 @@ TEST(DynamicsCommand, TellsAMotionThatBecomesNoNumberAfterWhatCouldBeTold) {
   EXPECT_FALSE(good);
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[0]["t"], 0);
-  EXPECT_TRUE(lines[1].contains("error"));
+  EXPECT_THAT(lines[1]["error"].get<std::string>(), HasSubstr("steps up to about 5.6e-06 s"));
+}
+
+TEST(DynamicsCommand, SaysThatNumbersAreTooLargeAndNotThatNothingHasInertia) {
+  Json asked = question();
+  asked["qd"] = {1e308, 1e308};
+  const auto [good, lines] = answers_to(asked);
+  EXPECT_FALSE(good);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0]["error"].get<std::string>(), HasSubstr("number"));
 }
 
 }  // namespace

@@ -35,17 +35,39 @@ constexpr std::size_t octets_of_mib = 1024U * 1024, max_line_mib = 256;
   return std::move(reading.value);
 }
 
-/// The only one there is, where none is named. Empty: told why.
+/// How many joints move that link.
+[[nodiscard]] std::size_t joints_before(const robotics::urdf::Robot& robot, const std::string& link) {
+  std::size_t moving = 0;
+  auto at =
+      static_cast<std::size_t>(std::ranges::find(robot.links, link, &robotics::urdf::Link::name) - robot.links.begin());
+  while (at != robot.root) {
+    const auto& joint = *std::ranges::find(robot.joints, at, &robotics::urdf::Joint::child);
+    moving += joint.type == robotics::urdf::JointType::Fixed ? 0 : 1;
+    at = joint.parent;
+  }
+  return moving;
+}
+
+/// Where none is named, the end that most joints move, the first in the file of several: told where there is a choice. Empty: told why.
 [[nodiscard]] std::string tip_of(const robotics::urdf::Robot& robot, const std::string& named) {
   const auto ends = robotics::urdf::tips(robot);
-  if (named.empty() && ends.size() == 1) return ends.front();
-  if (!named.empty() && std::ranges::find(robot.links, named, &robotics::urdf::Link::name) != robot.links.end())
-    return named;
-  fmt::print(stderr, "hirosco dynamics: {}; links at the ends are: {}\n",
-             named.empty() ? fmt::format("{} ends in {} links: name one with --tip", robot.name, ends.size())
-                           : fmt::format("{} has no link {}", robot.name, named),
-             fmt::join(ends, ", "));
-  return {};
+  const auto known = [&](const std::string& link) {
+    return std::ranges::find(robot.links, link, &robotics::urdf::Link::name) != robot.links.end();
+  };
+  if (!named.empty() && known(named)) return named;
+  if (!named.empty()) {
+    fmt::print(stderr, "hirosco dynamics: {} has no link {}; links at the ends are: {}\n", robot.name, named,
+               fmt::join(ends, ", "));
+    return {};
+  }
+  const std::string& farthest =
+      *std::ranges::max_element(ends, {}, [&](const std::string& end) { return joints_before(robot, end); });
+  if (ends.size() > 1)
+    fmt::print(
+        stderr,
+        "hirosco dynamics: {} ends in {} links: the tip is {}, which most joints move; --tip names another of {}\n",
+        robot.name, ends.size(), farthest, fmt::join(ends, ", "));
+  return farthest;
 }
 
 }  // namespace
