@@ -298,8 +298,7 @@ Findings fly_hand_over(const ServicerSettings& settings) {
             .x_label = "time, s",
             .y_label = "deg",
             .caption = "Its brakes hold the arm, then the AOCS takes the station over."};
-  // The design tells of one run, without its direction: the one whose base has turned by its 1.78 deg.
-  constexpr double told_deg = 1.78;
+  // The design tells of one run, without its direction: taken is x, of which SV4 tells. The note has all of them.
   std::optional<HandedOver> told;
   for (const Direction& direction : flown(settings)) {
     HandedOver seen = hand_over(settings, direction);
@@ -311,7 +310,7 @@ Findings fly_hand_over(const ServicerSettings& settings) {
     momentum = std::max(momentum, seen.momentum);
     seen.turned.name = direction.name;
     plot.curves.push_back(seen.turned);
-    if (!told || std::abs(seen.died_deg - told_deg) < std::abs(told->died_deg - told_deg)) told = std::move(seen);
+    if (!told) told = std::move(seen);
   }
   findings.figures["SV8-died-deg"] = told->died_deg;
   findings.figures["SV8-died-deg-s"] = told->died_deg_s;
@@ -336,7 +335,8 @@ constexpr std::array runs{
         "fastest joint",
         fly_moves},
     ServicerRun{"SV4", "Pose lost", "track, 0.2 m along x: after 8 s the AOCS stands still", fly_cut},
-    ServicerRun{"SV8", "Station keeping handed over", "track, 0.2 m in 20 s: after 10 s the arm's control is killed",
+    ServicerRun{"SV8", "Station keeping handed over",
+                "track, 0.2 m in 20 s: after 10 s the arm's control is killed; figures of one run are of that along x",
                 fly_hand_over},
     ServicerRun{"SV9", "Power",
                 "the sun at four angles, an eclipse: whether track is entered; then, track, 0.2 m in 20 s: after 8 s "
