@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "subsystems/robot_arm/testing/ball.hpp"
 #include "subsystems/robot_arm/testing/flown.hpp"
 
 /// Poses of the tool as goals: judged before the arm moves.
@@ -46,16 +47,7 @@ struct RobotArmPose : ::testing::Test {
   [[nodiscard]] static std::string hex_of(const std::string& words) {
     return testing::hex(std::as_bytes(std::span{words}));
   }
-  /// A ball of 5 cm there, that no link comes near.
-  void keep_out(const robotics::Vector3& there) {
-    std::vector<std::optional<Value>> numbers;
-    for (const double number : {there.x(), there.y(), there.z(), there.x(), there.y(), there.z(), 0.05})
-      numbers.emplace_back(number);
-    numbers.resize(28, Value{0.0});
-    const auto set = flown.rig.call_with("KEEP_OUT", numbers);
-    flown.cycle(5);
-    ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
-  }
+  void keep_out(const robotics::Vector3& there) { robot_arm::testing::keep_out_ball(flown, there); }
 };
 
 TEST_F(RobotArmPose, IsReachedWithinAMillimetreAndAMilliradianAndInTheSamePostureEachTime) {

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "hirosco/subsystem/testing/tried_functions.hpp"
+#include "subsystems/robot_arm/testing/ball.hpp"
 #include "subsystems/robot_arm/testing/flown.hpp"
 
 /// One class, robots with 1, 3, 6 and 16 joints: what differs between them is their URDF file and their descriptor.
@@ -338,16 +339,10 @@ TEST_F(RobotArmTest, StopsBeforeWhatItIsToKeepOutOfAndMayGoAwayFromIt) {
   };
   // Between start and goal, where both are free.
   const robotics::Vector3 between = tool_at((start + goal) / 2);
-  std::vector<std::optional<Value>> numbers;
-  for (const double number : {between.x(), between.y(), between.z(), between.x(), between.y(), between.z(), 0.05})
-    numbers.emplace_back(number);
-  numbers.resize(28, Value{0.0});
   flown.command(State::Operational);
   const auto motion = flown.move_j(goal);
   flown.cycle(300);  // nobody knew of it when its way was judged
-  const auto set = flown.rig.call_with("KEEP_OUT", numbers);
-  flown.cycle(5);
-  ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
+  ASSERT_NO_FATAL_FAILURE(robot_arm::testing::keep_out_ball(flown, between));
   flown.finish(motion);
   EXPECT_THAT(flown.rig.outcome(motion), HasSubstr("8:800a"));
   EXPECT_EQ(flown.rig.events(1026), 1);

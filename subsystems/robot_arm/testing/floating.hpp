@@ -15,6 +15,7 @@
 
 #include "hirosco/subsystem/testing/driven.hpp"
 #include "subsystems/robot_arm/floating/floating_arm.hpp"
+#include "subsystems/robot_arm/testing/ball.hpp"
 #include "subsystems/robot_arm/testing/plant.hpp"
 
 /// A floating arm as its subsystem, in JOINTS, where it takes its base as standing: here it does, and a test is its device.
@@ -88,16 +89,7 @@ struct FloatingWay : ::testing::Test {
     flown.cycle(3);
     return request;
   }
-  /// A ball of 5 cm there, that no link comes near.
-  void keep_out(const robotics::Vector3& there) {
-    std::vector<std::optional<Value>> numbers;
-    for (const double number : {there.x(), there.y(), there.z(), there.x(), there.y(), there.z(), 0.05})
-      numbers.emplace_back(number);
-    numbers.resize(28, Value{0.0});
-    const auto set = flown.rig.call_with("KEEP_OUT", numbers);
-    flown.cycle(3);
-    ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
-  }
+  void keep_out(const robotics::Vector3& there) { keep_out_ball(flown, there); }
   [[nodiscard]] static std::string hex_of(const std::string& words) {
     return hirosco::testing::hex(std::as_bytes(std::span{words}));
   }

@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include "subsystems/robot_arm/testing/ball.hpp"
 #include "subsystems/robot_arm/testing/flown.hpp"
 #include "subsystems/robot_arm/testing/stored_path.hpp"
 
@@ -60,16 +61,7 @@ struct WayOut : ::testing::Test {
     dynamics.update({.q = q, .qd = JointVector::Zero(6)});
     return dynamics.frame_pose(flown.model.find_frame("tool").value()).position;
   }
-  /// A ball of 5 cm there, that no link comes near.
-  void keep_out(const robotics::Vector3& there) {
-    std::vector<std::optional<Value>> numbers;
-    for (const double number : {there.x(), there.y(), there.z(), there.x(), there.y(), there.z(), 0.05})
-      numbers.emplace_back(number);
-    numbers.resize(28, Value{0.0});
-    const auto set = flown.rig.call_with("KEEP_OUT", numbers);
-    flown.cycle(5);
-    ASSERT_EQ(flown.rig.outcome(set), "1 3 7");
-  }
+  void keep_out(const robotics::Vector3& there) { keep_out_ball(flown, there); }
   std::string stands() {
     flown.cycle(1000);
     const JointVector where = flown.plant.measured().position;

@@ -14,10 +14,9 @@
 #include <string_view>
 #include <utility>
 
-#include "hirosco/utilities/os/process.hpp"
-#include "hirosco/utilities/os/wait_set.hpp"
 #include "supervisor/platform/launch/program_image.hpp"
 #include "supervisor/platform/launch/subsystem_sandbox.hpp"
+#include "supervisor/platform/launch/testing/exit_code.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
 
 namespace hirosco::supervisor {
@@ -195,18 +194,6 @@ fs::path python_here() {
   return {};
 }
 
-int script_exit_code(const ProcessStart& start) {
-  auto process = Process::spawn(start);
-  if (!process) {
-    ADD_FAILURE() << process.error().text << " " << process.error().value;
-    return -1;
-  }
-  WaitSet set;
-  EXPECT_TRUE(set.add(process->handle().get()));
-  static_cast<void>(set.wait(std::nullopt));
-  return process->poll()->value().value;
-}
-
 constexpr const char* tries_everything = R"(
 import os, socket, sys, threading, xml.etree.ElementTree, json, mmap, struct
 def refused(what, code):
@@ -257,7 +244,7 @@ TEST(SubsystemInItsSandbox, IsAPythonScriptWithItsModulesTooAndReachesNothingEls
       start.image = image->descriptor();
       start.inherited = {{image->descriptor(), 6}};
     }
-    EXPECT_EQ(script_exit_code(start), from_memory ? 11 : 7);
+    EXPECT_EQ(supervisor::testing::exit_code_of(start), from_memory ? 11 : 7);
   }
 }
 

@@ -13,8 +13,7 @@
 #include <fstream>
 #include <string>
 
-#include "hirosco/utilities/os/process.hpp"
-#include "hirosco/utilities/os/wait_set.hpp"
+#include "supervisor/platform/launch/testing/exit_code.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
 
 namespace hirosco::supervisor {
@@ -41,15 +40,7 @@ void write_program(const fs::path& file, const std::string& text) {
   start.executable = image.file().string();
   start.image = image.descriptor();
   if (image.interpreter()) start.inherited = {{image.descriptor(), 6}};
-  auto process = Process::spawn(start);
-  if (!process) {
-    ADD_FAILURE() << process.error().text << " " << process.error().value;
-    return -1;
-  }
-  WaitSet set;
-  EXPECT_TRUE(set.add(process->handle().get()));
-  static_cast<void>(set.wait(std::nullopt));
-  return process->poll()->value().value;
+  return supervisor::testing::exit_code_of(start);
 }
 
 TEST(ProgramImageTest, HasTheDigestThatTheOperatorsToolTells) {
