@@ -43,6 +43,8 @@ ours, precise                p50      0.08  p99      0.30  p99.9     20.00  max 
 cyclictest                   p50     25.00  p99     42.00  p99.9     80.00  max     500.00 us
 cycle with four links        p50    950.00  p99   1200.00  p99.9   1500.00  max    9000.00 ns
 both together                p50    900.00  p99   1100.00  p99.9   1500.00  max    9000.00 ns
+cycle, dictionary shared     p50     14.00  p99     20.00  p99.9     40.00  max     500.00 us
+cycle, dictionary its own    p50     13.00  p99     19.00  p99.9     38.00  max     500.00 us
 checksum of a ping           p50     20.00  p99     22.00  p99.9     25.00  max      90.00 ns
 ping to its service          p50     60.00  p99     70.00  p99.9     80.00  max     300.00 ns
 bare word, small             p50     70.00  p99    130.00  p99.9    130.00  max     130.00 us
