@@ -112,6 +112,13 @@ class Judge(unittest.TestCase):
                 self.assertRegex(text, "NOT MEASURED")
                 self.assertEqual(self.told({}, only=goal.word)[0], 1)
 
+    def test_a_figure_of_some_repeats_only_is_none(self):
+        for goal in peers.GOALS:
+            with self.subTest(goal.text):
+                lines, code = peers.judge([seen_of(WELL)] * 8 + [planted(goal.ours, **{goal.key: None})])
+                self.assertEqual(code, 1)
+                self.assertRegex("\n".join(lines), "NOT MEASURED in each repeat")
+
     def test_a_peer_that_cannot_be_had_leaves_its_own_figures_out_and_no_others(self):
         without = {name: values for name, values in seen_of(WELL).items() if "cyclictest" not in name}
         code, text = self.told(without, absent=["cyclictest"])

@@ -28,7 +28,7 @@ constexpr std::uint16_t times_structure = 4720;
 /// The probe's configuration of 1 ms, which has the times of its cycles in its housekeeping.
 std::string descriptor_with_times() {
   std::string text = testing::probe_descriptor;
-  const std::string before = R"(<Set parameter="KP" value="30"/>)";
+  const std::string before = "<RealTimeLinkService>";
   return text.insert(
       text.find(before),
       R"(<HKService id="4720" interval="2"><SampledOnce><ParamRef name="CYCLE_STATS"/><ParamRef name="CYCLE_TIMES"/></SampledOnce></HKService>)");
