@@ -71,6 +71,7 @@ Figures between_processes(Shared& shared, int samples, Consume consume, Produce 
   }
   int status = 0;
   ::waitpid(child, &status, 0);
+  if (shared.got.load() == 0) std::exit(EXIT_FAILURE);  // nothing arrived: that is no figure
   std::vector<std::int64_t> waited(shared.waited.begin(), shared.waited.begin() + shared.got.load());
   return figures_of(waited, 1e-3);
 }
@@ -138,7 +139,7 @@ int run(int repeats, int samples) {
   (void)lock_memory();
   (void)pin_to_cpu(0);
   const bool realtime = set_fifo_priority(producers_priority).has_value();
-  Series latest{"latest link", {}}, queued{"queued link", {}}, bare{"raw futex", {}};
+  Series latest{"latest link, woken", {}}, queued{"queued link, woken", {}}, bare{"raw futex", {}};
   for (int repeat = 0; repeat < repeats; ++repeat) {
     latest.repeats.push_back(by_link(*shared, LinkKind::Latest, samples));
     bare.repeats.push_back(by_futex(*shared, samples));

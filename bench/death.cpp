@@ -155,8 +155,8 @@ int run(int repeats, int kills) {
   Network network{clock};
   const auto watch = LifeWatch::start(network.guard());
   if (!watch) {
-    std::printf("The end of a process: %s\n", watch.error().text);
-    return EXIT_SUCCESS;
+    std::fprintf(stderr, "The end of a process: %s\n", watch.error().text);
+    return EXIT_FAILURE;
   }
   std::array<Series, 2> bare{Series{"bare word, small", {}}, Series{"bare word, 512 MB", {}}};
   std::array<Series, 2> ours{Series{"network fenced, small", {}}, Series{"network fenced, 512 MB", {}}};

@@ -6,12 +6,12 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <string>
+#include <optional>
 #include <vector>
 
+#include "bench/cyclictest.hpp"
 #include "bench/figures.hpp"
 #include "bench/loop.hpp"
 #include "hirosco/utilities/os/clock.hpp"
@@ -54,28 +54,19 @@ Figures measure_bare(int cycles) {
   return figures_of(late, 1e-3);
 }
 
-/// The histogram of cyclictest (whole microseconds), as samples.
-Figures measure_cyclictest(int cycles, bool realtime) {
-  std::string command = "cyclictest -q -t1 -a0 -i500 -h5000 -l" + std::to_string(cycles);
-  command += realtime ? " -m -p" + std::to_string(priority) : " --policy=other";
-  std::FILE* const output = ::popen((command + " 2>/dev/null").c_str(), "r");
-  if (output == nullptr) return {};
+/// The histogram of cyclictest (whole microseconds), as samples. Empty: it failed.
+std::optional<Figures> measure_cyclictest(int cycles, bool realtime) {
+  constexpr std::int64_t told_us = 5000;
+  Cyclictest peer{{.cycles = cycles,
+                   .period_us = period / 1us,
+                   .told_us = told_us,
+                   .processor = 0,
+                   .priority = realtime ? priority : 0}};
   std::vector<std::int64_t> late;
-  std::array<char, 256> row{};
-  long long overflows = 0;
-  while (std::fgets(row.data(), static_cast<int>(row.size()), output) != nullptr) {
-    long long at = 0;
-    long long count = 0;
-    if (std::sscanf(row.data(), "%lld %lld", &at, &count) == 2) {
-      late.insert(late.end(), static_cast<std::size_t>(count), at);
-    } else if (std::sscanf(row.data(), "# Histogram Overflows: %lld", &count) == 1) {
-      overflows = count;
-    } else if (std::sscanf(row.data(), "# Max Latencies: %lld", &at) == 1 && overflows == 0 && !late.empty()) {
-      late.back() = at;
-    }
-  }
-  (void)::pclose(output);
-  late.insert(late.end(), static_cast<std::size_t>(overflows), 5000);
+  const bool told = peer.read([&](std::int64_t late_us, std::uint64_t times) {
+    late.insert(late.end(), static_cast<std::size_t>(times), late_us);
+  });
+  if (!told) return std::nullopt;
   return figures_of(late, 1.0);
 }
 
@@ -88,6 +79,7 @@ int run(int repeats, int cycles) {
   (void)lock_memory();
   (void)pin_to_cpu(0);
   const bool realtime = set_fifo_priority(priority).has_value();
+  const bool beside = Cyclictest::installed();
   Series ours{"ours", {}};
   Series precise{"ours, precise", {}};
   Series bare{"bare", {}};
@@ -96,8 +88,14 @@ int run(int repeats, int cycles) {
     ours.repeats.push_back(measure_ours(clock, cycles, {}));
     precise.repeats.push_back(measure_ours(clock, cycles, {.spin = spin}));
     bare.repeats.push_back(measure_bare(cycles));
-    if (const Figures figures = measure_cyclictest(cycles, realtime); figures.max > 0)
-      cyclictest.repeats.push_back(figures);
+    if (!beside) continue;
+    const auto figures = measure_cyclictest(cycles, realtime);
+    if (!figures) {
+      std::fputs("cyclictest is installed and told nothing, or ended with an error: run it by hand to see why\n",
+                 stderr);
+      return EXIT_FAILURE;
+    }
+    cyclictest.repeats.push_back(*figures);
   }
   std::printf("Lateness of a 500 us loop, %d cycles, median of %d repeats, %s%s\n", cycles, repeats,
               realtime ? "SCHED_FIFO" : "ordinary scheduling (no real-time rights)", awake ? ", no deep idle" : "");
@@ -105,7 +103,7 @@ int run(int repeats, int cycles) {
   precise.print("us");
   bare.print("us");
   ours.print_ratio(bare);
-  if (cyclictest.repeats.empty()) {
+  if (!beside) {
     std::puts("cyclictest (rt-tests) is not installed");
     return EXIT_SUCCESS;
   }

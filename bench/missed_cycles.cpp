@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // bench_missed_cycles [CYCLES [LOAD]]: how many of 10^7 cycles of a 500 us loop are missed, and the latest of all: ours (with one link written and
 // read in each cycle) beside cyclictest, at the same time on two processors that they swap in each slice. LOAD: so many processes of ordinary
-// scheduling work on memory meanwhile.
+// scheduling work on memory meanwhile. Ends with 1 where cyclictest is installed and fails; where it is not, that is said.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -10,15 +10,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "bench/cyclictest.hpp"
 #include "bench/loop.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
@@ -31,11 +32,11 @@ constexpr Duration period = 500us;
 constexpr std::int64_t period_us = 500;
 constexpr int priority = 80;
 constexpr int slice_cycles = 100'000;
-constexpr std::size_t told_us = 20'000;  ///< later than this is counted as so late, and told by its maximum
+constexpr std::int64_t told_us = 20'000;  ///< later than this is counted as so late, and told by its maximum
 
 /// How late how many cycles were, in whole microseconds.
 struct Lateness {
-  std::vector<std::uint64_t> counts = std::vector<std::uint64_t>(told_us + 1);
+  std::vector<std::uint64_t> counts = std::vector<std::uint64_t>(std::size_t{told_us} + 1);
   std::int64_t max_us{0};
   std::uint64_t missed{0};  ///< cycles that were over before the loop woke up for one before them
 
@@ -51,44 +52,15 @@ struct Lateness {
       if (counts[us] > left) return us;
       left -= counts[us];
     }
-    return told_us;
+    return std::size_t{told_us};
   }
-  void print(const char* name) const {
-    std::printf("%-12s %llu cycles  missed %llu  p50 %zu  p99 %zu  p99.9 %zu  p99.99 %zu  p99.999 %zu  max %lld us\n",
-                name, static_cast<unsigned long long>(cycles()), static_cast<unsigned long long>(missed), at(0.5),
-                at(0.99), at(0.999), at(0.9999), at(0.99999), static_cast<long long>(max_us));
+  void print(const std::string& name) const {
+    std::printf(
+        "%-28s %12llu cycles %12llu missed  p50 %zu  p99 %zu  p99.9 %zu  p99.99 %zu  p99.999 %zu  max %lld us\n",
+        name.c_str(), static_cast<unsigned long long>(cycles()), static_cast<unsigned long long>(missed), at(0.5),
+        at(0.99), at(0.999), at(0.9999), at(0.99999), static_cast<long long>(max_us));
   }
 };
-
-/// cyclictest as it begins; `read_cyclictest` takes its histogram when it has ended.
-std::FILE* begin_cyclictest(int cycles, int processor, bool realtime) {
-  std::string command = "cyclictest -q -t1 -i" + std::to_string(period_us) + " -h" + std::to_string(told_us) + " -l" +
-                        std::to_string(cycles) + " -a" + std::to_string(processor);
-  command += realtime ? " -m -p" + std::to_string(priority) : " --policy=other";
-  return ::popen((command + " 2>/dev/null").c_str(), "r");
-}
-
-bool read_cyclictest(std::FILE* output, Lateness& lateness) {
-  std::array<char, 256> row{};
-  long long overflows = 0;
-  long long max_us = 0;
-  bool any = false;
-  while (std::fgets(row.data(), static_cast<int>(row.size()), output) != nullptr) {
-    long long at = 0;
-    long long count = 0;
-    if (std::sscanf(row.data(), "%lld %lld", &at, &count) == 2) {
-      if (count > 0) lateness.add(at, static_cast<std::uint64_t>(count));
-      any = true;
-    } else if (std::sscanf(row.data(), "# Histogram Overflows: %lld", &count) == 1) {
-      overflows = count;
-    } else if (std::sscanf(row.data(), "# Max Latencies: %lld", &at) == 1) {
-      max_us = at;
-    }
-  }
-  if (overflows > 0) lateness.add(max_us, static_cast<std::uint64_t>(overflows));
-  lateness.max_us = std::max<std::int64_t>(lateness.max_us, max_us);
-  return ::pclose(output) == 0 && any;
-}
 
 /// Somebody who works on more memory than a cache holds, until whoever started it ends.
 pid_t begin_load() {
@@ -113,12 +85,23 @@ int run(std::uint64_t cycles, int load) {
   const bool apart = std::thread::hardware_concurrency() > 1;
   Lateness ours;
   Lateness cyclictest;
-  bool beside = true;
+  const bool beside = Cyclictest::installed();
+  bool failed = false;
   for (std::uint64_t done = 0, slice = 0; done < cycles; ++slice) {
     const int now = static_cast<int>(std::min<std::uint64_t>(cycles - done, slice_cycles));
     const int mine = apart ? static_cast<int>(slice % 2) : 0;
-    std::FILE* const other = beside ? begin_cyclictest(now, apart ? 1 - mine : 0, realtime) : nullptr;
-    if (!apart && other != nullptr) beside = read_cyclictest(other, cyclictest);
+    std::optional<Cyclictest> other;
+    if (beside)
+      other.emplace(CyclictestTerms{.cycles = now,
+                                    .period_us = period_us,
+                                    .told_us = told_us,
+                                    .processor = apart ? 1 - mine : 0,
+                                    .priority = realtime ? priority : 0});
+    bool told = true;
+    const auto hear = [&] {
+      if (other) told = other->read([&](std::int64_t late_us, std::uint64_t times) { cyclictest.add(late_us, times); });
+    };
+    if (!apart) hear();
     // Its start is no part of what is compared.
     if (apart) static_cast<void>(rest_until(clock.now() + 200ms, {}, clock));
     (void)pin_to_cpu(mine);
@@ -126,7 +109,13 @@ int run(std::uint64_t cycles, int load) {
     run_loop(clock, period, now, {},
              [&](Duration by) { ours.add(std::chrono::duration_cast<std::chrono::microseconds>(by).count()); });
     (void)set_ordinary_scheduling();
-    if (apart && other != nullptr) beside = read_cyclictest(other, cyclictest);
+    if (apart) hear();
+    if (!told) {
+      std::fputs("cyclictest is installed and told nothing, or ended with an error: run it by hand to see why\n",
+                 stderr);
+      failed = true;
+      break;
+    }
     done += static_cast<std::uint64_t>(now);
     if (slice % 10 == 9) {
       std::fprintf(stderr, "%llu cycles: missed %llu, cyclictest %llu\n", static_cast<unsigned long long>(done),
@@ -137,15 +126,17 @@ int run(std::uint64_t cycles, int load) {
     ::kill(one, SIGKILL);
     ::waitpid(one, nullptr, 0);
   }
+  if (failed) return EXIT_FAILURE;
   std::printf("Lateness of a 500 us loop, %s%s, %d at work beside it\n",
               realtime ? "SCHED_FIFO" : "ordinary scheduling (no real-time rights)", awake ? ", no deep idle" : "",
               load);
-  ours.print("ours");
+  const std::string when = load > 0 ? ", under load" : ", idle";
+  ours.print("ours" + when);
   if (!beside) {
     std::puts("cyclictest (rt-tests) is not installed");
     return EXIT_SUCCESS;
   }
-  cyclictest.print("cyclictest");
+  cyclictest.print("cyclictest" + when);
   return EXIT_SUCCESS;
 }
 

@@ -145,20 +145,22 @@ int run(int repeats, std::uint64_t samples) {
   (void)pin_to_cpu(0);
   const bool realtime = set_fifo_priority(50).has_value();
   std::vector<double> link, bare, ratios;
+  std::uint64_t lost = 0;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     const auto per_second = [samples](std::int64_t ns) {
       return static_cast<double>(samples) / static_cast<double>(ns) * 1e9;
     };
     link.push_back(per_second(by_link(*shared, samples)));
     if (shared->received.load() + shared->lost.load() != samples) return EXIT_FAILURE;
+    lost += shared->lost.load();
     bare.push_back(per_second(by_bare_ring(*shared, *ring, samples)));
     ratios.push_back(link.back() / bare.back());
   }
   std::printf("Queued link, %u octets, %u deep, two processes, %llu samples a repeat, median of %d repeats, %s\n",
               payload_octets, depth, static_cast<unsigned long long>(samples), repeats,
               realtime ? "SCHED_FIFO" : "ordinary scheduling (no real-time rights)");
-  std::printf("%-28s %12.0f samples/s (lost in the last repeat: %llu)\n", "queued link", median(link),
-              static_cast<unsigned long long>(shared->lost.load()));
+  std::printf("%-28s %12.0f samples/s, %llu lost\n", "queued link", median(link),
+              static_cast<unsigned long long>(lost));
   std::printf("%-28s %12.0f samples/s\n", "bare ring", median(bare));
   std::printf("%-28s %12.2f\n", "queued link / bare ring", median(ratios));
   return EXIT_SUCCESS;
