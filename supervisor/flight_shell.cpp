@@ -34,6 +34,7 @@
 #include "supervisor/inheritance.hpp"
 #include "supervisor/keeper/job_control.hpp"
 #include "supervisor/keeper/kept.hpp"
+#include "supervisor/keeper_watch.hpp"
 #include "supervisor/platform/storage/begin_log.hpp"
 #include "supervisor/platform/storage/epoch_file.hpp"
 #include "supervisor/platform/storage/log_store.hpp"
@@ -315,8 +316,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
 
   Waker waker{signal_descriptor.get(), log_progress->descriptor(), guard_found->descriptor(),
               kept ? keeper_descriptor : -1};
-  Progress keeper_progress;
-  bool keeper_still = false;
+  KeeperWatch keeper_watch{page, kept ? KeeperWatch::Keeper::Here : KeeperWatch::Keeper::Nobody};
   const TimePoint began = keeper.flight_began(clock.now());
   TimePoint next_status = clock.now() + console.period();
   bool ends_as_a_whole = false, asked_to_end = false;
@@ -360,18 +360,25 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
       page.supervisor.fetch_add(1, std::memory_order_relaxed);
       static_cast<void>(keeper.note(supervisor.mission().texts));
       if (reserve.used() && !std::exchange(ends_as_a_whole, true)) {
-        if (kept && page.alone.load() == 0 && !asked_to_end) leave_to_another(errors);
+        if (keeper_watch.here() && page.alone.load() == 0 && !asked_to_end) leave_to_another(errors);
         console.told(clock.onboard(), "no memory left: the flight ends in order");
         supervisor.request_shutdown("the supervisor, which has no memory left");
       }
       if (supervisor.commissioned()) page.commissioned.store(1, std::memory_order_relaxed);
-      const bool still = kept && keeper_progress.stands_still(page.keeper.load(std::memory_order_relaxed), clock.now());
-      if (still && !keeper_still) supervisor.keeper_stands_still();
-      keeper_still = still;
+      const KeeperWatch::Finding of_keeper = keeper_watch.look(clock.now());
+      if (of_keeper.stop) static_cast<void>(::kill(::getpid(), SIGUSR1));  // the guard's thread takes it
+      if (of_keeper.still) supervisor.keeper_stands_still();
+      if (of_keeper.lost) supervisor.keeper_lost();
+      if (of_keeper.end != 0) {
+        supervisor.request_shutdown(end_words(of_keeper.end));
+        asked_to_end = true;
+      }
       waker.follow(supervisor, launcher);
       for (const Ready& ready : waker.wait(std::min(wake, next_status) - clock.now())) {
-        const bool keeper_gone = ready.descriptor == keeper_descriptor && ready.hung_up;
-        if (keeper_gone) waker.forget(keeper_descriptor);  // it would end every wait from now on
+        if (ready.descriptor == keeper_descriptor && ready.hung_up) {
+          waker.forget(keeper_descriptor);  // it would end every wait from now on
+          keeper_watch.gone();
+        }
         if (ready.descriptor == log_progress->descriptor()) log_progress->clear();
         if (ready.descriptor == guard_found->descriptor()) guard_found->clear();
         if (ready.descriptor == signal_descriptor.get()) {
@@ -379,9 +386,6 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
           static_cast<void>(!::read(signal_descriptor.get(), &info, sizeof info));
           const std::uint32_t to_keeper = page.end_asked.load();
           supervisor.request_shutdown(end_words(to_keeper != 0 ? to_keeper : info.ssi_signo));
-          asked_to_end = true;
-        } else if (keeper_gone) {
-          supervisor.request_shutdown("the end of the process that had started the flight");
           asked_to_end = true;
         }
       }

@@ -20,6 +20,7 @@
 #include "tools/hirosco/flight_lock.hpp"
 #include "tools/hirosco/hear_safe.hpp"
 #include "tools/hirosco/instance.hpp"
+#include "tools/hirosco/our_process.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -62,23 +63,17 @@ struct Flying {
                    [&](std::string_view words) { fmt::print("{}: {}\n", flight.name, words); });
 }
 
-/// What a process runs; of one that has more rights than this one the system tells the beginning of its name only (docs/adr/0177).
-[[nodiscard]] std::string program_of(int process) {
-  std::error_code failed;
-  const auto program = std::filesystem::read_symlink(fmt::format("/proc/{}/exe", process), failed);
-  if (!failed) return program.filename().string();
-  std::string name;
-  std::ifstream file{fmt::format("/proc/{}/comm", process)};
-  std::getline(file, name);
-  return name;
-}
-
-/// The keeper of a flight; empty when this number is by now none of our programs.
-[[nodiscard]] std::optional<Process> keeper_of(const Flying& flight) {
-  if (flight.keeper <= 0) return std::nullopt;
-  auto process = Process::adopt(flight.keeper);  // before we look: nobody else gets its number behind this handle
-  if (!process || !program_of(flight.keeper).starts_with("hirosco")) return std::nullopt;
-  return std::move(*process);
+/// Who may be missing in an answer is stopped once more, by whoever goes on; in words how. A guard that stands still and whose keeper is gone has
+/// nobody who would end it or go on for it: without its supervisor devices hear of no enable any more, and cycles of nobody.
+[[nodiscard]] std::string_view stop_otherwise(const Flying& flight, bool stands_still) {
+  if (flight.keeper <= 0) return "its keeper is not known";
+  if (auto keeper = our_process(flight.keeper))
+    return keeper->send_signal(SIGUSR1) ? "its keeper was signalled to stop it"
+                                        : "its keeper takes no signal from here";
+  auto supervisor = stands_still ? our_listener(flight.socket.get()) : std::nullopt;
+  if (supervisor && supervisor->send_signal(SIGKILL))
+    return "its keeper is gone, and its supervisor was ended: whatever moves stops by itself";
+  return "its keeper is gone, too";
 }
 
 [[nodiscard]] bool ours(const std::filesystem::path& folder) {
@@ -128,7 +123,7 @@ struct Flying {
     const bool meant = (wanted.instance.empty() || flight.name == wanted.instance) &&
                        (wanted.mission.empty() || flight.mission == wanted.mission || flight.name == wanted.mission);
     if (meant) flight.socket = ask_guard(flight.folder / "safe.socket");
-    if (!flight.socket && !keeper_of(flight)) continue;
+    if (!flight.socket && !our_process(flight.keeper)) continue;
     if (meant) found.push_back(std::move(flight));
     else others.push_back(flight.name);
   }
@@ -161,14 +156,15 @@ int safe(const SafeOptions& options) {
     if (!flight.lock_unread.empty())
       fmt::print(stderr, "hirosco safe: {}: {} cannot be gone by: {}\n", flight.name, (flight.folder / "lock").string(),
                  flight.lock_unread);
-    const HeardSafe heard = answer_of(flight, asked + flight.limit);
+    // Where its keeper is gone all rests on its guard, which may be late on a busy computer.
+    const auto limit = asked + flight.limit + (our_process(flight.keeper) ? std::chrono::milliseconds{} : usual_limit);
+    const HeardSafe heard = answer_of(flight, limit);
     if (heard.stop == Stop::NotAll) code = std::max(code, exit_finding);
     const bool whole = heard.stop != Stop::Nobody && heard.why_not_whole.empty();
     if (whole) continue;
-    // Who may be missing in an answer is stopped once more, by whoever goes on.
-    auto keeper = keeper_of(flight);
-    const bool signalled = keeper && keeper->send_signal(SIGUSR1);
-    const std::string_view whom = signalled ? "its keeper was signalled to stop it" : "its keeper is gone, too";
+    // A connection that has ended is no guard that stands still.
+    const bool stands_still = heard.stop == Stop::Nobody && std::chrono::steady_clock::now() >= limit;
+    const std::string_view whom = stop_otherwise(flight, stands_still);
     if (heard.stop == Stop::Nobody) {
       fmt::print(stderr, "hirosco safe: {} does not answer; {}\n", flight.name, whom);
       code = exit_environment;

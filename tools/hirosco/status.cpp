@@ -12,6 +12,7 @@
 #include "tools/hirosco/instance.hpp"
 #include "tools/hirosco/json_line.hpp"
 #include "tools/hirosco/listening.hpp"
+#include "tools/hirosco/our_process.hpp"
 #include "tools/terminal/columns.hpp"
 #include "tools/terminal/heard_overview.hpp"
 #include "tools/terminal/terminal.hpp"
@@ -56,13 +57,15 @@ void print_line(std::string_view text, std::string_view look) {
   return severity == descriptor::Severity::Medium ? "\x1b[33m" : "";
 }
 
-void print_verdict(const descriptor::Mission& mission, const supervisor::Overview& overview,
-                   const terminal::Judgement& judged) {
+void print_verdict(const terminal::Judgement& judged) {
   const bool unwell = judged.verdict != terminal::Verdict::Well;
   print_line(judged.line, unwell ? look_of(descriptor::Severity::High) : "");
   for (const auto& finding : judged.findings)
     print_line(fmt::format("  {:<6} {}", to_text(finding.severity), finding.text), look_of(finding.severity));
-  if (!unwell) return;
+}
+
+/// What a craft that stopped is brought up again by.
+void print_way_up(const descriptor::Mission& mission, const supervisor::Overview& overview) {
   const auto way_up = terminal::way_up(overview, mission);
   print_line(fmt::format("What stopped it: hirosco why{}", way_up.empty()       ? ""
                                                            : way_up.size() == 1 ? ". Up again: " + way_up.front()
@@ -70,6 +73,19 @@ void print_verdict(const descriptor::Mission& mission, const supervisor::Overvie
              "");
   if (way_up.size() > 1)
     for (const std::string& command : way_up) fmt::print("  {}\n", command);
+}
+
+/// What no telemetry tells: of a flight on this computer, whether somebody would go on for its supervisor (docs/adr/0217).
+void judge_keeper(int keeper, terminal::Judgement& judged) {
+  if (keeper <= 0 || our_process(keeper)) return;
+  const terminal::Finding gone{descriptor::Severity::High, "",
+                               "the keeper is gone: if the supervisor dies, nobody goes on"};
+  judged.findings.insert(judged.findings.begin(), gone);
+  judged.findings.push_back(
+      {descriptor::Severity::Info, "", "Ctrl-C reaches nobody: it ends by hirosco tc supervisor SHUTDOWN"});
+  if (judged.verdict != terminal::Verdict::Well) return;
+  judged.verdict = terminal::Verdict::NotWell;
+  judged.line = "NOT WELL: the keeper of this flight is gone; all else is well";
 }
 
 /// Null: there is none of this name, and those that there are were printed.
@@ -112,18 +128,21 @@ int status(const StatusOptions& options) {
       if (only == nullptr || only == member) print(*member, listened);
   }
   const auto overview = known();
-  const terminal::Judgement judged =
+  terminal::Judgement judged =
       overview ? terminal::judge(*overview)
                : terminal::Judgement{terminal::Verdict::NotWell,
                                      fmt::format("NOT WELL: {} answers, and its supervisor has told nothing for {} s",
                                                  mission.name, seconds(listening))};
+  const bool astray = judged.verdict != terminal::Verdict::Well;
+  judge_keeper(place->keeper, judged);
   const bool well = judged.verdict == terminal::Verdict::Well;
   if (connection.json) {
-    const auto way_up = overview && !well ? terminal::way_up(*overview, mission) : std::vector<std::string>{};
+    const auto way_up = overview && astray ? terminal::way_up(*overview, mission) : std::vector<std::string>{};
     fmt::print("{}\n", json_line(terminal::verdict_json(mission.name, judged, way_up)));
   } else if (!overview) print_line(judged.line, look_of(descriptor::Severity::High));
   else if (only != nullptr) print_line(judged.line, "");
-  else print_verdict(mission, *overview, judged);
+  else print_verdict(judged);
+  if (!connection.json && overview && only == nullptr && astray) print_way_up(mission, *overview);
   return well ? exit_ok : exit_finding;
 }
 
