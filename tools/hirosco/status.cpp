@@ -75,17 +75,14 @@ void print_way_up(const descriptor::Mission& mission, const supervisor::Overview
     for (const std::string& command : way_up) fmt::print("  {}\n", command);
 }
 
-/// What no telemetry tells: of a flight on this computer, whether somebody would go on for its supervisor (docs/adr/0217).
-void judge_keeper(int keeper, terminal::Judgement& judged) {
-  if (keeper <= 0 || our_process(keeper)) return;
-  const terminal::Finding gone{descriptor::Severity::High, "",
-                               "the keeper is gone: if the supervisor dies, nobody goes on"};
-  judged.findings.insert(judged.findings.begin(), gone);
-  judged.findings.push_back(
-      {descriptor::Severity::Info, "", "Ctrl-C reaches nobody: it ends by hirosco tc supervisor SHUTDOWN"});
-  if (judged.verdict != terminal::Verdict::Well) return;
-  judged.verdict = terminal::Verdict::NotWell;
-  judged.line = "NOT WELL: the keeper of this flight is gone; all else is well";
+/// Of a flight on this computer.
+[[nodiscard]] bool misses_its_keeper(int keeper) { return keeper > 0 && !our_process(keeper); }
+
+/// Who does not answer, and has no keeper, stays as it is.
+void print_end_without_keeper(int keeper) {
+  if (misses_its_keeper(keeper))
+    fmt::print(stderr,
+               "hirosco status: the keeper of this flight is gone; who does not answer is ended by: hirosco safe\n");
 }
 
 /// Null: there is none of this name, and those that there are were printed.
@@ -113,6 +110,7 @@ int status(const StatusOptions& options) {
   auto link = GroundConnection::open(place->host, place->port);
   if (!link) {
     fmt::print(stderr, "hirosco status: {}:{}: {}\n", place->host, place->port, link.error().text);
+    print_end_without_keeper(place->keeper);
     return exit_environment;
   }
   Listened listened;
@@ -120,6 +118,7 @@ int status(const StatusOptions& options) {
   const auto known = [&] { return terminal::heard_overview(mission, listened.values[mission.supervisor.id]); };
   if (!listen(mission, *link, listened, [&] { return !everything && known().has_value(); })) {
     fmt::print(stderr, "hirosco status: the ground link was closed\n");
+    print_end_without_keeper(place->keeper);
     return exit_environment;
   }
   if (everything) {
@@ -134,13 +133,12 @@ int status(const StatusOptions& options) {
                                      fmt::format("NOT WELL: {} answers, and its supervisor has told nothing for {} s",
                                                  mission.name, seconds(listening))};
   const bool astray = judged.verdict != terminal::Verdict::Well;
-  judge_keeper(place->keeper, judged);
+  if (misses_its_keeper(place->keeper)) terminal::miss_keeper(judged);
   const bool well = judged.verdict == terminal::Verdict::Well;
   if (connection.json) {
     const auto way_up = overview && astray ? terminal::way_up(*overview, mission) : std::vector<std::string>{};
     fmt::print("{}\n", json_line(terminal::verdict_json(mission.name, judged, way_up)));
-  } else if (!overview) print_line(judged.line, look_of(descriptor::Severity::High));
-  else if (only != nullptr) print_line(judged.line, "");
+  } else if (overview && only != nullptr) print_line(judged.line, "");
   else print_verdict(judged);
   if (!connection.json && overview && only == nullptr && astray) print_way_up(mission, *overview);
   return well ? exit_ok : exit_finding;
