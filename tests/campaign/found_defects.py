@@ -431,4 +431,9 @@ DEFECTS = [
            "  if (end && *end) return std::nullopt;",
            "  if (!PLANTED && end && *end) return std::nullopt;",
            "flights_test", "OurProcess.IsNoneThatHasEnded*"),
+    # Whoever had the number of a supervisor by then would have been ended in its place.
+    Defect("R61 a number that is somebody else's by now", "tools/hirosco/our_process.cpp",
+           "  if (::poll(&connection, 1, 0) != 0) return std::nullopt;",
+           "  if (!PLANTED && ::poll(&connection, 1, 0) != 0) return std::nullopt;",
+           "flights_test", "OurListener.IsNobodyBehind*"),
 ]

@@ -3,6 +3,7 @@
 #include "tools/hirosco/our_process.hpp"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <filesystem>
@@ -39,7 +40,11 @@ std::optional<Process> our_listener(int socket) {
   ucred listener{};
   socklen_t octets = sizeof listener;
   if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &listener, &octets) != 0) return std::nullopt;
-  return our_process(listener.pid);
+  auto process = our_process(listener.pid);
+  // Behind that: while this connection lives its number is nobody else's.
+  pollfd connection{socket, 0, 0};
+  if (::poll(&connection, 1, 0) != 0) return std::nullopt;
+  return process;
 }
 
 }  // namespace hirosco::tools

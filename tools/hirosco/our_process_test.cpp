@@ -7,8 +7,10 @@
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -62,18 +64,68 @@ TEST_F(OurProcess, IsNoneOfAnotherProgramThatHasItsNumber) {
   EXPECT_FALSE(our_process(-1));
 }
 
-TEST_F(OurProcess, BehindAConnectionIsWhoListensAndOnlyIfItIsOneOfOurs) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  const std::string path = (folder.path() / "safe.socket").string();
-  ASSERT_LT(path.size(), sizeof address.sun_path);
-  std::memcpy(address.sun_path, path.c_str(), path.size());
-  const FileDescriptor listener{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
-  ASSERT_EQ(::bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  ASSERT_EQ(::listen(listener.get(), 1), 0);
-  const FileDescriptor asks{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
-  ASSERT_EQ(::connect(asks.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  EXPECT_EQ(our_listener(asks.get()).has_value(), our_process(::getpid()).has_value()) << "it is this one";
+/// A UNIX socket at which a program of this name listens and takes nobody, as one that stands still; and a connection to it. When it is continued
+/// it listens no more, and stands still again.
+struct OurListener : OurProcess {
+  static constexpr int its_socket = 9;
+  FileDescriptor asks;
+
+  [[nodiscard]] Process listen(const std::string& name) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const std::string path = (folder.path() / "safe.socket").string();
+    EXPECT_LT(path.size(), sizeof address.sun_path);
+    std::memcpy(address.sun_path, path.c_str(), std::min(path.size(), sizeof address.sun_path - 1));
+    const std::string program = (folder.path() / name).string();
+    std::filesystem::copy_file("/bin/sh", program);
+    FileDescriptor listener{::socket(AF_UNIX, SOCK_SEQPACKET, 0)};
+    EXPECT_EQ(::bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    const pid_t pid = ::fork();
+    if (pid == 0) {
+      if (::listen(listener.get(), 1) != 0 || ::dup2(listener.get(), its_socket) != its_socket) ::_exit(1);
+      if (listener.get() != its_socket) ::close(listener.get());
+      ::execl(program.c_str(), program.c_str(), "-c", "while :; do kill -STOP $$; exec 9>&-; done", nullptr);
+      ::_exit(1);
+    }
+    stands_still(pid);
+    listener.reset();
+    asks.reset(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0));
+    EXPECT_EQ(::connect(asks.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    auto process = Process::adopt(pid);
+    EXPECT_TRUE(process);
+    return std::move(*process);
+  }
+  static void stands_still(int pid) {
+    int how = 0;
+    EXPECT_EQ(::waitpid(pid, &how, WUNTRACED), pid);
+    EXPECT_TRUE(WIFSTOPPED(how)) << how;
+  }
+};
+
+TEST_F(OurListener, IsWhoListensThoughItStandsStill) {
+  Process supervisor = listen("hirosco-supervisor");
+  const auto found = our_listener(asks.get());
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->pid(), supervisor.pid());
+  end(supervisor);
+  static_cast<void>(supervisor.poll());
+}
+
+TEST_F(OurListener, IsNoneOfAnotherProgram) {
+  Process other = listen("other");
+  EXPECT_FALSE(our_listener(asks.get()));
+  end(other);
+  static_cast<void>(other.poll());
+}
+
+TEST_F(OurListener, IsNobodyBehindAConnectionThatHasEndedWhoeverHasItsNumber) {
+  Process supervisor = listen("hirosco-supervisor");
+  EXPECT_TRUE(supervisor.send_signal(SIGCONT));
+  stands_still(supervisor.pid());
+  EXPECT_TRUE(our_process(supervisor.pid()));
+  EXPECT_FALSE(our_listener(asks.get()));
+  end(supervisor);
+  static_cast<void>(supervisor.poll());
   EXPECT_FALSE(our_listener(-1));
 }
 

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
@@ -35,25 +36,31 @@ struct Flying {
   std::filesystem::path folder;
   std::string name;  ///< of the instance
   std::string mission;  ///< as its lock or the registry says
-  FileDescriptor socket;  ///< connected to its guard and asked; empty: nobody listens
+  FileDescriptor socket;  ///< connected to its guard and asked; empty: nobody takes it
+  bool listens{false};  ///< somebody is there for its guard's socket, though it may take nobody
   int keeper{0};
   std::chrono::milliseconds limit{usual_limit};
   std::string lock_unread{};  ///< why its lock tells nothing: the registry's keeper and the usual limit hold
 };
 
-/// Asks the guard of a flight; empty when nobody takes it.
-[[nodiscard]] FileDescriptor ask_guard(const std::filesystem::path& socket_path) {
+/// Asks the guard of a flight.
+void ask_guard(Flying& flight) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  const std::string path = socket_path.string();
-  if (path.size() >= sizeof address.sun_path) return {};
+  const std::string path = (flight.folder / "safe.socket").string();
+  if (path.size() >= sizeof address.sun_path) return;
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
   FileDescriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
-  if (!socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return {};
+  if (!socket) return;
+  const int refused =
+      ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ? 0 : errno;
+  // So many wait already that the system lets nobody else wait: that is no flight that is not there.
+  flight.listens = refused == 0 || refused == EAGAIN;
+  if (refused != 0) return;
   constexpr std::string_view request = supervisor::safe_request;
-  if (::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
-    return {};
-  return socket;
+  if (::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(request.size()))
+    flight.socket = std::move(socket);
+  else flight.listens = false;
 }
 
 /// Prints what the guard answers, one line for each device or member.
@@ -70,10 +77,13 @@ struct Flying {
   if (auto keeper = our_process(flight.keeper))
     return keeper->send_signal(SIGUSR1) ? "its keeper was signalled to stop it"
                                         : "its keeper takes no signal from here";
+  if (!flight.socket && flight.listens)
+    return "its keeper is gone, and its supervisor lets nobody in: end that by kill -KILL";
   auto supervisor = stands_still ? our_listener(flight.socket.get()) : std::nullopt;
-  if (supervisor && supervisor->send_signal(SIGKILL))
-    return "its keeper is gone, and its supervisor was ended: whatever moves stops by itself";
-  return "its keeper is gone, too";
+  if (!supervisor) return "its keeper is gone, too";
+  return supervisor->send_signal(SIGKILL)
+             ? "its keeper is gone, and its supervisor was ended: whatever moves stops by itself"
+             : "its keeper is gone, and its supervisor takes no signal from here";
 }
 
 [[nodiscard]] bool ours(const std::filesystem::path& folder) {
@@ -122,8 +132,8 @@ struct Flying {
   for (Flying& flight : candidates()) {
     const bool meant = (wanted.instance.empty() || flight.name == wanted.instance) &&
                        (wanted.mission.empty() || flight.mission == wanted.mission || flight.name == wanted.mission);
-    if (meant) flight.socket = ask_guard(flight.folder / "safe.socket");
-    if (!flight.socket && !our_process(flight.keeper)) continue;
+    if (meant) ask_guard(flight);
+    if (!flight.listens && !our_process(flight.keeper)) continue;
     if (meant) found.push_back(std::move(flight));
     else others.push_back(flight.name);
   }
