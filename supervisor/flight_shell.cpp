@@ -322,6 +322,10 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   bool ends_as_a_whole = false, asked_to_end = false;
   const MemoryReserve reserve{memory_of_a_step};
   AskedStops stops{page};
+  // By a signal that nobody blocks or handles: its guard has stopped all by then, and nobody else would end it, its devices and orphans.
+  const auto ends_if_it_stands_still = [&] {
+    if (keeper_watch.lost()) ::alarm(alone_patience_s);
+  };
   // Not asked before: its disk works while all that is made. A flight goes on without a log, and a death of its supervisor changes nothing
   // in that (docs/adr/0036, 0192).
   if (!goes_on && log_refused()) return exit_environment;
@@ -365,6 +369,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
         supervisor.request_shutdown("the supervisor, which has no memory left");
       }
       if (supervisor.commissioned()) page.commissioned.store(1, std::memory_order_relaxed);
+      ends_if_it_stands_still();
       const KeeperWatch::Finding of_keeper = keeper_watch.look(clock.now());
       if (of_keeper.stop) static_cast<void>(::kill(::getpid(), SIGUSR1));  // the guard's thread takes it
       if (of_keeper.still) supervisor.keeper_stands_still();
@@ -404,6 +409,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   console.ended();
   // The keeper looks on as long as this takes, too.
   const auto wait_for_ends = [&] {
+    ends_if_it_stands_still();
     for (const TimePoint limit = clock.now() + last_wait; launcher.any_running() && clock.now() < limit;) {
       page.supervisor.fetch_add(1, std::memory_order_relaxed);
       sleep_until(clock.now() + 10ms);

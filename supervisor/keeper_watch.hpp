@@ -33,6 +33,7 @@ class KeeperWatch {
 
   /// Its pipe has ended.
   void gone() noexcept { keeper_ = Keeper::Gone; }
+  [[nodiscard]] bool lost() const noexcept { return keeper_ == Keeper::Gone; }
   /// There is one that starts another supervisor where this one ends.
   [[nodiscard]] bool here() const noexcept { return keeper_ == Keeper::Here; }
   [[nodiscard]] Finding look(TimePoint now) noexcept;

@@ -36,6 +36,7 @@ TEST_F(KeeperWatchTest, OneThatMovesIsNothingToTell) {
     EXPECT_FALSE(found.still || found.lost || found.stop || found.end != 0) << i;
   }
   EXPECT_TRUE(watch.here());
+  EXPECT_FALSE(watch.lost());
 }
 
 TEST_F(KeeperWatchTest, OneThatStandsStillIsToldOnceEachTimeAndIsStillThere) {
@@ -44,6 +45,7 @@ TEST_F(KeeperWatchTest, OneThatStandsStillIsToldOnceEachTimeAndIsStillThere) {
   page.keeper = 2;
   EXPECT_EQ(still_for(2 * keeper_patience), 1);
   EXPECT_TRUE(watch.here());
+  EXPECT_FALSE(watch.lost());
 }
 
 TEST_F(KeeperWatchTest, OneThatIsGoneIsToldOnceAndNotAsOneThatStandsStill) {
@@ -51,6 +53,7 @@ TEST_F(KeeperWatchTest, OneThatIsGoneIsToldOnceAndNotAsOneThatStandsStill) {
   static_cast<void>(look_after(0s));
   watch.gone();
   EXPECT_FALSE(watch.here());
+  EXPECT_TRUE(watch.lost());
   EXPECT_TRUE(look_after(1ms).lost);
   EXPECT_EQ(still_for(2 * keeper_patience), 0);
   EXPECT_FALSE(look_after(1ms).lost);
@@ -108,6 +111,7 @@ TEST_F(KeeperWatchTest, WhereThereNeverWasOneNothingIsTold) {
   page.end_asked = SIGTERM;
   page.ends_at = 1;
   EXPECT_FALSE(alone.here());
+  EXPECT_FALSE(alone.lost()) << "nothing of what a keeper did is this one's to do";
   for (int i = 0; i < 100; ++i) {
     const auto found = alone.look(now += 100ms);
     EXPECT_FALSE(found.still || found.lost || found.stop || found.end != 0) << i;

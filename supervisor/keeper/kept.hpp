@@ -164,6 +164,8 @@ inline constexpr Duration keeper_patience = std::chrono::seconds{3};
 /// One that ends waits twice for its log, each time at most two seconds, and nothing moves any more. What the disk has not given back
 /// by then, the system waits for.
 inline constexpr Duration ending_patience = std::chrono::seconds{10};
+/// A supervisor whose keeper is gone has the system end it where it neither steps nor ends for so long (docs/adr/0217).
+inline constexpr unsigned alone_patience_s = std::chrono::duration_cast<std::chrono::seconds>(ending_patience).count();
 /// The supervisor: less than its own guard grants it before all is fenced, so that another one can go on with what moves.
 inline constexpr Duration supervisor_patience = std::chrono::milliseconds{800};
 /// The same until its first step: it waits for no disk on the way there, and in that step it reads stored values, beside its guard. A disk that

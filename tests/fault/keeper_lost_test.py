@@ -10,11 +10,14 @@ import time
 import unittest
 
 import flight
+import supervisors
 
 ORPHANS_GONE_S = 10.0
 TOLD_S = 1.0                      # that it is gone
 STILL_S, PACE_S = 3.0, 0.5        # after so long a keeper that is there would be told to stand still
 SAFE_S = 2.0                      # without a supervisor
+# supervisor/guard/supervisor_watch.hpp, and how often a guard looks; supervisor/keeper/kept.hpp: until one that stands still alone ends.
+GUARDED_S, LOOK_S, ALONE_S = 1.0, 0.01, 10.0
 STANDALONE, TELEPRESENCE = 2, 3
 
 
@@ -82,6 +85,18 @@ class KeeperLost(unittest.TestCase):
             self.assertIn("its keeper is gone, and its supervisor was ended", done.stderr)
             self.assertEqual(rokviss.wait_until_gone(ORPHANS_GONE_S), {})
             self.assertIn("nothing flies here", rokviss.hirosco("safe").stderr)
+
+    def test_where_the_keeper_is_gone_a_supervisor_that_spins_leaves_a_robot_that_stops_and_ends_by_itself(self):
+        with supervisors.instead("spinnable") as programs, flight.Flight(binaries=programs) as rokviss:
+            rokviss.wait_commissioned()
+            self.push(rokviss)
+            self.loses_its_keeper(rokviss)
+            # To the process: its first thread, which is the supervisor's loop, takes it.
+            spins = rokviss.kill("hirosco-supervisor", signal.SIGUSR2)
+            rokviss.wait_at_rest("robot", spins + GUARDED_S + LOOK_S)
+            self.assertIn("hirosco-supervisor", rokviss.processes().values(), "its guard has stopped the robot, and it has not ended yet")
+            self.assertEqual(rokviss.wait_until_gone(ALONE_S + ORPHANS_GONE_S), {})
+            flight.measure(f"without a keeper a supervisor that spins, and all else, gone after {time.monotonic() - spins:.1f} s")
 
     def test_a_keeper_that_is_killed_as_another_supervisor_begins_leaves_one_that_says_so_or_nobody(self):
         for after_s in (0.0, 0.01):
