@@ -34,6 +34,7 @@
 #include "supervisor/inheritance.hpp"
 #include "supervisor/keeper/job_control.hpp"
 #include "supervisor/keeper/kept.hpp"
+#include "supervisor/keeper_watch.hpp"
 #include "supervisor/platform/storage/begin_log.hpp"
 #include "supervisor/platform/storage/epoch_file.hpp"
 #include "supervisor/platform/storage/log_store.hpp"
@@ -315,13 +316,16 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
 
   Waker waker{signal_descriptor.get(), log_progress->descriptor(), guard_found->descriptor(),
               kept ? keeper_descriptor : -1};
-  Progress keeper_progress;
-  bool keeper_still = false;
+  KeeperWatch keeper_watch{page, kept ? KeeperWatch::Keeper::Here : KeeperWatch::Keeper::Nobody};
   const TimePoint began = keeper.flight_began(clock.now());
   TimePoint next_status = clock.now() + console.period();
   bool ends_as_a_whole = false, asked_to_end = false;
   const MemoryReserve reserve{memory_of_a_step};
   AskedStops stops{page};
+  // By a signal that nobody blocks or handles: its guard has stopped all by then, and nobody else would end it, its devices and orphans.
+  const auto ends_if_it_stands_still = [&] {
+    if (keeper_watch.lost()) ::alarm(alone_patience_s);
+  };
   // Not asked before: its disk works while all that is made. A flight goes on without a log, and a death of its supervisor changes nothing
   // in that (docs/adr/0036, 0192).
   if (!goes_on && log_refused()) return exit_environment;
@@ -360,18 +364,26 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
       page.supervisor.fetch_add(1, std::memory_order_relaxed);
       static_cast<void>(keeper.note(supervisor.mission().texts));
       if (reserve.used() && !std::exchange(ends_as_a_whole, true)) {
-        if (kept && page.alone.load() == 0 && !asked_to_end) leave_to_another(errors);
+        if (keeper_watch.here() && page.alone.load() == 0 && !asked_to_end) leave_to_another(errors);
         console.told(clock.onboard(), "no memory left: the flight ends in order");
         supervisor.request_shutdown("the supervisor, which has no memory left");
       }
       if (supervisor.commissioned()) page.commissioned.store(1, std::memory_order_relaxed);
-      const bool still = kept && keeper_progress.stands_still(page.keeper.load(std::memory_order_relaxed), clock.now());
-      if (still && !keeper_still) supervisor.keeper_stands_still();
-      keeper_still = still;
+      ends_if_it_stands_still();
+      const KeeperWatch::Finding of_keeper = keeper_watch.look(clock.now());
+      if (of_keeper.stop) static_cast<void>(::kill(::getpid(), SIGUSR1));  // the guard's thread takes it
+      if (of_keeper.still) supervisor.keeper_stands_still();
+      if (of_keeper.lost) supervisor.keeper_lost();
+      if (of_keeper.end != 0) {
+        supervisor.request_shutdown(end_words(of_keeper.end));
+        asked_to_end = true;
+      }
       waker.follow(supervisor, launcher);
       for (const Ready& ready : waker.wait(std::min(wake, next_status) - clock.now())) {
-        const bool keeper_gone = ready.descriptor == keeper_descriptor && ready.hung_up;
-        if (keeper_gone) waker.forget(keeper_descriptor);  // it would end every wait from now on
+        if (ready.descriptor == keeper_descriptor && ready.hung_up) {
+          waker.forget(keeper_descriptor);  // it would end every wait from now on
+          keeper_watch.gone();
+        }
         if (ready.descriptor == log_progress->descriptor()) log_progress->clear();
         if (ready.descriptor == guard_found->descriptor()) guard_found->clear();
         if (ready.descriptor == signal_descriptor.get()) {
@@ -379,9 +391,6 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
           static_cast<void>(!::read(signal_descriptor.get(), &info, sizeof info));
           const std::uint32_t to_keeper = page.end_asked.load();
           supervisor.request_shutdown(end_words(to_keeper != 0 ? to_keeper : info.ssi_signo));
-          asked_to_end = true;
-        } else if (keeper_gone) {
-          supervisor.request_shutdown("the end of the process that had started the flight");
           asked_to_end = true;
         }
       }
@@ -400,6 +409,7 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   console.ended();
   // The keeper looks on as long as this takes, too.
   const auto wait_for_ends = [&] {
+    ends_if_it_stands_still();
     for (const TimePoint limit = clock.now() + last_wait; launcher.any_running() && clock.now() < limit;) {
       page.supervisor.fetch_add(1, std::memory_order_relaxed);
       sleep_until(clock.now() + 10ms);

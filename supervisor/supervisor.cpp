@@ -93,6 +93,13 @@ void Supervisor::keeper_stands_still() {
   parts_->own.announce("KEEPER_STILL");
 }
 
+void Supervisor::keeper_lost() {
+  parts_->craft.tell(
+      "the keeper is gone: if this supervisor dies, too, nobody goes on for it, and what moves stops by itself",
+      supervisor_apid);
+  parts_->own.announce("KEEPER_LOST");
+}
+
 bool Supervisor::finished() const noexcept { return parts_->shutdown.finished(); }
 bool Supervisor::succeeded() const noexcept { return !parts_->craft.failed(); }
 bool Supervisor::commissioned() const noexcept { return parts_->commissioning.succeeded(); }

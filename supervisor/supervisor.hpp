@@ -58,6 +58,8 @@ class Supervisor final {
   void request_shutdown(std::string_view by = {});
   /// Whoever started it is alive and does not move: nobody would end what is left after this one.
   void keeper_stands_still();
+  /// Whoever started it has ended before it: as above, and nobody would go on for it. The flight goes on.
+  void keeper_lost();
   [[nodiscard]] bool finished() const noexcept;
   /// False when commissioning failed or the shutdown was not orderly.
   [[nodiscard]] bool succeeded() const noexcept;

@@ -18,6 +18,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/utilities/os/clock.hpp"
@@ -117,7 +118,8 @@ int refused(LineWriter& errors, std::string_view what, std::int64_t number) {
 
 /// What is shared with the supervisors of this flight.
 struct Shared {
-  FileDescriptor watched, held;  ///< a pipe: its end tells everybody that the keeper is gone
+  FileDescriptor watched, held;  ///< a pipe: its end tells the supervisor that the keeper is gone
+  FileDescriptor flight_watched, flight_held;  ///< another: its end tells devices that the supervisor is, too
   FileDescriptor page_memory, journal, texts;
   MappedMemory mapped;
   FileDescriptor to_store;
@@ -127,10 +129,13 @@ struct Shared {
 
 /// 0, or the exit code.
 [[nodiscard]] int prepare(Shared& shared, LineWriter& errors) {
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return refused(errors, "no pipe to watch over the flight", errno);
-  shared.watched.reset(ends[0]);
-  shared.held.reset(ends[1]);
+  for (const auto& [watched, held] :
+       {std::pair{&shared.watched, &shared.held}, std::pair{&shared.flight_watched, &shared.flight_held}}) {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) return refused(errors, "no pipe to watch over the flight", errno);
+    watched->reset(ends[0]);
+    held->reset(ends[1]);
+  }
   const auto memory = [](const char* name, std::size_t octets, FileDescriptor& into) -> Result<> {
     HIROSCO_TRY_LET(into, memfd::create(name, octets));
     return ok();
@@ -163,7 +168,11 @@ class Flight {
         page_{shared.page()},
         signals_{signals},
         started_{clock_.now()},
-        bridge_{page_, flows_, std::move(plan.inhibits)} {}
+        bridge_{page_, flows_, std::move(plan.inhibits)} {
+    // The supervisor ends it where this process cannot any more; one that would last for longer than time does not.
+    if (plan.run_for && *plan.run_for < TimePoint::max() - started_)
+      page_.ends_at.store((started_ + *plan.run_for).time_since_epoch().count());
+  }
 
   [[nodiscard]] Result<> start() {
     page_.starts.fetch_add(1);
@@ -173,7 +182,8 @@ class Flight {
                                                    {shared_.page_memory.get(), keeper_page_descriptor},
                                                    {shared_.to_store.get(), keeper_store_descriptor},
                                                    {shared_.journal.get(), keeper_journal_descriptor},
-                                                   {shared_.texts.get(), keeper_texts_descriptor}});
+                                                   {shared_.texts.get(), keeper_texts_descriptor},
+                                                   {shared_.flight_held.get(), flight_held_descriptor}});
     shared_.store->pass_on(start.inherited);
     // It is asked for its end before it can listen, too.
     start.blocked = {SIGTERM, SIGINT, SIGUSR1};
@@ -341,8 +351,8 @@ int keep(KeeperPlan plan) {
   std::vector<Process> devices;
   devices.reserve(plan.devices.size());
   for (ProcessStart& start : plan.devices) {
-    // Its end tells a device that the keeper is gone, however that came about: nobody else would end it.
-    start.inherited.push_back({shared.watched.get(), STDIN_FILENO});
+    // Its end tells a device that keeper and supervisor are gone, however that came about: nobody else would end it.
+    start.inherited.push_back({shared.flight_watched.get(), STDIN_FILENO});
     auto device = Process::spawn(start);
     if (!device) {
       end_devices(devices, set, clock);

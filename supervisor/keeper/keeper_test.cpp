@@ -9,12 +9,16 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "hirosco/utilities/os/clock.hpp"
 #include "supervisor/keeper/keeper.hpp"
 #include "supervisor/keeper/kept.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
@@ -109,6 +113,8 @@ struct KeeperTest : ::testing::Test {
       KeeperPlan plan;
       plan.supervisor.executable = shell;
       plan.supervisor.arguments = {"-c", "echo $$ >> '" + starts + "'; " + supervisor};
+      plan.devices = devices;
+      plan.run_for = run_for;
       ::_exit(keep(std::move(plan)));
     }
     if (!unread_stays) unread.reset();
@@ -124,6 +130,13 @@ struct KeeperTest : ::testing::Test {
     std::ifstream lines{starts};
     return static_cast<std::size_t>(std::count(std::istreambuf_iterator<char>{lines}, {}, '\n'));
   }
+  /// What one of them has written into this file of the folder.
+  [[nodiscard]] std::string written(const std::string& name) const {
+    std::ifstream file{folder.path() / name};
+    return {std::istreambuf_iterator<char>{file}, {}};
+  }
+  std::vector<ProcessStart> devices;
+  std::optional<Duration> run_for;
   bool unread_stays{true};
   std::string shell{"/bin/sh"};  ///< the supervisor's program
 };
@@ -174,6 +187,35 @@ TEST_F(KeeperTest, EndsASuccessorThatNeverTakesItsFirstStep) {
                        "kill -KILL $$ ;; 2) while :; do :; done ;; esac; " + moves);
   ASSERT_TRUE(WIFEXITED(how)) << how;
   EXPECT_EQ(supervisors(), 3U) << "the third one's words say that it has finished";
+}
+
+TEST_F(KeeperTest, GivesTheSupervisorTheEndOfThePipeByWhichDevicesKnowThatTheyAreAlone) {
+  const std::string of_device = (folder.path() / "device").string(),
+                    of_supervisor = (folder.path() / "supervisor").string();
+  const auto pipe_of = [](const std::string& number, const std::string& into) {
+    return "readlink /proc/$$/fd/" + number + " > '" + into + "'; ";
+  };
+  devices.push_back({.executable = "/bin/sh", .arguments = {"-c", pipe_of("0", of_device) + "exec cat"}});
+  const int how = kept(moves + pipe_of(std::to_string(flight_held_descriptor), of_supervisor) +
+                       pipe_of(std::to_string(keeper_descriptor), of_supervisor + ".keeper") + "until [ -s '" +
+                       of_device + "' ]; do :; done");
+  ASSERT_TRUE(WIFEXITED(how)) << how;
+  EXPECT_NE(written("device"), "");
+  EXPECT_EQ(written("device"), written("supervisor")) << "while one of the two lives it does not end";
+  EXPECT_NE(written("device"), written("supervisor.keeper")) << "the supervisor knows of the keeper alone";
+}
+
+TEST_F(KeeperTest, TellsTheSupervisorWhenTheTimeOfItsFlightIsOver) {
+  run_for = 1h;
+  const SystemClock clock;
+  const auto in_an_hour = [&] { return (clock.now() + 1h).time_since_epoch().count(); };
+  const std::int64_t earliest = in_an_hour();
+  const int how = kept(std::string{moves} + "od -An -td8 -j" + std::to_string(offsetof(KeeperPage, ends_at)) +
+                       " -N8 /proc/self/fd/7 > '" + (folder.path() / "ends_at").string() + "'");
+  ASSERT_TRUE(WIFEXITED(how)) << how;
+  const std::int64_t told = std::atoll(written("ends_at").c_str());
+  EXPECT_GE(told, earliest);
+  EXPECT_LE(told, in_an_hour());
 }
 
 TEST_F(KeeperTest, IsStoppedByNoTerminal) {

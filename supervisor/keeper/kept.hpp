@@ -25,6 +25,9 @@ inline constexpr int keeper_store_descriptor = 8;
 inline constexpr int keeper_journal_descriptor = 9;
 /// Memory of the texts by which the mission flies (supervision/succession/texts_in_force.hpp), of `texts_octets`.
 inline constexpr int keeper_texts_descriptor = 10;
+/// The writing end of a pipe that the keeper has, too, and whose reading end is the standard input of all that it started beside the supervisor:
+/// those end when both are gone, and not before (docs/adr/0217).
+inline constexpr int flight_held_descriptor = 15;
 /// From here on, what the supervisor before had handed over: slot by slot, a descriptor for each role.
 inline constexpr int first_kept_descriptor = 16;
 
@@ -74,7 +77,7 @@ inline constexpr std::size_t most_ends = 64;
 struct KeeperPage {
   /// Of this layout. Keeper and supervisor of one flight are of one build; whoever finds another number knows nothing of what is there, not
   /// even whether a craft flies already.
-  static constexpr std::uint64_t layout_now = 0x484B'5047'0000'0005;  // "HKPG"
+  static constexpr std::uint64_t layout_now = 0x484B'5047'0000'0006;  // "HKPG"
   std::atomic<std::uint64_t> layout{layout_now};
   std::atomic<std::uint64_t> keeper{0};
   std::atomic<std::uint64_t> supervisor{0};
@@ -110,6 +113,9 @@ struct KeeperPage {
   std::array<std::atomic<std::uint8_t>, most_kept> not_sent{};
   /// When the first supervisor of the flight began its steps, as monotonic time in ns, which is every later one's too; 0: not yet.
   std::atomic<std::int64_t> flight_began{0};
+  /// When the time of the flight is over, as monotonic time in ns; 0: it has as much as it likes. The keeper ends it then, or without one its
+  /// supervisor.
+  std::atomic<std::int64_t> ends_at{0};
 
   void tell_end(std::uint32_t pid, std::uint32_t how) noexcept {
     KeptEnd& place = ends[ends_told.load(std::memory_order_relaxed) % most_ends];
@@ -158,6 +164,8 @@ inline constexpr Duration keeper_patience = std::chrono::seconds{3};
 /// One that ends waits twice for its log, each time at most two seconds, and nothing moves any more. What the disk has not given back
 /// by then, the system waits for.
 inline constexpr Duration ending_patience = std::chrono::seconds{10};
+/// A supervisor whose keeper is gone has the system end it where it neither steps nor ends for so long (docs/adr/0217).
+inline constexpr unsigned alone_patience_s = std::chrono::duration_cast<std::chrono::seconds>(ending_patience).count();
 /// The supervisor: less than its own guard grants it before all is fenced, so that another one can go on with what moves.
 inline constexpr Duration supervisor_patience = std::chrono::milliseconds{800};
 /// The same until its first step: it waits for no disk on the way there, and in that step it reads stored values, beside its guard. A disk that

@@ -421,4 +421,19 @@ DEFECTS = [
            "let_write(device_memory_folder(address), sandbox);",
            "let_write(PLANTED ? device_memory_root : device_memory_folder(address), sandbox);",
            "platform_test", "SubsystemSandbox.OpensTheFolder*"),
+    # A stop that a keeper had counted and not handed on when it died was carried out by nobody.
+    Defect("R61 a stop that went with its keeper", "supervisor/keeper_watch.cpp",
+           "found.stop = page_.stops_asked.load() != page_.stops_taken.load();",
+           "found.stop = !PLANTED && page_.stops_asked.load() != page_.stops_taken.load();",
+           "flight_shell_test", "KeeperWatchTest.AStopThat*"),
+    # One that had ended, and that nobody had heard of, was said to have been signalled for a stop.
+    Defect("R61 a keeper that has ended", "tools/hirosco/our_process.cpp",
+           "  if (end && *end) return std::nullopt;",
+           "  if (!PLANTED && end && *end) return std::nullopt;",
+           "flights_test", "OurProcess.IsNoneThatHasEnded*"),
+    # Whoever had the number of a supervisor by then would have been ended in its place.
+    Defect("R61 a number that is somebody else's by now", "tools/hirosco/our_process.cpp",
+           "  if (::poll(&connection, 1, 0) != 0) return std::nullopt;",
+           "  if (!PLANTED && ::poll(&connection, 1, 0) != 0) return std::nullopt;",
+           "flights_test", "OurListener.IsNobodyBehind*"),
 ]

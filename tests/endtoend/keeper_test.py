@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""How a flight begins and ends: one at a time, in order when asked, and without orphans when it is not."""
+"""How a flight begins and ends: one at a time, in order when asked, and without orphans when it is not; and without
+its keeper, with which it goes on (docs/adr/0217)."""
 import contextlib
 import os
 import pathlib
@@ -90,8 +91,45 @@ class Keeper(unittest.TestCase):
                 self.assertNotIn("terminate called", few.stderr)
                 self.assertNotIn(few.returncode, (-6, 134), few.stderr)
 
-    def test_a_killed_keeper_leaves_no_orphans(self):
-        self.no_orphans("hirosco")
+    def test_without_its_keeper_a_flight_goes_on_and_all_that_the_keeper_had_begun_ends_with_it_in_order(self):
+        before = flight.segments()
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            self.assertEqual(len(rokviss.processes()), 7)
+            begin = rokviss.count()
+            rokviss.kill("hirosco")
+            rokviss.process.wait(5.0)
+            rokviss.wait_told("KEEPER_LOST", 2.0, begin)
+            self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0)
+            status = rokviss.hirosco("status", "--mission", rokviss.mission)
+            self.assertEqual(status.returncode, 1, status.stdout)
+            self.assertIn("the keeper of this flight is gone; all else is well", status.stdout)
+            second = rokviss.hirosco("run", rokviss.mission, "--no-ground", "--for", "1s")
+            self.assertEqual(second.returncode, 3, "its log, name and ports are taken")
+            self.assertEqual(len(rokviss.processes()), 6, "simulated devices are there as long as it flies")
+            rokviss.kill("hirosco-supervisor", signal.SIGTERM)
+            rokviss.wait_told("shutdown, asked for by SIGTERM (signal 15)", 2.0, begin)
+            self.assertEqual(rokviss.wait_until_gone(ORPHANS_GONE_S), {})
+        self.assertEqual(flight.segments(), before)
+
+    def test_without_its_keeper_a_flight_ends_when_its_time_is_over(self):
+        with flight.Flight(more=("--no-ground", "--for", "25s")) as rokviss:
+            rokviss.wait_commissioned()
+            rokviss.kill("hirosco")
+            rokviss.wait_told("shutdown, asked for by --for, whose time is over", 30.0)
+            self.assertEqual(rokviss.wait_until_gone(ORPHANS_GONE_S), {})
+
+    def test_a_supervisor_that_dies_without_a_keeper_leaves_no_orphans(self):
+        before = flight.segments()
+        with flight.Flight() as rokviss:
+            rokviss.wait_commissioned()
+            begin = rokviss.count()
+            rokviss.kill("hirosco")
+            rokviss.wait_told("KEEPER_LOST", 2.0, begin)
+            killed = rokviss.kill("hirosco-supervisor")
+            self.assertEqual(rokviss.wait_until_gone(ORPHANS_GONE_S), {})
+            flight.measure(f"without a keeper, supervisor killed: the other five gone {time.monotonic() - killed:.2f} s later")
+        self.assertEqual(flight.segments(), before)
 
     def test_a_crash_loop_of_supervisors_leaves_no_orphans(self):
         before = flight.segments()
@@ -112,19 +150,6 @@ class Keeper(unittest.TestCase):
             self.assertEqual(rokviss.wait_until_gone(ORPHANS_GONE_S), {})
             self.assertEqual(rokviss.process.returncode, 4, "the end was not an orderly one")
         self.assertEqual(flight.segments(), before)
-
-    def no_orphans(self, name):
-        before = flight.segments()
-        with flight.Flight() as rokviss:
-            rokviss.wait_commissioned()
-            self.assertEqual(len(rokviss.processes()), 7)
-            killed = rokviss.kill(name)
-            left = rokviss.wait_until_gone(ORPHANS_GONE_S)
-            flight.measure(f"{name} killed: the other six gone {time.monotonic() - killed:.2f} s later")
-            self.assertEqual(left, {})
-            rokviss.process.wait(5.0)
-        self.assertEqual(flight.segments(), before)
-        return rokviss
 
     def test_a_flight_can_begin_where_another_was_killed(self):
         with flight.Flight() as rokviss:

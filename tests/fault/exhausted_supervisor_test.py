@@ -109,7 +109,7 @@ class Exhausted(supervisor_kills.Accounts):
         for packet, _ in client.sent[-200:]:
             ground.verdict(packet, 5.0)
         client.socket.close()
-        self.compare(craft, ground, client.sent)
+        self.compare(craft, ground, client.sent, [(lost_at, told.received)])
 
     def starved_of(self, what):
         with contextlib.ExitStack() as until_end:

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Seeded flights on real processes: a cycle that spins, a process that is stopped or killed, a device that is unplugged, a
 stop of everything by three ways, a supervisor or a keeper that is killed or stands still, at work and in the midst of a stop or of a
-change of mode; then the craft must be whole again by one bring-up.
+change of mode; then the craft must be whole again by one bring-up. Each third flight ends without its keeper.
 
 Judged from outside: only the victim dies (I1), the supervisor answers throughout (I6), what was taken is given back (I7),
 the robot in the world puts out nothing after a stop, everybody else cycles on (hazards SF2, SF14, SF15, SF18). Each other flight asks at its end for
@@ -41,7 +41,7 @@ MODES = {"standalone": 2, "telepresence": 3}
 # What took how long, and the deadline that it was held to.
 DEADLINES_S = {"the robot obeys nobody": WATCHDOG_S + LOOK_S, "network fenced": HANG_S + 5 * CYCLE_S + GRID_S, "others cycle again": AGAIN_S + GRID_S,
                "longest pause of others": AGAIN_S + GRID_S, "network down": 2.0, "back after its death": BACK_S, "adopted": ADOPTED_S,
-               "a still keeper is told of": STILL_S + STILL_PACE_S}
+               "a still keeper is told of": STILL_S + STILL_PACE_S, "a lost keeper is told of": ADOPTED_S}
 
 
 class Trial(Demands):
@@ -76,7 +76,24 @@ class Trial(Demands):
             self.what_was_said_comes_again()
         held = self.taken()
         expect(held <= self.baseline + 2, f"I7: {held} descriptors where {self.baseline} were")
+        if self.number % 3 == 2:
+            return self.flies_on_without_its_keeper()
         expect(craft.end() in (0, 1, 5), f"exit code, {craft.errors}")
+
+    def flies_on_without_its_keeper(self):
+        """To its end: nobody would go on for this supervisor any more (docs/adr/0217)."""
+        self.begin = self.craft.count()
+        killed = self.craft.kill("hirosco")
+        told = self.craft.wait_told("the keeper is gone", 2.0, self.begin).received - killed
+        late = self.host.stood_still_s(killed, killed + told)
+        expect(told <= ADOPTED_S + late, f"that the keeper is gone was told after {told:.2f} s")
+        self.took("a lost keeper is told of", told)
+        self.answers()
+        changed = [line.told for line in self.craft.told(self.begin) if "STATE_CHANGED" in line.told]
+        expect(not changed, f"a lost keeper changed {changed[:1]}")
+        self.craft.kill("hirosco-supervisor", signal.SIGTERM)
+        left = self.craft.wait_until_gone(15.0)
+        expect(not left, f"without their keeper {left} were left behind")
 
     def victim(self):
         """Either in turn, so that as many of each are."""

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """Keeper and supervisor are killed or stopped while the robot pushes: it stops where nobody looks after it, nobody is left behind,
-and who is left says so (hazard SF18). The supervisor alone: adoption_test.py."""
+and who is left says so (hazard SF18). The supervisor alone: adoption_test.py, the keeper alone: keeper_lost_test.py."""
 import os
 import pathlib
 import signal
@@ -75,17 +75,6 @@ class StandsStill(unittest.TestCase):
                 self.assertNotIn("State:\tT", status, name)
             self.assertEqual(rokviss.tc("manipulator", "ping")[0], 0)
             self.assertEqual(rokviss.end(), 0, rokviss.errors)
-
-    def test_a_killed_keeper_leaves_a_robot_that_stops_in_order(self):
-        with flight.Flight() as rokviss:
-            rokviss.wait_commissioned()
-            self.push(rokviss)
-            rokviss.kill("hirosco")
-            rokviss.wait_told("shutdown", 1.0)
-            self.assertEqual(rokviss.wait_until_gone(ORPHANS_GONE_S), {})
-            story = [line.told for line in rokviss.told()]
-            begins = next(at for at, text in enumerate(story) if text.startswith("shutdown"))
-            self.assertIn("MANIPULATOR info STATE_CHANGED STATE=SafeOperational", story[begins:])
 
 
 if __name__ == "__main__":

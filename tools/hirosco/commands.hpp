@@ -163,7 +163,8 @@ struct SafeOptions {
   std::string instance;
 };
 /// Stops every actuator through the local socket of a flight's guard. 0: all have stopped, 1: somebody did not confirm,
-/// or may be missing in the answer, which the keeper was signalled for, too, 3: nobody answered, and the keeper was signalled to do it.
+/// or may be missing in the answer, which the keeper was signalled for, too, 3: nobody answered, and the keeper was signalled to do it
+/// or, where that is gone, a supervisor that stands still was ended.
 int safe(const SafeOptions& options);
 
 /// Said where hirosco-ground is missing.

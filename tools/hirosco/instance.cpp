@@ -220,7 +220,8 @@ std::expected<GroundLinkPlace, int> find_ground_link(const char* command, const 
     return std::unexpected{exit_environment};
   }
   return GroundLinkPlace{std::move(found->mission), connection.host.empty() ? place.host : connection.host,
-                         connection.port == 0 ? place.port : connection.port};
+                         connection.port == 0 ? place.port : connection.port,
+                         found->flight ? found->flight->keeper : 0};
 }
 
 }  // namespace hirosco::tools

@@ -108,6 +108,7 @@ struct GroundLinkPlace {
   descriptor::Mission mission;
   std::string host;
   std::uint16_t port{0};
+  int keeper{0};  ///< of the flight, where that is in the air on this computer; 0: it is not known to be
 };
 [[nodiscard]] std::expected<GroundLinkPlace, int> find_ground_link(const char* command, const Connection& connection);
 

@@ -295,6 +295,7 @@ int run(const RunOptions& options) {
   if (flight.named()) plan.supervisor.arguments.insert(plan.supervisor.arguments.end(), {"--log", flight.log.string()});
   for (auto& endnode : supervisor::kept_endnodes(*mission)) plan.inhibits.push_back(std::move(endnode.address));
   constexpr int first_lock = supervisor::keeper_texts_descriptor + 1;
+  static_assert(first_lock + 3 < supervisor::flight_held_descriptor, "the keeper hands over what comes behind");
   plan.supervisor.inherited = {{locks->folder.get(), first_lock}, {locks->registry.get(), first_lock + 1}};
   if (locks->log) plan.supervisor.inherited.push_back({locks->log.get(), first_lock + 2});
   plan.supervisor.over_users = own_users;

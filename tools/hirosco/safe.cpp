@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
@@ -20,6 +21,7 @@
 #include "tools/hirosco/flight_lock.hpp"
 #include "tools/hirosco/hear_safe.hpp"
 #include "tools/hirosco/instance.hpp"
+#include "tools/hirosco/our_process.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -34,25 +36,31 @@ struct Flying {
   std::filesystem::path folder;
   std::string name;  ///< of the instance
   std::string mission;  ///< as its lock or the registry says
-  FileDescriptor socket;  ///< connected to its guard and asked; empty: nobody listens
+  FileDescriptor socket;  ///< connected to its guard and asked; empty: nobody takes it
+  bool listens{false};  ///< somebody is there for its guard's socket, though it may take nobody
   int keeper{0};
   std::chrono::milliseconds limit{usual_limit};
   std::string lock_unread{};  ///< why its lock tells nothing: the registry's keeper and the usual limit hold
 };
 
-/// Asks the guard of a flight; empty when nobody takes it.
-[[nodiscard]] FileDescriptor ask_guard(const std::filesystem::path& socket_path) {
+/// Asks the guard of a flight.
+void ask_guard(Flying& flight) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  const std::string path = socket_path.string();
-  if (path.size() >= sizeof address.sun_path) return {};
+  const std::string path = (flight.folder / "safe.socket").string();
+  if (path.size() >= sizeof address.sun_path) return;
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
   FileDescriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
-  if (!socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return {};
+  if (!socket) return;
+  const int refused =
+      ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ? 0 : errno;
+  // So many wait already that the system lets nobody else wait: that is no flight that is not there.
+  flight.listens = refused == 0 || refused == EAGAIN;
+  if (refused != 0) return;
   constexpr std::string_view request = supervisor::safe_request;
-  if (::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
-    return {};
-  return socket;
+  if (::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(request.size()))
+    flight.socket = std::move(socket);
+  else flight.listens = false;
 }
 
 /// Prints what the guard answers, one line for each device or member.
@@ -62,23 +70,20 @@ struct Flying {
                    [&](std::string_view words) { fmt::print("{}: {}\n", flight.name, words); });
 }
 
-/// What a process runs; of one that has more rights than this one the system tells the beginning of its name only (docs/adr/0177).
-[[nodiscard]] std::string program_of(int process) {
-  std::error_code failed;
-  const auto program = std::filesystem::read_symlink(fmt::format("/proc/{}/exe", process), failed);
-  if (!failed) return program.filename().string();
-  std::string name;
-  std::ifstream file{fmt::format("/proc/{}/comm", process)};
-  std::getline(file, name);
-  return name;
-}
-
-/// The keeper of a flight; empty when this number is by now none of our programs.
-[[nodiscard]] std::optional<Process> keeper_of(const Flying& flight) {
-  if (flight.keeper <= 0) return std::nullopt;
-  auto process = Process::adopt(flight.keeper);  // before we look: nobody else gets its number behind this handle
-  if (!process || !program_of(flight.keeper).starts_with("hirosco")) return std::nullopt;
-  return std::move(*process);
+/// Who may be missing in an answer is stopped once more, by whoever goes on; in words how. A guard that stands still and whose keeper is gone has
+/// nobody who would end it or go on for it: without its supervisor devices hear of no enable any more, and cycles of nobody.
+[[nodiscard]] std::string_view stop_otherwise(const Flying& flight, bool stands_still) {
+  if (flight.keeper <= 0) return "its keeper is not known";
+  if (auto keeper = our_process(flight.keeper))
+    return keeper->send_signal(SIGUSR1) ? "its keeper was signalled to stop it"
+                                        : "its keeper takes no signal from here";
+  if (!flight.socket && flight.listens)
+    return "its keeper is gone, and its supervisor lets nobody in: end that by kill -KILL";
+  auto supervisor = stands_still ? our_listener(flight.socket.get()) : std::nullopt;
+  if (!supervisor) return "its keeper is gone, too";
+  return supervisor->send_signal(SIGKILL)
+             ? "its keeper is gone, and its supervisor was ended: whatever moves stops by itself"
+             : "its keeper is gone, and its supervisor takes no signal from here";
 }
 
 [[nodiscard]] bool ours(const std::filesystem::path& folder) {
@@ -127,8 +132,8 @@ struct Flying {
   for (Flying& flight : candidates()) {
     const bool meant = (wanted.instance.empty() || flight.name == wanted.instance) &&
                        (wanted.mission.empty() || flight.mission == wanted.mission || flight.name == wanted.mission);
-    if (meant) flight.socket = ask_guard(flight.folder / "safe.socket");
-    if (!flight.socket && !keeper_of(flight)) continue;
+    if (meant) ask_guard(flight);
+    if (!flight.listens && !our_process(flight.keeper)) continue;
     if (meant) found.push_back(std::move(flight));
     else others.push_back(flight.name);
   }
@@ -161,14 +166,15 @@ int safe(const SafeOptions& options) {
     if (!flight.lock_unread.empty())
       fmt::print(stderr, "hirosco safe: {}: {} cannot be gone by: {}\n", flight.name, (flight.folder / "lock").string(),
                  flight.lock_unread);
-    const HeardSafe heard = answer_of(flight, asked + flight.limit);
+    // Where its keeper is gone all rests on its guard, which may be late on a busy computer.
+    const auto limit = asked + flight.limit + (our_process(flight.keeper) ? std::chrono::milliseconds{} : usual_limit);
+    const HeardSafe heard = answer_of(flight, limit);
     if (heard.stop == Stop::NotAll) code = std::max(code, exit_finding);
     const bool whole = heard.stop != Stop::Nobody && heard.why_not_whole.empty();
     if (whole) continue;
-    // Who may be missing in an answer is stopped once more, by whoever goes on.
-    auto keeper = keeper_of(flight);
-    const bool signalled = keeper && keeper->send_signal(SIGUSR1);
-    const std::string_view whom = signalled ? "its keeper was signalled to stop it" : "its keeper is gone, too";
+    // A connection that has ended is no guard that stands still.
+    const bool stands_still = heard.stop == Stop::Nobody && std::chrono::steady_clock::now() >= limit;
+    const std::string_view whom = stop_otherwise(flight, stands_still);
     if (heard.stop == Stop::Nobody) {
       fmt::print(stderr, "hirosco safe: {} does not answer; {}\n", flight.name, whom);
       code = exit_environment;

@@ -12,6 +12,7 @@
 #include "tools/hirosco/instance.hpp"
 #include "tools/hirosco/json_line.hpp"
 #include "tools/hirosco/listening.hpp"
+#include "tools/hirosco/our_process.hpp"
 #include "tools/terminal/columns.hpp"
 #include "tools/terminal/heard_overview.hpp"
 #include "tools/terminal/terminal.hpp"
@@ -56,13 +57,15 @@ void print_line(std::string_view text, std::string_view look) {
   return severity == descriptor::Severity::Medium ? "\x1b[33m" : "";
 }
 
-void print_verdict(const descriptor::Mission& mission, const supervisor::Overview& overview,
-                   const terminal::Judgement& judged) {
+void print_verdict(const terminal::Judgement& judged) {
   const bool unwell = judged.verdict != terminal::Verdict::Well;
   print_line(judged.line, unwell ? look_of(descriptor::Severity::High) : "");
   for (const auto& finding : judged.findings)
     print_line(fmt::format("  {:<6} {}", to_text(finding.severity), finding.text), look_of(finding.severity));
-  if (!unwell) return;
+}
+
+/// What a craft that stopped is brought up again by.
+void print_way_up(const descriptor::Mission& mission, const supervisor::Overview& overview) {
   const auto way_up = terminal::way_up(overview, mission);
   print_line(fmt::format("What stopped it: hirosco why{}", way_up.empty()       ? ""
                                                            : way_up.size() == 1 ? ". Up again: " + way_up.front()
@@ -70,6 +73,16 @@ void print_verdict(const descriptor::Mission& mission, const supervisor::Overvie
              "");
   if (way_up.size() > 1)
     for (const std::string& command : way_up) fmt::print("  {}\n", command);
+}
+
+/// Of a flight on this computer.
+[[nodiscard]] bool misses_its_keeper(int keeper) { return keeper > 0 && !our_process(keeper); }
+
+/// Who does not answer, and has no keeper, stays as it is.
+void print_end_without_keeper(int keeper) {
+  if (misses_its_keeper(keeper))
+    fmt::print(stderr,
+               "hirosco status: the keeper of this flight is gone; who does not answer is ended by: hirosco safe\n");
 }
 
 /// Null: there is none of this name, and those that there are were printed.
@@ -97,6 +110,7 @@ int status(const StatusOptions& options) {
   auto link = GroundConnection::open(place->host, place->port);
   if (!link) {
     fmt::print(stderr, "hirosco status: {}:{}: {}\n", place->host, place->port, link.error().text);
+    print_end_without_keeper(place->keeper);
     return exit_environment;
   }
   Listened listened;
@@ -104,6 +118,7 @@ int status(const StatusOptions& options) {
   const auto known = [&] { return terminal::heard_overview(mission, listened.values[mission.supervisor.id]); };
   if (!listen(mission, *link, listened, [&] { return !everything && known().has_value(); })) {
     fmt::print(stderr, "hirosco status: the ground link was closed\n");
+    print_end_without_keeper(place->keeper);
     return exit_environment;
   }
   if (everything) {
@@ -112,18 +127,20 @@ int status(const StatusOptions& options) {
       if (only == nullptr || only == member) print(*member, listened);
   }
   const auto overview = known();
-  const terminal::Judgement judged =
+  terminal::Judgement judged =
       overview ? terminal::judge(*overview)
                : terminal::Judgement{terminal::Verdict::NotWell,
                                      fmt::format("NOT WELL: {} answers, and its supervisor has told nothing for {} s",
                                                  mission.name, seconds(listening))};
+  const bool astray = judged.verdict != terminal::Verdict::Well;
+  if (misses_its_keeper(place->keeper)) terminal::miss_keeper(judged);
   const bool well = judged.verdict == terminal::Verdict::Well;
   if (connection.json) {
-    const auto way_up = overview && !well ? terminal::way_up(*overview, mission) : std::vector<std::string>{};
+    const auto way_up = overview && astray ? terminal::way_up(*overview, mission) : std::vector<std::string>{};
     fmt::print("{}\n", json_line(terminal::verdict_json(mission.name, judged, way_up)));
-  } else if (!overview) print_line(judged.line, look_of(descriptor::Severity::High));
-  else if (only != nullptr) print_line(judged.line, "");
-  else print_verdict(mission, *overview, judged);
+  } else if (overview && only != nullptr) print_line(judged.line, "");
+  else print_verdict(judged);
+  if (!connection.json && overview && only == nullptr && astray) print_way_up(mission, *overview);
   return well ? exit_ok : exit_finding;
 }
 

@@ -146,4 +146,15 @@ Judgement judge(const Overview& overview) {
   return judged;
 }
 
+void miss_keeper(Judgement& judged) {
+  constexpr std::string_view gone = "NOT WELL: the keeper of this flight is gone; ";
+  if (judged.verdict == Verdict::Well) judged.line = fmt::format("{}all else is well", gone);
+  if (judged.verdict == Verdict::OnTheWay) judged.line = std::string{gone} + judged.line;
+  judged.verdict = Verdict::NotWell;
+  judged.findings.insert(judged.findings.begin(),
+                         Finding{Severity::High, "", "the keeper is gone: if the supervisor dies, nobody goes on"});
+  judged.findings.push_back(
+      Finding{Severity::Info, "", "Ctrl-C reaches nobody: it ends by hirosco tc supervisor SHUTDOWN"});
+}
+
 }  // namespace hirosco::terminal

@@ -37,6 +37,10 @@ struct Judgement {
 };
 [[nodiscard]] Judgement judge(const Overview& overview);
 
+/// Of what no telemetry tells: its keeper is gone, so that nobody would go on for its supervisor (docs/adr/0217). Whatever it was judged to be, it
+/// is not well, and how it is ended is said.
+void miss_keeper(Judgement& judged);
+
 /// The commands that bring up again what is down, in turn: who does not run is started before the mode comes up. Empty: there is no such mode.
 [[nodiscard]] std::vector<std::string> way_up(const Overview& overview, const descriptor::Mission& mission);
 

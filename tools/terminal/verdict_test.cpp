@@ -32,6 +32,29 @@ TEST(VerdictTest, IsWellWhereEverybodyIsWhereTheModeHasHim) {
   EXPECT_THAT(judged.findings, IsEmpty());
 }
 
+TEST(VerdictTest, IsNotWellWithoutItsKeeperHoweverItDoesAndSaysHowItIsEnded) {
+  constexpr const char* gone = "the keeper is gone: if the supervisor dies, nobody goes on";
+  constexpr const char* end = "Ctrl-C reaches nobody: it ends by hirosco tc supervisor SHUTDOWN";
+  Overview craft = supervisor::testing::pair();
+  Judgement judged = judge(craft);
+  miss_keeper(judged);
+  EXPECT_EQ(judged.verdict, Verdict::NotWell);
+  EXPECT_EQ(judged.line, "NOT WELL: the keeper of this flight is gone; all else is well");
+  EXPECT_THAT(texts(judged), ElementsAre(gone, end));
+  craft.waits_for = "ARM";
+  judged = judge(craft);
+  miss_keeper(judged);
+  EXPECT_EQ(judged.verdict, Verdict::NotWell);
+  EXPECT_EQ(judged.line, "NOT WELL: the keeper of this flight is gone; on the way: waits for ARM");
+  craft = supervisor::testing::pair();
+  craft.members[0].state = "Offline";
+  judged = judge(craft);
+  const std::string line = judged.line;
+  miss_keeper(judged);
+  EXPECT_EQ(judged.line, line) << "what is astray comes first";
+  EXPECT_THAT(texts(judged), ElementsAre(gone, "ARM is Offline, the mode has it Operational", end));
+}
+
 TEST(VerdictTest, IsNotWellInAnyOtherState) {
   for (const auto& row : EnumTexts<descriptor::State>::table) {
     if (row.value == descriptor::State::Operational) continue;
