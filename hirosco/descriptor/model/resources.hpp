@@ -47,11 +47,17 @@ using Amounts = std::array<std::optional<std::uint32_t>, counted_resources>;
   return resource <= Resource::SharedMemory ? " kB" : resource == Resource::Processor ? " %" : "";
 }
 
-/// Blocks of one size, there from the start and never more.
+/// Blocks of one size, there from Software-Init to Software-Deinit and never more.
 struct Pool {
   std::uint32_t block_octets{};
   std::uint32_t blocks{};
 };
+
+/// With what stands beside each block (hirosco/resource/free_list.hpp).
+[[nodiscard]] constexpr std::uint64_t octets_of(const Pool& pool) noexcept {
+  constexpr std::uint64_t link_octets = 4;
+  return (pool.block_octets + link_octets) * pool.blocks;
+}
 
 /// How many messages may wait for a supervisor that does not take them: answers, events and housekeeping apart, so that none is crowded
 /// out by another kind.

@@ -85,7 +85,7 @@ void read_resources(const xml::Element& element, Resources& resources, Problems&
              {{"Pool", [&](const auto& pool) { read_pool(pool, resources.pools, problems); }, most_pools}});
   std::ranges::sort(resources.pools, {}, &Pool::block_octets);
   std::uint64_t octets = 0;
-  for (const Pool& pool : resources.pools) octets += std::uint64_t{pool.block_octets} * pool.blocks;
+  for (const Pool& pool : resources.pools) octets += octets_of(pool);
   const auto memory_kb = amount_of(resources.most, Resource::Memory);
   const std::uint64_t limit = memory_kb ? std::uint64_t{*memory_kb} * 1024 : most_pool_octets;
   if (octets > limit)
