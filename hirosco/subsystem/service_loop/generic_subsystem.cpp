@@ -87,7 +87,10 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescr
   if (const auto started = author_.offline(); !started) introduction_.mistake(started.error().text);
 }
 
-GenericSubsystem::~GenericSubsystem() { author_.framework_ = nullptr; }
+GenericSubsystem::~GenericSubsystem() {
+  author_.framework_ = nullptr;
+  author_.pools_left_ = resources_.leave_pools_behind();
+}
 
 GenericSubsystem::Demand GenericSubsystem::cycle_demand() const noexcept {
   Demand demand{{orders_.order()}};

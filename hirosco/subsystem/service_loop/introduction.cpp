@@ -30,6 +30,12 @@ std::string Introduction::short_words_of(const Mistake& mistake) const {
 }
 
 Result<Step> Introduction::step() {
+  if (const auto taken = parts_.resources.take_pools(); !taken) {
+    mistake(taken.error().text);
+    return fail(taken.error());
+  }
+  begun_ = true;
+  pools_told_ = false;
   const LoopsAtRest at_rest{parts_.loops.all()};
   const auto step = parts_.author.software_init();
   if (step && *step == Step::Again) return again;
@@ -61,8 +67,29 @@ std::vector<Mistake> Introduction::try_all() {
   Result<Step> step = again;
   for (int round = 0; round < most_rounds && step && *step == Step::Again; ++round) step = this->step();
   if (!step && mistakes_.empty()) mistake(step.error().text);
+  // What software_init() took goes back, for its pools end here.
+  Result<Step> undone = again;
+  for (int round = 0; round < most_rounds && undone && *undone == Step::Again; ++round) undone = undo(true);
+  if (!undone) mistake(undone.error().text);
   forget();
   return std::exchange(mistakes_, {});
+}
+
+Result<Step> Introduction::undo(bool cycle_rests) {
+  if (begun_) {
+    HIROSCO_TRY_LET(const Step step, parts_.author.software_deinit());
+    if (step == Step::Again) return again;
+  }
+  if (!cycle_rests) return done;
+  forget();
+  HIROSCO_TRY(give_pools_back());
+  return done;
+}
+
+Result<> Introduction::give_pools_back() {
+  auto given = parts_.resources.give_pools_back();
+  if (!given && std::exchange(pools_told_, true)) return ok();
+  return given;
 }
 
 void Introduction::provide(CustomService& service) {
@@ -146,7 +173,6 @@ void Introduction::use_device(std::string_view name, DevicePortBase& port, std::
 /// What is missing when the author has said all.
 void Introduction::check() {
   if (!parts_.values.problem().empty()) mistake(parts_.values.problem());
-  if (!parts_.resources.problem().empty()) mistake(parts_.resources.problem());
   std::string missing;
   if (!parts_.values.dictionary().all_published(missing)) mistake("parameters declared but not published: " + missing);
   for (std::size_t i = 0; i < parts_.descriptor.functions.size(); ++i)
@@ -168,6 +194,7 @@ void Introduction::check() {
 }
 
 void Introduction::forget() {
+  begun_ = false;
   parts_.subscriber.forget();
   parts_.foreign.forget();
   // Before their services are released: who waits may still end what it was asked itself.
