@@ -22,7 +22,7 @@ TRANSIENT_S = 10.0     # a transient state that is not done by then has failed
 POWER_S = 3.0          # a switch has answered by then, and what moved rests
 QUIET_S = 0.5          # five times the interval of its housekeeping
 TAKEN = "anon_inode:[eventfd]"
-POOL_KB = 16 * 1024 + 64     # of held.xml: its blocks, and what stands beside each
+POOL_KB = 4 * 1024 + 16     # of held.xml: its blocks, and what stands beside each
 SAME_KB = 256          # of the allocator of the heap, which keeps a page here and there
 # What it has of these besides those of Offline, and whether its device has power. An init has done its part only behind it, a deinit has it still.
 PROMISED = {"SoftwareInit": (0, 0.0), "HardwareInit": (1, 1.0), "HardwareDeinit": (2, 1.0), "SoftwareDeinit": (1, 0.0)}

@@ -28,8 +28,7 @@ struct ResourceStatistics {
   std::uint32_t descriptors_high{0};
   std::uint32_t threads{0};
   std::uint32_t threads_high{0};
-  std::array<std::uint32_t, descriptor::most_pools>
-      pool_used{};  ///< blocks, by ascending size; 0 while there are no pools
+  std::array<std::uint32_t, descriptor::most_pools> pool_used{};  ///< blocks, by ascending size; Offline has none
   std::array<std::uint32_t, descriptor::most_pools> pool_high{};  ///< most ever
   std::uint32_t pool_refused{0};  ///< requests for which there was no block
   std::uint16_t ports{0};  ///< acquired by the framework for devices and links, and by the author
@@ -121,8 +120,8 @@ class ResourceMeter {
   Quota ports_, files_;
   std::unique_ptr<BlockPools> pools_;
   std::unique_ptr<PoolResource> resource_{std::make_unique<PoolResource>()};
-  std::array<std::uint32_t, descriptor::most_pools>
-      pool_high_before_{};  ///< of pools that were given back, like the next
+  // Of pools that were given back.
+  std::array<std::uint32_t, descriptor::most_pools> pool_high_before_{};
   std::uint64_t pool_refused_before_{0};
   std::array<std::uint32_t, descriptor::queues_of_subsystem> queue_rooms_{};  ///< the service loop's
   std::array<std::atomic<std::uint8_t>, descriptor::queues_of_subsystem> queues_{}, queues_high_{};  ///< percent

@@ -45,13 +45,13 @@ struct Borrower final : Subsystem {
   }
 };
 
-const std::string pooled = R"(<Subsystem name="BORROWER" id="21">
+const std::string borrower_descriptor = R"(<Subsystem name="BORROWER" id="21">
     <Resources><Pool block="128" count="4"/><Pool block="1024" count="2"/></Resources>
     <Configuration name="C" id="1" sampling_us="1000"/></Subsystem>)";
 
 struct PoolsOfStates : ::testing::Test {
   Borrower author;
-  Rig rig{author, pooled};
+  Rig rig{author, borrower_descriptor};
 
   [[nodiscard]] ResourceStatistics statistics() const { return rig.subsystem.meter().statistics(); }
   [[nodiscard]] bool gives() {
@@ -156,7 +156,7 @@ TEST_F(PoolsOfStates, StayWhileACycleHasNotComeToRest) {
 
 TEST(PoolsThatCannotBeHad, FailSoftwareInitWithTheReasonAndTheAuthorIsNotAsked) {
   Borrower author;
-  auto described = testing::read_descriptor(pooled);
+  auto described = testing::read_descriptor(borrower_descriptor);
   // What no reader lets pass stands here for memory that is refused.
   described.resources.pools[1].block_octets = described.resources.pools[0].block_octets;
   Rig rig{author, described};
@@ -170,7 +170,7 @@ TEST(PoolsThatCannotBeHad, FailSoftwareInitWithTheReasonAndTheAuthorIsNotAsked) 
 
 TEST(PoolsThatAreTried, GoBackWithWhatSoftwareInitTookOfThem) {
   Borrower author;
-  Rig rig{author, pooled};
+  Rig rig{author, borrower_descriptor};
   EXPECT_TRUE(rig.subsystem.try_introduction().empty());
   EXPECT_EQ(author.deinits, 1);
   EXPECT_EQ(author.block, nullptr);
@@ -184,7 +184,7 @@ TEST(PoolsOfAnAuthor, OutliveTheFrameworkWhileHeHoldsBlocksOfThem) {
   Borrower author;
   author.keeps_block = true;
   {
-    Rig rig{author, pooled};
+    Rig rig{author, borrower_descriptor};
     rig.set_state_now(State::PreOperational);
   }
   *static_cast<double*>(author.block) = 2.5;

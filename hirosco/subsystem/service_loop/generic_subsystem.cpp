@@ -89,7 +89,7 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescr
 
 GenericSubsystem::~GenericSubsystem() {
   author_.framework_ = nullptr;
-  author_.pools_left_ = resources_.leave_pools_behind();
+  if (auto left = resources_.leave_pools_behind()) author_.pools_left_ = std::move(left);
 }
 
 GenericSubsystem::Demand GenericSubsystem::cycle_demand() const noexcept {
