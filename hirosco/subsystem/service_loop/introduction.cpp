@@ -71,7 +71,7 @@ std::vector<Mistake> Introduction::try_all() {
   Result<Step> undone = again;
   for (int round = 0; round < most_rounds && undone && *undone == Step::Again; ++round) undone = undo(true);
   if (!undone) mistake(undone.error().text);
-  forget();
+  if (const auto late = undo_late(); !late) mistake(late.error().text);
   return std::exchange(mistakes_, {});
 }
 
@@ -84,6 +84,12 @@ Result<Step> Introduction::undo(bool cycle_rests) {
   forget();
   HIROSCO_TRY(give_pools_back());
   return done;
+}
+
+Result<> Introduction::undo_late() {
+  // What the author named may lie in his pools: nobody looks at it any more when they go.
+  if (begun_) forget();
+  return give_pools_back();
 }
 
 Result<> Introduction::give_pools_back() {
@@ -200,6 +206,8 @@ void Introduction::forget() {
   // Before their services are released: who waits may still end what it was asked itself.
   parts_.requester.forget();
   const LoopsAtRest at_rest{parts_.loops.all()};
+  // A step of a loop may have had a block for as long as it lasted. None is under way now, and none takes one any more.
+  parts_.resources.pools().close();
   parts_.values.dictionary().unpublish_all();
   for (CustomService* service : own_services_) service->release();
   used_events_.clear();

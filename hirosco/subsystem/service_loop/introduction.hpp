@@ -70,11 +70,14 @@ class Introduction {
   /// One round of Software-Deinit: calls software_deinit() where software_init() was called, and after its last forgets all and gives the
   /// author's pools back. What blocks of them he holds still is an error. `cycle_rests`: else nothing is forgotten and given back yet.
   [[nodiscard]] Result<Step> undo(bool cycle_rests);
-  /// Pools that undo() left behind. An error: blocks are held, which has not been said since they were taken.
-  [[nodiscard]] Result<> give_pools_back();
-  void forget();
+  /// In Offline, while the cycle rests: what undo() left behind, as the cycle did not rest, the author failed or was too late, or held
+  /// blocks. An error: he holds some still, which has not been said since they were taken.
+  [[nodiscard]] Result<> undo_late();
 
  private:
+  /// Nothing of what the author named is called or looked at any more, and no block of his pools is given.
+  void forget();
+  [[nodiscard]] Result<> give_pools_back();
   void check();
   [[nodiscard]] std::string short_words_of(const Mistake& mistake) const;
 

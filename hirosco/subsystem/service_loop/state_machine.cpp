@@ -164,20 +164,19 @@ Result<Step> StateMachine::leave_cycle() {
   return parts_.author.post_operational();
 }
 
-/// A cycle that did not come to rest in time still uses its configuration: that is given back when it has, and so are pools that the way
-/// down left behind because it did not, or their author failed in his Software-Deinit or still held blocks of them.
+/// A cycle that did not come to rest in time still uses its configuration: that is given back when it has. In Offline the rest follows, which
+/// the way down left behind because it did not, or the author failed in his Software-Deinit or still held blocks.
 void StateMachine::release_late() {
   if (at_.release_owed) {
     if (!parts_.orders.rests()) return;
     at_.release_owed = false;
     parts_.cycle_reports.take();
     parts_.configurations.release();
-    if (at_.state == State::Offline) parts_.introduction.forget();
   }
   if (at_.state != State::Offline) return;
-  const auto given = parts_.introduction.give_pools_back();
-  if (given) return;
-  const Error& why = given.error();
+  const auto undone = parts_.introduction.undo_late();
+  if (undone) return;
+  const Error& why = undone.error();
   parts_.reports.raise_failure(descriptor::framework_event::state_failed,
                                static_cast<std::uint8_t>(State::SoftwareDeinit), {why.code, why.text, why.value});
 }
