@@ -225,7 +225,7 @@ class Subsystem {
   /// offer it again.
   Result<> submit_ground_telecommand(std::uint16_t client, Octets packet, std::uint32_t known_stop);
   GenericSubsystem* framework_{nullptr};
-  std::shared_ptr<const void> pools_left_;  ///< of a framework that has ended, while this still held blocks of them
+  std::shared_ptr<const void> pools_left_;  ///< of frameworks that have ended while this still held blocks of them
 };
 
 }  // namespace hirosco

@@ -66,13 +66,14 @@ Result<> ResourceMeter::give_pools_back() {
   return ok();
 }
 
-std::shared_ptr<const void> ResourceMeter::leave_pools_behind() {
-  if (give_pools_back() && pools_ == nullptr) return nullptr;
+std::shared_ptr<const void> ResourceMeter::leave_pools_behind(std::shared_ptr<const void> before) {
+  if (give_pools_back() && pools_ == nullptr) return before;
   struct Left {
+    std::shared_ptr<const void> before;
     std::unique_ptr<BlockPools> pools;
     std::unique_ptr<PoolResource> resource;
   };
-  return std::make_shared<Left>(Left{std::move(pools_), std::move(resource_)});
+  return std::make_shared<Left>(Left{std::move(before), std::move(pools_), std::move(resource_)});
 }
 
 void ResourceMeter::note(const ProcessUsage& usage, TimePoint now) noexcept {
@@ -134,10 +135,13 @@ void ResourceMeter::tell_crossings(const std::function<void(const Crossing&)>& t
             .used = seen_[i].now.load(std::memory_order_relaxed),
             .limit = limit_of(static_cast<Resource>(i)).value_or(0),
             .times = times});
-  for (std::size_t i = 0; pools_ != nullptr && i < pools_->size(); ++i) {
+  for (std::size_t i = 0; i < declared_.pools.size(); ++i) {
     const auto times = pool_crossings_[i].exchange(0, std::memory_order_relaxed);
     if (times == 0) continue;
-    const PoolUsage usage = pools_->usage(i);
+    // Also of pools that have gone since.
+    const descriptor::Pool& pool = declared_.pools[i];
+    const PoolUsage usage =
+        pools_ != nullptr ? pools_->usage(i) : PoolUsage{.block_octets = pool.block_octets, .count = pool.blocks};
     tell({.resource = Resource::Pool,
           .block_octets = static_cast<std::uint32_t>(usage.block_octets),
           .used = usage.used,

@@ -73,8 +73,8 @@ class ResourceMeter {
   [[nodiscard]] Result<> give_pools_back();
   /// What the author takes from: for as long as this lives, whether there are pools or not.
   [[nodiscard]] PoolResource& pools() noexcept { return *resource_; }
-  /// What whoever holds blocks still has to outlive, when this ends; null: nobody does.
-  [[nodiscard]] std::shared_ptr<const void> leave_pools_behind();
+  /// What whoever holds blocks still has to outlive, when this ends, with what he had `before`; null: nobody holds any.
+  [[nodiscard]] std::shared_ptr<const void> leave_pools_behind(std::shared_ptr<const void> before);
   /// Of ports and files: who opens one takes it here before.
   [[nodiscard]] Quota& ports() noexcept { return ports_; }
   [[nodiscard]] Quota& files() noexcept { return files_; }

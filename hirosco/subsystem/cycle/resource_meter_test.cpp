@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <memory_resource>
 #include <vector>
@@ -148,6 +149,22 @@ TEST_F(ResourceMeterTest, PoolsThatWereGivenBackHaveNoBlocksInUseAndTheirMostAnd
   EXPECT_TRUE(meter.pools().give_back(one));
 }
 
+TEST_F(ResourceMeterTest, ACrossingOfAPoolThatHasGoneSinceIsToldOnceAndNotOfTheNextPool) {
+  ASSERT_TRUE(meter.take_pools());
+  std::array<void*, 3> blocks{};
+  for (void*& block : blocks) block = meter.pools().try_allocate(64);
+  for (void* block : blocks) EXPECT_TRUE(meter.pools().give_back(block));
+  ASSERT_TRUE(meter.give_pools_back());
+  const auto all = told();
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].block_octets, 64U);
+  EXPECT_EQ(all[0].used, 0U);
+  EXPECT_EQ(all[0].limit, 4U);
+  EXPECT_EQ(all[0].times, 1U);
+  ASSERT_TRUE(meter.take_pools());
+  EXPECT_TRUE(told().empty());
+}
+
 TEST_F(ResourceMeterTest, BlocksThatAreHeldKeepTheirMemoryAndAreNamedUntilTheyComeBack) {
   ASSERT_TRUE(meter.take_pools());
   void* const small = meter.pools().try_allocate(64);
@@ -165,7 +182,7 @@ TEST_F(ResourceMeterTest, BlocksThatAreHeldKeepTheirMemoryAndAreNamedUntilTheyCo
   EXPECT_TRUE(meter.pools().give_back(large));
   EXPECT_TRUE(meter.give_pools_back());
   EXPECT_TRUE(meter.give_pools_back()) << "there are none";
-  EXPECT_EQ(meter.leave_pools_behind(), nullptr);
+  EXPECT_EQ(meter.leave_pools_behind(nullptr), nullptr);
 }
 
 /// Takes what it is told to from its pools, in its cycle.

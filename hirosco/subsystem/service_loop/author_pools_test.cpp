@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory_resource>
 #include <optional>
 #include <vector>
 
+#include "hirosco/resource/counted.hpp"
 #include "hirosco/subsystem/testing/inside.hpp"
 
 /// The author's pools through the ten states: taken in Software-Init, given back in Software-Deinit (docs/adr/0215).
@@ -119,13 +121,64 @@ TEST_F(PoolsOfStates, ThatWereKeptGoOnInTheNextSoftwareInitWithWhatIsHeld) {
   EXPECT_EQ(failures(), 2);
 }
 
-TEST_F(PoolsOfStates, GoBackThoughTheAuthorsOwnSoftwareDeinitFailsOrNeverEnds) {
+TEST_F(PoolsOfStates, GoBackThoughTheAuthorsOwnSoftwareDeinitFails) {
   author.fails_deinit = true;
   rig.set_state_now(State::PreOperational);
   EXPECT_THAT(rig.set_state_now(State::Offline), StartsWith("1 3 8:"));
   EXPECT_EQ(failures(), 1);
   EXPECT_FALSE(gives());
   EXPECT_EQ(statistics().pool_used[1], 0U);
+  EXPECT_EQ(rig.set_state_now(State::PreOperational), "1 3 7") << "nothing of the way up before was left";
+}
+
+TEST_F(PoolsOfStates, GoBackThoughTheAuthorsOwnSoftwareDeinitNeverEnds) {
+  author.never_done = true;
+  rig.set_state_now(State::PreOperational);
+  rig.set_state(State::Offline);
+  rig.service();
+  ASSERT_EQ(rig.state(), State::SoftwareDeinit);
+  EXPECT_TRUE(gives()) << "he is not done";
+  rig.advance(10s + 1ms);
+  rig.settle();
+  EXPECT_EQ(rig.state(), State::Offline);
+  EXPECT_EQ(failures(), 1);
+  EXPECT_FALSE(gives());
+  EXPECT_EQ(rig.set_state_now(State::PreOperational), "1 3 7");
+}
+
+/// What it publishes lies in its pools, and its Software-Deinit fails behind giving that back.
+struct Lodger final : Subsystem {
+  Counted<Parameter<double>> level;
+
+ protected:
+  Result<Step> software_init() override {
+    HIROSCO_TRY_LET(level, make_counted<Parameter<double>>(resources()));
+    publish("LEVEL", *level);
+    return done;
+  }
+  Result<Step> software_deinit() override {
+    level.reset();
+    return fail(ErrorCode::Internal, "planted");
+  }
+};
+
+TEST(ParametersInPools, AreUnknownBeforeTheirPoolsGoThoughSoftwareDeinitFails) {
+  Lodger author;
+  Rig rig{author, R"(<Subsystem name="LODGER" id="21"><Resources><Pool block="1024" count="2"/></Resources>
+    <Parameters><ParamRef name="LEVEL" id="0" type="DOUBLE"/></Parameters>
+    <Configuration name="C" id="1" sampling_us="1000"/></Subsystem>)"};
+  const auto values_told = [&] {
+    std::array<std::byte, 5> asked{};
+    OctetWriter{asked}.put(std::uint8_t{1}).put(ParameterId{21, Type::Double, 0}.wire());
+    rig.send(20, 1, asked);
+    rig.service();
+    return rig.reports(20, 2).size();
+  };
+  EXPECT_EQ(rig.set_state_now(State::PreOperational), "1 3 7");
+  EXPECT_EQ(values_told(), 1U);
+  EXPECT_THAT(rig.set_state_now(State::Offline), StartsWith("1 3 8:"));
+  EXPECT_EQ(values_told(), 1U) << "nobody looks at memory that is gone";
+  EXPECT_EQ(rig.set_state_now(State::PreOperational), "1 3 7") << "and it is published anew";
 }
 
 TEST_F(PoolsOfStates, OfAnAuthorWhoseSoftwareDeinitRunsOutOfTimeWithABlockAreToldByAFailureOfTheirOwn) {
@@ -178,6 +231,18 @@ TEST(PoolsThatAreTried, GoBackWithWhatSoftwareInitTookOfThem) {
   const auto mistakes = rig.subsystem.try_introduction();
   ASSERT_EQ(mistakes.size(), 1U);
   EXPECT_EQ(mistakes.front().text, "blocks still held: 1 of 1024 octets");
+}
+
+TEST(PoolsOfAnAuthor, OutliveEachFrameworkThatEndedWhileHeHeldBlocksOfThem) {
+  Borrower author;
+  author.keeps_block = true;
+  std::vector<void*> held;
+  for (int flight = 0; flight < 2; ++flight) {
+    Rig rig{author, borrower_descriptor};
+    rig.set_state_now(State::PreOperational);
+    held.push_back(std::exchange(author.block, nullptr));
+  }
+  for (void* block : held) *static_cast<double*>(block) = 2.5;
 }
 
 TEST(PoolsOfAnAuthor, OutliveTheFrameworkWhileHeHoldsBlocksOfThem) {

@@ -89,7 +89,7 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescr
 
 GenericSubsystem::~GenericSubsystem() {
   author_.framework_ = nullptr;
-  if (auto left = resources_.leave_pools_behind()) author_.pools_left_ = std::move(left);
+  author_.pools_left_ = resources_.leave_pools_behind(std::move(author_.pools_left_));
 }
 
 GenericSubsystem::Demand GenericSubsystem::cycle_demand() const noexcept {
