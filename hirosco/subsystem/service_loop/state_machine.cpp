@@ -223,7 +223,7 @@ void StateMachine::fail_transition(State failed, const Failure& why) {
     at_.release_owed = true;
   }
   if (!target) {
-    // A deinit that fails cannot stop the way down: what is left is given back by the end of the process.
+    // A deinit that fails cannot stop the way down: what is left is given back in Offline or by the end of the process.
     if (failed == State::HardwareDeinit || failed == State::SoftwareDeinit || failed == State::PostOperational)
       go_down_from(failed);
     return;
