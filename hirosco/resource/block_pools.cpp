@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/resource/block_pools.hpp"
 
-#include <cstring>
-#include <limits>
-#include <new>
+#include <algorithm>
 
 namespace hirosco::detail {
 
-Result<PoolPlan> plan_pools(std::span<const PoolSpec> specs, unsigned warning_percent) {
+Result<PoolPlan> plan_pools(std::span<const PoolSpec> specs, unsigned warning_percent, std::size_t link_octets) {
   constexpr std::size_t limit = std::size_t{1} << 40;  // octets; keeps every product below in range
   if (specs.empty() || specs.size() > max_pools)
     return fail(ErrorCode::InvalidArgument, "number of pools", static_cast<std::int64_t>(specs.size()));
@@ -23,24 +21,15 @@ Result<PoolPlan> plan_pools(std::span<const PoolSpec> specs, unsigned warning_pe
       return fail(ErrorCode::InvalidArgument, "count of a pool's blocks", static_cast<std::int64_t>(spec.count));
     plan.pools.push_back({octets, spec.count});
     plan.octets += rounded_up(octets * spec.count, max_block_alignment);
+    plan.arena_octets += link_octets * spec.count;
   }
+  plan.arena_octets += plan.octets;
   std::ranges::sort(plan.pools, {}, &PoolSpec::block_octets);
   const auto twice = std::ranges::adjacent_find(plan.pools, {}, &PoolSpec::block_octets);
   if (twice != plan.pools.end())
     return fail(ErrorCode::AlreadyExists, "two pools of one block size",
                 static_cast<std::int64_t>(twice->block_octets));
   return plan;
-}
-
-void ArenaFree::operator()(std::byte* arena) const noexcept {
-  ::operator delete[](arena, std::align_val_t{max_block_alignment});
-}
-
-Arena make_arena(std::size_t octets) noexcept {
-  auto* const arena =
-      static_cast<std::byte*>(::operator new[](octets, std::align_val_t{max_block_alignment}, std::nothrow));
-  if (arena != nullptr) std::memset(arena, 0, octets);
-  return Arena{arena};
 }
 
 }  // namespace hirosco::detail

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "hirosco/resource/free_list.hpp"
+#include "hirosco/utilities/os/private_memory.hpp"
 #include "hirosco/utilities/result.hpp"
 
 namespace hirosco {
@@ -54,21 +55,17 @@ namespace detail {
 struct PoolPlan {
   std::vector<PoolSpec> pools;  ///< ascending block sizes, rounded
   std::size_t octets{0};  ///< of all blocks, each pool rounded up to max_block_alignment
+  std::size_t arena_octets{0};  ///< with what stands beside the blocks
 };
-/// Refuses no pools, empty ones, two of one size and sizes beyond counting.
-[[nodiscard]] Result<PoolPlan> plan_pools(std::span<const PoolSpec> specs, unsigned warning_percent);
-
-struct ArenaFree {
-  void operator()(std::byte* arena) const noexcept;
-};
-using Arena = std::unique_ptr<std::byte[], ArenaFree>;
-/// Aligned to max_block_alignment and touched, so that no cycle waits for its pages; null when there is no memory.
-[[nodiscard]] Arena make_arena(std::size_t octets) noexcept;
+/// Refuses no pools, empty ones, two of one size and sizes beyond counting. `link_octets`: what stands beside each block.
+[[nodiscard]] Result<PoolPlan> plan_pools(std::span<const PoolSpec> specs, unsigned warning_percent,
+                                          std::size_t link_octets);
 
 }  // namespace detail
 
 /// Pools of fixed blocks of several sizes, allocated once and never grown (paper 4.1). A request takes a block of the
-/// smallest size that fits and has one free; then the next larger; then it is refused.
+/// smallest size that fits and has one free; then the next larger; then it is refused. Their memory is the system's, in RAM from the
+/// begin, and goes back to it with them.
 /// Realtime: allocate() and deallocate() are lock-free (local: wait-free) and never ask the operating system.
 /// Thread: any (local: one). The pools outlive all that was taken from them.
 template <class FreeList>
@@ -149,7 +146,7 @@ class BasicBlockPools {
   }
 
   PoolNotices notices_;
-  detail::Arena arena_;
+  PrivateMemory arena_;
   std::unique_ptr<Pool[]> pools_;
   std::size_t count_{0};
   std::size_t total_octets_{0};
@@ -159,16 +156,18 @@ class BasicBlockPools {
 template <class FreeList>
 Result<std::unique_ptr<BasicBlockPools<FreeList>>> BasicBlockPools<FreeList>::create(std::span<const PoolSpec> specs,
                                                                                      PoolNotices notices) {
-  HIROSCO_TRY_LET(const detail::PoolPlan plan, detail::plan_pools(specs, notices.warning_percent));
+  HIROSCO_TRY_LET(const detail::PoolPlan plan,
+                  detail::plan_pools(specs, notices.warning_percent, FreeList::link_octets));
   const std::size_t percent = notices.warning_percent;
   std::unique_ptr<BasicBlockPools> made{new BasicBlockPools(std::move(notices))};
-  made->arena_ = detail::make_arena(plan.octets);
-  if (!made->arena_)
-    return fail(ErrorCode::ResourceExhausted, "memory for pools", static_cast<std::int64_t>(plan.octets));
+  auto arena = PrivateMemory::take(plan.arena_octets);
+  if (!arena) return fail(ErrorCode::ResourceExhausted, "memory for pools", arena.error().value);
+  made->arena_ = std::move(*arena);
   made->pools_ = std::make_unique<Pool[]>(plan.pools.size());
   made->count_ = plan.pools.size();
   made->total_octets_ = plan.octets;
-  std::byte* start = made->arena_.get();
+  std::byte* start = made->arena_.octets().data();
+  std::byte* links = start + plan.octets;
   for (std::size_t i = 0; i < plan.pools.size(); ++i) {
     const PoolSpec& spec = plan.pools[i];
     const MutableOctets memory{start, spec.block_octets * spec.count};
@@ -178,8 +177,10 @@ Result<std::unique_ptr<BasicBlockPools<FreeList>>> BasicBlockPools<FreeList>::cr
     made->pools_[i].warning_at =
         percent == 0 ? ~std::uint32_t{0}
                      : static_cast<std::uint32_t>(std::max<std::size_t>(1, (spec.count * percent + 99) / 100));
-    made->pools_[i].free.build(BlockRow{memory, spec.block_octets, static_cast<std::uint32_t>(spec.count)});
+    made->pools_[i].free.build(BlockRow{memory, spec.block_octets, static_cast<std::uint32_t>(spec.count)},
+                               {links, FreeList::link_octets * spec.count});
     start += detail::rounded_up(memory.size(), max_block_alignment);
+    links += FreeList::link_octets * spec.count;
   }
   return made;
 }

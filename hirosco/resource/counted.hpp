@@ -20,6 +20,18 @@ template <class T, class Pools, class... Args>
 
 namespace detail {
 
+/// A PoolResource says the same two things by other words, as its own allocate() throws.
+template <class Pools>
+[[nodiscard]] void* block_of(Pools& pools, std::size_t octets, std::size_t alignment) noexcept {
+  if constexpr (requires { pools.try_allocate(octets, alignment); }) return pools.try_allocate(octets, alignment);
+  else return pools.allocate(octets, alignment);
+}
+template <class Pools>
+void take_block_back(Pools& pools, void* block) noexcept {
+  if constexpr (requires { pools.give_back(block); }) static_cast<void>(pools.give_back(block));
+  else static_cast<void>(pools.deallocate(block));
+}
+
 /// Stands before the object in its block.
 struct CountedBlock {
   std::atomic<std::uint32_t> owners{1};
@@ -90,19 +102,19 @@ class Counted {
   detail::CountedBlock* block_{nullptr};
 };
 
-/// Makes an object in a block; ResourceExhausted when the pools refuse. What its constructor throws goes through.
+/// Makes an object in a block of pools or of a PoolResource; ResourceExhausted when they refuse. What its constructor throws goes through.
 template <class T, class Pools, class... Args>
 Result<Counted<T>> make_counted(Pools& pools, Args&&... args) {
   using Object = detail::CountedObject<T>;
   constexpr std::size_t alignment = alignof(Object) > block_alignment ? alignof(Object) : block_alignment;
   static_assert(alignment <= max_block_alignment);
-  void* const place = pools.allocate(sizeof(Object), alignment);
+  void* const place = detail::block_of(pools, sizeof(Object), alignment);
   if (place == nullptr) return fail(ErrorCode::ResourceExhausted, "no free block in the pools", sizeof(Object));
   Object* made = nullptr;
   try {
     made = new (place) Object(std::forward<Args>(args)...);
   } catch (...) {
-    (void)pools.deallocate(place);
+    detail::take_block_back(pools, place);
     throw;
   }
   made->pools = &pools;
@@ -110,7 +122,7 @@ Result<Counted<T>> make_counted(Pools& pools, Args&&... args) {
     auto* const home = static_cast<Pools*>(block->pools);
     auto* const object = static_cast<Object*>(block);
     object->~Object();
-    (void)home->deallocate(object);
+    detail::take_block_back(*home, object);
   };
   return Counted<T>{&made->object, made};
 }

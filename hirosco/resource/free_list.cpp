@@ -24,15 +24,15 @@ BlockRow::BlockRow(MutableOctets memory, std::size_t block_octets, std::uint32_t
       twos_{std::countr_zero(block_octets)},
       count_{count} {}
 
-void SharedFreeList::build(const BlockRow& row) {
+void SharedFreeList::build(const BlockRow& row, MutableOctets links) {
   row_ = row;
-  next_ = std::make_unique<std::atomic<std::uint32_t>[]>(row.count());
+  next_ = reinterpret_cast<std::atomic<std::uint32_t>*>(links.data());
   for (std::uint32_t i = 0; i < row.count(); ++i)
-    next_[i].store(i + 1 == row.count() ? none : i + 1, std::memory_order_relaxed);
+    ::new (next_ + i) std::atomic<std::uint32_t>{i + 1 == row.count() ? none : i + 1};
   head_.store(head_of(0, row.count() == 0 ? none : 0), std::memory_order_release);
 }
 
-void LocalFreeList::build(const BlockRow& row) {
+void LocalFreeList::build(const BlockRow& row, MutableOctets /*links*/) {
   row_ = row;
   first_ = nullptr;
   for (std::uint32_t i = row.count(); i > 0; --i) first_ = new (row.block(i - 1)) Link{first_};

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <optional>
 
 #include "hirosco/utilities/octets.hpp"
@@ -49,7 +48,10 @@ class BlockRow {
 /// Realtime: lock-free. Thread: any.
 class SharedFreeList {
  public:
-  void build(const BlockRow& row);
+  /// What it wants beside each block.
+  static constexpr std::size_t link_octets = sizeof(std::atomic<std::uint32_t>);
+  /// `links`: link_octets for each block, aligned like them, for as long as it lives.
+  void build(const BlockRow& row, MutableOctets links);
   /// Null when none is free; otherwise `used` is the number in use now, which under contention may be ahead of or behind
   /// other threads' calls in progress.
   [[nodiscard]] void* take(std::uint32_t& used) noexcept {
@@ -108,7 +110,7 @@ class SharedFreeList {
   }
 
   BlockRow row_;
-  std::unique_ptr<std::atomic<std::uint32_t>[]> next_;
+  std::atomic<std::uint32_t>* next_{nullptr};
   alignas(cache_line_octets) std::atomic<std::uint64_t> head_{none};
   alignas(cache_line_octets) std::atomic<std::uint32_t> given_back_{0};
 };
@@ -117,7 +119,8 @@ class SharedFreeList {
 /// Realtime: wait-free. Thread: one.
 class LocalFreeList {
  public:
-  void build(const BlockRow& row);
+  static constexpr std::size_t link_octets = 0;
+  void build(const BlockRow& row, MutableOctets links);
   [[nodiscard]] void* take(std::uint32_t& used) noexcept {
     if (first_ == nullptr) return nullptr;
     Link* const link = first_;

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "hirosco/resource/counted.hpp"
+
 namespace hirosco {
 namespace {
 
@@ -45,7 +47,40 @@ TEST_F(PoolResourceTest, WithoutPoolsEverythingIsRefused) {
 TEST_F(PoolResourceTest, IsTheSameAsAnotherOnTheSamePools) {
   EXPECT_TRUE(resource.is_equal(PoolResource{pools.get()}));
   EXPECT_FALSE(resource.is_equal(PoolResource{}));
+  const PoolResource none;
+  EXPECT_TRUE(none.is_equal(none));
+  EXPECT_FALSE(none.is_equal(PoolResource{}));
   EXPECT_FALSE(resource.is_equal(*std::pmr::new_delete_resource()));
+}
+
+TEST_F(PoolResourceTest, StaysWhileItsPoolsComeAndGo) {
+  void* const held = resource.try_allocate(64);
+  ASSERT_NE(held, nullptr);
+  resource.close();
+  EXPECT_EQ(resource.try_allocate(64), nullptr) << "it gives none any more";
+  EXPECT_FALSE(resource.let_go()) << "a block is held, and its memory stays";
+  EXPECT_TRUE(resource.give_back(held));
+  EXPECT_TRUE(resource.let_go());
+  EXPECT_TRUE(resource.let_go()) << "there is nothing more to let go";
+  EXPECT_FALSE(resource.give_back(held)) << "nobody looks at pools that may have ended";
+  pools = *BlockPools::create(std::array{PoolSpec{128, 1}});
+  resource.open(*pools);
+  EXPECT_NE(resource.try_allocate(128), nullptr);
+}
+
+TEST_F(PoolResourceTest, SharesCountedObjectsAndRefusesThemWithoutPools) {
+  {
+    const auto shared = make_counted<double>(resource, 2.5);
+    ASSERT_TRUE(shared);
+    const Counted<double> second = *shared;
+    EXPECT_EQ(*second, 2.5);
+    EXPECT_EQ(pools->usage(0).used, 1U);
+  }
+  EXPECT_EQ(pools->usage(0).used, 0U);
+  resource.close();
+  const auto refused = make_counted<double>(resource, 2.5);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::ResourceExhausted);
 }
 
 }  // namespace

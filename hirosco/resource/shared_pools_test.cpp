@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "hirosco/resource/block_pools.hpp"
+#include "hirosco/resource/pool_resource.hpp"
 
 namespace hirosco {
 namespace {
@@ -36,6 +36,38 @@ TEST(SharedPool, KeepsItsBlocksWholeUnderFourThreads) {
   EXPECT_EQ(pools->usage(0).used, 0U);
   EXPECT_EQ(pools->refused(), 0U);
   EXPECT_LE(pools->usage(0).high_water, thread_count * held_each);
+}
+
+/// Four threads take and give back without an end while their pools come and go: none of them meets a pool that has ended.
+TEST(SharedPool, EndsUnderNobodyWhoseCallIsUnderWay) {
+  PoolResource resource;
+  std::atomic<bool> enough{false};
+  std::atomic<std::uint32_t> wrong{0};
+  const auto work = [&] {
+    while (!enough.load()) {
+      auto* const block = static_cast<std::uint32_t*>(resource.try_allocate(64));
+      if (block == nullptr) {
+        // For who waits until nobody is in a call.
+        std::this_thread::yield();
+        continue;
+      }
+      *block = 1;
+      if (!resource.give_back(block)) ++wrong;
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i) threads.emplace_back(work);
+  for (int turn = 0; turn < 200; ++turn) {
+    auto pools = *BlockPools::create(std::array{PoolSpec{64, 4}});
+    resource.open(*pools);
+    while (pools->usage(0).high_water == 0) std::this_thread::yield();
+    resource.close();
+    while (!resource.let_go()) std::this_thread::yield();
+    EXPECT_EQ(pools->usage(0).used, 0U);
+  }
+  enough = true;
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(wrong, 0U);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ SimulatedProcess::SimulatedProcess(const descriptor::MissionSubsystem& described
     : described_{described},
       author_{std::move(author)},
       clock_{platform.clock},
+      channels_{described.subsystem.resources.channel_kb.value_or(ChannelPair::default_capacity)},
       vital_{std::make_shared<VitalPage>()},
       permit_{std::make_shared<PermitPage>()},
       service_wake_{platform.clock.now()} {

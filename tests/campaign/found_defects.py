@@ -238,6 +238,10 @@ DEFECTS = [
            "if (failed == State::PostOperational && at_.configuration != nullptr) {",
            "if (failed == State::PostOperational && at_.configuration != nullptr && !PLANTED) {",
            "subsystem_test", "FailedPostOperational.GivesBackConfigurationPlanAndFlowsWhenTheCycleHasComeToRest"),
+    # A failed Software-Deinit left all that its author had named, in pools that went, and the next Software-Init found it there.
+    Defect("failed deinit leaves all named", "hirosco/subsystem/service_loop/introduction.cpp", "if (begun_) forget();",
+           "if (begun_ && !PLANTED) forget();",
+           "subsystem_test", "PoolsOfStates.GoBackThoughTheAuthorsOwnSoftwareDeinitFails"),
     # Arguments were narrowed to the handler's types without a word.
     Defect("narrowed arguments", "hirosco/subsystem/service_loop/introduction.cpp",
            "handler.takes, found->arguments))\n    mistake(std::move(problem));",

@@ -25,6 +25,7 @@ class Holding:
                 self.mappings[words[5].removesuffix(" (deleted)")] += 1
         status = dict(line.split(":", 1) for line in (folder / "status").read_text().splitlines() if ":" in line)
         self.memory_kb = int(status["RssAnon"].split()[0])
+        self.data_kb = int(status["VmData"].split()[0])    # what it has mapped for itself alone, touched or not
         self.threads = int(status["Threads"])
 
     def devices(self):

@@ -4,15 +4,20 @@
 #include <sys/eventfd.h>
 
 #include <atomic>
+#include <cstddef>
 #include <memory>
+#include <memory_resource>
+#include <optional>
+#include <vector>
 
+#include "hirosco/resource/pool_resource.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "hirosco/subsystem/process/run.hpp"
 #include "hirosco/utilities/os/file_descriptor.hpp"
 
 /// Stays in each transient state until it is told, so that somebody outside has the time to look at it there. SIGUSR1: from now on it does so,
 /// or no more; SIGUSR2: the state that it is in is done. It takes a descriptor in each of the two states of the way up and gives it back in its
-/// counterpart on the way down, and wants its device to turn all the time.
+/// counterpart on the way down, a container in its pool with that of Software-Init, and wants its device to turn all the time.
 namespace {
 
 using namespace hirosco;
@@ -53,6 +58,7 @@ class Held final : public Subsystem {
     publish("ANGLE", angle_);
     use_device("AXIS", axis_);
     of_software_ = taken();
+    numbers_.emplace(std::size_t{100}, &resources());
     return done;
   }
   Result<Step> hardware_init() override {
@@ -68,6 +74,7 @@ class Held final : public Subsystem {
   Result<Step> software_deinit() override {
     if (stays()) return again;
     of_software_ = {};
+    numbers_.reset();
     return done;
   }
   Result<> pre_operational(const Cycle&) noexcept override { return turn(); }
@@ -84,6 +91,7 @@ class Held final : public Subsystem {
   Parameter<double> angle_;
   DevicePort<Turned, Turn> axis_;
   FileDescriptor of_software_, of_hardware_;
+  std::optional<std::pmr::vector<double>> numbers_;
 };
 
 }  // namespace

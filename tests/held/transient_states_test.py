@@ -22,6 +22,8 @@ TRANSIENT_S = 10.0     # a transient state that is not done by then has failed
 POWER_S = 3.0          # a switch has answered by then, and what moved rests
 QUIET_S = 0.5          # five times the interval of its housekeeping
 TAKEN = "anon_inode:[eventfd]"
+POOL_KB = 4 * 1024 + 16     # of held.xml: its blocks, and what stands beside each
+SAME_KB = 256          # of the allocator of the heap, which keeps a page here and there
 # What it has of these besides those of Offline, and whether its device has power. An init has done its part only behind it, a deinit has it still.
 PROMISED = {"SoftwareInit": (0, 0.0), "HardwareInit": (1, 1.0), "HardwareDeinit": (2, 1.0), "SoftwareDeinit": (1, 0.0)}
 
@@ -48,8 +50,13 @@ class TransientStates(unittest.TestCase):
     def look(self, craft):
         return Holding(craft.pid_of(PROGRAM))
 
+    def assert_pools(self, holding, offline, kb, state):
+        """So much more than in Offline is mapped, and is in RAM."""
+        self.assertAlmostEqual(holding.data_kb - offline.data_kb, kb, delta=SAME_KB, msg=state)
+        self.assertAlmostEqual(holding.memory_kb - offline.memory_kb, kb, delta=SAME_KB, msg=state)
+
     def look_at_held(self, craft, telemetry, offline, state):
-        """In a transient state: no device, no link, no more threads than ever; it says nothing by itself and its device hears nothing; it answers, and
+        """In a transient state: its pools, no device, no link, no more threads than ever; it says nothing by itself and its device hears nothing; it answers, and
         takes no other way."""
         more, power = PROMISED[state]
         self.wait_power(craft, power, state)
@@ -59,6 +66,7 @@ class TransientStates(unittest.TestCase):
         self.assertEqual(holding.descriptors - offline.descriptors, collections.Counter({TAKEN: more} if more else {}), state)
         self.assertEqual(offline.descriptors - holding.descriptors, collections.Counter(), state)
         self.assertEqual((holding.mappings, holding.threads), (offline.mappings, offline.threads), state)
+        self.assert_pools(holding, offline, POOL_KB, state)
         time.sleep(QUIET_S)
         after = craft.truth("axis")
         self.assertEqual((after["heard"], after["active"], after["angle"]), (before["heard"], 0.0, before["angle"]), f"{state}: its device hears nothing")
@@ -119,9 +127,10 @@ class TransientStates(unittest.TestCase):
             with flight.Telemetry() as telemetry:
                 for turn in range(ROUNDS):
                     up = self.pass_by(craft, telemetry, offline, PRE_OPERATIONAL, ("SoftwareInit", "HardwareInit"))
-                    self.assertEqual(up["SoftwareInit"], offline, f"turn {turn + 1}: nothing is taken yet")
+                    self.assertEqual(up["SoftwareInit"], offline, f"turn {turn + 1}: nothing but its pools is taken yet")
                     above = self.look(craft)
                     self.assertEqual((above.devices(), above.links()), ([], 0))
+                    self.assert_pools(above, offline, POOL_KB, f"turn {turn + 1}: Pre-Operational")
                     self.do(craft, "CONFIGURE", 1)
                     self.assertEqual(len(self.look(craft).devices()), 1, "from here on it has its device")
                     self.do(craft, "SET_STATE", SAFE_OPERATIONAL)
@@ -131,7 +140,9 @@ class TransientStates(unittest.TestCase):
                     down = self.pass_by(craft, telemetry, offline, OFFLINE, ("HardwareDeinit", "SoftwareDeinit"))
                     self.assertEqual(down["HardwareDeinit"], above, f"turn {turn + 1}: what a configuration took is given back before")
                     self.assertEqual(down["SoftwareDeinit"], up["HardwareInit"], f"turn {turn + 1}: Hardware-Deinit gives back what Hardware-Init took")
-                    self.assertEqual(self.look(craft), offline, f"turn {turn + 1}: Software-Deinit gives back what Software-Init took")
+                    rests = self.look(craft)
+                    self.assertEqual(rests, offline, f"turn {turn + 1}: Software-Deinit gives back what Software-Init took")
+                    self.assert_pools(rests, offline, 0, f"turn {turn + 1}: Offline holds no pool")
             self.end(craft)
 
     def test_who_never_ends_its_hardware_init_goes_down_by_itself_with_nothing_left_and_no_power(self):
@@ -155,7 +166,9 @@ class TransientStates(unittest.TestCase):
             self.assertNotEqual(code, 0)
             self.assertEqual(reports[-1:], ["1,8"], reports)
             self.wait_state(craft, "Offline")
-            self.assertEqual(self.look(craft), offline)
+            rests = self.look(craft)
+            self.assertEqual(rests, offline)
+            self.assert_pools(rests, offline, 0, "Offline")
             self.assertEqual(craft.truth("axis")["powered"], 0.0)
             self.end(craft)
 

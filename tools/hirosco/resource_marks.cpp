@@ -94,6 +94,7 @@ std::vector<ResourceRow> ResourceMarks::rows(const descriptor::SubsystemDescript
   queue(Resource::CycleAnswers, "cycle_answers_kB", declared.queues.answers_octets / kb);
   queue(Resource::CycleEvents, "cycle_events_kB", declared.queues.events_octets / kb);
   queue(Resource::CycleHousekeeping, "cycle_housekeeping_kB", declared.queues.housekeeping_octets / kb);
+  if (declared.channel_kb) queue(Resource::Channel, "channel_kB", *declared.channel_kb);
   if (subsystem.service_loops.empty()) return rows;
   // The share of the one that was fullest: which one of several that is nobody tells, so in no unit of theirs.
   if (subsystem.service_loops.size() == 1)

@@ -28,6 +28,7 @@ struct ResourceMarksTest : ::testing::Test {
     made.resources.pools = {{64, 512}};
     made.resources.waiting = {128, 1024, 1024};
     made.resources.queues.events_octets = 16'384;
+    made.resources.channel_kb = 128;
     return made;
   }();
   ResourceMarks marks;
@@ -40,7 +41,7 @@ TEST_F(ResourceMarksTest, StandBesideWhatIsDeclaredInItsUnitWithTheirShareRounde
                                                  {"RESOURCE_STATS.THREADS_HIGH", "", {3}},
                                                  {"RESOURCE_STATS.POOL_HIGH", "", {128, 0, 0, 0, 0, 0, 0, 0}},
                                                  {"RESOURCE_STATS.WAITING_HIGH", "", {32, 5, 0}},
-                                                 {"RESOURCE_STATS.QUEUES_HIGH", "%", {25, 0, 80, 1, 0, 0}},
+                                                 {"RESOURCE_STATS.QUEUES_HIGH", "%", {25, 0, 80, 1, 0, 0, 50}},
                                                  {"CYCLE_STATS.MAX_US", "us", {99}}});
   EXPECT_FALSE(marks.silent());
   EXPECT_THAT(
@@ -49,7 +50,7 @@ TEST_F(ResourceMarksTest, StandBesideWhatIsDeclaredInItsUnitWithTheirShareRounde
                              "processor_percent - 0 -", "ports - 0 -", "files - 0 -", "Pool 64 512 128 25",
                              "waiting_answers 128 32 25", "waiting_events 1024 5 1", "waiting_housekeeping 1024 0 0",
                              "cycle_commands 64 16 25", "cycle_answers_kB 32 0 0", "cycle_events_kB 16 13 82",
-                             "cycle_housekeeping_kB 64 1 2"));
+                             "cycle_housekeeping_kB 64 1 2", "channel_kB 128 64 50"));
 }
 
 TEST_F(ResourceMarksTest, AreTheHighestOfAllProcessesThatItHadOneAfterTheOther) {
@@ -72,7 +73,7 @@ TEST_F(ResourceMarksTest, WhatIsTakenNowIsWhatWasToldLastWhateverWasHeardLast) {
                                                  {"RESOURCE_STATS.PROCESSOR", "%", {7}},
                                                  {"RESOURCE_STATS.POOL_USED", "", {12, 0}},
                                                  {"RESOURCE_STATS.WAITING", "", {1, 2, 3}},
-                                                 {"RESOURCE_STATS.QUEUES", "%", {25, 0, 80, 1, 0, 0}}},
+                                                 {"RESOURCE_STATS.QUEUES", "%", {25, 0, 80, 1, 0, 0, 50}}},
              at);
   marks.hear(std::vector<pus::HousekeepingValue>{{"RESOURCE_STATS.MEMORY", "kB", {9'000}}}, at - 1s);
   for (const auto& [attribute, wanted] :
@@ -86,7 +87,7 @@ TEST_F(ResourceMarksTest, WhatIsTakenNowIsWhatWasToldLastWhateverWasHeardLast) {
 
 TEST_F(ResourceMarksTest, OfLoopsOfServicesAreThereWhereItHasSome) {
   subsystem.service_loops.push_back({.name = "SLOW", .queue = 4});
-  marks.hear(std::vector<pus::HousekeepingValue>{{"RESOURCE_STATS.QUEUES_HIGH", "%", {0, 0, 0, 0, 75, 2}}});
+  marks.hear(std::vector<pus::HousekeepingValue>{{"RESOURCE_STATS.QUEUES_HIGH", "%", {0, 0, 0, 0, 75, 2, 0}}});
   const auto all = lines(marks.rows(subsystem));
   ASSERT_GE(all.size(), 2U);
   EXPECT_EQ(all[all.size() - 2], "queue of a loop 4 3 75");
@@ -96,7 +97,7 @@ TEST_F(ResourceMarksTest, OfLoopsOfServicesAreThereWhereItHasSome) {
 TEST_F(ResourceMarksTest, OfSeveralLoopsTheShareAloneIsToldAsNobodySaysWhichWasFullest) {
   subsystem.service_loops.push_back({.name = "SLOW", .queue = 4});
   subsystem.service_loops.push_back({.name = "SLOWER", .queue = 64});
-  marks.hear(std::vector<pus::HousekeepingValue>{{"RESOURCE_STATS.QUEUES_HIGH", "%", {0, 0, 0, 0, 75, 2}}});
+  marks.hear(std::vector<pus::HousekeepingValue>{{"RESOURCE_STATS.QUEUES_HIGH", "%", {0, 0, 0, 0, 75, 2, 0}}});
   const auto all = lines(marks.rows(subsystem));
   ASSERT_GE(all.size(), 2U);
   EXPECT_EQ(all[all.size() - 2], "fullest queue of a loop, % 100 75 75");

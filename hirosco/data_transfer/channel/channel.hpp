@@ -59,6 +59,12 @@ class Channel {
     Message message;  ///< `packet` views `buffer`
   };
   [[nodiscard]] virtual Result<Found> receive(MessageBuffer& buffer) = 0;
+  /// What waits for the peer, and with how much send() refuses, both in a unit of the channel's own. `room` 0: nobody can tell.
+  struct Fill {
+    std::uint64_t used{0};
+    std::uint64_t room{0};
+  };
+  [[nodiscard]] virtual Fill outbound() noexcept { return {}; }
   /// Descriptor to poll for readability, -1 where there is none (simulated).
   [[nodiscard]] virtual int wait_descriptor() const noexcept { return -1; }
 };

@@ -87,6 +87,12 @@ class End final : public Channel {
     return Found{Flow::New, in_.pop(buffer)};
   }
 
+  /// Messages.
+  [[nodiscard]] Fill outbound() noexcept override {
+    const std::scoped_lock lock{out_.mutex};
+    return {out_.size(), out_.capacity};
+  }
+
   void close() noexcept {
     {
       const std::scoped_lock lock{out_.mutex};

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/data_transfer/channel/socket_channel.hpp"
 
+#include <linux/sockios.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
 
@@ -89,6 +91,24 @@ Arrived take_descriptors(msghdr& header) noexcept {
   return arrived;
 }
 
+/// Octets that may wait behind a socket, those that the system takes beside each message among them.
+[[nodiscard]] int room_behind(int socket) noexcept {
+  int octets = 0;
+  socklen_t length = sizeof octets;
+  return ::getsockopt(socket, SOL_SOCKET, SO_SNDBUF, &octets, &length) == 0 ? octets : 0;
+}
+
+/// The system doubles what it is asked for, for what it takes beside each message, and grants less without a word.
+[[nodiscard]] Result<> give_room(int socket, std::uint32_t kb) noexcept {
+  constexpr int octets_of_kb = 1024;
+  const int wanted = static_cast<int>(kb) * octets_of_kb, asked = wanted / 2;
+  if (::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &asked, sizeof asked) != 0)
+    return fail(ErrorCode::SystemFailure, "size of a control channel", errno);
+  if (const int granted = room_behind(socket); granted < wanted)
+    return fail(ErrorCode::ResourceExhausted, "octets of a control channel: net.core.wmem_max grants fewer", granted);
+  return ok();
+}
+
 /// An empty datagram and the end look alike to recvmsg.
 bool hung_up(int socket) noexcept {
   pollfd entry{socket, POLLRDHUP, 0};
@@ -97,11 +117,21 @@ bool hung_up(int socket) noexcept {
 
 }  // namespace
 
-Result<std::pair<FileDescriptor, FileDescriptor>> SocketChannel::make_pair() {
+Result<std::pair<FileDescriptor, FileDescriptor>> SocketChannel::make_pair(std::optional<std::uint32_t> kb) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends.data()) != 0)
     return fail(ErrorCode::SystemFailure, "make control channel", errno);
-  return std::pair{FileDescriptor{ends[0]}, FileDescriptor{ends[1]}};
+  std::pair made{FileDescriptor{ends[0]}, FileDescriptor{ends[1]}};
+  // What waits is charged to whoever has sent it: the size of each end is that of the way out of it.
+  for (const int end : ends)
+    if (kb) HIROSCO_TRY(give_room(end, *kb));
+  return made;
+}
+
+Channel::Fill SocketChannel::outbound() noexcept {
+  int waits = 0;
+  if (::ioctl(socket_.get(), SIOCOUTQ, &waits) != 0) return {};
+  return {static_cast<std::uint64_t>(waits), static_cast<std::uint64_t>(room_behind(socket_.get()))};
 }
 
 Result<> SocketChannel::send(const Message& message) {

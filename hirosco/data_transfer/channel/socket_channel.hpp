@@ -20,14 +20,18 @@ class SocketChannel final : public Channel {
   static constexpr std::size_t most_at_once = 32;
 
   explicit SocketChannel(FileDescriptor socket) noexcept : socket_{std::move(socket)} {}
-  /// Both ends, closed on exec unless they are inherited on purpose.
-  [[nodiscard]] static Result<std::pair<FileDescriptor, FileDescriptor>> make_pair();
+  /// Both ends, closed on exec unless they are inherited on purpose. `kb`: how much of the system's memory may wait each way; left out: as
+  /// the system has it. ResourceExhausted, with what it grants in octets: it grants less.
+  [[nodiscard]] static Result<std::pair<FileDescriptor, FileDescriptor>> make_pair(
+      std::optional<std::uint32_t> kb = std::nullopt);
 
   [[nodiscard]] Result<> send(const Message& message) override;
   [[nodiscard]] std::size_t send_all(std::span<const Message> messages) override;
   /// Malformed: the peer sent what is no message; Mismatch: one of another version, which is the error's number. It is gone
   /// with all descriptors it carried, the next one can be read.
   [[nodiscard]] Result<Found> receive(MessageBuffer& buffer) override;
+  /// Octets of the system's memory.
+  [[nodiscard]] Fill outbound() noexcept override;
   [[nodiscard]] int wait_descriptor() const noexcept override { return socket_.get(); }
   /// Of the newest message that was refused for it; empty: none was.
   [[nodiscard]] std::optional<std::uint8_t> foreign_version() const noexcept { return foreign_version_; }

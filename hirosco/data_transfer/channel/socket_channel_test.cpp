@@ -52,6 +52,32 @@ class SocketEnds {
 INSTANTIATE_TYPED_TEST_SUITE_P(Sealed, MemoryConformance, SealedMemory);
 INSTANTIATE_TYPED_TEST_SUITE_P(Socket, ChannelConformance, SocketEnds);
 
+TEST(SocketChannelOfASize, TakesMoreOfTheSystemsMemoryTheLargerItIsEachWayAndSaysHowFullItIs) {
+  std::array<int, 2> taken{};
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    constexpr std::array<std::uint32_t, 2> sizes_kb{64, 256};
+    auto ends = SocketChannel::make_pair(sizes_kb[i]).value();
+    SocketChannel first{std::move(ends.first)}, second{std::move(ends.second)};
+    EXPECT_EQ(first.outbound().used, 0U);
+    EXPECT_GE(first.outbound().room, sizes_kb[i] * 1024U);
+    EXPECT_EQ(second.outbound().room, first.outbound().room);
+    while (first.send({})) ++taken[i];
+    EXPECT_GE(first.outbound().used, first.outbound().room) << "it is full";
+    EXPECT_EQ(second.outbound().used, 0U) << "the other way";
+    MessageBuffer buffer;
+    while (second.receive(buffer).value().flow == Flow::New) {}
+    EXPECT_EQ(first.outbound().used, 0U);
+  }
+  EXPECT_GT(taken[1], 3 * taken[0]);
+}
+
+TEST(SocketChannelOfASize, IsRefusedWhereTheSystemGrantsLessThanIsAsked) {
+  constexpr std::uint32_t gigabyte_kb = 1U << 20;
+  const auto refused = SocketChannel::make_pair(gigabyte_kb);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::ResourceExhausted);
+}
+
 TEST(SealedMemory, DoesNotMapWhatCouldShrinkUnderIt) {
   const MemoryHandle handle = SealedMemory::adopt(::memfd_create("open", MFD_ALLOW_SEALING | MFD_CLOEXEC));
   ASSERT_EQ(::ftruncate(SealedMemory::descriptor(handle), 64), 0);

@@ -3,7 +3,6 @@
 #include "hirosco/data_transfer/channel/thread_channel.hpp"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "hirosco/utilities/os/mutex.hpp"
@@ -13,13 +12,14 @@ namespace hirosco {
 
 /// One direction. The packets stand one behind the other in a ring of octets, in the order of the messages.
 struct ThreadChannel::Queue {
-  Queue(WakeEvent told, WakeEvent taken) : something{std::move(told)}, room{std::move(taken)} {}
+  Queue(std::uint32_t kb, WakeEvent told, WakeEvent taken)
+      : messages(kb), octets(std::size_t{kb} << 10), something{std::move(told)}, room{std::move(taken)} {}
 
   [[nodiscard]] bool takes(const Message& message) const noexcept {
-    return count < most_messages && octets.size() - used >= message.packet.size();
+    return count < messages.size() && octets.size() - used >= message.packet.size();
   }
   void put(const Message& message) {
-    Message& slot = messages.at((first + count) % most_messages);
+    Message& slot = messages.at((first + count) % messages.size());
     slot = message;
     const std::size_t begin = (first_octet + used) % octets.size();
     const std::size_t straight = std::min(message.packet.size(), octets.size() - begin);
@@ -38,7 +38,7 @@ struct ThreadChannel::Queue {
     copy_octets(all.first(size - straight), MutableOctets{buffer.octets}.subspan(straight));
     Message message = std::exchange(slot, {});
     message.packet = Octets{buffer.octets}.first(size);
-    first = (first + 1) % most_messages;
+    first = (first + 1) % messages.size();
     first_octet = (first_octet + size) % octets.size();
     used -= size;
     --count;
@@ -46,8 +46,8 @@ struct ThreadChannel::Queue {
   }
 
   Mutex mutex;
-  std::array<Message, most_messages> messages{};
-  std::vector<std::byte> octets = std::vector<std::byte>(most_octets);
+  std::vector<Message> messages;
+  std::vector<std::byte> octets;
   std::size_t first{0}, count{0}, first_octet{0}, used{0};
   bool refused{false};  ///< the writer found no room since the reader took something last
   bool reader_gone{false};
@@ -56,11 +56,12 @@ struct ThreadChannel::Queue {
   WakeEvent room;       ///< for the writer
 };
 
-Result<std::pair<std::unique_ptr<ThreadChannel>, std::unique_ptr<ThreadChannel>>> ThreadChannel::make_pair() {
-  const auto queue = []() -> Result<std::shared_ptr<Queue>> {
+Result<std::pair<std::unique_ptr<ThreadChannel>, std::unique_ptr<ThreadChannel>>> ThreadChannel::make_pair(
+    std::uint32_t kb) {
+  const auto queue = [kb]() -> Result<std::shared_ptr<Queue>> {
     HIROSCO_TRY_LET(auto something, WakeEvent::create());
     HIROSCO_TRY_LET(auto room, WakeEvent::create());
-    return std::make_shared<Queue>(std::move(something), std::move(room));
+    return std::make_shared<Queue>(kb, std::move(something), std::move(room));
   };
   HIROSCO_TRY_LET(auto down, queue());
   HIROSCO_TRY_LET(auto up, queue());
@@ -93,6 +94,13 @@ Result<> ThreadChannel::send(const Message& message) {
   queue.put(message);
   if (queue.count == 1) queue.something.notify();
   return ok();
+}
+
+Channel::Fill ThreadChannel::outbound() noexcept {
+  Queue& queue = *out_;
+  const LockGuard lock{queue.mutex};
+  const bool by_octets = queue.used * queue.messages.size() > queue.count * queue.octets.size();
+  return by_octets ? Fill{queue.used, queue.octets.size()} : Fill{queue.count, queue.messages.size()};
 }
 
 Result<Channel::Found> ThreadChannel::receive(MessageBuffer& buffer) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -14,15 +15,17 @@ namespace hirosco {
 /// Thread: each end one per direction. Realtime: a lock that nobody holds for longer than a copy, one system call, no heap.
 class ThreadChannel final : public Channel {
  public:
-  static constexpr std::size_t most_messages = 256;
-  static constexpr std::size_t most_octets = std::size_t{256} << 10;  ///< of all packets that wait in one direction
+  static constexpr std::uint32_t default_kb = 256;
 
-  /// SystemFailure: no descriptor is left to wait by.
-  [[nodiscard]] static Result<std::pair<std::unique_ptr<ThreadChannel>, std::unique_ptr<ThreadChannel>>> make_pair();
+  /// `kb`: of all packets that wait in one direction, and as many messages. SystemFailure: no descriptor is left to wait by.
+  [[nodiscard]] static Result<std::pair<std::unique_ptr<ThreadChannel>, std::unique_ptr<ThreadChannel>>> make_pair(
+      std::uint32_t kb = default_kb);
   ~ThreadChannel() override;
 
   [[nodiscard]] Result<> send(const Message& message) override;
   [[nodiscard]] Result<Found> receive(MessageBuffer& buffer) override;
+  /// Messages or octets, whichever is nearer to its end.
+  [[nodiscard]] Fill outbound() noexcept override;
   /// Readable while there is something that receive() has not told.
   [[nodiscard]] int wait_descriptor() const noexcept override;
   /// Readable from when the peer took something, after a send() that found no room, until the next such.

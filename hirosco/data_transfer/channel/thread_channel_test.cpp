@@ -82,7 +82,24 @@ TEST_F(ThreadChannelTest, IsFullByOctetsBeforeItIsByMessagesAndLosesNoneOfThem) 
       ASSERT_TRUE(std::ranges::equal(found.message.packet, large)) << "also one that goes round the end of the ring";
     }
   }
-  EXPECT_EQ(sent, ThreadChannel::most_octets / max_packet_octets + 10);
+  EXPECT_EQ(sent, (ThreadChannel::default_kb << 10) / max_packet_octets + 10);
+}
+
+TEST(ThreadChannelOfASize, TakesAsManyMessagesAndKilobytesAsItIsToldAndSaysHowFullItIs) {
+  auto ends = ThreadChannel::make_pair(64).value();
+  EXPECT_EQ(ends.first->outbound().used, 0U);
+  std::size_t sent = 0;
+  for (; sent < 16; ++sent) ASSERT_TRUE(ends.first->send({}));
+  EXPECT_EQ(ends.first->outbound().used * 4, ends.first->outbound().room) << "a quarter, by messages";
+  while (ends.first->send({})) ++sent;
+  EXPECT_EQ(sent, 64U);
+  EXPECT_EQ(ends.first->outbound().used, ends.first->outbound().room);
+  EXPECT_EQ(ends.second->outbound().used, 0U) << "the other way";
+  MessageBuffer buffer;
+  while (ends.second->receive(buffer).value().flow == Flow::New) {}
+  const std::vector<std::byte> large(max_packet_octets, std::byte{7});
+  for (int i = 0; i < 8; ++i) ASSERT_TRUE(ends.first->send({.packet = large}));
+  EXPECT_EQ(ends.first->outbound().used * 2, ends.first->outbound().room) << "a half, by octets";
 }
 
 }  // namespace

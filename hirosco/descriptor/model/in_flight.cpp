@@ -69,7 +69,8 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
          });
 }
 [[nodiscard]] bool same_resources(const Resources& a, const Resources& b) {
-  return a.most == b.most && a.waiting == b.waiting && a.queues == b.queues && a.warning_percent == b.warning_percent &&
+  return a.most == b.most && a.waiting == b.waiting && a.queues == b.queues && a.channel_kb == b.channel_kb &&
+         a.warning_percent == b.warning_percent &&
          std::ranges::equal(a.pools, b.pools, [](const Pool& x, const Pool& y) {
            return x.block_octets == y.block_octets && x.blocks == y.blocks;
          });

@@ -125,6 +125,7 @@ TEST(InFlight, WhatMemoryThreadsLinksAndGuardWereMadeByIsRefusedByName) {
            {R"(memory_kB="100000")", R"(memory_kB="90000")", "its resources"},
            {R"(memory_kB="100000")", R"(memory_kB="100000" waiting_events="500")", "its resources"},
            {R"(memory_kB="100000")", R"(memory_kB="100000" cycle_events_kB="64")", "its resources"},
+           {R"(memory_kB="100000")", R"(memory_kB="100000" channel_kB="64")", "its resources"},
            {R"(name="BUMP" id="7" severity="low")", R"(name="BUMP" id="7" severity="high")",
             "event BUMP: what follows it"},
            {R"(name="BUMP" id="7")", R"(name="BUMP" id="8")", "event BUMP: its id"},

@@ -33,9 +33,10 @@ enum class Resource : std::uint8_t {
   CycleHousekeeping = 14,
   LoopRequests = 15,  ///< of the loop of services that is fullest, like the next
   LoopReports = 16,
+  Channel = 17,  ///< what waits in the control channel towards the supervisor, kB; its own likewise
 };
-inline constexpr std::size_t counted_resources = 17;  ///< those among them of which there is no amount
-inline constexpr std::size_t queues_of_subsystem = 6;  ///< from CycleCommands on
+inline constexpr std::size_t counted_resources = 18;  ///< those among them of which there is no amount
+inline constexpr std::size_t queues_of_subsystem = 7;  ///< from CycleCommands on
 
 /// By Resource; empty = not declared, so not limited.
 using Amounts = std::array<std::optional<std::uint32_t>, counted_resources>;
@@ -44,14 +45,22 @@ using Amounts = std::array<std::optional<std::uint32_t>, counted_resources>;
 }
 /// "kB", "%", or nothing.
 [[nodiscard]] constexpr const char* unit_of(Resource resource) noexcept {
-  return resource <= Resource::SharedMemory ? " kB" : resource == Resource::Processor ? " %" : "";
+  return resource <= Resource::SharedMemory || resource == Resource::Channel ? " kB"
+         : resource == Resource::Processor                                   ? " %"
+                                                                             : "";
 }
 
-/// Blocks of one size, there from the start and never more.
+/// Blocks of one size, there from Software-Init to Software-Deinit and never more.
 struct Pool {
   std::uint32_t block_octets{};
   std::uint32_t blocks{};
 };
+
+/// With what stands beside each block (hirosco/resource/free_list.hpp).
+[[nodiscard]] constexpr std::uint64_t octets_of(const Pool& pool) noexcept {
+  constexpr std::uint64_t link_octets = 4;
+  return (pool.block_octets + link_octets) * pool.blocks;
+}
 
 /// How many messages may wait for a supervisor that does not take them: answers, events and housekeeping apart, so that none is crowded
 /// out by another kind.
@@ -108,6 +117,9 @@ struct Resources {
   std::vector<Pool> pools;  ///< by ascending block size
   Waiting waiting{default_waiting, default_waiting, default_waiting};
   Queues queues;
+  /// What may wait in the control channel, each way, in kB: of the system's memory in a socket, which counts its own beside each message; a
+  /// message for each where subsystems are threads or simulated. Empty: as the deployment has it (docs/adr/0215).
+  std::optional<std::uint32_t> channel_kb{};
   std::uint32_t warning_percent{default_warning_percent};  ///< of a limit or pool: where its use becomes an event
 };
 
@@ -133,6 +145,7 @@ struct EnumTexts<descriptor::Resource> {
                                                                   {CycleEvents, "events of the cycle"},
                                                                   {CycleHousekeeping, "housekeeping of the cycle"},
                                                                   {LoopRequests, "requests to a service loop"},
-                                                                  {LoopReports, "reports of a service loop"}});
+                                                                  {LoopReports, "reports of a service loop"},
+                                                                  {Channel, "control channel"}});
 };
 }  // namespace hirosco

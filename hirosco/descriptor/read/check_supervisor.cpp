@@ -53,6 +53,7 @@ constexpr NotOfSupervisor not_in_force[]{
     {"Resources", "ports", limits_of_others},
     {"Resources", "files", limits_of_others},
     {"Resources", "loop_reports_kB", one_loop},
+    {"Resources", "channel_kB", "it is at the other end of each channel"},
     {"Pool", "", "no code of it takes a block"},
 };
 

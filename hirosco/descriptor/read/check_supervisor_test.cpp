@@ -121,6 +121,7 @@ TEST(SupervisorsDescriptor, SpinsForNobody) {
 
 TEST(SupervisorsDescriptor, HasNoPoolAndNoLoopThatReports) {
   expect_not_of_supervisor(own_text(R"(<Resources>@<Pool block="64" count="4"/></Resources>)"), "<Pool>");
+  expect_not_of_supervisor(own_text(R"(<Resources channel_kB="@64"/>)"), "'channel_kB' of <Resources>");
   expect_not_of_supervisor(own_text(R"(<Resources loop_reports_kB="@64"/>)"), "'loop_reports_kB' of <Resources>");
 }
 

@@ -134,7 +134,7 @@ void fit_queues(const xml::Element& root, SubsystemDescriptor& subsystem, Proble
   std::uint64_t octets = octets_of(queues) + octets_of(subsystem.resources.waiting), pools = 0;
   for (const ServiceLoop& loop : subsystem.service_loops)
     octets += std::bit_ceil(loop_requests_octets(loop.queue)) + queues.loop_reports_octets;
-  for (const Pool& pool : subsystem.resources.pools) pools += std::uint64_t{pool.block_octets} * pool.blocks;
+  for (const Pool& pool : subsystem.resources.pools) pools += octets_of(pool);
   const auto memory_kb = amount_of(subsystem.resources.most, Resource::Memory);
   if (!memory_kb) return;
   const std::uint64_t limit = std::uint64_t{*memory_kb} * 1024;

@@ -23,6 +23,8 @@ constexpr std::int64_t least_waiting = 128, most_waiting = 65'536;
 /// To the cycle: enough to bring it up. A ring of octets takes the longest packet by half of itself (utilities/record_ring.hpp).
 constexpr std::int64_t least_commands = 16;
 constexpr std::int64_t least_ring_kb = 16;
+/// Some of the longest packets; and what Linux grants everybody (net.core.wmem_max as it comes).
+constexpr std::int64_t least_channel_kb = 64, most_channel_kb = 416;
 /// What the framework itself starts: service loop and cycle.
 constexpr std::int64_t least_threads = 2;
 
@@ -81,11 +83,13 @@ void read_resources(const xml::Element& element, Resources& resources, Problems&
   queues.events_octets = ring("cycle_events_kB", queues.events_octets);
   queues.housekeeping_octets = ring("cycle_housekeeping_kB", queues.housekeeping_octets);
   queues.loop_reports_octets = ring("loop_reports_kB", queues.loop_reports_octets);
+  if (const auto kb = attributes.integer("channel_kB", least_channel_kb, most_channel_kb))
+    resources.channel_kb = static_cast<std::uint32_t>(*kb);
   each_child(element, problems,
              {{"Pool", [&](const auto& pool) { read_pool(pool, resources.pools, problems); }, most_pools}});
   std::ranges::sort(resources.pools, {}, &Pool::block_octets);
   std::uint64_t octets = 0;
-  for (const Pool& pool : resources.pools) octets += std::uint64_t{pool.block_octets} * pool.blocks;
+  for (const Pool& pool : resources.pools) octets += octets_of(pool);
   const auto memory_kb = amount_of(resources.most, Resource::Memory);
   const std::uint64_t limit = memory_kb ? std::uint64_t{*memory_kb} * 1024 : most_pool_octets;
   if (octets > limit)

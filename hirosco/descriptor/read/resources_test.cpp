@@ -11,7 +11,7 @@ using namespace testing;
 
 TEST(Resources, AreWhatTheDescriptorSaysAndWhatItLeavesOutIsNotLimited) {
   const auto said = read_text(R"(<Subsystem name="ARM" id="10">
-    <Resources memory_kB="65536" shared_memory_kB="2048" threads="4" descriptors="64" processor_percent="150" warning_percent="60" waiting_events="128">
+    <Resources memory_kB="65536" shared_memory_kB="2048" threads="4" descriptors="64" processor_percent="150" warning_percent="60" waiting_events="128" channel_kB="128">
       <Pool block="1000" count="8"/><Pool block="64" count="512"/>
     </Resources></Subsystem>)")
                         .value.value()
@@ -32,6 +32,8 @@ TEST(Resources, AreWhatTheDescriptorSaysAndWhatItLeavesOutIsNotLimited) {
   EXPECT_EQ(none.warning_percent, 75U);
   EXPECT_EQ(said.waiting, (Waiting{1024, 128, 1024}));
   EXPECT_EQ(none.waiting, (Waiting{1024, 1024, 1024}));
+  EXPECT_EQ(said.channel_kb, 128U);
+  EXPECT_EQ(none.channel_kb, std::nullopt) << "as the deployment has it";
 }
 
 std::string before_power(const std::string& resources) { return changed("<Power", resources + "\n  <Power"); }

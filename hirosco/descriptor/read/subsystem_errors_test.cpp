@@ -179,6 +179,7 @@ constexpr Bad bad_meaning[] = {
     {"E0112", R"(<Resources waiting_answers="@127"/>)", "128"},
     {"E0112", R"(<Resources cycle_commands="@15"/>)", "16"},
     {"E0112", R"(<Resources cycle_events_kB="@15"/>)", "16"},
+    {"E0112", R"(<Resources channel_kB="@417"/>)", "416"},
     {"E0112", R"(<Resources cycle_housekeeping_kB="@4097"/>)", "4096"},
     {"E0369", R"(@<Resources cycle_commands="1024" cycle_answers_kB="32"/>)", "cycle_answers_kB"},
     {"E0359", R"(@<Resources memory_kB="4096" waiting_events="8192"/>)", "4194304"},

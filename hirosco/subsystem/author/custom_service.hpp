@@ -33,7 +33,7 @@ namespace hirosco {
 ///
 /// `<Service name="BOOK" loop="SLOW"/>` gives it a loop of its own (adr 0096): handlers and on_step() run in that thread, at its period
 /// and priority. There they may use the service itself (report(), raise(), store(), finish(), abort(), state()), what is the
-/// service's alone, `snapshot()` of every parameter, and resources(). Everything else of the subsystem is the other loops'.
+/// service's alone, `snapshot()` of every parameter, and resources() outside of Offline. Everything else of the subsystem is the other loops'.
 /// Thread: its loop's.
 class CustomService final : public pus::Service {
  public:

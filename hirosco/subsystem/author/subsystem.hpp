@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -186,9 +187,10 @@ class Subsystem {
   void raise_in_service(const Event<Arguments...>& event, const std::type_identity_t<Arguments>&... arguments) {
     raise_encoded_in_service(event, event.encode(arguments...));
   }
-  /// The pools of its descriptor's <Resources> (hirosco/resource/pool_resource.hpp), there from offline() to the end: for the
-  /// containers of std::pmr and by try_allocate(). What they refuse is never taken from elsewhere; without pools they refuse
-  /// everything.  Realtime: lock-free, but a refusal to a container throws. Thread: any.
+  /// The pools of its descriptor's <Resources> (hirosco/resource/pool_resource.hpp): for the containers of std::pmr, by try_allocate() and
+  /// make_counted<T>(resources(), ...). There from the first call of software_init() to the last of software_deinit(), which gives back all that
+  /// was taken: blocks that are held then fail Software-Deinit, with how many. What they refuse is never taken from elsewhere; Offline has
+  /// none, and without pools everything is refused.  Realtime: lock-free, but a refusal to a container throws. Thread: any.
   [[nodiscard]] PoolResource& resources() noexcept;
   /// One port or file of those that its descriptor's <Resources> permits (`ports`, `files`; all, where it does not say): taken before
   /// the socket or file is opened, held as long as that. ResourceExhausted: all are held, with their number.
@@ -223,6 +225,7 @@ class Subsystem {
   /// offer it again.
   Result<> submit_ground_telecommand(std::uint16_t client, Octets packet, std::uint32_t known_stop);
   GenericSubsystem* framework_{nullptr};
+  std::shared_ptr<const void> pools_left_;  ///< of frameworks that have ended while this still held blocks of them
 };
 
 }  // namespace hirosco

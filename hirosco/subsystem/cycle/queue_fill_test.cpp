@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hirosco/subsystem/author/custom_service.hpp"
-#include "hirosco/subsystem/testing/rig.hpp"
+#include "hirosco/subsystem/testing/inside.hpp"
 
 /// Queues between the loops of a subsystem are as large as its descriptor says; how full they were is told and warned of (docs/adr/0188).
 namespace hirosco {
@@ -198,6 +198,32 @@ TEST(QueuesOfASubsystem, OneRequestThatFillsASmallQueueOfALoopIsNoWarningAndOneT
     ASSERT_EQ(warnings(stored.rig).size(), 1U) << queue;
     EXPECT_EQ(warnings(stored.rig)[0],
               (std::array<std::uint32_t, 3>{static_cast<std::uint32_t>(Resource::LoopRequests), queue, queue}));
+  }
+}
+
+TEST(ControlChannelOfASubsystem, IsToldAsAShareAndWarnedOfWhereItsDescriptorSaysHowMuchItHolds) {
+  for (const bool sized : {true, false}) {
+    Caller author;
+    Rig rig{author, caller(sized ? R"(<Resources channel_kB="64"/>)" : "")};
+    rig.bring_to(State::PreOperational);
+    tell(rig);
+    ASSERT_TRUE(warnings(rig).empty());
+    // The supervisor is there and does not read until 4096 messages fill the channel of this rig and the next ones wait behind it.
+    constexpr int more_than_the_channel_holds = 4096 + 200;
+    for (int i = 0; i < more_than_the_channel_holds; ++i) {
+      rig.cycle();
+      static_cast<void>(rig.subsystem.service_step(rig.clock.now()));
+    }
+    tell(rig);
+    EXPECT_EQ(high(rig, Resource::Channel), 100U);
+    EXPECT_EQ(rig.heard(framework::reports_lost), 0);
+    const auto told = warnings(rig);
+    ASSERT_EQ(told.size(), sized ? 1U : 0U) << "once, long before it was full";
+    if (!sized) continue;
+    EXPECT_EQ(told[0][0], static_cast<std::uint32_t>(Resource::Channel));
+    EXPECT_GE(told[0][1], 48U);
+    EXPECT_LE(told[0][1], 51U);
+    EXPECT_EQ(told[0][2], 64U);
   }
 }
 

@@ -16,23 +16,64 @@ using descriptor::Resource;
 ResourceMeter::ResourceMeter(const descriptor::Resources& declared)
     : declared_{declared},
       ports_{"all ports that its descriptor permits are held", amount_of(declared.most, Resource::Ports)},
-      files_{"all files that its descriptor permits are held", amount_of(declared.most, Resource::Files)} {
-  if (declared.pools.empty()) return;
+      files_{"all files that its descriptor permits are held", amount_of(declared.most, Resource::Files)} {}
+
+Result<> ResourceMeter::take_pools() {
+  if (declared_.pools.empty()) return ok();
+  if (pools_ != nullptr) {
+    resource_->open(*pools_);
+    return ok();
+  }
+  static_assert(descriptor::octets_of(descriptor::Pool{0, 1}) == SharedFreeList::link_octets);
   std::vector<PoolSpec> specs;
-  for (const descriptor::Pool& pool : declared.pools) specs.push_back({pool.block_octets, pool.blocks});
+  for (const descriptor::Pool& pool : declared_.pools) specs.push_back({pool.block_octets, pool.blocks});
   PoolNotices notices;
-  notices.warning_percent = declared.warning_percent;
+  notices.warning_percent = declared_.warning_percent;
   // Possibly in the cycle: it is only counted here.
   notices.on_warning = [this](std::size_t pool, const PoolUsage&) {
     pool_crossings_[pool].fetch_add(1, std::memory_order_relaxed);
   };
   auto made = BlockPools::create(specs, std::move(notices));
   if (!made) {
-    problem_ = "its pools: " + std::string{made.error().text} + " (" + std::to_string(made.error().value) + ")";
-    return;
+    words_ = "its pools: " + std::string{made.error().text} + " (" + std::to_string(made.error().value) + ")";
+    return fail(made.error().code, words_.c_str(), made.error().value);
   }
   pools_ = std::move(*made);
-  resource_ = PoolResource{pools_.get()};
+  resource_->open(*pools_);
+  return ok();
+}
+
+Result<> ResourceMeter::give_pools_back() {
+  if (pools_ == nullptr) return ok();
+  resource_->close();
+  if (!resource_->let_go()) {
+    words_.clear();
+    std::uint32_t held = 0;
+    for (std::size_t i = 0; i < pools_->size(); ++i) {
+      const PoolUsage usage = pools_->usage(i);
+      if (usage.used == 0) continue;
+      held += usage.used;
+      words_ += (words_.empty() ? "blocks still held: " : ", ") + std::to_string(usage.used) + " of " +
+                std::to_string(usage.block_octets) + " octets";
+    }
+    if (held == 0) return ok();
+    return fail(ErrorCode::Mismatch, words_.c_str(), held);
+  }
+  for (std::size_t i = 0; i < pools_->size(); ++i)
+    pool_high_before_[i] = std::max(pool_high_before_[i], pools_->usage(i).high_water);
+  pool_refused_before_ += pools_->refused();
+  pools_.reset();
+  return ok();
+}
+
+std::shared_ptr<const void> ResourceMeter::leave_pools_behind(std::shared_ptr<const void> before) {
+  if (give_pools_back() && pools_ == nullptr) return before;
+  struct Left {
+    std::shared_ptr<const void> before;
+    std::unique_ptr<BlockPools> pools;
+    std::unique_ptr<PoolResource> resource;
+  };
+  return std::make_shared<Left>(Left{std::move(before), std::move(pools_), std::move(resource_)});
 }
 
 void ResourceMeter::note(const ProcessUsage& usage, TimePoint now) noexcept {
@@ -94,10 +135,13 @@ void ResourceMeter::tell_crossings(const std::function<void(const Crossing&)>& t
             .used = seen_[i].now.load(std::memory_order_relaxed),
             .limit = limit_of(static_cast<Resource>(i)).value_or(0),
             .times = times});
-  for (std::size_t i = 0; pools_ != nullptr && i < pools_->size(); ++i) {
+  for (std::size_t i = 0; i < declared_.pools.size(); ++i) {
     const auto times = pool_crossings_[i].exchange(0, std::memory_order_relaxed);
     if (times == 0) continue;
-    const PoolUsage usage = pools_->usage(i);
+    // Also of pools that have gone since.
+    const descriptor::Pool& pool = declared_.pools[i];
+    const PoolUsage usage =
+        pools_ != nullptr ? pools_->usage(i) : PoolUsage{.block_octets = pool.block_octets, .count = pool.blocks};
     tell({.resource = Resource::Pool,
           .block_octets = static_cast<std::uint32_t>(usage.block_octets),
           .used = usage.used,
@@ -131,13 +175,15 @@ ResourceStatistics ResourceMeter::statistics() const noexcept {
     all.waiting.queues[i] = queues_[i].load(std::memory_order_relaxed);
     all.waiting.queues_high[i] = queues_high_[i].load(std::memory_order_relaxed);
   }
-  if (pools_ == nullptr) return all;
-  for (std::size_t i = 0; i < pools_->size(); ++i) {
+  all.pool_high = pool_high_before_;
+  std::uint64_t refused = pool_refused_before_;
+  for (std::size_t i = 0; pools_ != nullptr && i < pools_->size(); ++i) {
     const PoolUsage usage = pools_->usage(i);
     all.pool_used[i] = usage.used;
-    all.pool_high[i] = usage.high_water;
+    all.pool_high[i] = std::max(all.pool_high[i], usage.high_water);
   }
-  all.pool_refused = static_cast<std::uint32_t>(pools_->refused());
+  if (pools_ != nullptr) refused += pools_->refused();
+  all.pool_refused = static_cast<std::uint32_t>(refused);
   return all;
 }
 

@@ -28,7 +28,7 @@ struct ResourceStatistics {
   std::uint32_t descriptors_high{0};
   std::uint32_t threads{0};
   std::uint32_t threads_high{0};
-  std::array<std::uint32_t, descriptor::most_pools> pool_used{};  ///< blocks, by ascending size
+  std::array<std::uint32_t, descriptor::most_pools> pool_used{};  ///< blocks, by ascending size; Offline has none
   std::array<std::uint32_t, descriptor::most_pools> pool_high{};  ///< most ever
   std::uint32_t pool_refused{0};  ///< requests for which there was no block
   std::uint16_t ports{0};  ///< acquired by the framework for devices and links, and by the author
@@ -54,7 +54,7 @@ struct ResourceStatistics {
 };
 
 /// The resources of one subsystem: its pools, how much it has taken, and where that crosses the warning level of its descriptor.
-/// It keeps the pools from its start to its end.
+/// The pools are there from Software-Init to Software-Deinit; Offline has none (docs/adr/0215).
 class ResourceMeter {
  public:
   static constexpr Duration look_every = std::chrono::milliseconds{100};
@@ -63,9 +63,18 @@ class ResourceMeter {
   ResourceMeter(const ResourceMeter&) = delete;
   ResourceMeter& operator=(const ResourceMeter&) = delete;
 
-  /// Why there are no pools although the descriptor says so; empty: all is there.
-  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
-  [[nodiscard]] PoolResource& pools() noexcept { return resource_; }
+  /// Takes the pools of the descriptor; those that are still there, with the blocks that are still held, where they could not be given back.
+  /// ResourceExhausted, with how many octets: there is no such memory, and there are no pools. Words of this and the next live until the next call.
+  /// Thread: service loop; the cycle rests.
+  [[nodiscard]] Result<> take_pools();
+  /// Gives their memory back to the system. Mismatch, with how many: blocks are held still, so it stays, nothing is given of it any more,
+  /// and it goes when this is asked once more and they have come back; so too, without an error, where a thread is just giving back one.
+  /// Thread: service loop; the cycle rests.
+  [[nodiscard]] Result<> give_pools_back();
+  /// What the author takes from: for as long as this lives, whether there are pools or not.
+  [[nodiscard]] PoolResource& pools() noexcept { return *resource_; }
+  /// What whoever holds blocks still has to outlive, when this ends, with what he had `before`; null: nobody holds any.
+  [[nodiscard]] std::shared_ptr<const void> leave_pools_behind(std::shared_ptr<const void> before);
   /// Of ports and files: who opens one takes it here before.
   [[nodiscard]] Quota& ports() noexcept { return ports_; }
   [[nodiscard]] Quota& files() noexcept { return files_; }
@@ -90,7 +99,7 @@ class ResourceMeter {
   /// Tells each crossing once.  Realtime: bounded. Thread: service loop.
   void tell_crossings(const std::function<void(const Crossing&)>& tell);
 
-  /// Realtime: wait-free. Thread: any.
+  /// Realtime: wait-free. Thread: any that runs while pools neither come nor go: the cycle.
   [[nodiscard]] ResourceStatistics statistics() const noexcept;
 
  private:
@@ -110,10 +119,13 @@ class ResourceMeter {
   std::array<std::atomic<std::uint32_t>, descriptor::most_pools> pool_crossings_{};  ///< by who allocates
   Quota ports_, files_;
   std::unique_ptr<BlockPools> pools_;
-  PoolResource resource_;
+  std::unique_ptr<PoolResource> resource_{std::make_unique<PoolResource>()};
+  // Of pools that were given back.
+  std::array<std::uint32_t, descriptor::most_pools> pool_high_before_{};
+  std::uint64_t pool_refused_before_{0};
   std::array<std::uint32_t, descriptor::queues_of_subsystem> queue_rooms_{};  ///< the service loop's
   std::array<std::atomic<std::uint8_t>, descriptor::queues_of_subsystem> queues_{}, queues_high_{};  ///< percent
-  std::string problem_;
+  std::string words_;  ///< of an error, which does not own them
 };
 
 }  // namespace hirosco

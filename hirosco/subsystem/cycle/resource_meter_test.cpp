@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstring>
 #include <memory_resource>
 #include <vector>
 
@@ -110,6 +112,8 @@ TEST_F(ResourceMeterTest, WhatWaitsForTheSupervisorIsWarnedOfByItsKindAndToldAsA
 }
 
 TEST_F(ResourceMeterTest, APoolIsNamedByItsBlocksAndKeepsItsHighestUse) {
+  EXPECT_EQ(meter.pools().try_allocate(16), nullptr) << "nobody has taken them yet";
+  ASSERT_TRUE(meter.take_pools());
   std::vector<void*> blocks;
   for (int i = 0; i < 6; ++i) blocks.push_back(meter.pools().try_allocate(1000));
   const auto all = told();
@@ -124,6 +128,61 @@ TEST_F(ResourceMeterTest, APoolIsNamedByItsBlocksAndKeepsItsHighestUse) {
   EXPECT_EQ(statistics.pool_high[1], 6U);
   EXPECT_EQ(statistics.pool_high[0], 0U);
   EXPECT_EQ(statistics.pool_refused, 1U);
+}
+
+TEST_F(ResourceMeterTest, PoolsThatWereGivenBackHaveNoBlocksInUseAndTheirMostAndRefusalsStay) {
+  ASSERT_TRUE(meter.take_pools());
+  std::vector<void*> blocks;
+  for (int i = 0; i < 3; ++i) blocks.push_back(meter.pools().try_allocate(64));
+  EXPECT_EQ(meter.pools().try_allocate(2000), nullptr);
+  for (void* block : blocks) EXPECT_TRUE(meter.pools().give_back(block));
+  ASSERT_TRUE(meter.give_pools_back());
+  EXPECT_EQ(meter.statistics().pool_used[0], 0U);
+  EXPECT_EQ(meter.statistics().pool_high[0], 3U);
+  EXPECT_EQ(meter.statistics().pool_refused, 1U);
+  ASSERT_TRUE(meter.take_pools());
+  void* const one = meter.pools().try_allocate(64);
+  EXPECT_EQ(meter.pools().try_allocate(2000), nullptr);
+  EXPECT_EQ(meter.statistics().pool_used[0], 1U);
+  EXPECT_EQ(meter.statistics().pool_high[0], 3U) << "the most ever";
+  EXPECT_EQ(meter.statistics().pool_refused, 2U);
+  EXPECT_TRUE(meter.pools().give_back(one));
+}
+
+TEST_F(ResourceMeterTest, ACrossingOfAPoolThatHasGoneSinceIsToldOnceAndNotOfTheNextPool) {
+  ASSERT_TRUE(meter.take_pools());
+  std::array<void*, 3> blocks{};
+  for (void*& block : blocks) block = meter.pools().try_allocate(64);
+  for (void* block : blocks) EXPECT_TRUE(meter.pools().give_back(block));
+  ASSERT_TRUE(meter.give_pools_back());
+  const auto all = told();
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].block_octets, 64U);
+  EXPECT_EQ(all[0].used, 0U);
+  EXPECT_EQ(all[0].limit, 4U);
+  EXPECT_EQ(all[0].times, 1U);
+  ASSERT_TRUE(meter.take_pools());
+  EXPECT_TRUE(told().empty());
+}
+
+TEST_F(ResourceMeterTest, BlocksThatAreHeldKeepTheirMemoryAndAreNamedUntilTheyComeBack) {
+  ASSERT_TRUE(meter.take_pools());
+  void* const small = meter.pools().try_allocate(64);
+  void* const large = meter.pools().try_allocate(1024);
+  const auto refused = meter.give_pools_back();
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::Mismatch);
+  EXPECT_STREQ(refused.error().text, "blocks still held: 1 of 64 octets, 1 of 1024 octets");
+  EXPECT_EQ(refused.error().value, 2);
+  EXPECT_EQ(meter.pools().try_allocate(64), nullptr) << "nothing is given of them any more";
+  std::memset(large, 1, 1024);
+  EXPECT_TRUE(meter.pools().give_back(small));
+  ASSERT_TRUE(meter.take_pools());
+  EXPECT_EQ(meter.statistics().pool_used[1], 1U) << "what was held is held still";
+  EXPECT_TRUE(meter.pools().give_back(large));
+  EXPECT_TRUE(meter.give_pools_back());
+  EXPECT_TRUE(meter.give_pools_back()) << "there are none";
+  EXPECT_EQ(meter.leave_pools_behind(nullptr), nullptr);
 }
 
 /// Takes what it is told to from its pools, in its cycle.

@@ -214,7 +214,7 @@ struct Pooled final : Probe {
     numbers.reserve(8);
     for (int i = 0; i < 8; ++i) numbers.push_back(i);
     sum += numbers.back();
-    const auto shared = make_counted<double>(*resources().pools(), 1.0);
+    const auto shared = make_counted<double>(resources(), 1.0);
     if (shared) sum += **shared;
     return Probe::work(cycle);
   }

@@ -97,6 +97,7 @@ void Backlog::flush(Channel& channel) {
 Result<> Backlog::try_send(Channel& channel, const Message& message) {
   auto sent = channel.send(message);
   peer_gone_ = !sent && sent.error().code == ErrorCode::Unavailable;
+  if (!sent && sent.error().code == ErrorCode::ResourceExhausted) ++channel_refusals_;
   return sent;
 }
 

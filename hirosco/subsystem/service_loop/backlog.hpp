@@ -37,6 +37,8 @@ class Backlog {
   /// Messages of this worth that were never sent.
   [[nodiscard]] std::uint64_t lost(Worth worth) const noexcept { return queue(worth).lost; }
 
+  /// How often the channel had no room for what was to be sent.
+  [[nodiscard]] std::uint64_t channel_refusals() const noexcept { return channel_refusals_; }
   /// How many of each kind have waited at once since this was asked last.
   [[nodiscard]] descriptor::Waiting take_most_waiting() noexcept;
 
@@ -63,6 +65,7 @@ class Backlog {
   [[nodiscard]] const Queue& queue(Worth worth) const noexcept { return queues_[static_cast<std::size_t>(worth)]; }
   std::array<Queue, 3> queues_;
   bool peer_gone_{false};
+  std::uint64_t channel_refusals_{0};
 };
 
 }  // namespace hirosco

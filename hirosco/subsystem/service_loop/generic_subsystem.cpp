@@ -87,7 +87,10 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescr
   if (const auto started = author_.offline(); !started) introduction_.mistake(started.error().text);
 }
 
-GenericSubsystem::~GenericSubsystem() { author_.framework_ = nullptr; }
+GenericSubsystem::~GenericSubsystem() {
+  author_.framework_ = nullptr;
+  author_.pools_left_ = resources_.leave_pools_behind(std::move(author_.pools_left_));
+}
 
 GenericSubsystem::Demand GenericSubsystem::cycle_demand() const noexcept {
   Demand demand{{orders_.order()}};
@@ -164,8 +167,10 @@ void GenericSubsystem::look_at_resources(TimePoint now) {
   const OwnLoop::Fills of_loops = loops_.take_fills();
   queues[place_of(descriptor::Resource::LoopRequests)] = of_loops.requests;
   queues[place_of(descriptor::Resource::LoopReports)] = of_loops.reports;
+  queues[place_of(descriptor::Resource::Channel)] = reports_.take_channel_fill();
   QueueFills judged = queues;
   judged[place_of(descriptor::Resource::LoopRequests)] = of_loops.judged;
+  if (!descriptor_.resources.channel_kb) judged[place_of(descriptor::Resource::Channel)] = {};
   resources_.note_queues(queues, judged);
   resources_.tell_crossings([this](const ResourceMeter::Crossing& found) {
     const std::array<double, 5> arguments{static_cast<double>(found.resource), static_cast<double>(found.block_octets),

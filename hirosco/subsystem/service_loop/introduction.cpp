@@ -30,6 +30,12 @@ std::string Introduction::short_words_of(const Mistake& mistake) const {
 }
 
 Result<Step> Introduction::step() {
+  if (const auto taken = parts_.resources.take_pools(); !taken) {
+    mistake(taken.error().text);
+    return fail(taken.error());
+  }
+  begun_ = true;
+  pools_told_ = false;
   const LoopsAtRest at_rest{parts_.loops.all()};
   const auto step = parts_.author.software_init();
   if (step && *step == Step::Again) return again;
@@ -61,8 +67,35 @@ std::vector<Mistake> Introduction::try_all() {
   Result<Step> step = again;
   for (int round = 0; round < most_rounds && step && *step == Step::Again; ++round) step = this->step();
   if (!step && mistakes_.empty()) mistake(step.error().text);
-  forget();
+  // What software_init() took goes back, for its pools end here.
+  Result<Step> undone = again;
+  for (int round = 0; round < most_rounds && undone && *undone == Step::Again; ++round) undone = undo(true);
+  if (!undone) mistake(undone.error().text);
+  if (const auto late = undo_late(); !late) mistake(late.error().text);
   return std::exchange(mistakes_, {});
+}
+
+Result<Step> Introduction::undo(bool cycle_rests) {
+  if (begun_) {
+    HIROSCO_TRY_LET(const Step step, parts_.author.software_deinit());
+    if (step == Step::Again) return again;
+  }
+  if (!cycle_rests) return done;
+  forget();
+  HIROSCO_TRY(give_pools_back());
+  return done;
+}
+
+Result<> Introduction::undo_late() {
+  // What the author named may lie in his pools: nobody looks at it any more when they go.
+  if (begun_) forget();
+  return give_pools_back();
+}
+
+Result<> Introduction::give_pools_back() {
+  auto given = parts_.resources.give_pools_back();
+  if (!given && std::exchange(pools_told_, true)) return ok();
+  return given;
 }
 
 void Introduction::provide(CustomService& service) {
@@ -146,7 +179,6 @@ void Introduction::use_device(std::string_view name, DevicePortBase& port, std::
 /// What is missing when the author has said all.
 void Introduction::check() {
   if (!parts_.values.problem().empty()) mistake(parts_.values.problem());
-  if (!parts_.resources.problem().empty()) mistake(parts_.resources.problem());
   std::string missing;
   if (!parts_.values.dictionary().all_published(missing)) mistake("parameters declared but not published: " + missing);
   for (std::size_t i = 0; i < parts_.descriptor.functions.size(); ++i)
@@ -168,11 +200,14 @@ void Introduction::check() {
 }
 
 void Introduction::forget() {
+  begun_ = false;
   parts_.subscriber.forget();
   parts_.foreign.forget();
   // Before their services are released: who waits may still end what it was asked itself.
   parts_.requester.forget();
   const LoopsAtRest at_rest{parts_.loops.all()};
+  // A step of a loop may have had a block for as long as it lasted. None is under way now, and none takes one any more.
+  parts_.resources.pools().close();
   parts_.values.dictionary().unpublish_all();
   for (CustomService* service : own_services_) service->release();
   used_events_.clear();

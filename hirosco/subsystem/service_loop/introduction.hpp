@@ -32,7 +32,7 @@ class Introduction {
     pus::ServiceHome& home;
     ParameterValues& values;
     CycleLoop& cycle;
-    const ResourceMeter& resources;
+    ResourceMeter& resources;
     IntroducedPorts& ports;
     OwnLoops& loops;
     std::vector<pus::Service*>& services;  ///< the author's own come behind the framework's
@@ -57,8 +57,8 @@ class Introduction {
   void uses_all_events() noexcept { uses_all_events_ = true; }
 
   // --- by the framework ----------------------------------------------------------------------------------------------
-  /// One round of Software-Init: calls software_init(), and after its last publishes what is the framework's and looks for what was
-  /// forgotten.
+  /// One round of Software-Init: takes the author's pools, calls software_init(), and after its last publishes what is the framework's and
+  /// looks for what was forgotten. Without the pools software_init() is not called.
   [[nodiscard]] Result<Step> step();
   /// All that Software-Init finds, tried in Offline before any flight. Nothing is kept of it.
   [[nodiscard]] std::vector<Mistake> try_all();
@@ -67,9 +67,17 @@ class Introduction {
   [[nodiscard]] const std::vector<Mistake>& mistakes() const noexcept { return mistakes_; }
   void forget_mistakes() noexcept { mistakes_.clear(); }
   [[nodiscard]] std::string words_of(const Mistake& mistake) const;
-  void forget();
+  /// One round of Software-Deinit: calls software_deinit() where software_init() was called, and after its last forgets all and gives the
+  /// author's pools back. What blocks of them he holds still is an error. `cycle_rests`: else nothing is forgotten and given back yet.
+  [[nodiscard]] Result<Step> undo(bool cycle_rests);
+  /// In Offline, while the cycle rests: what undo() left behind, as the cycle did not rest, the author failed or was too late, or held
+  /// blocks. An error: he holds some still, which has not been said since they were taken.
+  [[nodiscard]] Result<> undo_late();
 
  private:
+  /// Nothing of what the author named is called or looked at any more, and no block of his pools is given.
+  void forget();
+  [[nodiscard]] Result<> give_pools_back();
   void check();
   [[nodiscard]] std::string short_words_of(const Mistake& mistake) const;
 
@@ -77,6 +85,8 @@ class Introduction {
   std::vector<CustomService*> own_services_;
   std::vector<std::uint16_t> used_events_;
   bool uses_all_events_{false};
+  bool begun_{false};  ///< software_init() was called since forget()
+  bool pools_told_{false};  ///< that they stay
   std::vector<Mistake> mistakes_;  ///< all of them fail the same Software-Init
   std::string text_;  ///< of an error, which does not own its words
 };

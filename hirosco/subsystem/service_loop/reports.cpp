@@ -43,6 +43,14 @@ void Reports::report(std::uint8_t service, std::uint8_t subtype, std::uint16_t d
   if (packet) backlog_.send(channel_, {.packet = *packet}, worth);
 }
 
+QueueFill Reports::take_channel_fill() noexcept {
+  const Channel::Fill now = channel_.outbound();
+  if (now.room == 0) return {};
+  const std::uint64_t room = descriptor_.resources.channel_kb.value_or(now.room);
+  channel_mark_.note(std::min((now.used * room + now.room - 1) / now.room, room), backlog_.channel_refusals(), room);
+  return {channel_mark_.take(), static_cast<std::uint32_t>(room)};
+}
+
 /// Each loss is counted where it happens; here the counts become an event.
 void Reports::tell_losses(TimePoint now, const LoopRings& of_cycle, std::uint64_t of_own_loops) {
   const std::array losses{of_cycle.lost_answers(),

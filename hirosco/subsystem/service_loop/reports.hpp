@@ -51,6 +51,9 @@ class Reports final : public pus::TelemetrySink {
   void flush() { backlog_.flush(channel_); }
   /// Backlog::take_most_waiting().
   [[nodiscard]] descriptor::Waiting take_most_waiting() noexcept { return backlog_.take_most_waiting(); }
+  /// How full the channel was, by what waits in it now and whether it refused something since this was asked last: kB where its descriptor
+  /// says how many, else in the channel's own unit.
+  [[nodiscard]] QueueFill take_channel_fill() noexcept;
   /// Nothing waits for the supervisor.
   [[nodiscard]] bool empty() const noexcept { return backlog_.empty(); }
   /// Backlog::answers_have_room().
@@ -64,6 +67,7 @@ class Reports final : public pus::TelemetrySink {
   pus::Verification verification_;
   pus::EventService event_service_;
   Backlog backlog_;
+  FillMark channel_mark_;
   std::array<std::uint64_t, 6> told_losses_{};
   TimePoint losses_told_at_{};
 };

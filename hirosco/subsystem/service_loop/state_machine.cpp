@@ -134,12 +134,7 @@ Result<Step> StateMachine::enter_transient(State next) {
       return again;
     case State::PostOperational: return leave_cycle();
     case State::HardwareDeinit: return parts_.author.hardware_deinit();
-    case State::SoftwareDeinit: {
-      parts_.values.remember_persistent();
-      HIROSCO_TRY_LET(const Step step, parts_.author.software_deinit());
-      if (step == Step::Done && !at_.release_owed) parts_.introduction.forget();
-      return step;
-    }
+    case State::SoftwareDeinit: parts_.values.remember_persistent(); return parts_.introduction.undo(!at_.release_owed);
     case State::Offline:
       if (powered(power_off)) return done;
       if (!power_takes_too_long()) return again;
@@ -169,13 +164,21 @@ Result<Step> StateMachine::leave_cycle() {
   return parts_.author.post_operational();
 }
 
-/// A cycle that did not come to rest in time still uses its configuration: that is given back when it has.
+/// A cycle that did not come to rest in time still uses its configuration: that is given back when it has. In Offline the rest follows, which
+/// the way down left behind because it did not, or the author failed in his Software-Deinit or still held blocks.
 void StateMachine::release_late() {
-  if (!at_.release_owed || !parts_.orders.rests()) return;
-  at_.release_owed = false;
-  parts_.cycle_reports.take();
-  parts_.configurations.release();
-  if (at_.state == State::Offline) parts_.introduction.forget();
+  if (at_.release_owed) {
+    if (!parts_.orders.rests()) return;
+    at_.release_owed = false;
+    parts_.cycle_reports.take();
+    parts_.configurations.release();
+  }
+  if (at_.state != State::Offline) return;
+  const auto undone = parts_.introduction.undo_late();
+  if (undone) return;
+  const Error& why = undone.error();
+  parts_.reports.raise_failure(descriptor::framework_event::state_failed,
+                               static_cast<std::uint8_t>(State::SoftwareDeinit), {why.code, why.text, why.value});
 }
 
 void StateMachine::be_in(State state) {
@@ -220,7 +223,7 @@ void StateMachine::fail_transition(State failed, const Failure& why) {
     at_.release_owed = true;
   }
   if (!target) {
-    // A deinit that fails cannot stop the way down: what is left is given back by the end of the process.
+    // A deinit that fails cannot stop the way down: what is left is given back in Offline or by the end of the process.
     if (failed == State::HardwareDeinit || failed == State::SoftwareDeinit || failed == State::PostOperational)
       go_down_from(failed);
     return;

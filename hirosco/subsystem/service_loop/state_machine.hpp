@@ -40,7 +40,8 @@ class StateMachine {
   std::expected<void, pus::FailureNotice> command(State target, const pus::Request& request);
   /// Goes on with what is under way.
   void advance(TimePoint now);
-  /// A configuration that the cycle still held when Post-Operational ran out of time is given back once it rests.
+  /// A configuration that the cycle still held when Post-Operational ran out of time is given back once it rests; what else the way to
+  /// Offline left behind, pools of which blocks are held among it, in Offline.
   void release_late();
   /// What is done when nobody supervises any more, by what PermitPages has watched.
   void react_to_silence();

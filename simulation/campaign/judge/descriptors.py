@@ -192,7 +192,7 @@ BUILT_IN = {"CYCLE_STATS": (39, [("UINT32", 1), ("FLOAT", 1), ("FLOAT", 1)]),
             "CYCLE_BUDGET": (38, [("FLOAT", 1), ("FLOAT", 1), ("UINT32", 1)]),
             "CYCLE_SPIN": (35, [("FLOAT", 1), ("FLOAT", 1), ("UINT64", 1)]),
             "LOOP_STATS": (34, [("FLOAT", 8), ("FLOAT", 8), ("UINT64", 8), ("UINT64", 8)]),
-            "RESOURCE_STATS": (37, [("UINT32", n) for n in (1, 1, 1, 1, 1, 1, 8, 8, 1)] + [("UINT16", 1)] * 5 + [("UINT64", 1)] * 2 + [("UINT16", n) for n in (1, 1, 3, 3)] + [("UINT8", 6)] * 2),
+            "RESOURCE_STATS": (37, [("UINT32", n) for n in (1, 1, 1, 1, 1, 1, 8, 8, 1)] + [("UINT16", 1)] * 5 + [("UINT64", 1)] * 2 + [("UINT16", n) for n in (1, 1, 3, 3)] + [("UINT8", 7)] * 2),
             "HEAP_USES": (33, [("UINT64", 1), ("UINT64", 1), ("BOOL", 1)]),
             "DESCRIPTOR": (36, [("UINT32", 1), ("UINT16", 1)]),
             "LINK_STATS": (41, [("UINT32", 1), ("UINT32", 1)])}

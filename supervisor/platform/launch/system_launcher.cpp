@@ -159,7 +159,7 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   before = vital.second;
   // The subsystem reads what gates its actuators; from now on nobody can map it otherwise (hazard SF13).
   HIROSCO_TRY(memory_.seal_writers(permit.first));
-  HIROSCO_TRY_LET(auto ends, SocketChannel::make_pair());
+  HIROSCO_TRY_LET(auto ends, SocketChannel::make_pair(subsystem.subsystem.resources.channel_kb));
   ProcessStart start;
   start.executable = program.string();
   start.arguments = arguments_of(subsystem);

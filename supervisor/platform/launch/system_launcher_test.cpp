@@ -9,6 +9,7 @@
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -212,6 +213,22 @@ TEST_F(ManifestStart, OfAnotherFileIsRefused) {
   EXPECT_EQ(launcher.refuse(mission.subsystems[0]).value().why.code, ErrorCode::Mismatch);
   is_now("/bin/true");
   EXPECT_EQ(run(), 0);
+}
+
+TEST_F(ManifestStart, MakesTheControlChannelAsLargeAsTheDescriptorSaysOrIsRefused) {
+  auto& channel_kb = mission.subsystems[0].subsystem.resources.channel_kb;
+  channel_kb = 64;
+  auto launched = launcher.launch(mission.subsystems[0]);
+  ASSERT_TRUE(launched);
+  int octets = 0;
+  socklen_t length = sizeof octets;
+  EXPECT_EQ(::getsockopt(launched->port->channel().wait_descriptor(), SOL_SOCKET, SO_SNDBUF, &octets, &length), 0);
+  EXPECT_EQ(octets, 64 * 1024);
+  while (!launcher.ended(launched->process)) {}
+  channel_kb = 1U << 20;  // a gigabyte
+  const auto refused = launcher.launch(mission.subsystems[0]);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::ResourceExhausted);
 }
 
 /// Of LAMP, with a device in shared memory there.

@@ -219,7 +219,8 @@ Result<LaunchedSubsystem> ThreadLauncher::launch(const descriptor::MissionSubsys
       return fail(ErrorCode::Unavailable, "its earlier threads have not let go, and cannot be ended");
   HIROSCO_TRY_LET(auto bell, Bell::make());
   HIROSCO_TRY_LET(auto gone, WakeEvent::create());
-  HIROSCO_TRY_LET(auto ends, ThreadChannel::make_pair());
+  HIROSCO_TRY_LET(auto ends, ThreadChannel::make_pair(
+                                 subsystem.subsystem.resources.channel_kb.value_or(ThreadChannel::default_kb)));
   HIROSCO_TRY_LET(Mapping vital, make_page<VitalPage>(memory_, "hirosco-vital"));
   HIROSCO_TRY_LET(Mapping permit, make_page<PermitPage>(memory_, "hirosco-permit"));
   // Its counts go on where those of the threads before it ended (decision 8b).

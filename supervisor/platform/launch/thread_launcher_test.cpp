@@ -142,6 +142,19 @@ TEST_F(ThreadLauncherTest, OneThatDoesNotComeBackIsNotStartedAgainAndIsTheEndOfT
   EXPECT_TRUE(launcher->launch(described)) << "now it may be started again";
 }
 
+TEST_F(ThreadLauncherTest, ItsControlChannelTakesAsManyMessagesAsItsDescriptorSays) {
+  wish.holds = true;
+  described.subsystem.resources.channel_kb = 64;
+  auto launched = launcher->launch(described).value();
+  wait_for([&] { return wish.held_turns > 0; });  // from here on it takes none
+  int taken = 0;
+  while (launched.port->channel().send({})) ++taken;
+  EXPECT_EQ(taken, 64);
+  wish.holds = false;
+  launched.port.reset();
+  static_cast<void>(end_of(launched.process));
+}
+
 TEST_F(ThreadLauncherTest, AnExceptionOfItsServiceLoopEndsItAloneAndIsTold) {
   auto bad = launcher->launch(described).value();
   auto good = launcher->launch(other).value();
