@@ -182,7 +182,8 @@ Result<std::unique_ptr<Database>> AsciiDatabase::open(const std::filesystem::pat
   if (descriptor < 0) return fail(code_of(errno), "opening the log file", errno);
   std::unique_ptr<Database> database{new AsciiDatabase{path, descriptor, end_of(descriptor)}};
   std::string begin(max_version_line + 1, '\n');
-  static_cast<void>(::pread(descriptor, begin.data(), begin.size(), 0));  // what is not there is no version
+  // What cannot be read at its begin, a pipe, says no version.
+  if (::pread(descriptor, begin.data(), begin.size(), 0) < 0) begin.assign(1, '\n');
   HIROSCO_TRY(check_version(begin));
   HIROSCO_TRY(sync_folder_of(path));
   return database;
