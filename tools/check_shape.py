@@ -99,7 +99,6 @@ ELSEWHERE = {
     "supervisor/guard/loop_watch.cpp": "supervisor/guard/watching_test.cpp",
     "supervisor/guard/stop_of_all.cpp": "supervisor/guard/guard_test.cpp",
     "supervisor/guard/supervisor_watch.cpp": "supervisor/guard/watching_test.cpp",
-    "supervisor/platform/storage/ascii_database.cpp": "supervisor/platform/storage/database_test.cpp",
     "supervisor/platform/storage/log_writer.cpp": "supervisor/platform/storage/packet_log_test.cpp",
     "supervisor/platform/storage/sqlite_database.cpp": "supervisor/platform/storage/database_test.cpp",
     "supervisor/platform/storage/postgresql_": "supervisor/platform/storage/postgresql_database_test.cpp",

@@ -13,6 +13,10 @@ namespace {
 using joystick::Axes;
 
 class Joystick final : public Subsystem {
+ public:
+  explicit Joystick(joystick::Law law) noexcept : answer_{law}, self_check_{law} {}
+
+ private:
   // Structures of joystick.xml: same members, same order.
   struct CurrentValues {
     std::int32_t state;
@@ -105,6 +109,19 @@ class Joystick final : public Subsystem {
     measure(cycle, torque());
     return ok();
   }
+  Result<Step> self_test(const Cycle& cycle) noexcept override {
+    const HandleInput& in = handle_.input();
+    return self_check_.step({.alive = handle_.alive(),
+                             .position_rad = in.position_rad,
+                             .velocity_rad_s = in.velocity_rad_per_s,
+                             .hand = in.hand,
+                             .hands = in.hands,
+                             .shown_n_m = handle_.output().torque_n_m,
+                             .peer_active = coupled_ && peer_acts(),
+                             .force_scale = force_scale_.load(),
+                             .period_s = seconds(cycle.period)},
+                            cycle.first);
+  }
   Result<> operational(const Cycle& cycle) noexcept override {
     if (cycle.first) restart();
     measure(cycle, torque());
@@ -133,14 +150,16 @@ class Joystick final : public Subsystem {
     return ok();
   }
 
+  [[nodiscard]] bool peer_acts() const noexcept { return peer_link_->valid() && peer_link_->value().active != 0; }
+
   [[nodiscard]] Axes torque() noexcept {
     if (!coupled_) return commanded_;
     choose_law();
-    const RobotState& robot = peer_link_->value();
-    const Axes shown = law_->torque({.velocity_rad_s = handle_.input().velocity_rad_per_s,
-                                     .peer_torque_n_m = robot.torque_n_m,
-                                     .peer_active = peer_link_->valid() && robot.active != 0},
-                                    force_scale_.load());
+    const Axes shown = answer_(*law_,
+                               {.velocity_rad_s = handle_.input().velocity_rad_per_s,
+                                .peer_torque_n_m = peer_link_->value().torque_n_m,
+                                .peer_active = peer_acts()},
+                               force_scale_.load());
     observed_energy_.store(law_->observed_energy_j());
     dissipated_.store(law_->dissipated_j());
     if (law_->clipped() && !clipped_) raise(force_clipped_, 1, joystick::DisplayLaw::torque_max_n_m);
@@ -198,6 +217,8 @@ class Joystick final : public Subsystem {
   std::optional<joystick::PositionForce> position_force_;
   std::optional<joystick::PassivePositionForce> passive_position_force_;
   joystick::DisplayLaw* law_{nullptr};  ///< one of the two
+  joystick::Law answer_;
+  joystick::SelfCheck self_check_;
   Axes commanded_{};
   bool coupled_{false};
   bool acting_{false};  ///< what is put out reaches the handle
@@ -207,6 +228,7 @@ class Joystick final : public Subsystem {
 
 }  // namespace
 
-std::unique_ptr<Subsystem> make_joystick() { return std::make_unique<Joystick>(); }
+std::unique_ptr<Subsystem> make_joystick() { return make_joystick_with(joystick::display_law); }
+std::unique_ptr<Subsystem> make_joystick_with(joystick::Law law) { return std::make_unique<Joystick>(law); }
 
 }  // namespace hirosco

@@ -3,8 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "hirosco/pus/st17_test/test_service.hpp"
 #include "simulation/devices/robot/robot_device.hpp"
+#include "subsystems/joystick/joystick.hpp"
 #include "subsystems/manipulator/manipulator.hpp"
 #include "tests/integration/flight.hpp"
 
@@ -16,14 +22,17 @@ using pus::TestService;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-/// Each configuration of the manipulator requires its self test, as a mission's own descriptor would say.
-void wary(descriptor::Mission& mission) {
-  hand_rests(mission);
-  for (auto& member : mission.subsystems)
-    if (member.subsystem.name == "MANIPULATOR")
-      for (auto& configuration : member.subsystem.configurations)
-        configuration.self_test = descriptor::SelfTest::Required;
+/// Each configuration of these requires its self test, as a mission's own descriptors would say.
+std::function<void(descriptor::Mission&)> requires_of(std::vector<std::string> names) {
+  return [names](descriptor::Mission& mission) {
+    hand_rests(mission);
+    for (auto& member : mission.subsystems)
+      if (std::ranges::find(names, member.subsystem.name) != names.end())
+        for (auto& configuration : member.subsystem.configurations)
+          configuration.self_test = descriptor::SelfTest::Required;
+  };
 }
+void wary(descriptor::Mission& mission) { requires_of({"MANIPULATOR"})(mission); }
 
 /// A sign, lost between the law and what is put out.
 manipulator::Joints reversed(manipulator::JointController& law, const manipulator::Joints& desired_rad,
@@ -75,6 +84,35 @@ TEST(SelfTestInFlight, IsAStepOfTheWayUpThatCostsFewMilliseconds) {
   EXPECT_THAT(stages, ElementsAre(1, 3, 7)) << "as it asks for: a self test may take longer than a start";
 }
 
+TEST(SelfTestInFlight, OfArmAndStickIsPassedByBothOnTheWayUpAndWhenTheModeChanges) {
+  Flight flight{{.edit = requires_of({"MANIPULATOR", "JOYSTICK"})}};
+  ASSERT_TRUE(flight.commission()) << flight.story().text();
+  EXPECT_THAT(outcomes(flight), ElementsAre(passed, passed));
+  EXPECT_EQ(flight.state("JOYSTICK"), State::Operational);
+  EXPECT_TRUE(flight.craft().command("SUPERVISOR", "SET_MODE", {2}, 20s).completed) << flight.story().text();
+  EXPECT_THAT(outcomes(flight), ElementsAre(passed, passed, passed, passed));
+  EXPECT_EQ(flight.state("JOYSTICK"), State::Operational);
+}
+
+TEST(SelfTestInFlight, KeepsAHandFromAForceThatWouldDrawItIn) {
+  Plan plan{.edit = requires_of({"JOYSTICK"})};
+  plan.subsystems["hirosco-joystick"] = [] {
+    return make_joystick_with([](joystick::DisplayLaw& law, const joystick::DisplayLaw::Input& input,
+                                 double scale) noexcept {
+      joystick::Axes torque = law.torque(input, scale);
+      for (double& each : torque) each = -each;
+      return torque;
+    });
+  };
+  Flight flight{plan};
+  EXPECT_FALSE(flight.commission());
+  EXPECT_TRUE(
+      flight.story().has("commissioning stopped: JOYSTICK self test: execution error: "
+                         "it would push otherwise than against what the robot presses on, axis 1"))
+      << flight.story().text();
+  EXPECT_EQ(flight.state("JOYSTICK"), State::SafeOperational);
+}
+
 TEST(SelfTestInFlight, ThatFailsEndsTheCommissioningWithItsReasonAndNothingMoves) {
   Flight flight{with_wrong_sign()};
   EXPECT_FALSE(flight.commission());
@@ -114,16 +152,10 @@ TEST(SelfTestInFlight, IsRefusedByTheSupervisorInOtherStates) {
 }
 
 TEST(SelfTestInFlight, ThatNobodyWroteSaysSo) {
-  Plan plan{.edit = [](descriptor::Mission& mission) {
-    hand_rests(mission);
-    for (auto& member : mission.subsystems)
-      if (member.subsystem.name == "JOYSTICK")
-        for (auto& configuration : member.subsystem.configurations)
-          configuration.self_test = descriptor::SelfTest::Required;
-  }};
-  Flight flight{plan};
+  Flight flight{{.edit = requires_of({"COMMUNICATION"})}};
   EXPECT_FALSE(flight.commission());
-  EXPECT_TRUE(flight.story().has("commissioning stopped: JOYSTICK self test: execution error: it has no self test"))
+  EXPECT_TRUE(
+      flight.story().has("commissioning stopped: COMMUNICATION self test: execution error: it has no self test"))
       << flight.story().text();
 }
 

@@ -211,6 +211,7 @@ constexpr Mistake mistakes[] = {
     {"E0317", R"(<Do action="log"/>)", R"(<Do action="log" to="@commanded"/>)"},
     {"E0113", R"(<When severity="low info"/><Do action="log"/>)", R"(<When event="PROCESS_DIED"/><Do action="restart" to="@Operational"/>)", "PreOperational"},
     {"E0103", R"(<Do action="log"/>)", R"(<Do action="log" @lmit="3"/>)"},
+    {"E0103", R"(<Plan name="note">)", R"(<Plan name="note" @safety="yes">)"},
     {"E0105", R"(<Do action="log"/>)", R"(@<Do action="set_state"/>)"},
     {"E0112", R"(<When severity="low info"/><Do action="log"/>)", R"(<When event="PROCESS_DIED"/><Do action="restart" limit="@0"/>)"},
     {"E0327", R"(parameter="ACTIVE" label)", R"(parameter="@CUR_VALUES.TORQ" label)", "CUR_VALUES.TORQUE"},

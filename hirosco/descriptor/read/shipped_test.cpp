@@ -155,5 +155,38 @@ TEST(ShippedMissions, WhatFunctionsOfArmsSetIsLostInACrashAndSaid) {
   EXPECT_GE(tried, 1) << "of whichever is shipped";
 }
 
+/// Whom a link joins to one, and to those, goes down with it and comes back with it.
+std::vector<std::string> network_of(const Mission& mission, const std::string& name) {
+  std::vector<std::string> network{name};
+  for (std::size_t next = 0; next < network.size(); ++next)
+    for (const MissionLink& link : mission.links) {
+      const std::string member = network[next];
+      const std::string& partner = link.from == member ? link.to : link.from;
+      if ((link.from == member || link.to == member) && std::ranges::find(network, partner) == network.end())
+        network.push_back(partner);
+    }
+  return network;
+}
+
+/// Who stands beside an arm whose program has crashed does not expect it to move before somebody has commanded it (docs/adr/0221).
+TEST(ShippedMissions, NoCrashBringsWhatActsBackToMoveByItself) {
+  constexpr std::int64_t commanded = 5;
+  int tried = 0;
+  for (const auto& [file, mission] : shipped_missions())
+    for (const Plan& plan : mission.plans)
+      for (const PlanStep& step : plan.steps) {
+        if (step.kind != "restart") continue;
+        ++tried;
+        if (step.values.at(3) != commanded) continue;
+        for (const auto& died : mission.subsystems)
+          for (const std::string& name : network_of(mission, died.subsystem.name)) {
+            if (!plan.subsystem.empty() && plan.subsystem != died.subsystem.name) continue;
+            EXPECT_TRUE(std::ranges::none_of(mission.find_member(name)->devices, &Device::actuator))
+                << file << ": plan " << plan.name << " brings " << name << " back to Operational";
+          }
+      }
+  EXPECT_GE(tried, 1);
+}
+
 }  // namespace
 }  // namespace hirosco::descriptor

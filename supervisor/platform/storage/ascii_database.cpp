@@ -25,12 +25,30 @@ namespace {
 /// A line holds at most a whole packet in hexadecimal and some 300 letters beside it.
 constexpr std::size_t max_line = 2 * Database::max_packet_octets + 1024;
 constexpr std::size_t checksum_letters = 10;  // " #" and eight digits
+constexpr std::string_view version_words = "HIROSCO packet log, version ";
+constexpr std::size_t max_version_line = version_words.size() + 10 + checksum_letters;
 constexpr std::string_view hex_digits = "0123456789abcdef";
 
 std::uint32_t checksum_of(std::string_view text) { return crc32(std::as_bytes(std::span{text})); }
 
 void add_hexadecimal(std::string& line, std::uint32_t value) {
   for (int shift = 28; shift >= 0; shift -= 4) line += hex_digits[(value >> shift) & 0xFU];
+}
+
+/// " #" and the checksum of all before it.
+void seal(std::string& line) {
+  const std::uint32_t checksum = checksum_of(line);
+  line += " #";
+  add_hexadecimal(line, checksum);
+}
+
+/// What is before the checksum; nothing: the line is cut or changed.
+std::optional<std::string_view> unsealed(std::string_view line) {
+  if (line.size() < checksum_letters) return std::nullopt;
+  const std::string_view words = line.substr(0, line.size() - checksum_letters);
+  std::string checksum = " #";
+  add_hexadecimal(checksum, checksum_of(words));
+  return line.substr(words.size()) == checksum ? std::optional{words} : std::nullopt;
 }
 
 std::string_view take_word(std::string_view& rest) {
@@ -91,13 +109,29 @@ Result<> sync_folder_of(const std::filesystem::path& path) {
   return ok();
 }
 
-bool ends_inside_a_line(int descriptor) {
-  const off_t size = ::lseek(descriptor, 0, SEEK_END);
-  char last{'\n'};
-  return size > 0 && ::pread(descriptor, &last, 1, size - 1) == 1 && last != '\n';
+/// What a file begins with says its version, or nothing does: what is there then is judged line by line.
+Result<> check_version(std::string_view begin) {
+  const auto version = version_from_ascii(begin.substr(0, begin.find('\n')));
+  if (version && *version != ascii_version) return fail(ErrorCode::Mismatch, "log file of another version", *version);
+  return ok();
 }
 
 }  // namespace
+
+std::string ascii_version_line(std::uint32_t version) {
+  std::string line = std::string{version_words} + std::to_string(version);
+  seal(line);
+  return line;
+}
+
+std::optional<std::uint32_t> version_from_ascii(std::string_view line) {
+  if (!line.starts_with(version_words)) return std::nullopt;
+  const auto words = unsealed(line);
+  if (!words || words->size() < version_words.size()) return std::nullopt;
+  std::string_view rest = words->substr(version_words.size());
+  std::uint32_t version{};
+  return take_number(rest, version) && rest.empty() ? std::optional{version} : std::nullopt;
+}
 
 std::string ascii_line(const LogRecord& record) {
   std::string line = std::to_string(record.number) + ' ' + time_text(record.run) + ' ' + time_text(record.stored) +
@@ -110,20 +144,15 @@ std::string ascii_line(const LogRecord& record) {
     line += hex_digits[std::to_integer<std::size_t>(octet) & 0xFU];
   }
   line.append(" ").append(record.note.view());
-  const std::uint32_t checksum = checksum_of(line);
-  line += " #";
-  add_hexadecimal(line, checksum);
+  seal(line);
   return line;
 }
 
 Result<LogRecord> record_from_ascii(std::string_view line) {
   const auto malformed = [](const char* what) { return fail(ErrorCode::Malformed, what); };
-  if (line.size() < checksum_letters) return malformed("log line is cut");
-  std::string_view rest = line.substr(0, line.size() - checksum_letters);
-  std::string checksum = " #";
-  add_hexadecimal(checksum, checksum_of(rest));
-  if (line.substr(rest.size()) != checksum) return malformed("log line differs from its checksum");
-
+  const auto words = unsealed(line);
+  if (!words) return malformed("log line is cut or differs from its checksum");
+  std::string_view rest = *words;
   LogRecord record;
   std::int64_t monotonic{};
   if (!take_number(rest, record.number)) return malformed("number of a log line");
@@ -144,11 +173,18 @@ Result<LogRecord> record_from_ascii(std::string_view line) {
 Result<std::unique_ptr<Database>> AsciiDatabase::open(const std::filesystem::path& path, DatabaseAccess access) {
   if (access == DatabaseAccess::Read) {
     if (!std::filesystem::is_regular_file(path)) return fail(ErrorCode::NotFound, "no such log file");
-    return std::unique_ptr<Database>(new AsciiDatabase{path, -1, false});
+    std::string begin(max_version_line + 1, '\n');
+    std::ifstream{path}.read(begin.data(), std::ssize(begin));
+    HIROSCO_TRY(check_version(begin));
+    return std::unique_ptr<Database>(new AsciiDatabase{path, -1, End::Whole});
   }
   const int descriptor = ::open(path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0640);
   if (descriptor < 0) return fail(code_of(errno), "opening the log file", errno);
-  std::unique_ptr<Database> database{new AsciiDatabase{path, descriptor, ends_inside_a_line(descriptor)}};
+  std::unique_ptr<Database> database{new AsciiDatabase{path, descriptor, end_of(descriptor)}};
+  std::string begin(max_version_line + 1, '\n');
+  // What cannot be read at its begin, a pipe, says no version.
+  if (::pread(descriptor, begin.data(), begin.size(), 0) < 0) begin.assign(1, '\n');
+  HIROSCO_TRY(check_version(begin));
   HIROSCO_TRY(sync_folder_of(path));
   return database;
 }
@@ -157,14 +193,23 @@ AsciiDatabase::~AsciiDatabase() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
+AsciiDatabase::End AsciiDatabase::end_of(int descriptor) {
+  const off_t size = ::lseek(descriptor, 0, SEEK_END);
+  if (size == 0) return End::Empty;
+  char last{'\n'};
+  return size > 0 && ::pread(descriptor, &last, 1, size - 1) == 1 && last != '\n' ? End::Torn : End::Whole;
+}
+
+/// The version goes with the first batch in one write: until then the file is an empty one.
 Result<> AsciiDatabase::do_append(std::span<const LogRecord> batch) {
   if (descriptor_ < 0) return fail(ErrorCode::NotPermitted, "this log is open for reading only");
   text_.clear();
-  if (torn_end_) text_ += '\n';
+  if (end_ == End::Empty) text_ += ascii_version_line() + '\n';
+  if (end_ == End::Torn) text_ += '\n';
   for (const LogRecord& record : batch) text_.append(ascii_line(record)) += '\n';
   HIROSCO_TRY(write_all(descriptor_, text_));
   if (::fdatasync(descriptor_) != 0) return fail(ErrorCode::SystemFailure, "fdatasync of the log file", errno);
-  torn_end_ = false;
+  end_ = End::Whole;
   return ok();
 }
 
@@ -189,7 +234,7 @@ Result<LogPage> AsciiDatabase::do_read(const LogQuery& query) {
       continue;
     }
     const std::string_view line{buffer.data()};
-    if (line.empty()) continue;
+    if (line.empty() || version_from_ascii(line) == ascii_version) continue;
     auto record = record_from_ascii(line);
     if (!record) {
       ++page.damaged;

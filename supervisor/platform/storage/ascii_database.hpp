@@ -6,8 +6,8 @@
 
 namespace hirosco::supervisor {
 
-/// One readable line per record, checksum at its end; format in the README. One write and one fdatasync per batch.
-/// A torn or changed line is counted at reading and never mistaken for a record.
+/// One readable line per record, checksum at its end, behind one with the version; format in the README. One write and one fdatasync
+/// per batch. A torn or changed line is counted at reading and never mistaken for a record. A file of another version is left alone.
 class AsciiDatabase final : public Database {
  public:
   [[nodiscard]] static Result<std::unique_ptr<Database>> open(const std::filesystem::path& path, DatabaseAccess access);
@@ -16,17 +16,29 @@ class AsciiDatabase final : public Database {
   AsciiDatabase& operator=(const AsciiDatabase&) = delete;
 
  private:
-  AsciiDatabase(std::filesystem::path path, int descriptor, bool torn_end)
-      : path_{std::move(path)}, descriptor_{descriptor}, torn_end_{torn_end} {}
+  enum class End : std::uint8_t {
+    Empty,  ///< nothing stands in the file, its version has to
+    Whole,
+    Torn,  ///< inside a line that a crash has cut
+  };
+  AsciiDatabase(std::filesystem::path path, int descriptor, End end)
+      : path_{std::move(path)}, descriptor_{descriptor}, end_{end} {}
+  [[nodiscard]] static End end_of(int descriptor);
   Result<> do_append(std::span<const LogRecord> batch) override;
   Result<LogPage> do_read(const LogQuery& query) override;
   [[nodiscard]] std::string_view do_strategy() const noexcept override { return "ascii"; }
 
   std::filesystem::path path_;
   int descriptor_;  ///< -1: for reading only
-  bool torn_end_;  ///< the file ends inside a line that a crash has cut
+  End end_;  ///< how what is there ends
   std::string text_;  ///< of the batch being written; keeps its memory
 };
+
+/// Of the lines that we write. A file says it in its first line; where none does it is as of version 1, which began without.
+inline constexpr std::uint32_t ascii_version = 1;
+[[nodiscard]] std::string ascii_version_line(std::uint32_t version = ascii_version);
+/// Nothing: it is no such line, or not a whole one.
+[[nodiscard]] std::optional<std::uint32_t> version_from_ascii(std::string_view line);
 
 /// The line of a record without the line feed, and back (Malformed: wrong form or checksum).
 [[nodiscard]] std::string ascii_line(const LogRecord& record);

@@ -10,9 +10,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
-#include <random>
 
-#include "supervisor/platform/storage/ascii_database.hpp"
 #include "supervisor/platform/storage/log_pieces.hpp"
 #include "supervisor/platform/storage/postgresql_database.hpp"
 #include "supervisor/platform/storage/sqlite_database.hpp"
@@ -216,7 +214,6 @@ class OneDatabase : public ::testing::Test {
   TestFolder folder_;
 };
 using Sqlite = OneDatabase;
-using Ascii = OneDatabase;
 
 /// Another program's hands on a SQLite file.
 void execute(const std::filesystem::path& path, const char* sql) {
@@ -386,52 +383,6 @@ TEST_F(Sqlite, NeverTrustsADiskAgainWhoseSyncHasFailedOnce) {
   auto next = std::move(*open_database(DatabaseStrategy::Sqlite, path()));
   ASSERT_TRUE(next->append(std::vector{record(2), record(3)}));
   EXPECT_THAT(numbers(*next->read({})), ElementsAre(1, 2, 3));
-}
-
-TEST_F(Ascii, SkipsAndCountsATornLastLine) {
-  const std::string whole = ascii_line(record(1)) + '\n' + ascii_line(record(2)) + '\n';
-  const std::size_t first = ascii_line(record(1)).size() + 1;
-  for (std::size_t cut = first + 1; cut < whole.size() - 1; ++cut) {
-    std::ofstream{path(), std::ios::trunc} << whole.substr(0, cut);
-    auto database = std::move(*open_database(DatabaseStrategy::Ascii, path()));
-    ASSERT_EQ(database->read({})->damaged, 1U) << cut;
-    ASSERT_TRUE(database->append(std::vector{record(3)}));
-    const auto page = database->read({});
-    ASSERT_THAT(numbers(*page), ElementsAre(1, 3)) << cut;
-    ASSERT_EQ(page->damaged, 1U) << cut;
-  }
-}
-
-TEST_F(Ascii, NeverShowsALineWithAFlippedBit) {
-  const std::string line = ascii_line(record(1));
-  ASSERT_TRUE(record_from_ascii(line));
-  for (std::size_t bit = 0; bit < line.size() * 8; ++bit) {
-    std::string damaged = line;
-    damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
-    EXPECT_FALSE(record_from_ascii(damaged)) << bit;
-  }
-}
-
-TEST_F(Ascii, SurvivesNoiseInItsFile) {
-  std::mt19937 random{7};
-  std::ofstream file{path(), std::ios::binary};
-  for (int i = 0; i < 400'000; ++i) file.put(static_cast<char>(i > 100'000 && i < 350'000 ? 'x' : random()));
-  file << '\n' << ascii_line(record(9)) << '\n';
-  file.close();
-  const auto page = (*open_database(DatabaseStrategy::Ascii, path(), DatabaseAccess::Read))->read({});
-  ASSERT_TRUE(page);
-  EXPECT_THAT(numbers(*page), ElementsAre(9));
-  EXPECT_GT(page->damaged, 0U);
-}
-
-TEST_F(Ascii, ReportsAFullDiskAndStoresNothingAfterwards) {
-  std::filesystem::create_symlink("/dev/full", path());
-  auto database = open_database(DatabaseStrategy::Ascii, path());
-  ASSERT_TRUE(database);
-  const auto stored = (*database)->append(std::vector{record(1)});
-  ASSERT_FALSE(stored);
-  EXPECT_EQ(stored.error().value, ENOSPC);
-  EXPECT_FALSE((*database)->append(std::vector{record(2)}));
 }
 
 TEST(LogText, TellsWhoSentWhatToWhomAndWhatBecameOfIt) {

@@ -12,6 +12,7 @@
 #include <random>
 
 #include "hirosco/utilities/testing/slice.hpp"
+#include "supervisor/platform/storage/ascii_database.hpp"
 #include "supervisor/platform/storage/log_store.hpp"
 #include "supervisor/platform/storage/testing/batches.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
@@ -175,6 +176,24 @@ TEST(AsciiPieces, ThatSomebodyCutsKeepTheirBeginningAndTheGapIsWhatWentWithTheEn
   EXPECT_GT(store.trouble().lost, 40U);
   EXPECT_LT(store.trouble().lost, 60U);
   EXPECT_EQ(all.damaged, 1U) << "the line that was cut";
+}
+
+TEST(AsciiPieces, OfAnotherVersionAreLeftAloneAndCountedAtReading) {
+  const TestFolder folder;
+  const fs::path log = folder.path() / "log.db";
+  const fs::path first = piece_path(log, DatabaseStrategy::Ascii, 1);
+  std::ofstream{first} << ascii_version_line(2) << '\n';
+  const auto refused = read_log(log, {});
+  ASSERT_FALSE(refused) << "it is all that there is";
+  EXPECT_STREQ(refused.error().text, "log file of another version");
+  const auto octets = fs::file_size(first);
+  LogStore store{DatabaseStrategy::Ascii, log};
+  EXPECT_FALSE(store.append(batch_of(1, 3)));
+  ASSERT_TRUE(store.append(batch_of(1, 3)));
+  EXPECT_EQ(fs::file_size(first), octets);
+  const LogPage all = *read_log(log, {});
+  EXPECT_EQ(all.records.size(), 3U);
+  EXPECT_EQ(all.damaged, 1U) << "the piece that cannot be read";
 }
 
 TEST_P(LogPieces, ThatGoWhileTheDiskIsFullAreAGap) {

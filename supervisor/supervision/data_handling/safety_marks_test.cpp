@@ -45,33 +45,65 @@ struct SafetyMarks : PartsTest {
     for (int step = 0; step < 3; ++step) own_step();
     for (const std::uint16_t member : {arm, hand, camera}) static_cast<void>(received(member));
   }
+  /// Every request of every service to the supervisor and ARM, every function of the supervisor but these; how many.
+  int ask_everything(std::initializer_list<std::string_view> but) {
+    int asked = 0;
+    const std::vector<std::byte> words[] = {{},
+                                            std::vector<std::byte>(1, std::byte{1}),
+                                            std::vector<std::byte>(5, std::byte{1}),
+                                            std::vector<std::byte>(17, std::byte{1})};
+    for (const std::uint16_t apid : {supervisor_apid, arm})
+      for (const pus::ServiceKind* service : pus::standard_services())
+        for (const pus::RequestKind& request : service->requests)
+          for (const auto& data : words) {
+            take(apid, service->type, request.subtype, data);
+            ++asked;
+          }
+    for (const descriptor::Function& function : craft.mission.supervisor.functions)
+      for (const int argument : {-1, 0, 1, 2, 255}) {
+        if (std::ranges::find(but, function.name) != but.end()) continue;
+        take(supervisor_apid, 8, 1, call_data(function.name, argument));
+        ++asked;
+      }
+    return asked;
+  }
 };
 
 TEST_F(SafetyMarks, NoRequestOfAnyServiceOrFunctionChangesWhatAnyEventWouldDo) {
   const std::string before = plans();
   ASSERT_FALSE(before.empty());
-  int asked = 0;
-  const std::vector<std::byte> words[] = {{},
-                                          std::vector<std::byte>(1, std::byte{1}),
-                                          std::vector<std::byte>(5, std::byte{1}),
-                                          std::vector<std::byte>(17, std::byte{1})};
-  for (const std::uint16_t apid : {supervisor_apid, arm})
-    for (const pus::ServiceKind* service : pus::standard_services())
-      for (const pus::RequestKind& request : service->requests)
-        for (const auto& data : words) {
-          take(apid, service->type, request.subtype, data);
-          ++asked;
-        }
-  for (const descriptor::Function& function : craft.mission.supervisor.functions)
-    for (const int argument : {-1, 0, 1, 2, 255}) {
-      if (function.name == "SHUTDOWN") continue;
-      take(supervisor_apid, 8, 1, call_data(function.name, argument));
-      ++asked;
-    }
-  EXPECT_GT(asked, 100);
+  EXPECT_GT(ask_everything({"SHUTDOWN"}), 100);
   EXPECT_EQ(plans(), before);
   take(supervisor_apid, 8, 1, call_data("SHUTDOWN"));
   EXPECT_EQ(plans(), before);
+}
+
+/// SAFE_ALL and SHUTDOWN are stops themselves: what becomes of a plan beside them, their own tests say.
+TEST_F(SafetyMarks, NoRequestEndsAPlanThatIsUnderWayOrTakesItsNextStepFromIt) {
+  descriptor::Event hot;
+  hot.name = "HOT";
+  hot.id = 2000;
+  hot.severity = Severity::Medium;
+  craft.mission.subsystems.front().subsystem.events.push_back(hot);
+  descriptor::Plan plan;
+  plan.name = "two steps";
+  plan.event = hot.name;
+  for (const State state : {ErrorOperational, PostOperational})
+    plan.steps.push_back({"set_state", {static_cast<std::int64_t>(state)}});
+  craft.mission.plans.push_back(plan);
+  set(arm, Operational);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  event(arm, hot.id, hot.severity);
+  const auto begun = received(arm);
+  ASSERT_EQ(begun.size(), 1U);
+  ASSERT_EQ(begun[0].text, to(ErrorOperational));
+  EXPECT_GT(ask_everything({"SAFE_ALL", "SHUTDOWN"}), 100);
+  for (int state = 0; state < 10; ++state) take(arm, 8, 1, call_data("SET_STATE", state));
+  EXPECT_TRUE(craft.member(arm)->recovery.running());
+  EXPECT_FALSE(was_told("gives way"));
+  set(arm, ErrorOperational);
+  verify(arm, begun[0].request, 7);
+  EXPECT_THAT(texts(arm), ::testing::ElementsAre(to(PostOperational)));
 }
 
 TEST_F(SafetyMarks, NoProtectionIsWritableByTelecommand) {

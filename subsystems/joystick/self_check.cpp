@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/joystick/self_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace hirosco::joystick {
+namespace {
+
+constexpr double range_rad = 0.4;  ///< between the stops
+constexpr double past_stop_rad = 0.05;  ///< the stops are of rubber
+/// No hand is faster.
+constexpr double most_rad_s = 20;
+constexpr double most_jump_rad = 0.01;  ///< beyond that, from one cycle to the next
+
+constexpr double most_scale = 0.1;  ///< of FORCE_SCALE
+/// Torques of a robot's joint: something touched, and more than the handle can show.
+constexpr std::array presses_n_m{5.0, -5.0, 1000.0, -1000.0};
+constexpr double smallest_n_m = 1e-9;
+
+[[nodiscard]] std::unexpected<Error> fails(const char* what, std::size_t axis) noexcept {
+  return fail(ErrorCode::Internal, what, static_cast<std::int64_t>(axis + 1));
+}
+
+/// Written so that what is no number fails.
+[[nodiscard]] bool is_within(double value, double most) noexcept { return std::abs(value) <= most; }
+
+}  // namespace
+
+Result<Step> SelfCheck::step(const Seen& seen, bool first) noexcept {
+  if (first) {
+    done_ = quiet_ = 0;
+    last_rad_ = seen.position_rad;
+    HIROSCO_TRY(check_laws(seen));
+  }
+  HIROSCO_TRY(check_handle(seen));
+  HIROSCO_TRY(check_rest(seen));
+  return ++done_ < cycles ? again : done;
+}
+
+Result<> SelfCheck::check_handle(const Seen& seen) noexcept {
+  if (!seen.alive) return fail(ErrorCode::Unavailable, "the handle says nothing");
+  if (seen.hand >= 8 || (seen.hands >> seen.hand & 1) == 0)
+    return fail(ErrorCode::Internal, "it tells of a hand that it has not, number", seen.hand);
+  for (std::size_t i = 0; i < last_rad_.size(); ++i) {
+    if (!is_within(seen.position_rad[i], range_rad + past_stop_rad))
+      return fails("measured outside of its range, axis", i);
+    if (!is_within(seen.velocity_rad_s[i], most_rad_s)) return fails("measured faster than a hand is, axis", i);
+    if (!is_within(seen.position_rad[i] - last_rad_[i], most_rad_s * seen.period_s + most_jump_rad))
+      return fails("measured to jump, axis", i);
+  }
+  last_rad_ = seen.position_rad;
+  return ok();
+}
+
+/// What was shown fades for some cycles; behind those there is nothing that a hand could be pushed by.
+Result<> SelfCheck::check_rest(const Seen& seen) noexcept {
+  quiet_ = seen.peer_active ? 0 : quiet_ + 1;
+  if (quiet_ <= DisplayLaw::ramp_cycles) return ok();
+  for (std::size_t i = 0; i < seen.shown_n_m.size(); ++i)
+    if (!is_within(seen.shown_n_m[i], smallest_n_m)) return fails("it would push though no robot presses, axis", i);
+  return ok();
+}
+
+/// Both, as PASSIVITY may change them while the hand is on the stick; with the scale in force and the greatest.
+Result<> SelfCheck::check_laws(const Seen& seen) const noexcept {
+  for (const double scale : {seen.force_scale, most_scale}) {
+    HIROSCO_TRY(check_law<PositionForce>(seen.period_s, scale));
+    HIROSCO_TRY(check_law<PassivePositionForce>(seen.period_s, scale));
+    HIROSCO_TRY(check_damping(seen.period_s, scale));
+  }
+  return ok();
+}
+
+/// Of a handle at rest: the robot's torque scaled against the hand, in its axis alone, no more than the motors may give.
+template <class Display>
+Result<> SelfCheck::check_law(double period_s, double force_scale) const noexcept {
+  const auto shown = [&](const DisplayLaw::Input& input) {
+    Display fresh{period_s};
+    return law_(fresh, input, force_scale);
+  };
+  constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t axis = 0; axis < last_rad_.size(); ++axis) {
+    if (!is_within(shown({.peer_active = true})[axis], smallest_n_m))
+      return fails("it would push though the robot presses on nothing, axis", axis);
+    DisplayLaw::Input input{.peer_active = true};
+    input.peer_torque_n_m[axis] = no_number;
+    if (!is_within(shown(input)[axis], smallest_n_m)) return fails("it would push by what is no number, axis", axis);
+    for (const double pressed : presses_n_m) {
+      input.peer_torque_n_m[axis] = pressed;
+      input.peer_active = false;
+      if (!is_within(shown(input)[axis], smallest_n_m))
+        return fails("it would show a robot that does not act, axis", axis);
+      input.peer_active = true;
+      const Axes answer = shown(input);
+      const double wanted =
+          std::clamp(-force_scale * pressed, -DisplayLaw::torque_max_n_m, DisplayLaw::torque_max_n_m);
+      if (!is_within(answer[axis] - wanted, smallest_n_m))
+        return fails("it would push otherwise than against what the robot presses on, axis", axis);
+      const std::size_t other = 1 - axis;
+      if (!is_within(answer[other], smallest_n_m)) return fails("it would push by the other axis, axis", other);
+    }
+  }
+  return ok();
+}
+
+/// A hand that is pushed on gets less by the passive law than by the plain one, whichever way it moves.
+Result<> SelfCheck::check_damping(double period_s, double force_scale) const noexcept {
+  for (std::size_t axis = 0; axis < last_rad_.size(); ++axis)
+    for (const double velocity_rad_s : {0.5, -0.5}) {
+      DisplayLaw::Input input{.peer_active = true};
+      input.velocity_rad_s[axis] = velocity_rad_s;
+      input.peer_torque_n_m[axis] = velocity_rad_s > 0 ? -presses_n_m[0] : presses_n_m[0];
+      PositionForce plain{period_s};
+      PassivePositionForce passive{period_s};
+      const double pushed = law_(plain, input, force_scale)[axis] * velocity_rad_s;
+      const double damped = law_(passive, input, force_scale)[axis] * velocity_rad_s;
+      if (!(damped <= pushed)) return fails("passivity would drive the hand on, axis", axis);
+    }
+  return ok();
+}
+
+}  // namespace hirosco::joystick
