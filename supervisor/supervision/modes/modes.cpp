@@ -9,6 +9,7 @@
 
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "supervisor/supervision/modes/commissioning.hpp"
+#include "supervisor/supervision/telecommand/origin.hpp"
 
 namespace hirosco::supervisor {
 
@@ -70,6 +71,7 @@ Outcome Modes::set_mode(std::uint8_t id, const Call& call) {
   if (mode == nullptr) return refused(pus::FailureCode::UnknownIdentifier);
   if (const auto why = not_now()) return *why;
   ModePlan plan = plan_mode(craft_, parts_.means.links, parts_.power, *mode);
+  object_to_releases(plan, call);
   if (!plan.against.empty()) return impossible(*mode, plan, call);
   if (plan.stages.empty()) {
     enter(*mode);
@@ -77,6 +79,14 @@ Outcome Modes::set_mode(std::uint8_t id, const Call& call) {
   }
   change(*mode, std::move(plan), call);
   return hirosco::running;
+}
+
+/// Who is stopped, or was never let go, is let go by the ground: a subsystem that asks for a mode would lift a stop by the supervisor's hand.
+void Modes::object_to_releases(ModePlan& plan, const Call& call) const {
+  if (!Origin::of(call.request.source, craft_.mission).is_subsystem()) return;
+  for (const std::uint16_t apid : plan.released)
+    plan.against.push_back(
+        fmt::format("it lets {} move, which the ground may ask for and no subsystem", craft_.name_of(apid)));
 }
 
 void Modes::change(const descriptor::Mode& mode, ModePlan plan, const Call& call) {

@@ -20,7 +20,8 @@ class Commissioning;
 /// The mode of the craft (paper 4.3). SET_MODE is a planned change of all of it (docs/adr/0075): refused as a whole with every
 /// reason, or carried out in stages of ordinary telecommands; it ends in the new mode, or with whom it moved stopped and the
 /// initial mode in force. ENTER_MODE changes what is permitted and moves nobody: what a mode is entered from, needs and excludes holds
-/// for it as well (docs/adr/0171). What was permitted in a mode before is void behind it, by its epoch on every member's page.
+/// for it as well (docs/adr/0171). A subsystem that a permit names may ask for both, but for no change that lets anybody move
+/// (docs/adr/0216). What was permitted in a mode before is void behind it, by its epoch on every member's page.
 /// Thread: the supervisor's.
 class Modes final : public Undertaking, public Remembered {
  public:
@@ -54,6 +55,7 @@ class Modes final : public Undertaking, public Remembered {
   enum class StatesFollow : std::uint8_t { Here, Elsewhere };
   [[nodiscard]] std::optional<Outcome> not_now() const;
   Outcome set_mode(std::uint8_t id, const Call& call);
+  void object_to_releases(ModePlan& plan, const Call& call) const;
   Outcome enter_mode(std::uint8_t id, const Call& call);
   Outcome impossible(const descriptor::Mode& mode, const ModePlan& plan, const Call& call);
   void change(const descriptor::Mode& mode, ModePlan plan, const Call& call);
