@@ -4,7 +4,7 @@
 #include "hirosco/subsystem/service_loop/requester.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
-/// A subsystem asks the supervisor, and hears it (docs/adr/0216): HAND's descriptor says SET_MODE, MODE, structure 4701 and HEARD_LOST. The mode
+/// A subsystem asks the supervisor, and hears it (docs/adr/0216): HAND's descriptor says SET_MODE, ENTER_MODE, MODE, structure 4701 and HEARD_LOST. The mode
 /// "open" permits it all, "narrow" nothing. CAMERA is the ground link.
 namespace hirosco::supervisor {
 namespace {
@@ -29,7 +29,7 @@ struct AskedOfSupervisor : PartsTest {
     for (auto& member : craft.mission.subsystems) {
       if (member.subsystem.id != hand) continue;
       member.subsystem.commands = {{.subsystem = "SUPERVISOR",
-                                    .functions = {"SET_MODE", "SHUTDOWN"},
+                                    .functions = {"SET_MODE", "ENTER_MODE", "SHUTDOWN"},
                                     .things = {{Kind::Read, "MODE", mode_id, {}}},
                                     .at = {},
                                     .apid = supervisor_apid}};
@@ -65,7 +65,11 @@ struct AskedOfSupervisor : PartsTest {
     ASSERT_TRUE(played[hand].channel.subsystem_end().send(message));
     parts.reception.read(*craft.member(hand));
   }
-  void ask_for_mode(int mode) { send(8, 1, call_data("SET_MODE", mode)); }
+  void ask_for_mode(int mode, const char* function = "SET_MODE") { send(8, 1, call_data(function, mode)); }
+  void ask_by_ground(int mode) {
+    const auto asked = telecommand(supervisor_apid, 8, 1, call_data("SET_MODE", mode));
+    parts.telecommands.take({.packet = asked, .origin = Origin::ground()});
+  }
   /// Steps of a supervisor whose loop goes on.
   void settle(int steps = 20) {
     for (int step = 0; step < steps; ++step) {
@@ -144,6 +148,66 @@ TEST_F(AskedOfSupervisor, AModeThatLetsSomebodyMoveIsNotItsToAskForAndTheGrounds
   EXPECT_NE(craft.changing_to, nullptr) << "nobody is let move";
 }
 
+TEST_F(AskedOfSupervisor, AModeThatMovesTheGroundLinkIsNotItsToAskForAndTheGroundsIs) {
+  craft.mission.modes[1].commission = {
+      {.subsystem = "CAMERA", .configuration = "ONLY", .state = PreOperational, .at = {}},
+      {.subsystem = "HAND", .configuration = "ONLY", .state = SafeOperational, .at = {}}};
+  ask_for_mode(narrow);
+  settle();
+  EXPECT_EQ(craft.changing_to, nullptr);
+  EXPECT_TRUE(was_told("it moves CAMERA, the ground link, which the ground may ask for and no subsystem"));
+  EXPECT_THAT(heard(), Contains("1.4 code 259"));
+  EXPECT_TRUE(texts(camera).empty());
+  ask_by_ground(narrow);
+  settle();
+  EXPECT_NE(craft.changing_to, nullptr);
+}
+
+/// Each change voids what was permitted before it, what the ground said as well, by which it would take the permit away.
+TEST_F(AskedOfSupervisor, OneThatAsksForModesWithoutEndIsGivenOneInAPauseAndTheGroundIsNotHeldUp) {
+  auto& permits = craft.mission.modes[1].permits;
+  permits.push_back(craft.mission.modes[0].permits.back());
+  permits.push_back({.subsystem = "SUPERVISOR", .functions = {"SET_MODE"}, .services = {}, .parameters = {}, .at = {}});
+  ask_for_mode(narrow);
+  settle();
+  ASSERT_EQ(craft.mode->name, "narrow");
+  heard();
+  const std::uint32_t epoch = craft.mode_epoch;
+  constexpr int times = 20;
+  for (int i = 0; i < times; ++i) {
+    ask_for_mode(i % 4 < 2 ? open : narrow, i % 2 == 0 ? "SET_MODE" : "ENTER_MODE");
+    settle(50);
+  }
+  EXPECT_EQ(craft.mode_epoch, epoch) << "nothing that the ground was permitted is void";
+  const auto told = heard();
+  EXPECT_EQ(std::ranges::count(told, "1.4 code 264"), times);
+  ask_by_ground(open);
+  settle();
+  EXPECT_EQ(craft.mode->name, "open") << "the ground waits for no pause";
+  settle(static_cast<int>(Modes::pause_of_subsystems / 1ms));
+  ask_for_mode(narrow, "ENTER_MODE");
+  settle();
+  EXPECT_EQ(craft.mode->name, "narrow");
+  ask_for_mode(open);
+  settle();
+  EXPECT_EQ(craft.mode->name, "narrow") << "behind a mode that it entered it waits, too";
+}
+
+TEST_F(AskedOfSupervisor, BehindAChangeThatFailedItWaitsToo) {
+  craft.mission.modes[1].commission = {
+      {.subsystem = "HAND", .configuration = "ONLY", .state = PreOperational, .at = {}}};
+  ask_for_mode(narrow);
+  settle();
+  ASSERT_NE(craft.changing_to, nullptr);
+  parts.modes.cancel("a test");
+  settle();
+  ASSERT_EQ(craft.changing_to, nullptr);
+  heard();
+  ask_for_mode(narrow, "ENTER_MODE");
+  settle();
+  EXPECT_THAT(heard(), ElementsAre("1.1", "1.4 code 264"));
+}
+
 TEST_F(AskedOfSupervisor, WhatItSaidBeforeAStopIsNotCarriedOutBehindIt) {
   ask_for_mode(narrow);
   parts.under_way.all_stopped("a test");
@@ -177,6 +241,22 @@ TEST_F(AskedOfSupervisor, MoreThanItMayHaveUnderWayAreRefusedAndAStopNever) {
   settle();
   EXPECT_THAT(heard(), Contains("1.1"));
   EXPECT_TRUE(was_told("every actuator inhibited"));
+}
+
+/// It stops the craft as often as it says so. Of so many at once it is told the outcome of the first ones.
+TEST_F(AskedOfSupervisor, AStopThatIsSaidWithoutEndIsCarriedOutEachTimeAndKeptForBoundedlyMany) {
+  const std::uint32_t before = guard.newest_stop();
+  constexpr std::uint32_t times = SafeAll::most_waiting + 10;
+  for (std::uint32_t i = 0; i < times; ++i) send(8, 1, call_data("SAFE_ALL"));
+  EXPECT_EQ(guard.newest_stop(), before + times);
+  settle(1);
+  const auto told = heard();
+  EXPECT_EQ(std::ranges::count(told, "1.3"), static_cast<std::ptrdiff_t>(times));
+  EXPECT_EQ(std::ranges::count(told, "1.8 code 514"), 10) << "carried out, and no outcome of its own";
+  std::vector<std::byte> noted(4096);
+  OctetWriter writer{noted};
+  parts.safe_all.note(writer);
+  EXPECT_LE(writer.size(), 2 + SafeAll::most_waiting * 8);
 }
 
 TEST_F(AskedOfSupervisor, WhatNobodyWaitsForTheEndOfIsRefused) {
