@@ -95,5 +95,35 @@ TEST(PermittedOrigins, OpenNothingOfTheSupervisorThatIsTheGroundsAlone) {
   EXPECT_EQ(problem("ground"), "0");
 }
 
+/// Else it could bring the craft where nobody on ground may ask for anything but a stop and the end of the flight.
+TEST(PermittedOrigins, WhoMayAskForModesLeavesTheGroundAWayOutOfEach) {
+  const std::string configuration = R"(  <Configuration name="NORMAL")", events = "  <EventService>";
+  const std::string in_telepresence = R"(<Permit subsystem="FLYWHEEL" functions="SET_FORCE_SCALE"/>)";
+  const auto problem = [&](const std::string& in_commissioning, const std::string& besides,
+                           const std::string& declares = "SET_MODE") {
+    const std::string mission = testing::changed(open_to_all, open_to_all + in_commissioning);
+    const std::string functions =
+        R"(<FunctionService><Function name="SET_MODE"/><Function name="SAFE_ALL"/></FunctionService>)";
+    const std::string commands = R"(<Commands subsystem="SUPERVISOR" functions=")" + declares + R"("/>)";
+    const auto file = [](const char* name) { return file_system()(testing::data / name).value(); };
+    return permit_problem(read_mission(
+        testing::data / "mission.xml",
+        testing::overlay(
+            {{"mission.xml", testing::changed(in_telepresence, in_telepresence + besides, mission)},
+             {"supervisor.xml", testing::changed(configuration, functions + configuration, file("supervisor.xml"))},
+             {"flywheel.xml", testing::changed(events, commands + events, file("flywheel.xml"))}})));
+  };
+  const std::string of_flywheel = R"(<Permit subsystem="SUPERVISOR" functions="SET_MODE" from="FLYWHEEL"/>)";
+  const std::string refused = "E0357 the ground may not leave mode 'telepresence', and 'FLYWHEEL' may ask for modes";
+  EXPECT_EQ(problem("", ""), "0") << "nobody on board may";
+  EXPECT_EQ(problem(of_flywheel, ""), refused);
+  EXPECT_EQ(problem(of_flywheel, of_flywheel), refused);
+  EXPECT_EQ(problem("", of_flywheel), refused) << "whichever mode permits it";
+  EXPECT_EQ(problem(of_flywheel, R"(<Permit subsystem="SUPERVISOR" functions="SET_MODE"/>)"), "0");
+  EXPECT_EQ(problem(of_flywheel, R"(<Permit subsystem="*" functions="*" from="ground FLYWHEEL"/>)"), "0");
+  EXPECT_EQ(problem(R"(<Permit subsystem="*" functions="*" from="FLYWHEEL"/>)", "", "SAFE_ALL"), "0")
+      << "it declares to ask for no mode";
+}
+
 }  // namespace
 }  // namespace hirosco::descriptor
