@@ -129,9 +129,11 @@ template <class Texts>
   json list = json::array();
   for (const auto& mode : mission.modes) {
     json permits = json::array();
-    for (const auto& permit : mode.permits)
+    for (const auto& permit : mode.permits) {
+      if (!permit.from.empty() && !permit.names(descriptor::ground_origin)) continue;  // is no operator's
       permits.push_back(
           {{"subsystem", permit.subsystem}, {"functions", permit.functions}, {"services", permit.services}});
+    }
     json commission = json::array();
     for (const auto& step : mode.commission)
       commission.push_back(

@@ -110,6 +110,18 @@ TEST_F(AMissionAsJson, SaysWhatAModePermitsAndBringsUp) {
   EXPECT_EQ(work["establish"], nlohmann::json::array({1}));
 }
 
+TEST_F(AMissionAsJson, LeavesOutWhatAModePermitsToSubsystemsAlone) {
+  auto guarded = testing::workshop();
+  auto& permits = guarded.modes.at(0).permits;
+  const std::size_t before = permits.size();
+  permits.push_back(permits.front());
+  permits.back().from = {"LAMP"};
+  permits.push_back(permits.front());
+  permits.back().from = {"LAMP", "ground"};
+  const auto modes = mission_json(Catalogue{guarded}, edges, faults)["modes"];
+  EXPECT_EQ(named(modes, guarded.modes.at(0).name)["permits"].size(), before + 1);
+}
+
 TEST_F(AMissionAsJson, HasTheFaultsOfItsDevicesAndTheEdgesOfTheStates) {
   EXPECT_EQ(told["simulated"], true);
   const nlohmann::json fault{{"line", "unplug"}, {"text", "Unplug it"}};

@@ -6,6 +6,7 @@ tree, checked, tested and simulated (Built), and flown with real processes, wher
 import json
 import os
 import pathlib
+import re
 import shutil
 import socket
 import struct
@@ -232,6 +233,36 @@ class Flown(Outside, unittest.TestCase):
             self.assertIn("outcome unknown", str(craft.log("--service", "1")))
             self.assertEqual(craft.tc("SWITCH", "PING")[1][-1], "1,7", "it flies on")
             craft.end()
+
+    def test_one_subsystem_asks_the_supervisor_for_a_mode_and_hears_which_there_is(self):
+        switched = self.lamp / "switched.xml"
+        commissioning, operation, dark = 1, 2, 3
+        with flight.Flight(switched, binaries=self.prefix / "bin", environment=self.environment, more=()) as craft:
+            craft.wait_told("commissioned: mode operation", 20.0)
+            self.assertTrue(self.switch_knows(craft, operation))
+            # What lets somebody move is the ground's to ask for, whatever the mode permits the switch.
+            self.assertEqual(craft.tc("DESK_LAMP", "SET_STATE", 4)[1][-1], "1,7")
+            self.assertEqual(craft.tc("SWITCH", "CHANGE_MODE", operation)[1], ["1,1", "1,3", "1,8"])
+            self.assertIn("it lets DESK_LAMP move, which the ground may ask for and no subsystem", str(craft.log("--text", "is impossible")))
+            self.assertEqual(craft.tc("DESK_LAMP", "SET_STATE", 5)[1][-1], "1,7")
+            self.assertEqual(craft.tc("SWITCH", "CHANGE_MODE", dark), (0, ["1,1", "1,3", "1,7"]))
+            craft.wait_told("mode dark", 5.0)
+            self.assertTrue(self.switch_knows(craft, dark))
+            # No row of this mode names it: default deny.
+            self.assertEqual(craft.tc("SWITCH", "CHANGE_MODE", commissioning)[1], ["1,1", "1,3", "1,8"])
+            self.assertIn("not permitted in this mode", str(craft.log("--service", "1")))
+            self.assertEqual(craft.tc("SUPERVISOR", "SET_MODE", operation)[1][-1], "1,7", "the ground may")
+            self.assertTrue(self.switch_knows(craft, operation))
+            self.assertEqual(craft.end(), 0)
+
+    @staticmethod
+    def switch_knows(craft, mode):
+        """By its own parameter, which has the value of the supervisor's, in its own housekeeping: within some seconds."""
+        for _ in range(5):
+            told = craft.hirosco("status", "SWITCH", "--mission", craft.mission).stdout
+            if re.search(rf"^\s*MODE\s+{mode}\s*$", told, re.M):
+                return True
+        return False
 
     def forged(self, craft):
         """The ground speaks under the id of the switch: refused, and reported to the ground."""

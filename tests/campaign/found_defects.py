@@ -9,6 +9,7 @@ GUARD, LOOP_WATCH = "supervisor/guard/guard.cpp", "supervisor/guard/loop_watch.c
 MANIPULATOR = "subsystems/manipulator/manipulator.cpp"
 PERMISSION, LINK_ENDS = f"{SUPERVISION}/data_handling/permission.cpp", "hirosco/subsystem/service_loop/link_ends.cpp"
 RECEPTION, GROUND_LINK = f"{SUPERVISION}/data_handling/reception.cpp", "subsystems/communication/ground_clients.cpp"
+MODES = f"{SUPERVISION}/modes/modes.cpp"
 TELECOMMANDS, RETRIEVAL = f"{SUPERVISION}/data_handling/telecommands.cpp", f"{SUPERVISION}/data_handling/retrieval.cpp"
 DEVICE, LOG_STORE = "simulation/devices/simulated_device.cpp", "supervisor/platform/storage/log_store.cpp"
 STANDARD_ERROR, MANIPULATOR_TEST = "supervisor/platform/launch/standard_error.cpp", "manipulator_subsystem_test"
@@ -105,6 +106,22 @@ DEFECTS = [
     Defect("SF1 its states", PERMISSION, 'if (asked.calls("SET_STATE") || asked.calls("CONFIGURE")) return wrong_mode',
            'if (!PLANTED && (asked.calls("SET_STATE") || asked.calls("CONFIGURE"))) return wrong_mode',
            "supervisor_test", "Permission.InEveryStateOfTheSupervisorAndFromEveryOriginSafeAllPassesAndNobodyElseChangesThatState"),
+    # --- what a subsystem asks of the supervisor (docs/adr/0216) ---
+    # A row that names nobody opened the supervisor's functions for whoever declares them.
+    Defect("rows for nobody by name", PERMISSION, "if (permit.from.empty()) return !asked.of_subsystem_to_supervisor();",
+           "if (permit.from.empty()) return PLANTED || !asked.of_subsystem_to_supervisor();",
+           "supervisor_test", "PermissionProperty.WithEachRowInEachStateThatIsPermittedWhichTheRecordPermitsAndNothingElse"),
+    # A change of mode let go, or took the ground's link, by the supervisor's hand.
+    Defect("a mode for a subsystem", MODES, "  if (!is_of_subsystem(call)) return;", "  if (PLANTED || !is_of_subsystem(call)) return;",
+           "supervisor_test", "AskedOfSupervisor.AModeThat*"),
+    # Modes without end voided all that the ground was permitted.
+    Defect("modes without end", MODES, "if (is_of_subsystem(call) && craft_.now < subsystems_wait_until_)",
+           "if (!PLANTED && is_of_subsystem(call) && craft_.now < subsystems_wait_until_)",
+           "supervisor_test", "AskedOfSupervisor.OneThatAsksForModesWithoutEndIsGivenOneInAPauseAndTheGroundIsNotHeldUp"),
+    # Stops without end filled what is noted for the next supervisor.
+    Defect("stops without end", f"{SUPERVISION}/event_handling/safe_all.cpp", "const bool kept = has_room_for(request);",
+           "const bool kept = PLANTED || has_room_for(request);",
+           "supervisor_test", "AskedOfSupervisor.AStopThatIsSaidWithoutEndIsCarriedOutEachTimeAndKeptForBoundedlyMany"),
     # A recovery gave up who had not read the answers to its own flood.
     Defect("recovery and a full channel", TELECOMMANDS, "const bool surely = essential &&", "const bool surely = !PLANTED && essential &&",
            "supervisor_test", "FullChannel.ARecoveryReachesItsMemberAsSoonAsThatReads"),

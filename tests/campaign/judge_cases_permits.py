@@ -187,6 +187,48 @@ def a_write_of_nothing_is_the_addressees_to_refuse(w):
     runs(w, service=20, subtype=3, data=b"")
 
 
+# --- I8, who asks: what a permit says that names senders, and what a subsystem may ask the supervisor for -------------------
+FROM = copy.deepcopy(MISSION)
+FROM.modes["telepresence"] = [("SUPERVISOR", {"SET_MODE", "SHUTDOWN"}, {"3"}, set(), {"JOYSTICK"}), ("MANIPULATOR", {"HOLD"}, set(), set(), {"ground"}),
+                              ("MANIPULATOR", set(), set(), {"POS_SCALE"}, {"JOYSTICK"})]
+
+
+@case(PERMIT_RULE, mission=FROM)
+def who_is_named(w):
+    runs(w, "HOLD")
+
+
+@case(PERMIT_RULE, found="HOLD", mission=FROM)
+def who_is_not_named(w):
+    runs(w, "HOLD", source=JOYSTICK)
+
+
+@case(PERMIT_RULE, found="TC[20,3]", mission=FROM)
+def a_parameter_that_is_opened_for_another_sender(w):
+    in_state(w, SAFE)
+    write(w, "POS_SCALE")
+
+
+@case(PERMIT_RULE, mission=FROM)
+def a_subsystem_that_is_named_asks_the_supervisor_for_a_mode(w):
+    runs(w, "SET_MODE", 1, to=SUPERVISOR, source=JOYSTICK)
+
+
+@case(PERMIT_RULE, found="SET_MODE 1 of JOYSTICK to SUPERVISOR", mission=FROM)
+def one_that_is_not_in_this_mode(w):
+    runs(w, "SET_MODE", 1, to=SUPERVISOR, source=JOYSTICK, mode="standalone")
+
+
+@case(PERMIT_RULE, found="SHUTDOWN  of JOYSTICK to SUPERVISOR", mission=FROM)
+def what_is_the_grounds_alone_whoever_is_named(w):
+    runs(w, "SHUTDOWN", to=SUPERVISOR, source=JOYSTICK)
+
+
+@case(PERMIT_RULE, mission=FROM)
+def a_stop_of_all_is_everybodys(w):
+    runs(w, "SAFE_ALL", to=SUPERVISOR, source=JOYSTICK)
+
+
 # --- I8, the arguments of a function ---------------------------------------------------------------------------------------
 VALUES_RULE = "i8_what_its_descriptor_permits"
 RAN, REFUSED = "PROGRAM of MANIPULATOR ran", "PROGRAM of MANIPULATOR was refused, though"

@@ -9,6 +9,8 @@ STATES = ["Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOper
           "PostOperational", "HardwareDeinit", "SoftwareDeinit"]
 SAFE, OPERATIONAL = 4, 5
 ALWAYS, NEVER = set(range(10)), set()
+# What a subsystem may ask the supervisor for, where a permit names it; SAFE_ALL in any case.
+OF_SUPERVISOR = {"ENTER_MODE", "SAFE_ALL", "SET_MODE"}
 # Requests of the framework's services that anybody may be sent.
 SERVICES = {3: {1, 3, 5, 6, 9, 27, 29, 31, 33}, 5: {5, 6, 7}, 17: {1, 128, 130}, 20: {1}, 128: {1, 2, 3, 4, 5}, 129: {1, 4, 6, 8, 9, 11}, 130: {1, 2}}
 
@@ -94,9 +96,13 @@ def expected(sender, addressee, mode, service, subtype, request, supervisor):
                     (service, subtype, request) in sender.things.get(addressee.name, ()))
         if not declared and not (to_supervisor and function == "SAFE_ALL"):
             return NEVER, NEVER, NEVER
+        if to_supervisor and service == 8 and function not in OF_SUPERVISOR:
+            return NEVER, NEVER, NEVER
     # What is essential passes everywhere, whoever may ask for it at all.
     essential = NEVER
-    if service == 129 or (service, subtype) == (17, 1) or addressee.functions.get(function, (None, False))[1]:
+    of_subsystem = not ground and not on_board
+    by_descriptor = addressee.functions.get(function, (None, False))[1] and not (of_subsystem and to_supervisor and function != "SAFE_ALL")
+    if service == 129 or (service, subtype) == (17, 1) or by_descriptor:
         essential = ALWAYS
     elif target is not None and STATES[target] in ("ErrorOperational", "PostOperational"):
         essential = ALWAYS
@@ -117,7 +123,8 @@ def expected(sender, addressee, mode, service, subtype, request, supervisor):
     parameter = request.removeprefix("set ") if service == 20 and subtype == 3 else None
     if parameter is not None:
         states = addressee.writable.get(parameter, NEVER)
-    ours = [p for p in mode.findall("Permit") if p.get("subsystem") in ("*", addressee.name)]
+    ours = [p for p in mode.findall("Permit") if p.get("subsystem") in ("*", addressee.name) and
+            (("ground" if ground else sender.name) in words(p, "from") if p.get("from") else not (of_subsystem and to_supervisor))]
     called = "SET_STATE" if target is not None else plain
     opened = any(str(service) in words(p, "services") or (called and {"*", called} & set(words(p, "functions"))) for p in ours)
     if parameter is not None:
@@ -193,16 +200,26 @@ def permit_less(modes):
     permit.set("functions", " ".join(permit.get("functions").split()[1:]))
 
 
+def name_another(modes):
+    """Whom one mode's permits name, another one is. False: none names anybody."""
+    named = [p for m in modes for p in m.findall("Permit") if p.get("from")]
+    for permit in named[:1]:
+        permit.set("from", "NOBODY")
+    return bool(named)
+
+
 def main():
     root = pathlib.Path(__file__).resolve().parents[2]
     for mission in sys.argv[2:]:
         cells, permitted = compare(sys.argv[1], root / mission, root)
-        try:
-            compare(sys.argv[1], root / mission, root, permit_less)
-        except AssertionError:
-            print(f"{mission}: {cells} cells, {permitted} permitted, all as its files say, and one word less is seen")
-        else:
-            sys.exit(f"{mission}: one word less in a mode's permits is not seen")
+        named = name_another(read(root / mission, root)[2])
+        for what, tampered in (("one word less", permit_less), *((("another sender", name_another),) if named else ())):
+            try:
+                compare(sys.argv[1], root / mission, root, tampered)
+            except AssertionError:
+                print(f"{mission}: {cells} cells, {permitted} permitted, all as its files say, and {what} is seen")
+            else:
+                sys.exit(f"{mission}: {what} in a mode's permits is not seen")
 
 
 main()

@@ -120,7 +120,7 @@ struct Encoded {
   return own != subsystem.failures.end() ? fmt::format("{} ({})", own->name, code_text(code)) : code_text(code);
 }
 
-/// Where a request that was refused by mode or state would be permitted; empty: refused for another reason.
+/// Where a request that was refused by mode or state would be permitted, or to whom; empty: refused for another reason.
 [[nodiscard]] std::string way_out(const pus::TelemetryView& report, const descriptor::Mission& mission,
                                   const descriptor::SubsystemDescriptor& subsystem, const Encoded& encoded) {
   OctetReader reader{report.source_data()};
@@ -135,7 +135,9 @@ struct Encoded {
   if (request == "SET_STATE" && !encoded.data.empty())
     request += fmt::format(" {}", to_text(static_cast<descriptor::State>(encoded.data.back())));
   const std::string where = terminal::permitted_where(mission, subsystem, request);
-  return where.empty() ? where : "in " + where;
+  if (!where.empty()) return "in " + where;
+  const std::string others = terminal::permitted_to_others(mission, subsystem, request);
+  return others.empty() ? others : "to " + others + " alone";
 }
 
 /// Prints one verification report, with `where` the request would be permitted if that is known; true when it was the last of the request.

@@ -50,4 +50,19 @@ std::string permitted_where(const descriptor::Mission& mission, const descriptor
   return text;
 }
 
+std::string permitted_to_others(const descriptor::Mission& mission, const descriptor::SubsystemDescriptor& addressee,
+                                std::string_view request) {
+  std::vector<std::string_view> names;
+  for (const auto& mode : mission.modes)
+    for (const auto& row : supervisor::permission_table(mission, mode)) {
+      const bool asked = row.addressee->id == addressee.id && row.request == request && row.permitted != 0;
+      if (!asked || !row.origin.is_subsystem()) continue;
+      const std::string_view name = mission.find_member(row.origin.apid())->name;
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    }
+  std::string text;
+  for (const std::string_view name : names) text.append(text.empty() ? "" : ", ").append(name);
+  return text;
+}
+
 }  // namespace hirosco::terminal

@@ -14,6 +14,11 @@ namespace hirosco::terminal {
 [[nodiscard]] std::string permitted_where(const descriptor::Mission& mission,
                                           const descriptor::SubsystemDescriptor& addressee, std::string_view request);
 
+/// Subsystems that may ask this of it in some mode: "SWITCH, PLANNER". Empty: none.
+[[nodiscard]] std::string permitted_to_others(const descriptor::Mission& mission,
+                                              const descriptor::SubsystemDescriptor& addressee,
+                                              std::string_view request);
+
 /// "while it is Safe-Operational or Operational", "in any state": bit n set is State n.
 [[nodiscard]] std::string while_in(std::uint16_t states);
 

@@ -43,5 +43,18 @@ TEST_F(PermittedTest, SaysNothingWhereItIsPermittedNowhere) {
   EXPECT_EQ(permitted_where(mission, mission.subsystems[0].subsystem, "FLY"), "");
 }
 
+TEST_F(PermittedTest, SaysWhomAModePermitsWhatTheGroundMayNowhereAsk) {
+  auto& pilot = mission.subsystems.emplace_back();
+  pilot.subsystem.name = "PILOT";
+  pilot.subsystem.id = 11;
+  pilot.subsystem.commands = {{.subsystem = "ARM", .functions = {"MOVE"}, .at = {}, .apid = 10}};
+  const auto& arm = mission.subsystems[0].subsystem;
+  for (auto& mode : mission.modes)
+    for (auto& permit : mode.permits) permit.from = {"PILOT"};
+  EXPECT_EQ(permitted_where(mission, arm, "MOVE"), "");
+  EXPECT_EQ(permitted_to_others(mission, arm, "MOVE"), "PILOT");
+  EXPECT_EQ(permitted_to_others(mission, arm, "FLY"), "");
+}
+
 }  // namespace
 }  // namespace hirosco::terminal

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -119,6 +121,9 @@ struct MissionLink {
   std::string fallback{};  ///< Fallback: which configuration
 };
 
+/// How a permit calls the ground as one who asks, beside subsystems by their names.
+inline constexpr std::string_view ground_origin = "ground";
+
 /// What a mode lets through: functions, services and parameters of one subsystem, or of all ("*").
 struct Permit {
   std::string subsystem;
@@ -126,6 +131,12 @@ struct Permit {
   std::vector<std::uint8_t> services;
   std::vector<std::string> parameters;  ///< that TC[20,3] may set, whatever `services` says; "*" = all writable ones
   Location at;
+  /// Who may ask for it: `ground_origin`, subsystems by name. Empty: whoever may ask at all, of the supervisor the ground (docs/adr/0216).
+  std::vector<std::string> from{};
+
+  [[nodiscard]] bool names(std::string_view sender) const noexcept {
+    return std::ranges::find(from, sender) != from.end();
+  }
 };
 
 struct CommissionStep {

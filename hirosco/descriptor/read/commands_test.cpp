@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include "hirosco/descriptor/testing.hpp"
 
@@ -169,6 +171,72 @@ TEST(Subscribes, OfAnotherFormOrWhatNobodyHasAreRefused) {
   EXPECT_EQ(problem(R"(<Commands subsystem="CHIME" reads="SWING"/>)", R"(<Subscribes subsystem="CHIME" to="OTHER"/>)"),
             "E0304")
       << "it hears nobody";
+}
+
+/// The good mission's supervisor with functions, and a structure of which each member of the mission has a row.
+const std::string supervising = R"(<FunctionService>
+    <Function name="SET_MODE"><Argument name="MODE" type="UINT8" minimum="1" maximum="255"/></Function>
+    <Function name="SHUTDOWN" essential="yes"/>
+  </FunctionService>
+  <StructRef name="SUBSYSTEMS" id="4" type="STRUCT"><ParamRef name="APID" id="130" type="UINT16" count="2"/></StructRef>
+  <Configuration name="NORMAL" id="1" sampling_us="10000">
+    <HKService id="4701" interval="100"><SampledOnce><ParamRef name="MODE"/></SampledOnce></HKService>
+    <HKService id="4702" interval="100"><SampledOnce><ParamRef name="MODE"/><ParamRef name="SUBSYSTEMS"/></SampledOnce></HKService>
+  </Configuration>)";
+FileSource with_adviser(const std::string& says, const std::string& inside = "") {
+  const std::string first = R"(<Subsystem executable="hirosco-flywheel" descriptor="flywheel.xml"/>)";
+  const std::string plain = R"(<Configuration name="NORMAL" id="1" sampling_us="10000"/>)";
+  return overlay({{"mission.xml", changed(first, first + R"(
+    <Subsystem executable="porter" descriptor="porter.xml">)" +
+                                                     inside + "</Subsystem>")},
+                  {"porter.xml", commanding(says)},
+                  {"supervisor.xml", changed(plain, supervising, file_system()(data / "supervisor.xml").value())}});
+}
+
+TEST(Commands, OfTheSupervisorAreLikeThoseOfEveryOtherMember) {
+  const auto says = [](const std::string& whom) {
+    return R"(<Commands subsystem=")" + whom + R"(" functions="SET_MODE" reads="MODE" housekeeping="4701"/>)" +
+           R"(<Subscribes subsystem=")" + whom + R"(" housekeeping="4701" events="RECOVERY_STEP"/>)" +
+           R"(<ParamRef name="SEEN" id="1" type="UINT8" from=")" + whom + R"(.MODE" age_ms="1000"/>)";
+  };
+  const std::string meant = R"(<Commands subsystem="BOSS" to="SUPERVISOR"/><Subscribes subsystem="BOSS" to="SUPERVISOR"/>)";
+  for (const auto& [whom, inside] : {std::pair<std::string, std::string>{"SUPERVISOR", ""}, {"BOSS", meant}}) {
+    const auto source = with_adviser(says(whom), inside);
+    const auto reading = read_mission(data / "mission.xml", source);
+    ASSERT_TRUE(reading.value) << rendered(reading.problems, source);
+    const MissionSubsystem* porter = reading.value->find_subsystem("PORTER");
+    const Commands& commands = porter->subsystem.commands.at(0);
+    EXPECT_EQ(commands.apid, 1);
+    ASSERT_EQ(commands.requests.size(), 1U);
+    EXPECT_EQ(commands.things.at(0).id, (ParameterId{1, Type::Uint8, 1}.wire()));
+    SubsystemDescriptor launched = *read_text(commanding(says(whom))).value;
+    for (const auto& [word, text] : changes_of(*porter)) {
+      const auto applied =
+          needs_other(word) ? apply_other(launched, word, text, source) : apply_change(launched, word, text);
+      ASSERT_TRUE(applied) << word << " " << text;
+    }
+    for (const SubsystemDescriptor* each : {&porter->subsystem, &std::as_const(launched)}) {
+      EXPECT_EQ(each->commands.at(0).requests.at(0).name, "SET_MODE");
+      EXPECT_EQ(each->subscribes.at(0).apid, 1);
+      EXPECT_EQ(each->subscribes.at(0).things.at(1).id, 105U);
+      EXPECT_EQ(each->subscribes.at(0).foreign.at(0).structure, 4701);
+    }
+  }
+}
+
+TEST(Commands, OfTheSupervisorForWhatIsTheGroundsAloneAreRefused) {
+  EXPECT_EQ(first_problem(with_adviser(R"(<Commands subsystem="SUPERVISOR" functions="SET_MODE"/>)")), "");
+  EXPECT_EQ(first_problem(with_adviser(R"(<Commands subsystem="SUPERVISOR" functions="SET_MODE SHUTDOWN"/>)")), "E0357");
+  EXPECT_EQ(first_problem(with_adviser(R"(<Commands subsystem="SUPERVISOR" functions="SET_STATE"/>)")), "E0310");
+}
+
+/// Its process reads the file, in which they are two.
+TEST(Subscribes, OfTheSupervisorThatHaveMoreRowsInTheMissionThanInItsDescriptorAreRefused) {
+  for (const char* says : {R"(<Subscribes subsystem="SUPERVISOR" housekeeping="4702"/>)",
+                           R"(<Commands subsystem="SUPERVISOR" housekeeping="4702"/>)",
+                           R"(<Commands subsystem="SUPERVISOR" reads="SUBSYSTEMS"/>)"})
+    EXPECT_EQ(first_problem(with_adviser(says)), "E0310") << says;
+  EXPECT_EQ(first_problem(with_adviser(R"(<Commands subsystem="SUPERVISOR" reads="MODE"/>)")), "");
 }
 
 TEST(Commands, WordsOfAnotherFormForAProcessAreRefused) {

@@ -4,6 +4,7 @@
 
 #include <charconv>
 
+#include "hirosco/descriptor/model/supervisor_functions.hpp"
 #include "hirosco/descriptor/read/detail/other_members.hpp"
 #include "hirosco/descriptor/read/detail/subsystem_reader.hpp"
 
@@ -98,7 +99,7 @@ void OtherMembers::read_redirected(const xml::Element& element, MissionSubsystem
 void OtherMembers::resolve_all() {
   if (!draft_.whole) return;
   for (const auto& [to, commanding] : redirections_)
-    if (const auto* found = draft_.find(*to, to->value, false); found != nullptr && found->name == commanding)
+    if (const auto* found = draft_.find(*to, to->value, true); found != nullptr && found->name == commanding)
       problems_.add(*to, "E0304", fmt::format("'{}' cannot command or hear itself", commanding));
   for (MissionSubsystem& member : mission_.subsystems) {
     for (Commands& commands : member.subsystem.commands) resolve_one(member, commands);
@@ -107,14 +108,14 @@ void OtherMembers::resolve_all() {
   check_foreign_circles(draft_);
 }
 
-const MissionSubsystem* OtherMembers::find_other(const MissionSubsystem& member, const std::string& named,
-                                                 Redirected::Kind kind) {
+const SubsystemDescriptor* OtherMembers::find_other(const MissionSubsystem& member, const std::string& named,
+                                                    Redirected::Kind kind) {
   const auto redirected = std::ranges::find_if(
       member.redirected, [&](const Redirected& each) { return each.kind == kind && each.subsystem == named; });
   const bool as_written = redirected == member.redirected.end();
   const std::string& name = as_written ? named : redirected->to;
-  const MissionSubsystem* found = mission_.find_subsystem(name);
-  if (found != nullptr && found != &member) return found;
+  const SubsystemDescriptor* found = mission_.find_member(name);
+  if (found != nullptr && found != &member.subsystem) return found;
   const bool commands = kind == Redirected::Kind::Commands;
   if (as_written)
     problems_.add(member.at, "E0304",
@@ -127,31 +128,67 @@ const MissionSubsystem* OtherMembers::find_other(const MissionSubsystem& member,
 }
 
 void OtherMembers::resolve_one(const MissionSubsystem& member, Commands& commands) {
-  const MissionSubsystem* found = find_other(member, commands.subsystem, Redirected::Kind::Commands);
+  const SubsystemDescriptor* found = find_other(member, commands.subsystem, Redirected::Kind::Commands);
   if (found == nullptr) return;
   Problems problems{member.subsystem.file};
-  if (const std::string_view missing = resolve(commands, found->subsystem); !missing.empty()) {
+  if (const std::string_view missing = resolve(commands, *found); !missing.empty()) {
     std::vector<std::string_view> known;
-    for (const Function& function : found->subsystem.functions) known.push_back(function.name);
-    for (const CustomService& service : found->subsystem.services)
+    for (const Function& function : found->functions) known.push_back(function.name);
+    for (const CustomService& service : found->services)
       for (const Function& request : service.requests) known.push_back(request.name);
-    problems.add(commands.at, "E0310",
-                 fmt::format("'{}' has no function {}", found->subsystem.name, in_quotes(missing)),
+    problems.add(commands.at, "E0310", fmt::format("'{}' has no function {}", found->name, in_quotes(missing)),
                  did_you_mean(missing, known), 9);
+  } else if (found == &mission_.supervisor) {
+    check_asked_of_supervisor(member, commands, problems);
   }
-  resolve_things(commands.things, found->subsystem, commands.at, problems);
+  resolve_things(commands.things, *found, commands.at, problems);
   draft_.subsystem_problems.push_back(problems.take());
 }
 
 void OtherMembers::resolve_one(const MissionSubsystem& member, Subscribes& subscribes) {
-  const MissionSubsystem* found = find_other(member, subscribes.subsystem, Redirected::Kind::Subscribes);
+  const SubsystemDescriptor* found = find_other(member, subscribes.subsystem, Redirected::Kind::Subscribes);
   if (found == nullptr) return;
-  subscribes.apid = found->subsystem.id;
-  subscribes.file = found->subsystem.file;
+  subscribes.apid = found->id;
+  subscribes.file = found->file;
   Problems problems{member.subsystem.file};
-  resolve_things(subscribes.things, found->subsystem, subscribes.at, problems);
-  if (problems.count() == 0) resolve_foreign_of(member, subscribes, found->subsystem, problems);
+  resolve_things(subscribes.things, *found, subscribes.at, problems);
+  if (problems.count() == 0) resolve_foreign_of(member, subscribes, *found, problems);
   draft_.subsystem_problems.push_back(problems.take());
+}
+
+/// What is the ground's alone to ask, no descriptor declares: no permit would open it (docs/adr/0216).
+void OtherMembers::check_asked_of_supervisor(const MissionSubsystem& member, const Commands& commands,
+                                             Problems& problems) {
+  for (const std::string& function : commands.functions)
+    if (!is_for_subsystems(function))
+      problems.add(commands.at, "E0357",
+                   fmt::format("'{}' may not ask the supervisor for {}: that is the ground's alone",
+                               member.subsystem.name, in_quotes(function)),
+                   "ENTER_MODE, SAFE_ALL and SET_MODE are what a subsystem may ask it for", 9);
+}
+
+void OtherMembers::check_rows() const {
+  if (!draft_.whole) return;
+  const auto is_as_long = [](const Field& a, const Field& b) { return a.elements() == b.elements(); };
+  const auto check = [&](const MissionSubsystem& member, const std::vector<Thing>& things, const Location& at) {
+    std::vector<Thing> as_flown = things;
+    if (resolve(as_flown, mission_.supervisor).thing != nullptr) return;  // reported
+    for (std::size_t i = 0; i < things.size(); ++i) {
+      if (std::ranges::equal(things[i].fields, as_flown[i].fields, is_as_long)) continue;
+      Problems problems{member.subsystem.file};
+      problems.add(at, "E0310",
+                   fmt::format("{} of '{}' cannot be had: in this mission it has more rows than its descriptor says",
+                               in_quotes(things[i].name), mission_.supervisor.name),
+                   "take another structure, or parameter, of the supervisor", 9);
+      draft_.subsystem_problems.push_back(problems.take());
+    }
+  };
+  for (const MissionSubsystem& member : mission_.subsystems) {
+    for (const Commands& commands : member.subsystem.commands)
+      if (commands.apid == mission_.supervisor.id) check(member, commands.things, commands.at);
+    for (const Subscribes& subscribes : member.subsystem.subscribes)
+      if (subscribes.apid == mission_.supervisor.id) check(member, subscribes.things, subscribes.at);
+  }
 }
 
 void OtherMembers::resolve_things(std::vector<Thing>& things, const SubsystemDescriptor& other, const Location& at,

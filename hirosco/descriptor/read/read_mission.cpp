@@ -176,6 +176,7 @@ void MissionReader::read(const xml::Element& root) {
                   fmt::format("the supervisor cannot tell of {} subsystems and {} links in one report",
                               mission_.subsystems.size(), mission_.links.size()),
                   wrong);
+  other_members_.check_rows();
 }
 
 void MissionReader::read_supervisor(const xml::Element& element) {

@@ -27,6 +27,7 @@ void ModeReader::read_modes(const xml::Element& element) {
   const auto* start = attributes.optional("start");
   mission_.start_mode = mode(start);
   check_from(element, mission_, problems_);
+  if (draft_.whole) check_way_back(mission_, problems_);
   // Where it is the start mode as well that says the same.
   const bool both = mission_.start_mode == mission_.initial_mode;
   if (const Mode* first = mission_.find_mode(mission_.initial_mode); first != nullptr && initial != nullptr && !both)

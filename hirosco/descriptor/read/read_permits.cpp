@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "hirosco/descriptor/model/supervisor_functions.hpp"
 #include "hirosco/descriptor/read/detail/mode_parts.hpp"
 
 /// What a mode lets through.
@@ -92,6 +93,59 @@ void check_parameters(const xml::Attribute& at, const Permit& permit, MissionDra
   }
 }
 
+/// Whether a descriptor lets this subsystem ask something of whom the permit means.
+[[nodiscard]] bool asks_somebody(const MissionSubsystem& member, const Permit& permit, const Mission& mission) {
+  return std::ranges::any_of(member.subsystem.commands, [&](const Commands& commands) {
+    const SubsystemDescriptor* whom = mission.find_member(commands.apid);
+    return whom == nullptr || permit.subsystem == "*" || permit.subsystem == whom->name;  // null: that is reported
+  });
+}
+
+/// Of the supervisor a function by its name, where no ground is named: for subsystems it would open nothing.
+void check_asked_of_supervisor(const xml::Attribute& at, const Permit& permit, MissionDraft& draft) {
+  if (permit.subsystem != draft.mission.supervisor.name || permit.names(ground_origin)) return;
+  for (const std::string& function : permit.functions)
+    if (function != "*" && !is_for_subsystems(function))
+      draft.problems.add(at, "E0357",
+                         fmt::format("{} of the supervisor is the ground's alone to ask for", in_quotes(function)),
+                         "ENTER_MODE, SAFE_ALL and SET_MODE are what a subsystem may ask it for");
+}
+
+void read_origins(const xml::Attribute& at, Permit& permit, MissionDraft& draft) {
+  Unique names{"origin", "E0201"};
+  for (const auto word : words(at.value)) {
+    names.add(std::string{word}, place(at.value_at), draft.problems, at.value.size());
+    permit.from.emplace_back(word);
+  }
+  if (permit.from.empty()) draft.problems.add(at, "E0109", "attribute 'from' is empty");
+}
+
+/// Each is there, and may ask for something of whom the permit means: else that would open nothing for it.
+void check_origins(const xml::Attribute& at, const Permit& permit, MissionDraft& draft) {
+  if (!draft.whole) return;
+  const Mission& mission = draft.mission;
+  std::vector<std::string_view> known{ground_origin};
+  for (const MissionSubsystem& member : mission.subsystems) known.push_back(member.subsystem.name);
+  for (const std::string& name : permit.from) {
+    const MissionSubsystem* member = mission.find_subsystem(name);
+    if (name == mission.supervisor.name)
+      draft.problems.add(at, "E0357", fmt::format("'{}' is bound to no mode", name),
+                         "what it asks for its plans and changes of mode say");
+    else if (name == ground_origin && member != nullptr)
+      draft.problems.add(at, "E0357", "'ground' is the ground here, and a subsystem of the mission",
+                         "call the subsystem by another name");
+    else if (name != ground_origin && member == nullptr)
+      draft.problems.add(at, "E0304", fmt::format("subsystem {} is not in the mission", in_quotes(name)),
+                         did_you_mean(name, known));
+    else if (member != nullptr && !asks_somebody(*member, permit, mission))
+      draft.problems.add(at, "E0357",
+                         permit.subsystem == "*" ? fmt::format("'{}' asks nobody for anything", name)
+                                                 : fmt::format("'{}' asks '{}' for nothing", name, permit.subsystem),
+                         "its descriptor says for what: <Commands>");
+  }
+  check_asked_of_supervisor(at, permit, draft);
+}
+
 }  // namespace
 
 void read_permit(const xml::Element& element, Mode& mode, MissionDraft& draft) {
@@ -103,6 +157,7 @@ void read_permit(const xml::Element& element, Mode& mode, MissionDraft& draft) {
   const auto* functions = attributes.optional("functions");
   const auto* services = attributes.optional("services");
   const auto* parameters = attributes.optional("parameters");
+  const auto* from = attributes.optional("from");
   if (functions == nullptr && services == nullptr && parameters == nullptr)
     draft.problems.add(element, "E0105", "<Permit> needs the attribute 'functions', 'services' or 'parameters'");
   if (functions != nullptr) {
@@ -123,12 +178,14 @@ void read_permit(const xml::Element& element, Mode& mode, MissionDraft& draft) {
     for (const auto parameter : words(parameters->value)) permit.parameters.emplace_back(parameter);
     if (permit.parameters.empty()) draft.problems.add(*parameters, "E0109", "attribute 'parameters' is empty");
   }
+  if (from != nullptr) read_origins(*from, permit, draft);
   if (subsystem == nullptr) return;
   permit.subsystem = subsystem->value;
   const bool known = permit.subsystem == "*" || draft.find(*subsystem, permit.subsystem, true) != nullptr;
   if (known && functions != nullptr) check_functions(*functions, permit, draft);
   if (known && services != nullptr) check_services(*services, permit, draft);
   if (known && parameters != nullptr) check_parameters(*parameters, permit, draft);
+  if (known && from != nullptr) check_origins(*from, permit, draft);
   mode.permits.push_back(std::move(permit));
 }
 

@@ -14,6 +14,12 @@
 namespace hirosco {
 namespace {
 
+/// Of its own half, whatever `number` is.
+[[nodiscard]] constexpr std::uint16_t count_of_request(std::int64_t number) noexcept {
+  constexpr std::int64_t half = pus::sequence_counts - Requester::first_count;
+  return static_cast<std::uint16_t>(Requester::first_count + number % half);
+}
+
 using Stage = RequestReport::Stage;
 
 [[nodiscard]] std::optional<Stage> stage_of(std::uint8_t subtype) noexcept {
@@ -84,9 +90,7 @@ struct Service {
 Requester::Requester(const descriptor::SubsystemDescriptor& described, Channel& channel, TimePoint now)
     : descriptor_{described},
       channel_{channel},
-      next_count_{static_cast<std::uint16_t>(
-          std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() %
-          pus::sequence_counts)} {}
+      next_count_{count_of_request(now.time_since_epoch() / std::chrono::milliseconds{1})} {}
 
 std::string Requester::use(const RequestPort& port, RequestHandler handler, Duration patience) {
   const std::string who = "use_request " + std::string{port.subsystem()} + " " + std::string{port.function()} + ": ";
@@ -168,7 +172,7 @@ Result<std::uint32_t> Requester::send(const RequestPort& port, pus::GivenValues 
                                                                .source = descriptor_.id},
                                                               data));
   HIROSCO_TRY(channel_.send({.epoch = known_stop, .packet = packet}));
-  next_count_ = static_cast<std::uint16_t>((next_count_ + 1) % pus::sequence_counts);
+  next_count_ = count_of_request(next_count_ + 1 - first_count);
   ++sent_in_window_;
   const std::uint32_t id = pus::read_primary_header(packet)->request_id;
   open_.push_back({id, &*bound, now + bound->patience});

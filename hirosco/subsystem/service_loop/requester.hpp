@@ -26,6 +26,9 @@ class Requester {
   /// More of one subsystem are not under way at once, nor sent in one second: the supervisor refuses them (adr 0062).
   static constexpr std::size_t most_open = 16;
   static constexpr std::size_t most_a_second = 100;
+  /// Requests are counted from here on, and what is asked to be heard (Subscriber) below: both go to the supervisor, and a report tells them
+  /// apart by their count alone.
+  static constexpr std::uint16_t first_count = pus::sequence_counts / 2;
 
   Requester(const descriptor::SubsystemDescriptor& described, Channel& channel, TimePoint now);
 

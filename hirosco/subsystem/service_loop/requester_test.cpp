@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "hirosco/subsystem/testing/inside.hpp"
 
 /// What a subsystem asks of another one, from its author's words to the end that they hear.
@@ -278,6 +280,24 @@ TEST(Requests, OfAnotherLifeAreNumberedElsewhere) {
     return requester.send(count_rings, {}, TimePoint{born}, 0).value();
   };
   EXPECT_NE(first_number(std::chrono::seconds{1}), first_number(std::chrono::seconds{2}));
+}
+
+/// A subscription is asked of the supervisor, which may be asked for its functions, too: what is told of the one is never taken for the other's.
+TEST(Requests, AreCountedInAHalfThatNoSubscriptionIsCountedIn) {
+  const descriptor::SubsystemDescriptor porter = read_descriptor(porter_descriptor, {bell_descriptor});
+  constexpr int sent = 4;
+  for (const int born_ms : {0, 1, 8189, 8191, 8192, 16'381, 16'383, 1'000'000}) {
+    ChannelPair channel;
+    const TimePoint now{std::chrono::milliseconds{born_ms}};
+    Requester requester{porter, channel.subsystem_end(), now};
+    const Request<> count_rings{"BELL", "COUNT_RINGS"};
+    ASSERT_EQ(requester.use(count_rings, {}, std::chrono::seconds{1}), "");
+    std::set<std::uint32_t> counts;
+    for (int i = 0; i < sent; ++i)
+      counts.insert(requester.send(count_rings, {}, now, 0).value() % pus::sequence_counts);
+    EXPECT_EQ(counts.size(), std::size_t{sent});
+    EXPECT_GE(*counts.begin(), Requester::first_count) << born_ms;
+  }
 }
 
 enum class Tune : std::uint8_t { Angelus = 3 };

@@ -9,6 +9,7 @@
 #include "hirosco/pus/st01_verification/verification.hpp"
 #include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
 #include "hirosco/pus/st05_event/event_service.hpp"
+#include "hirosco/subsystem/service_loop/requester.hpp"
 
 namespace hirosco {
 namespace {
@@ -79,7 +80,7 @@ bool Subscriber::ask(Bound& bound) {
                                               .source = descriptor_.id},
                                              st129::write_subscribed(bound.what));
   if (!packet || !channel_.send({.packet = *packet})) return false;
-  next_count_ = static_cast<std::uint16_t>((next_count_ + 1) % pus::sequence_counts);
+  next_count_ = static_cast<std::uint16_t>((next_count_ + 1) % Requester::first_count);
   bound.request = pus::read_primary_header(*packet)->request_id;
   return true;
 }

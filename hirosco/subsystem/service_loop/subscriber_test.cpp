@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "hirosco/data_transfer/channel/channel_pair.hpp"
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
+#include "hirosco/subsystem/service_loop/requester.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
 
 /// What a subsystem hears of another one, from its author's words to the values in their hands.
@@ -313,6 +315,24 @@ TEST_F(Hearing, ReadsAValueOfTheOther) {
   ASSERT_TRUE(porter.read);
   EXPECT_EQ(porter.read->first, 0.5F);
   EXPECT_EQ(porter.read->second, (std::array<std::uint16_t, 2>{7, 256}));
+}
+
+/// A request of its own to the supervisor is counted in the other half: a report tells the two apart by nothing else.
+TEST(Subscriptions, AreCountedInAHalfThatNoRequestIsCountedInHoweverOftenTheyAreAsked) {
+  const descriptor::SubsystemDescriptor porter = read_descriptor(hearing_porter_descriptor, {heard_bell_descriptor});
+  ChannelPair channel;
+  Subscriber subscriber{porter, channel.subsystem_end()};
+  Subscription<Swing> swing{"BELL", "4900"};
+  subscriber.add(swing, {11, st129::Subscribed::What::Structure, 4900});
+  TimePoint now{};
+  MessageBuffer buffer;
+  for (int times = 0; times < Requester::first_count + 4; ++times, now += Subscriber::patience) {
+    subscriber.step(now);
+    const auto asked = channel.supervisor_end().receive(buffer);
+    ASSERT_TRUE(asked && asked->flow != Flow::None) << times;
+    const std::uint32_t count = pus::read_primary_header(asked->message.packet)->request_id % pus::sequence_counts;
+    ASSERT_LT(count, Requester::first_count) << times;
+  }
 }
 
 }  // namespace

@@ -268,7 +268,7 @@ def read_mission(path):
     modes, mode_ids = {}, {}
     for place, mode in enumerate(root.find("Modes"), 1):
         permits = [(p.get("subsystem"), set((p.get("functions") or "").split()), set((p.get("services") or "").split()),
-                    set((p.get("parameters") or "").split())) for p in mode.findall("Permit")]
+                    set((p.get("parameters") or "").split()), set((p.get("from") or "").split())) for p in mode.findall("Permit")]
         modes[mode.get("name")] = permits
         mode_ids[mode.get("name")] = int(mode.get("id", place))
     commissions = {mode.get("name"): {c.get("subsystem"): c.get("configuration") for c in mode.findall("Commission")} for mode in root.find("Modes")}

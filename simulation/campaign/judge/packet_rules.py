@@ -201,24 +201,35 @@ def permitted(mission, record, source, mode, state):
         return True
     if tc.function is not None and function is None and not is_state:
         return True  # nobody has it: the addressee says so
+    sender = mission.by_apid(source) if source else None
+    if sender is not None and addressee is mission.supervisor and tc.service == 8 and tc.function not in ("ENTER_MODE", "SAFE_ALL", "SET_MODE"):
+        return False
     if function is not None and function.essential:
         return True
-    for subject, functions, services, parameters in mission.modes[mode]:
-        if subject not in ("*", addressee.name):
+    for subject, functions, services, parameters, senders in mission.modes[mode]:
+        if subject not in ("*", addressee.name) or not is_for(mission, senders, sender, addressee):
             continue
         writes = tc.service == 20 and tc.subtype == 3
         if str(tc.service) in services or (tc.service == 8 and functions & {"*", tc.function}) or (writes and parameters):
-            if writes and not may_write(mission, addressee, tc, mode, state):
+            if writes and not may_write(mission, addressee, tc, mode, state, sender):
                 continue
             if function is None or state in function.states:
                 return True
     return False
 
 
-def may_write(mission, addressee, tc, mode, state):
+def is_for(mission, senders, sender, addressee):
+    """Whether a permit is for this sender, None is the ground; what names nobody is for all, but of the supervisor for the ground alone."""
+    if senders:
+        return ("ground" if sender is None else sender.name) in senders
+    return sender is None or addressee is not mission.supervisor
+
+
+def may_write(mission, addressee, tc, mode, state, sender):
     """Of TC[20,3]."""
     declared = {p.wire_id: p for s in [mission.supervisor, *mission.members] for p in s.parameters}
-    names = set().union(*(parameters for subject, _, _, parameters in mission.modes[mode] if subject in ("*", addressee.name)))
+    names = set().union(*(parameters for subject, _, _, parameters, senders in mission.modes[mode]
+                          if subject in ("*", addressee.name) and is_for(mission, senders, sender, addressee)))
     known = [declared[i] for i in written(tc, declared) if i in declared]
     return all(p.writable is not None and state in p.writable and names & {"*", p.name} for p in known)
 

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
+#include "hirosco/descriptor/model/supervisor_functions.hpp"
 #include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
 #include "hirosco/pus/st05_event/event_service.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
@@ -46,12 +47,23 @@ struct Asked {
     return calls("SET_STATE") && call->first_argument == static_cast<std::uint8_t>(target);
   }
   [[nodiscard]] bool to_supervisor() const { return telecommand.apid() == supervisor_apid; }
+  [[nodiscard]] bool of_subsystem_to_supervisor() const { return origin.is_subsystem() && to_supervisor(); }
 };
 
 using Notice = std::optional<FailureNotice>;
 
 [[nodiscard]] FailureNotice wrong_mode(const Asked& asked) {
   return FailureNotice{FailureCode::WrongMode}.with(asked.situation.mode.id);
+}
+
+/// Does this row of the mode mean addressee and sender? Where it names no sender it means whoever may ask; but a subsystem asks the
+/// supervisor only where a row names it (docs/adr/0216).
+[[nodiscard]] bool permit_means(const descriptor::Permit& permit, const Asked& asked) {
+  if (permit.subsystem != "*" && permit.subsystem != asked.subsystem.name) return false;
+  if (permit.from.empty()) return !asked.of_subsystem_to_supervisor();
+  if (asked.origin.is_ground()) return permit.names(descriptor::ground_origin);
+  const auto* sender = asked.situation.mission.find_subsystem(asked.origin.apid());
+  return sender != nullptr && permit.names(sender->subsystem.name);
 }
 
 [[nodiscard]] bool is_a_write(const Asked& asked) {
@@ -73,8 +85,7 @@ using Notice = std::optional<FailureNotice>;
     const descriptor::Parameter* const parameter = &subsystem.parameters[place->parameter];
     static_cast<void>(reader.get(parameter->octets(place->member)));
     const bool opened = std::ranges::any_of(situation.mode.permits, [&](const descriptor::Permit& permit) {
-      return (permit.subsystem == "*" || permit.subsystem == subsystem.name) &&
-             listed(permit.parameters, parameter->field.name);
+      return permit_means(permit, asked) && listed(permit.parameters, parameter->field.name);
     });
     if (!parameter->writable() || !parameter->writable_in(*situation.state))
       return FailureNotice{FailureCode::NotPermittedNow}.with(static_cast<std::uint8_t>(i)).with(id);
@@ -107,13 +118,18 @@ using Notice = std::optional<FailureNotice>;
          (asked.asks_for(State::SafeOperational) && asked.situation.state == State::Operational);
 }
 
+/// What the supervisor does for the whole craft is bound to the mode for a subsystem; stopping it is anybody's.
+[[nodiscard]] bool stops_the_craft(const Asked& asked) { return asked.to_supervisor() && asked.calls("SAFE_ALL"); }
+
 [[nodiscard]] bool essential(const Asked& asked) {
   const auto* kind = pus::standard_service(asked.telecommand.service());
   const auto needs = kind != nullptr ? kind->needs_of(asked.telecommand.subtype()) : pus::Needs::Nothing;
   if (needs == pus::Needs::Essential || needs == pus::Needs::SupervisorAnswers) return true;
   // The supervisor commands Offline at the end of a recovery or of the flight: no disk may hold that up (decision 24).
   const bool goes_down = asked.origin.is_supervisor() && asked.asks_for(State::Offline);
-  return goes_down || towards_safety(asked) || (asked.request != nullptr && asked.request->essential);
+  if (goes_down || towards_safety(asked)) return true;
+  return asked.request != nullptr && asked.request->essential &&
+         (!asked.of_subsystem_to_supervisor() || stops_the_craft(asked));
 }
 
 [[nodiscard]] bool up_to_safe(const Asked& asked) {
@@ -146,9 +162,6 @@ using Notice = std::optional<FailureNotice>;
     return FailureNotice{FailureCode::UnknownService}.with(type);
   return std::nullopt;
 }
-
-/// What the supervisor does for the whole craft is the ground's to ask for; a subsystem may stop it, nothing else.
-[[nodiscard]] bool stops_the_craft(const Asked& asked) { return asked.to_supervisor() && asked.calls("SAFE_ALL"); }
 
 /// What a request of the framework's services is about, where a descriptor can declare that.
 [[nodiscard]] std::optional<Thing::Kind> thing_of(std::uint8_t service, std::uint8_t subtype) noexcept {
@@ -238,6 +251,11 @@ using Notice = std::optional<FailureNotice>;
   }
   if (asked.origin.is_subsystem() && !stops_the_craft(asked) && !is_declared(asked))
     return FailureNotice{FailureCode::NotDeclared};
+  // Whatever a descriptor declares and a mode permits: what lifts, raises or replaces what safety rests on is no subsystem's to ask for.
+  if (asked.of_subsystem_to_supervisor() && asked.call && !descriptor::is_for_subsystems(asked.call->name)) {
+    FailureNotice notice{FailureCode::NotPermittedNow};
+    return notice.because({ErrorCode::NotPermitted, 0, "of the supervisor the ground alone may ask for that"});
+  }
   return std::nullopt;
 }
 
@@ -356,7 +374,7 @@ constexpr unsigned all_states = 0x03FF;
     if (const auto refused = write_refused(asked)) return refused;
   const std::string_view name = asked.name();
   const bool opened = std::ranges::any_of(asked.situation.mode.permits, [&](const descriptor::Permit& permit) {
-    if (permit.subsystem != "*" && permit.subsystem != asked.subsystem.name) return false;
+    if (!permit_means(permit, asked)) return false;
     if (std::ranges::find(permit.services, service) != permit.services.end()) return true;
     // Each parameter that it sets is opened, else it were refused by now; of one that is unknown the addressee refuses the whole.
     if (sets) return !permit.parameters.empty();

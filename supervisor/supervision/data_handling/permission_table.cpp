@@ -105,7 +105,7 @@ class Table {
         const auto data = pus::st129::write_subscribed(
             {subscribes.apid, event ? What::Event : What::Structure, static_cast<std::uint16_t>(thing.id)});
         ask(pus::st129::service_type, pus::st129::subscribe,
-            fmt::format("hear {} of {}", thing.name, mission_.find_subsystem(subscribes.apid)->subsystem.name), data);
+            fmt::format("hear {} of {}", thing.name, mission_.find_member(subscribes.apid)->name), data);
       }
   }
 

@@ -28,7 +28,7 @@ struct PermissionRow {
 };
 
 /// Every sender (the ground, the supervisor, each subsystem that declares to command somebody), every addressee, every
-/// request of its, in this mode. Taken for granted are the links and the power that an addressee needs on its way up, and
+/// request of its, in this mode, as the `from` of its permits says. Taken for granted are the links and the power that an addressee needs on its way up, and
 /// whether it can go from one state to the other is its own to say (paper, figure 4).
 [[nodiscard]] std::vector<PermissionRow> permission_table(const descriptor::Mission& mission,
                                                           const descriptor::Mode& mode);

@@ -188,6 +188,26 @@ TEST_F(PermissionTableTest, WhatASubsystemDeclaresOfAnotherStandsThereThingByThi
   EXPECT_EQ(row(by_camera, supervisor_apid, "hear CRACKED of ARM", open).permitted, everywhere);
 }
 
+TEST_F(PermissionTableTest, WhomAPermitNamesStandsThereAloneAndOfTheSupervisorWhatIsHeard) {
+  camera_commands(hand, {"MOVE_TO"}, {});
+  camera_commands(supervisor_apid, {"SET_MODE"}, {});
+  mission.subsystems[2].subsystem.subscribes = {
+      {.subsystem = "SUPERVISOR",
+       .things = {{.kind = descriptor::Thing::Kind::Housekeeping, .name = "4701", .id = 4701}},
+       .at = {},
+       .apid = supervisor_apid}};
+  const auto by_camera = Origin::subsystem(camera), ground = Origin::ground();
+  EXPECT_EQ(row(by_camera, supervisor_apid, "SET_MODE", open).permitted, 0) << "no row names it";
+  mission.modes[0].permits.push_back(
+      {.subsystem = "SUPERVISOR", .functions = {"*"}, .services = {}, .parameters = {}, .at = {}, .from = {"CAMERA"}});
+  mission.modes[0].permits[0].from = {"ground"};
+  EXPECT_EQ(row(by_camera, supervisor_apid, "SET_MODE", open).permitted, in_states({Operational}));
+  EXPECT_EQ(row(by_camera, supervisor_apid, "SET_MODE", open).essential, 0);
+  EXPECT_EQ(row(by_camera, supervisor_apid, "hear 4701 of SUPERVISOR", open).permitted, everywhere);
+  EXPECT_EQ(row(by_camera, hand, "MOVE_TO", open).permitted, 0);
+  EXPECT_EQ(row(ground, hand, "MOVE_TO", open).permitted, in_states({Operational}));
+}
+
 TEST_F(PermissionTableTest, WhoDeclaresNothingHasNoRow) {
   for (const PermissionRow& row : permission_table(mission, open)) EXPECT_FALSE(row.origin.is_subsystem());
 }

@@ -114,9 +114,12 @@ void Reception::read_own() {
     const auto found = parts_.own.channel().receive(buffer);
     if (!found || found->flow == Flow::None) return;
     const Message& message = found->message;
-    const bool taken = message.kind == MessageKind::Event ? parts_.reactions.take_event(supervisor_apid, message.packet)
-                                                          : parts_.telemetry.take(supervisor_apid, message.packet);
+    const bool event = message.kind == MessageKind::Event;
+    const bool taken = event ? parts_.reactions.take_event(supervisor_apid, message.packet)
+                             : parts_.telemetry.take(supervisor_apid, message.packet);
     if (!taken) count_unreadable(supervisor_apid);
+    // Its housekeeping goes to who hears it with all telemetry; its events are none.
+    if (taken && event) parts_.subscriptions.hear_event(supervisor_apid, message.packet);
   }
 }
 

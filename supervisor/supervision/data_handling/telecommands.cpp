@@ -133,10 +133,11 @@ bool Telecommands::acts_in_another_situation(const Incoming& incoming, std::uint
   return apid == supervisor_apid || craft_.guard.was_stopped_since(apid, *incoming.known_stop);
 }
 
-/// Stopping the craft is no request of another one, and never too much.
+/// Stopping the craft is no request of another one, and never too much; nor is a question, which waits for nothing.
 std::optional<FailureNotice> Telecommands::refuse_flood(const pus::TelecommandView& telecommand, const Origin& origin,
                                                         const Permitted& permitted) {
-  if (!origin.is_subsystem() || telecommand.apid() == supervisor_apid) return std::nullopt;
+  const bool asks_only = telecommand.apid() == supervisor_apid && telecommand.service() == pus::st129::service_type;
+  if (!origin.is_subsystem() || permitted.stops_the_craft || asks_only) return std::nullopt;
   // What nobody waits for would not be known to be under way.
   if ((telecommand.ack() & pus::ack_completion) == 0) return FailureNotice{FailureCode::IllegalField};
   const std::size_t under_way =

@@ -40,8 +40,7 @@ bool Unanswered::answers(const pus::TelemetryView& report) {
 
 std::size_t Unanswered::count_of(std::uint16_t source, TimePoint now) const {
   return static_cast<std::size_t>(std::ranges::count_if(entries_, [&](const Entry& entry) {
-    return entry.request.source == source && entry.apid != own_source && entry.before == Before::Nothing &&
-           now - entry.since < request_patience;
+    return entry.request.source == source && entry.before == Before::Nothing && now - entry.since < request_patience;
   }));
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
+#include "supervisor/supervision/telecommand/origin.hpp"
 
 namespace hirosco::supervisor {
 
@@ -16,11 +17,24 @@ void SafeAll::provide() {
 }
 
 void SafeAll::carry_out(const pus::Request& request) {
-  pending_.push_back({craft_.guard.stop_all(), request});
+  const std::uint64_t stop = craft_.guard.stop_all();
+  const bool kept = has_room_for(request);
+  if (kept) pending_.push_back({stop, request});
   craft_.remember();
   own_.verification().accepted(request);
   own_.verification().started(request);
   after_stop("SAFE_ALL");
+  if (kept) return;
+  pus::FailureNotice notice{pus::FailureCode::ExecutionError};
+  own_.verification().completion_failed(
+      request, notice.because({ErrorCode::ResourceExhausted, most_waiting,
+                               "carried out; the outcome is told for so many at once:"}));
+}
+
+bool SafeAll::has_room_for(const pus::Request& request) const {
+  if (!Origin::of(request.source, craft_.mission).is_subsystem()) return true;
+  const auto is_its = [&](const Pending& each) { return each.request && each.request->source == request.source; };
+  return std::ranges::count_if(pending_, is_its) < static_cast<std::ptrdiff_t>(most_waiting);
 }
 
 void SafeAll::asked() {

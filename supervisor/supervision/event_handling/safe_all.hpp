@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -22,6 +23,10 @@ namespace hirosco::supervisor {
 /// Thread: the supervisor's; the stop itself is the guard's.
 class SafeAll final : public Remembered {
  public:
+  /// Of one subsystem that wait for the outcome, as of all that it asks for. What goes beyond is carried out all the same; it is kept for nobody,
+  /// for one that says it without end would fill what is noted for the next supervisor.
+  static constexpr std::size_t most_waiting = 16;
+
   SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, std::vector<Undertaking*> under_way)
       : craft_{craft}, own_{own}, desk_{desk}, under_way_{std::move(under_way)} {}
 
@@ -48,6 +53,7 @@ class SafeAll final : public Remembered {
     std::uint64_t stop{0};
     std::optional<pus::Request> request;  ///< empty: asked for by signal or local socket
   };
+  [[nodiscard]] bool has_room_for(const pus::Request& request) const;
   void tell_outcome(const Pending& pending, const std::vector<StopAnswer>& answers);
   /// Whoever is Operational, or enters it after all on the word of before, however slow its cycle: until it is let go, and once.
   void states_follow();

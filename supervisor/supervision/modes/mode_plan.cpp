@@ -68,6 +68,7 @@ class Planner {
       made.moved.push_back(member.apid());
       const Target target = *target_of(member);
       const Present from{member.state(), member.configuration()};
+      if (target.configuration != nullptr && target.state == State::Operational) made.released.push_back(member.apid());
       if (target.configuration != nullptr) way.add(member.descriptor(), *target.configuration, from, target.state);
       else way.down(member.descriptor(), from);
     }

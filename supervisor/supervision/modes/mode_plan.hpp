@@ -16,6 +16,7 @@ struct ModePlan {
   std::vector<Stage> stages;  ///< none is empty; none at all: what is permitted changes, nothing else
   std::vector<std::uint16_t> moved;  ///< APIDs, in the order of the mission
   std::vector<std::string> against;  ///< every reason why it is impossible now, in words; empty: it is possible
+  std::vector<std::uint16_t> released{};  ///< of those who are moved: who is let move, in Operational
 };
 
 /// Whose states interlocks are judged on. What a change of mode brings about itself is no reason against it: at its end those are left

@@ -83,6 +83,14 @@ TEST_F(ModePlanTest, AllThatIsMissingOfAModeIsNamed) {
   EXPECT_NE(missing_from(craft, parts.graph, coupled).find("HAND is not Operational"), std::string::npos);
 }
 
+TEST_F(ModePlanTest, WhoIsToBeOperationalIsLetMoveAndNobodyElseWhoMoves) {
+  EXPECT_THAT(plan(coupled).released, ElementsAre(arm, hand));
+  coupled.commission[0].state = SafeOperational;
+  const ModePlan one_of_two = plan(coupled);
+  EXPECT_THAT(one_of_two.moved, ElementsAre(arm, hand));
+  EXPECT_THAT(one_of_two.released, ElementsAre(hand));
+}
+
 TEST_F(ModePlanTest, AModeThatCommissionsNobodyMovesNobody) {
   couple();
   watching.commission.clear();

@@ -9,6 +9,7 @@
 
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "supervisor/supervision/modes/commissioning.hpp"
+#include "supervisor/supervision/telecommand/origin.hpp"
 
 namespace hirosco::supervisor {
 
@@ -32,11 +33,18 @@ void Modes::provide() {
   });
 }
 
+bool Modes::is_of_subsystem(const Call& call) const noexcept {
+  return Origin::of(call.request.source, craft_.mission).is_subsystem();
+}
+
 /// A mode is entered while nothing else brings the craft into one.
-std::optional<Outcome> Modes::not_now() const {
+std::optional<Outcome> Modes::not_now(const Call& call) const {
   if (craft_.shutting_down) return refused(pus::FailureCode::NotPermittedNow, "the craft shuts down");
   if (runner_.running()) return refused(pus::FailureCode::Busy, "another change of mode is under way");
   if (parts_.commissioning.running()) return refused(pus::FailureCode::Busy, "the craft is being commissioned");
+  if (is_of_subsystem(call) && craft_.now < subsystems_wait_until_)
+    return refused(pus::FailureCode::Busy, "a subsystem was given a mode just now; pause, s:",
+                   pause_of_subsystems / std::chrono::seconds{1});
   return std::nullopt;
 }
 
@@ -49,11 +57,12 @@ Outcome Modes::enter_mode(std::uint8_t id, const Call& call) {
   const bool commissions = call.request.source == supervisor_apid;
   if (commissions && !parts_.commissioning.running())
     return refused(pus::FailureCode::NotPermittedNow, "the commissioning that it ends was stopped");
-  if (const auto why = commissions ? std::nullopt : not_now()) return *why;
+  if (const auto why = commissions ? std::nullopt : not_now(call)) return *why;
   const Judged judged = commissions ? Judged::WhomItDoesNotCommission : Judged::Everybody;
   const ModePlan plan{.stages = {}, .moved = {}, .against = interlocks_against(craft_, *mode, judged)};
   if (!plan.against.empty()) return impossible(*mode, plan, call);
   enter(*mode);
+  begin_pause(call);
   return ok();
 }
 
@@ -68,15 +77,30 @@ Outcome Modes::impossible(const descriptor::Mode& mode, const ModePlan& plan, co
 Outcome Modes::set_mode(std::uint8_t id, const Call& call) {
   const auto* mode = find_mode(craft_, id);
   if (mode == nullptr) return refused(pus::FailureCode::UnknownIdentifier);
-  if (const auto why = not_now()) return *why;
+  if (const auto why = not_now(call)) return *why;
   ModePlan plan = plan_mode(craft_, parts_.means.links, parts_.power, *mode);
+  object_for_subsystems(plan, call);
   if (!plan.against.empty()) return impossible(*mode, plan, call);
   if (plan.stages.empty()) {
     enter(*mode);
+    begin_pause(call);
     return ok();
   }
   change(*mode, std::move(plan), call);
   return hirosco::running;
+}
+
+/// Who is stopped, or was never let go, is let go by the ground: a subsystem that asks for a mode would lift a stop by the supervisor's hand.
+/// Nor does it take away the ground's own way to the craft.
+void Modes::object_for_subsystems(ModePlan& plan, const Call& call) const {
+  if (!is_of_subsystem(call)) return;
+  for (const std::uint16_t apid : plan.released)
+    plan.against.push_back(
+        fmt::format("it lets {} move, which the ground may ask for and no subsystem", craft_.name_of(apid)));
+  for (const std::uint16_t apid : plan.moved)
+    if (craft_.is_ground_link(*craft_.member(apid)))
+      plan.against.push_back(fmt::format("it moves {}, the ground link, which the ground may ask for and no subsystem",
+                                         craft_.name_of(apid)));
 }
 
 void Modes::change(const descriptor::Mode& mode, ModePlan plan, const Call& call) {
@@ -107,7 +131,10 @@ void Modes::ended(const descriptor::Mode& mode, const std::string& failure) {
   moved_.clear();
   // Here and by no telecommand: one that is under way when the change is cancelled would be carried out after that.
   enter(mode);
-  if (const auto call = std::exchange(call_, std::nullopt)) parts_.own.finish(*call);
+  if (const auto call = std::exchange(call_, std::nullopt)) {
+    begin_pause(*call);
+    parts_.own.finish(*call);
+  }
 }
 
 Cancelled Modes::cancel(std::string_view why) {
@@ -157,15 +184,21 @@ void Modes::fall_back(std::string_view why, StatesFollow states) {
   moved_.clear();
   craft_.tell(fmt::format("the change to mode {} stopped: {}", mode.name, why), supervisor_apid);
   if (const auto* initial = craft_.mission.find_mode(craft_.mission.initial_mode)) enter(*initial);
-  if (const auto call = std::exchange(call_, std::nullopt))
+  if (const auto call = std::exchange(call_, std::nullopt)) {
+    begin_pause(*call);
     parts_.own.abort(*call, pus::FailureCode::ExecutionError, "the craft is in its initial mode; why: the story, mode",
                      mode.id);
+  }
 }
 
 void Modes::enter(const descriptor::Mode& mode) {
   craft_.mode = &mode;
   void_permissions();
   craft_.tell("mode " + mode.name, supervisor_apid);
+}
+
+void Modes::begin_pause(const Call& call) {
+  if (is_of_subsystem(call)) subsystems_wait_until_ = craft_.now + pause_of_subsystems;
 }
 
 void Modes::void_permissions() {

@@ -20,7 +20,8 @@ class Commissioning;
 /// The mode of the craft (paper 4.3). SET_MODE is a planned change of all of it (docs/adr/0075): refused as a whole with every
 /// reason, or carried out in stages of ordinary telecommands; it ends in the new mode, or with whom it moved stopped and the
 /// initial mode in force. ENTER_MODE changes what is permitted and moves nobody: what a mode is entered from, needs and excludes holds
-/// for it as well (docs/adr/0171). What was permitted in a mode before is void behind it, by its epoch on every member's page.
+/// for it as well (docs/adr/0171). A subsystem that a permit names may ask for both, but for no change that lets anybody move or moves
+/// the ground link, and not without a pause (docs/adr/0216). What was permitted in a mode before is void behind it, by its epoch on every member's page.
 /// Thread: the supervisor's.
 class Modes final : public Undertaking, public Remembered {
  public:
@@ -30,6 +31,10 @@ class Modes final : public Undertaking, public Remembered {
     const PowerLedger& power;
     const Commissioning& commissioning;
   };
+  /// Behind each change that a subsystem asked for, until any of them may ask for another one: a change voids what was permitted before it,
+  /// and one that asked without end would leave the ground no telecommand, nor one to take its permit away.
+  static constexpr Duration pause_of_subsystems = std::chrono::seconds{5};
+
   explicit Modes(const Parts& parts) : parts_{parts}, craft_{parts.means.craft}, runner_{parts.means} {}
 
   /// SET_MODE and ENTER_MODE.
@@ -52,8 +57,10 @@ class Modes final : public Undertaking, public Remembered {
 
  private:
   enum class StatesFollow : std::uint8_t { Here, Elsewhere };
-  [[nodiscard]] std::optional<Outcome> not_now() const;
+  [[nodiscard]] bool is_of_subsystem(const Call& call) const noexcept;
+  [[nodiscard]] std::optional<Outcome> not_now(const Call& call) const;
   Outcome set_mode(std::uint8_t id, const Call& call);
+  void object_for_subsystems(ModePlan& plan, const Call& call) const;
   Outcome enter_mode(std::uint8_t id, const Call& call);
   Outcome impossible(const descriptor::Mode& mode, const ModePlan& plan, const Call& call);
   void change(const descriptor::Mode& mode, ModePlan plan, const Call& call);
@@ -61,6 +68,8 @@ class Modes final : public Undertaking, public Remembered {
   void fall_back(std::string_view why, StatesFollow states);
   void enter(const descriptor::Mode& mode);
   void void_permissions();
+  /// What this one asked for is done, or has failed.
+  void begin_pause(const Call& call);
   void report(std::uint16_t destination, const descriptor::Mode& mode, const ModePlan& plan);
 
   Parts parts_;
@@ -68,6 +77,7 @@ class Modes final : public Undertaking, public Remembered {
   ProcedureRunner runner_;
   std::optional<Call> call_;  ///< of the change that is under way
   std::vector<std::uint16_t> moved_;
+  TimePoint subsystems_wait_until_{};
 };
 
 }  // namespace hirosco::supervisor

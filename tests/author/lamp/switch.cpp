@@ -31,20 +31,28 @@ class Switch final : public Subsystem {
 
   Result<> offline() override {
     panel_.on_request("PRESS", [this](double brightness, const Call& call) -> Outcome {
-      const auto asked = request(fade_, brightness);
-      if (!asked) return Result<>{std::unexpected{asked.error()}};
-      pressed_.emplace(*asked, call);
-      return running;
+      return ends_with(request(fade_, brightness), call);
+    });
+    panel_.on_request("CHANGE_MODE", [this](std::uint8_t mode, const Call& call) -> Outcome {
+      return ends_with(request(set_mode_, mode), call);
     });
     provide(panel_);
     return ok();
+  }
+  /// Whoever pressed waits for the end of what is asked of another one.
+  Outcome ends_with(const Result<std::uint32_t>& asked, const Call& call) {
+    if (!asked) return Result<>{std::unexpected{asked.error()}};
+    pressed_.emplace(*asked, call);
+    return running;
   }
   Result<Step> software_init() override {
     publish("BLINK_S", blink_s_);
     publish("ANSWERS", answers_);
     publish("SEEN", seen_);
+    publish("MODE", mode_);
     use_request(fade_, [this](const RequestReport& report) { hear(report); });
     use_request(look_, [](const RequestReport&) {});
+    use_request(set_mode_, [this](const RequestReport& report) { hear(report); });
     use_subscription(lamp_, [this](const Lamp& lamp) {
       brightness_.store(lamp.brightness);
       ++reports_;
@@ -84,12 +92,14 @@ class Switch final : public Subsystem {
   }
 
   Request<double> fade_{"LAMP", "FADE"};
+  Request<std::uint8_t> set_mode_{"SUPERVISOR", "SET_MODE"};
   Request<> look_{"LAMP", Ask::OneShotHousekeeping, "4800"};
   Subscription<Lamp> lamp_{"LAMP", "4800"};
   EventSubscription<std::uint64_t, std::uint8_t, std::uint8_t, std::array<float, 3>> programmed_{"LAMP", "PROGRAMMED"};
   Parameter<double> blink_s_;
   Parameter<Answers> answers_;
   Parameter<Seen> seen_;
+  Parameter<std::uint8_t> mode_;  // the supervisor's, as it comes by its housekeeping
   CustomService panel_{"PANEL"};
   std::map<std::uint32_t, Call> pressed_;  // who waits for which request
   std::atomic<std::uint32_t> completed_{0}, refused_{0}, failed_{0};  // counted in the service loop, shown by the cycle

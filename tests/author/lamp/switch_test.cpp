@@ -4,18 +4,35 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <hirosco/descriptor/read/read.hpp>
 #include <hirosco/subsystem/testing/rig.hpp>
 #include <utility>
 
 using namespace hirosco;
 
+namespace {
+
+/// Of the supervisor's descriptor what the switch asks and hears of it.
+constexpr const char* supervisor = R"(<Subsystem name="SUPERVISOR" id="1">
+  <ParamRef name="MODE" id="0" type="UINT8"/>
+  <FunctionService><Function name="SET_MODE"><Argument name="MODE" type="UINT8" minimum="1" maximum="255"/></Function></FunctionService>
+  <Configuration name="NOMINAL" id="1" sampling_us="10000">
+    <HKService id="4701" interval="100"><SampledOnce><ParamRef name="MODE"/></SampledOnce></HKService>
+  </Configuration>
+</Subsystem>)";
+
+descriptor::SubsystemDescriptor described() {
+  const auto files = descriptor::file_system();
+  return hirosco::testing::read_descriptor(files("switch.xml").value(), {files("lamp.xml").value(), supervisor});
+}
+
+}  // namespace
+
 /// The test plays the supervisor and the lamp.
 TEST(Switch, IsDoneWithAPressWhenTheLampIsAndSaysWhyNot) {
-  const auto files = descriptor::file_system();
   const auto author = make_switch();
-  hirosco::testing::Rig rig{
-      *author, hirosco::testing::read_descriptor(files("switch.xml").value(), {files("lamp.xml").value()})};
+  hirosco::testing::Rig rig{*author, described()};
   rig.bring_to(State::PreOperational);
   ASSERT_EQ(rig.asked.size(), 2U) << "what it hears";
   for (const auto& each : std::exchange(rig.asked, {})) rig.verify(each, 7);
@@ -42,10 +59,8 @@ TEST(Switch, IsDoneWithAPressWhenTheLampIsAndSaysWhyNot) {
 }
 
 TEST(Switch, SeesHowBrightTheLampIsAndLooksWhenItWasProgrammed) {
-  const auto files = descriptor::file_system();
   const auto author = make_switch();
-  hirosco::testing::Rig rig{
-      *author, hirosco::testing::read_descriptor(files("switch.xml").value(), {files("lamp.xml").value()})};
+  hirosco::testing::Rig rig{*author, described()};
   rig.bring_to(State::Operational);
   for (const auto& each : std::exchange(rig.asked, {})) rig.verify(each, 7);
   constexpr std::uint16_t lamp = 7, structure = 4800, programmed = 4801;
@@ -67,5 +82,23 @@ TEST(Switch, SeesHowBrightTheLampIsAndLooksWhenItWasProgrammed) {
             "000000000000000000000000"
             "3fd0000000000000"
             "00000001"
-            "00000001");
+            "00000001"
+            "00");
+}
+
+TEST(Switch, AsksTheSupervisorForAModeAndIsDoneWhenThatIsThere) {
+  const auto author = make_switch();
+  hirosco::testing::Rig rig{*author, described()};
+  rig.bring_to(State::PreOperational);
+  for (const auto& each : std::exchange(rig.asked, {})) rig.verify(each, 7);
+  rig.settle();
+  const std::array mode{std::byte{3}};
+  const auto asked = rig.send(201, 2, mode);
+  rig.settle();
+  ASSERT_EQ(rig.asked.size(), 1U);
+  EXPECT_EQ(hirosco::testing::hex(rig.asked[0].data).substr(32), "010103") << "one argument, the first, 3";
+  EXPECT_EQ(rig.outcome(asked), "1 3");
+  for (const std::uint8_t subtype : std::array<std::uint8_t, 3>{1, 3, 7}) rig.verify(rig.asked[0], subtype);
+  rig.settle();
+  EXPECT_EQ(rig.outcome(asked), "1 3 7");
 }

@@ -26,6 +26,8 @@ void read_interlock(const xml::Element& element, Interlock::Kind kind, Mode& mod
 // check_modes.cpp
 /// Modes may be named before they are read: when all are.
 void check_from(const xml::Element& modes, const Mission& mission, Problems& problems);
+/// Where a subsystem may ask for modes the ground may leave each of them: else that could take the craft from it.
+void check_way_back(const Mission& mission, Problems& problems);
 /// The mode that `initial` names is in force from the beginning.
 void check_initial(const xml::Attribute& initial, const Mode& mode, Problems& problems);
 /// The mode that `start` names is entered first.

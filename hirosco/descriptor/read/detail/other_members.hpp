@@ -10,7 +10,7 @@
 
 namespace hirosco::descriptor::detail {
 
-/// Whom the members command and hear.
+/// Whom the members command and hear, the supervisor like every other one.
 class OtherMembers {
  public:
   explicit OtherMembers(MissionDraft& draft) : draft_{draft}, problems_{draft.problems}, mission_{draft.mission} {}
@@ -18,15 +18,19 @@ class OtherMembers {
   void read_redirected(const xml::Element& element, MissionSubsystem& member, Redirected::Kind kind, Unique& names);
   /// Once all members are known.
   void resolve_all();
+  /// Once the supervisor has a row for everybody (give_everybody_a_row()): a process reads its descriptor's file, where they are as many as that
+  /// says, and could not read a report with more.
+  void check_rows() const;
 
  private:
   void resolve_one(const MissionSubsystem& member, Commands& commands);
   void resolve_one(const MissionSubsystem& member, Subscribes& subscribes);
+  static void check_asked_of_supervisor(const MissionSubsystem& member, const Commands& commands, Problems& problems);
   static void resolve_things(std::vector<Thing>& things, const SubsystemDescriptor& other, const Location& at,
                              Problems& problems);
-  /// Whom the mission means by that name; null: nobody, and it was reported.
-  [[nodiscard]] const MissionSubsystem* find_other(const MissionSubsystem& member, const std::string& named,
-                                                   Redirected::Kind kind);
+  /// Whom the mission means by that name, the supervisor among them; null: nobody, and it was reported.
+  [[nodiscard]] const SubsystemDescriptor* find_other(const MissionSubsystem& member, const std::string& named,
+                                                      Redirected::Kind kind);
 
   MissionDraft& draft_;
   Problems& problems_;
