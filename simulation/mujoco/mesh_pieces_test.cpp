@@ -11,7 +11,7 @@
 namespace hirosco::simulation {
 namespace {
 
-void add_box(const Corner& low, const Corner& high, std::vector<Facet>& facets) {
+void add_cuboid(const Corner& low, const Corner& high, std::vector<Facet>& facets) {
   const auto corner = [&](unsigned which) {
     return Corner{(which & 1U) != 0 ? high[0] : low[0], (which & 2U) != 0 ? high[1] : low[1],
                   (which & 4U) != 0 ? high[2] : low[2]};
@@ -30,9 +30,9 @@ void add_box(const Corner& low, const Corner& high, std::vector<Facet>& facets) 
                                 {3U, 7U, 5U}})
     facets.push_back({corner(a), corner(b), corner(c)});
 }
-[[nodiscard]] std::vector<Facet> box(const Corner& low, const Corner& high) {
+[[nodiscard]] std::vector<Facet> cuboid(const Corner& low, const Corner& high) {
   std::vector<Facet> facets;
-  add_box(low, high, facets);
+  add_cuboid(low, high, facets);
   return facets;
 }
 [[nodiscard]] std::pair<double, double> from_to(const MeshPiece& piece, std::size_t axis) {
@@ -41,7 +41,7 @@ void add_box(const Corner& low, const Corner& high, std::vector<Facet>& facets) 
 }
 
 TEST(MeshPieces, OfALongBoxAreItsEighthsAndHaveEightCornersEach) {
-  auto pieces = pieces_of(box({-0.8, 0, 0}, {0.8, 0.1, 0.1}));
+  auto pieces = pieces_of(cuboid({-0.8, 0, 0}, {0.8, 0.1, 0.1}));
   ASSERT_EQ(pieces.size(), 8U);
   std::ranges::sort(pieces);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -54,9 +54,9 @@ TEST(MeshPieces, OfALongBoxAreItsEighthsAndHaveEightCornersEach) {
 }
 
 TEST(MeshPieces, LeaveWhatIsHollowFree) {
-  auto trough = box({-0.2, -0.2, 0}, {0.2, 0.2, 0.05});
-  add_box({-0.2, -0.2, 0}, {-0.15, 0.2, 0.4}, trough);
-  add_box({0.15, -0.2, 0}, {0.2, 0.2, 0.4}, trough);
+  auto trough = cuboid({-0.2, -0.2, 0}, {0.2, 0.2, 0.05});
+  add_cuboid({-0.2, -0.2, 0}, {-0.15, 0.2, 0.4}, trough);
+  add_cuboid({0.15, -0.2, 0}, {0.2, 0.2, 0.4}, trough);
   for (const MeshPiece& piece : pieces_of(trough)) {
     const auto [left_m, right_m] = from_to(piece, 0);
     if (left_m <= 0.1 && right_m >= -0.1 && from_to(piece, 2).first < 0.2)
@@ -66,8 +66,8 @@ TEST(MeshPieces, LeaveWhatIsHollowFree) {
 }
 
 TEST(MeshPieces, AreNotMadeOfWhatIsSmall) {
-  EXPECT_EQ(pieces_of(box({0, 0, 0}, {0.039, 0.03, 0.02})).size(), 1U);
-  EXPECT_EQ(pieces_of(box({0, 0, 0}, {0.041, 0.03, 0.02})).size(), 2U);
+  EXPECT_EQ(pieces_of(cuboid({0, 0, 0}, {0.039, 0.03, 0.02})).size(), 1U);
+  EXPECT_EQ(pieces_of(cuboid({0, 0, 0}, {0.041, 0.03, 0.02})).size(), 2U);
   EXPECT_TRUE(pieces_of({}).empty());
 }
 
