@@ -90,7 +90,8 @@ std::vector<MeshPiece> pieces_of(std::vector<Facet> surface) {
   if (surface.empty()) return {};
   std::vector<PartOfMesh> parts;
   parts.push_back(measured(std::move(surface)));
-  while (parts.size() < most_pieces) {
+  std::size_t facets = parts.front().facets.size();
+  while (parts.size() < most_pieces && facets <= most_cut_facets) {
     const auto longest = std::ranges::max_element(parts, {}, &PartOfMesh::longest_m);
     if (longest->longest_m < 2 * shortest_piece_m) break;
     const PartOfMesh whole = std::exchange(*longest, PartOfMesh{});
@@ -99,6 +100,7 @@ std::vector<MeshPiece> pieces_of(std::vector<Facet> surface) {
       take_side(facet, whole.axis, whole.middle_m, -1, below);
       take_side(facet, whole.axis, whole.middle_m, 1, above);
     }
+    facets += below.size() + above.size() - whole.facets.size();
     *longest = measured(std::move(below));
     parts.push_back(measured(std::move(above)));
   }
