@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -131,6 +132,8 @@ class Collada {
         const auto whom = meant(part, "url");
         if (!whom) return std::unexpected{whom.error()};
         added = part.name == "instance_node" ? add_node(**whom, at, depth + 1) : add_geometry(**whom, at);
+      } else if (part.name == "instance_controller") {
+        return problem(place(part.at), "<instance_controller> is not read: export it without a skin");
       }
       if (!added) return added;
     }
@@ -169,7 +172,12 @@ class Collada {
       if (!layout) return std::unexpected{layout.error()};
       const auto first = static_cast<std::uint32_t>(mesh_.points.size());
       if (auto added = add_points(*layout->vertex, at); !added) return added;
+      const std::size_t first_triangle = mesh_.triangles.size();
       if (auto added = add_faces(primitive, *layout, first); !added) return added;
+      // A place that mirrors would turn its surface inside out.
+      if (at.linear().determinant() < 0)
+        for (Mesh::Triangle& triangle : std::span{mesh_.triangles}.subspan(first_triangle))
+          std::swap(triangle[1], triangle[2]);
     }
     return {};
   }
@@ -230,6 +238,7 @@ class Collada {
       counts = std::move(*read);
     }
     for (const Element& p : primitive.children) {
+      if (p.name == "ph") return problem(place(p.at), "a polygon with holes is not read: export it as triangles");
       if (p.name != "p") continue;
       const auto numbers = indices_of(p);
       if (!numbers) return std::unexpected{numbers.error()};
@@ -255,7 +264,11 @@ class Collada {
     if (primitive.name == "triangles") {
       for (std::size_t i = 0; i + 3 <= corners.size(); i += 3) fan(i, 3);
     } else if (primitive.name == "tristrips") {
-      for (std::size_t i = 0; i + 3 <= corners.size(); ++i) fan(i, 3);
+      // Every second one of a strip goes round the other way.
+      for (std::size_t i = 0; i + 3 <= corners.size(); ++i) {
+        fan(i, 3);
+        if (i % 2 != 0) std::swap(mesh_.triangles.back()[1], mesh_.triangles.back()[2]);
+      }
     } else if (primitive.name != "polylist") {
       fan(0, corners.size());
     } else {

@@ -24,6 +24,12 @@ constexpr std::size_t stl_text_octets = 512;
   for (std::size_t i = 4; i > 0; --i) word = word << 8 | static_cast<unsigned char>(octets[at + i - 1]);
   return word;
 }
+void put_word(std::uint32_t word, std::string& octets) {
+  for (unsigned shift = 0; shift < 32; shift += 8) octets += static_cast<char>(word >> shift & 0xFFU);
+}
+void put_point(const Vector3& point, std::string& octets) {
+  for (const double number : point) put_word(std::bit_cast<std::uint32_t>(static_cast<float>(number)), octets);
+}
 
 [[nodiscard]] std::expected<Mesh, MeshProblem> read_binary_stl(std::string_view octets) {
   const std::size_t triangles = word_at(octets, stl_head_octets - 4);
@@ -85,13 +91,11 @@ constexpr std::size_t stl_text_octets = 512;
 }  // namespace
 
 std::expected<Mesh, MeshProblem> read_stl(std::string_view octets) {
-  // A binary one may begin with the word, too: its length tells.
-  const std::uint64_t said = octets.size() >= stl_head_octets ? std::uint64_t{word_at(octets, stl_head_octets - 4)} : 0;
-  if (octets.size() >= stl_head_octets && octets.size() == stl_head_octets + said * stl_triangle_octets)
-    return read_binary_stl(octets);
+  if (is_binary_stl(octets)) return read_binary_stl(octets);
   if (octets.starts_with("solid") && octets.substr(0, stl_text_octets).find('\0') == std::string_view::npos)
     return read_text_stl(octets);
   if (octets.size() < stl_head_octets) return problem({}, "it is shorter than the head of an STL file");
+  const std::uint64_t said = word_at(octets, stl_head_octets - 4);
   return problem({}, "it says that it has " + std::to_string(said) + " triangles, which takes " +
                          std::to_string(stl_head_octets + said * stl_triangle_octets) + " octets, and has " +
                          std::to_string(octets.size()));
@@ -152,6 +156,29 @@ std::expected<Mesh, MeshProblem> read_mesh(MeshKind kind, std::string_view octet
     if (!(point.cwiseAbs().maxCoeff() <= largest_mesh_m))
       return detail::problem({}, "a point of it is farther than 10 km from its origin: are its units right?");
   return mesh;
+}
+
+bool is_binary_stl(std::string_view octets) noexcept {
+  if (octets.size() < detail::stl_head_octets) return false;
+  const std::uint64_t said = detail::word_at(octets, detail::stl_head_octets - 4);
+  return octets.size() == detail::stl_head_octets + said * detail::stl_triangle_octets;
+}
+
+std::string as_binary_stl(const Mesh& mesh) {
+  // Whoever asks a file's first word whether it is a text must not find that of one there.
+  std::string octets = "binary STL, m";
+  octets.resize(detail::stl_head_octets - 4, ' ');
+  octets.reserve(detail::stl_head_octets + mesh.triangles.size() * detail::stl_triangle_octets);
+  detail::put_word(static_cast<std::uint32_t>(mesh.triangles.size()), octets);
+  for (const Mesh::Triangle& triangle : mesh.triangles) {
+    const Vector3& first = mesh.points[triangle[0]];
+    const Vector3 across = (mesh.points[triangle[1]] - first).cross(mesh.points[triangle[2]] - first);
+    // A triangle without area has none: 0 says so.
+    detail::put_point(across.norm() > 0 ? across.normalized() : across, octets);
+    for (const std::uint32_t corner : triangle) detail::put_point(mesh.points[corner], octets);
+    octets.append(2, '\0');
+  }
+  return octets;
 }
 
 }  // namespace hirosco::robotics

@@ -37,7 +37,12 @@ enum class MeshKind : std::uint8_t { Stl, Obj, Collada };
 [[nodiscard]] std::expected<MeshKind, std::string> mesh_kind(std::string_view file);
 
 /// STL, binary or text; OBJ; COLLADA 1.4 and 1.5, of which units, nodes and their places count, but not which axis is up: URDF says so. Colours,
-/// normals and lines are passed over. A mesh has at least one triangle.  Realtime: allocates.
+/// normals and lines are passed over; what would be a surface and is not read is refused. A mesh has at least one triangle.  Realtime: allocates.
 [[nodiscard]] std::expected<Mesh, MeshProblem> read_mesh(MeshKind kind, std::string_view octets);
+
+/// Whether an STL file is binary: its length says so, as one may begin as a text does.
+[[nodiscard]] bool is_binary_stl(std::string_view octets) noexcept;
+/// A mesh as the file that every reader of meshes takes: a binary STL. Its points are rounded to FLOAT, less than 0.1 um at 1 m.  Realtime: allocates.
+[[nodiscard]] std::string as_binary_stl(const Mesh& mesh);
 
 }  // namespace hirosco::robotics

@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
+#include <vector>
 
 namespace hirosco::robotics {
 namespace {
@@ -93,6 +95,31 @@ f 1//1 2//1 3//1 -1//1
   EXPECT_EQ(mesh.triangles, (std::vector<Mesh::Triangle>{{0, 1, 2}, {0, 2, 3}}));
 }
 
+TEST(Stl, IsWrittenAsEveryReaderHasIt) {
+  const Mesh square{.points = {{0, 0, 0.5}, {2.5, 0, 0.5}, {2.5, 2.5, 0.5}, {0, 2.5, 0.5}},
+                    .triangles = {{0, 1, 2}, {3, 0, 2}}};
+  const std::string octets = as_binary_stl(square);
+  ASSERT_EQ(octets.size(), 84u + 2 * 50);
+  EXPECT_FALSE(octets.starts_with("solid")) << "no reader takes it for a text";
+  EXPECT_EQ(octets.substr(80, 4), word(2));
+  const auto of_number = [](float number) { return word(std::bit_cast<std::uint32_t>(number)); };
+  const std::string second = octets.substr(84 + 50);
+  EXPECT_EQ(second.substr(8, 4), of_number(1)) << "its normal points along z";
+  std::string corners;
+  for (const float number : {0.0F, 2.5F, 0.5F, 0.0F, 0.0F, 0.5F, 2.5F, 2.5F, 0.5F}) corners += of_number(number);
+  EXPECT_EQ(second.substr(12), corners + std::string(2, '\0'));
+  EXPECT_TRUE(is_binary_stl(octets));
+  EXPECT_FALSE(is_binary_stl("solid it\nendsolid\n"));
+  EXPECT_FALSE(is_binary_stl(octets + "more"));
+  const Mesh read = mesh_of(MeshKind::Stl, octets);
+  EXPECT_EQ(read.points[3], Vector3(0, 2.5, 0.5));
+}
+
+TEST(Stl, OfATriangleWithoutAreaHasNoNormal) {
+  const std::string octets = as_binary_stl({.points = {{1, 1, 1}}, .triangles = {{0, 0, 0}}});
+  EXPECT_EQ(octets.substr(84, 12), std::string(12, '\0'));
+}
+
 TEST(Obj, ThatIsWrongIsToldWithItsPlace) {
   EXPECT_EQ(problem_of(MeshKind::Obj, "v 0 0 0\nv 1 0 0\nf 1 2 3\n").at, (descriptor::Location{3, 7}));
   EXPECT_EQ(problem_of(MeshKind::Obj, "v 0 0 0\nf 0 1 1\n").at, (descriptor::Location{2, 3}));
@@ -170,6 +197,54 @@ TEST(Collada, ThatIsWrongIsToldWithItsPlace) {
   EXPECT_THAT(wrong("stride=\"3\"", "stride=\"2\"").text, HasSubstr("three numbers"));
   EXPECT_THAT(wrong("</COLLADA>", "").text, ::testing::Not(""));
   EXPECT_THAT(problem_of(MeshKind::Collada, "<x/>").text, HasSubstr("COLLADA"));
+}
+
+/// z of the normals, whose sign says on which side the outside is.
+[[nodiscard]] std::vector<double> outsides(const Mesh& mesh) {
+  std::vector<double> found;
+  for (const auto& [a, b, c] : mesh.triangles)
+    found.push_back((mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]).z());
+  return found;
+}
+
+TEST(Collada, KeepsItsOutsideOutside) {
+  const auto all = [](const std::vector<double>& normals) {
+    return std::ranges::all_of(normals, [](double z) { return z > 0; });
+  };
+  EXPECT_TRUE(all(outsides(mesh_of(MeshKind::Collada, collada(triangles, scene)))));
+  std::string mirrored{scene};
+  mirrored.replace(mirrored.find("2 0 0 0"), 1, "-2");
+  EXPECT_TRUE(all(outsides(mesh_of(MeshKind::Collada, collada(triangles, mirrored)))));
+  const Mesh strip =
+      mesh_of(MeshKind::Collada, collada("<tristrips><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>"
+                                         "<p>0 1 3 2</p></tristrips>",
+                                         scene));
+  EXPECT_EQ(strip.triangles.size(), 2u);
+  EXPECT_TRUE(all(outsides(strip)));
+}
+
+TEST(Collada, ThatHasMoreSurfaceThanIsReadIsRefused) {
+  EXPECT_THAT(
+      problem_of(MeshKind::Collada,
+                 collada("<polygons><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><ph><p>0 1 2</p><h>0 "
+                         "1 3</h></ph></polygons>",
+                         scene))
+          .text,
+      HasSubstr("holes"));
+  std::string skin{scene};
+  const std::string shown = "<instance_geometry url=\"#g\"/>";
+  skin.replace(skin.find(shown), shown.size(), shown + "<instance_controller url=\"#c\"/>");
+  EXPECT_THAT(problem_of(MeshKind::Collada, collada(triangles, skin)).text, HasSubstr("skin"));
+}
+
+/// What no axis of a file turns: URDF says where a mesh is.
+TEST(Collada, IsTurnedByNoAxisThatIsUp) {
+  std::string text = collada(triangles, scene);
+  const std::vector<Vector3> y_up = mesh_of(MeshKind::Collada, text).points;
+  for (const char* up : {"Z_UP", "X_UP"}) {
+    text.replace(text.find("_UP") - 1, 4, up);
+    EXPECT_EQ(mesh_of(MeshKind::Collada, text).points, y_up) << up;
+  }
 }
 
 TEST(Collada, OfANodeThatIsInItselfHasAnEnd) {

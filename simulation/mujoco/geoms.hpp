@@ -12,8 +12,8 @@
 namespace hirosco::simulation {
 
 /// Bits of who meets whom. The hull of a link's mesh is larger than the link, centimetres between two that are bent around each other: it meets
-/// what is no link.
-inline constexpr int of_links = 1, of_meshes = 2, of_others = 4;
+/// what is no link of the same robot. Its pieces meet links of the same robot and what pieces these have.
+inline constexpr int of_links = 1, of_meshes = 2, of_others = 4, of_pieces = 8;
 
 /// A shape of this body, which weighs nothing and is a link's. Where two touch that of the higher priority says what friction there is.
 /// Realtime: allocates.

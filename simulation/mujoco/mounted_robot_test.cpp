@@ -116,13 +116,40 @@ TEST(MountedRobot, IsPushedAwayWithWhatTheFirstOneLoses) {
   EXPECT_NEAR(robot.velocity(0) - 2 * robot.velocity(1), before_n_s, 1e-3) << "momentum is conserved";
 }
 
-TEST(MountedRobot, MeetsTheOthersByHullsThatItsOwnLinksPassThrough) {
+TEST(MountedRobot, MeetsTheOthersByTheHullsOfItsMeshes) {
   for (const char* first : {cube_shape, cube_mesh})
     for (const char* second : {cube_shape, cube_mesh}) {
       auto robot = world_of_two(cube_slider(1, first), cube_slider(2, second));
       run_both(robot, 5, 5, 500);
       EXPECT_GT(robot.touched(0).contacts, 0) << first << second;
     }
+}
+
+/// A cube of 0.2 m that slides on a carriage from 0.5 m towards the one that stands at its base.
+TEST(MountedRobot, MeetsItselfByPiecesOfItsMeshesAndTheOthersDoNot) {
+  const auto chain = [](const char* shape) {
+    const auto link = [&](const char* name, const std::string& more) {
+      return std::string{"<link name='"} + name + R"('><inertial><mass value="1"/>
+        <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>)" +
+             more + "</link>";
+    };
+    const auto slide = [](const char* name, const char* parent, const char* child) {
+      return std::string{"<joint name='"} + name + "' type='prismatic'><parent link='" + parent + "'/><child link='" +
+             child + "'/><axis xyz='1 0 0'/><limit lower='-5' upper='5' velocity='9' effort='200'/></joint>";
+    };
+    const std::string geometry = std::string{"<geometry>"} + shape + "</geometry></collision>";
+    return "<robot name='chain'><link name='base'><collision>" + geometry + "</link>" + link("carriage", "") +
+           link("cube", "<collision><origin xyz='0.5 0 0'/>" + geometry) + slide("first", "base", "carriage") +
+           slide("second", "carriage", "cube") + "</robot>";
+  };
+  for (const char* shape : {cube_shape, cube_mesh}) {
+    auto robot = world_of_two(cube_slider(1, cube_mesh), chain(shape), {.name = "left", .place_m = {0, 3, 0}});
+    ASSERT_TRUE(robot.left_out(1).empty()) << robot.left_out(1).front();
+    for (int i = 0; i < 1500; ++i) robot.step(std::array{0.0, -5.0, -5.0}, Brakes::Open, 1ms);
+    EXPECT_NEAR(robot.position(1) + robot.position(2), -0.3, 0.01) << shape;
+    EXPECT_GT(robot.touched(1).contacts, 0) << shape;
+    EXPECT_EQ(robot.touched(0).contacts, 0) << shape;
+  }
 }
 
 TEST(MountedRobot, IsPlacedWeighedAndPushedByItselfWhileTheOthersGoOn) {

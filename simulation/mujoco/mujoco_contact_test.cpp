@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <utility>
+#include <vector>
 
 #include "simulation/mujoco/mujoco_robot.hpp"
 
@@ -162,56 +164,116 @@ TEST(MujocoContact, NeighboursPassThroughEachOtherAndWhoIsAtEachOtherAtZeroIsTol
   EXPECT_EQ(robot->touched().contacts, 0);
 }
 
+using Facets = std::vector<std::array<std::array<float, 3>, 3>>;
+/// The twelve triangles of a box, by its middle and half of its sides.
+void add_box(const std::array<float, 3>& middle, const std::array<float, 3>& half, Facets& facets) {
+  constexpr std::array<std::array<unsigned, 3>, 12> faces{{{0, 2, 1},
+                                                           {1, 2, 3},
+                                                           {4, 5, 6},
+                                                           {5, 7, 6},
+                                                           {0, 1, 4},
+                                                           {1, 5, 4},
+                                                           {2, 6, 3},
+                                                           {3, 6, 7},
+                                                           {0, 4, 2},
+                                                           {2, 4, 6},
+                                                           {1, 3, 5},
+                                                           {3, 7, 5}}};
+  for (const auto& face : faces) {
+    auto& facet = facets.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        facet[i][axis] = middle[axis] + ((face[i] >> axis & 1U) != 0 ? half[axis] : -half[axis]);
+  }
+}
+/// As octets of a binary STL file.
+std::string stl_of(const Facets& facets) {
+  std::string octets(80, ' ');
+  const auto put = [&](const auto& value) {
+    std::array<char, sizeof value> raw;
+    std::memcpy(raw.data(), &value, sizeof value);
+    octets.append(raw.data(), raw.size());
+  };
+  put(static_cast<std::uint32_t>(facets.size()));
+  for (const auto& facet : facets) {
+    put(std::array{0.0F, 0.0F, 0.0F});
+    put(facet);
+    put(std::uint16_t{0});
+  }
+  return octets;
+}
+/// Of a cube; `extent`: half of its side.
+std::string stl(float extent) {
+  Facets facets;
+  add_box({}, {extent, extent, extent}, facets);
+  return stl_of(facets);
+}
+MeshSource only(std::string octets) {
+  return [octets = std::move(octets)](const std::string&) -> std::expected<std::string, std::string> { return octets; };
+}
+
 /// The last link folds back onto the base.
-TEST(MujocoContact, LinksThatAreNoNeighboursTouch) {
-  const auto box = [](const char* z) {
-    return collision(R"(<box size="0.1 0.1 0.2"/>)", std::string{"<origin xyz='0 0 "} + z + "'/>");
+TEST(MujocoContact, LinksThatAreNoNeighboursTouchWhetherTheyAreBoxesOrMeshes) {
+  const std::string box = R"(<box size="0.1 0.1 0.2"/>)", mesh = R"(<mesh filename="cube.stl" scale="0.05 0.05 0.1"/>)";
+  const auto at = [](const std::string& shape, const char* z) {
+    return collision(shape, std::string{"<origin xyz='0 0 "} + z + "'/>");
   };
   const auto turn = [](const char* name, const char* parent, const char* child, const char* most) {
     return std::string{"<joint name='"} + name + "' type='revolute'><origin xyz='0 0 0.3'/><parent link='" + parent +
            "'/><child link='" + child + "'/><axis xyz='0 1 0'/><limit lower='-" + most + "' upper='" + most +
            "' velocity='9' effort='50'/></joint>";
   };
-  auto robot = MujocoRobot::make("<robot name='r'><link name='base'>" + box("0") + "</link>" + link("a", box("0")) +
-                                 link("b", box("0.6")) + turn("one", "base", "a", "0.001") +
-                                 turn("two", "a", "b", "3.1") + "</robot>");
-  ASSERT_TRUE(robot) << robot.error();
-  EXPECT_TRUE(robot->left_out().empty());
-  robot->set_gravity(0, 0, 0);
-  ASSERT_TRUE(robot->place(std::array{0.0, 2.2}));
-  run(*robot, std::array{0.0, 5.0}, 1500);
-  EXPECT_GT(robot->touched().contacts, 0);
-  EXPECT_LT(robot->position(1), 3.05);
+  double of_boxes_rad = 0;
+  for (const auto& [base, end] : {std::pair{box, box}, {box, mesh}, {mesh, box}, {mesh, mesh}}) {
+    auto robot = MujocoRobot::make("<robot name='r'><link name='base'>" + at(base, "0") + "</link>" +
+                                       link("a", at(box, "0")) + link("b", at(end, "0.6")) +
+                                       turn("one", "base", "a", "0.001") + turn("two", "a", "b", "3.1") + "</robot>",
+                                   only(stl(1)));
+    ASSERT_TRUE(robot) << robot.error();
+    EXPECT_TRUE(robot->left_out().empty()) << robot->left_out().front();
+    robot->set_gravity(0, 0, 0);
+    ASSERT_TRUE(robot->place(std::array{0.0, 2.2}));
+    run(*robot, std::array{0.0, 5.0}, 1500);
+    EXPECT_GT(robot->touched().contacts, 0) << base << end;
+    EXPECT_LT(robot->position(1), 3.05) << base << end;
+    if (base == box && end == box) of_boxes_rad = robot->position(1);
+    EXPECT_NEAR(robot->position(1), of_boxes_rad, 0.02) << base << end;
+  }
 }
 
-/// The eight corners of a cube of 200 mm, as octets of a binary STL file; `extent`: half of its side.
-std::string stl(float extent) {
-  std::string octets(80, ' ');
-  constexpr std::array<std::array<int, 3>, 12> faces{{{0, 2, 1},
-                                                      {1, 2, 3},
-                                                      {4, 5, 6},
-                                                      {5, 7, 6},
-                                                      {0, 1, 4},
-                                                      {1, 5, 4},
-                                                      {2, 6, 3},
-                                                      {3, 6, 7},
-                                                      {0, 4, 2},
-                                                      {2, 4, 6},
-                                                      {1, 3, 5},
-                                                      {3, 7, 5}}};
-  const auto put = [&](const auto& value) {
-    std::array<char, sizeof value> raw;
-    std::memcpy(raw.data(), &value, sizeof value);
-    octets.append(raw.data(), raw.size());
-  };
-  put(static_cast<std::uint32_t>(faces.size()));
-  for (const auto& face : faces) {
-    for (int i = 0; i < 3; ++i) put(0.0F);
-    for (const int corner : face)
-      for (const int bit : {1, 2, 4}) put((corner & bit) != 0 ? extent : -extent);
-    put(std::uint16_t{0});
-  }
-  return octets;
+/// A trough of 0.4 m and walls of 0.05 m, whose one hull is full, and in it a cube of 0.1 m, two links away.
+TEST(MujocoContact, WhatIsInTheHollowOfAMeshTouchesItAtItsWall) {
+  Facets trough;
+  add_box({0, 0, -0.575F}, {0.2F, 0.2F, 0.025F}, trough);
+  for (const float x : {-0.175F, 0.175F}) add_box({x, 0, -0.4F}, {0.025F, 0.2F, 0.2F}, trough);
+  auto robot = MujocoRobot::make(
+      "<robot name='r'><link name='base'>" + collision("<mesh filename='trough.stl'/>") + "</link>" +
+          link("carriage", "") + link("cube", collision("<box size='0.1 0.1 0.1'/>")) +
+          slide("x", "base", "carriage", "1 0 0") + slide("z", "carriage", "cube", "0 0 1") + "</robot>",
+      only(stl_of(trough)));
+  ASSERT_TRUE(robot) << robot.error();
+  ASSERT_TRUE(robot->left_out().empty()) << robot->left_out().front();
+  robot->set_gravity(0, 0, 0);
+  ASSERT_TRUE(robot->place(std::array{0.0, -0.3}));
+  run(*robot, undriven, 100);
+  EXPECT_EQ(robot->touched().contacts, 0) << "it is within the hull, and touches nothing";
+  EXPECT_NEAR(robot->position(0), 0, 1e-12);
+  run(*robot, std::array{20.0, 0.0}, 2000);
+  EXPECT_NEAR(robot->position(0), 0.1, 0.006) << "at the wall";
+  EXPECT_NEAR(robot->touched().normal_n, 20, 0.5);
+}
+
+/// A cube with a sheet, which has no inside.
+TEST(MujocoContact, PiecesOfAMeshThatHaveNoInsideAreTold) {
+  Facets facets{{{{0.1F, 0, 0}, {0.9F, 0.1F, 0}, {0.9F, -0.1F, 0}}}};
+  add_box({}, {0.1F, 0.1F, 0.1F}, facets);
+  const auto robot = MujocoRobot::make(cube("<mesh filename='flag.stl'/>"), only(stl_of(facets)));
+  ASSERT_TRUE(robot) << robot.error();
+  ASSERT_EQ(robot->left_out().size(), 1U);
+  EXPECT_TRUE(robot->left_out().front().starts_with("contact of link 'cube' with links where "))
+      << robot->left_out().front();
+  EXPECT_NE(robot->left_out().front().find(" pieces of flag.stl are: MuJoCo: "), std::string::npos)
+      << robot->left_out().front();
 }
 
 TEST(MujocoContact, MeshesOfStlAndObjAreWhatTheirFilesSayAndStandOnAPlane) {
@@ -256,8 +318,7 @@ TEST(MujocoContact, MeshesThatCannotBeReadAreToldAndCostNothingElse) {
   }
 }
 
-TEST(MujocoContact, LinksThatAreMeshesMeetObstaclesAndNoLinks) {
-  const MeshSource meshes = [](const std::string&) -> std::expected<std::string, std::string> { return stl(1); };
+TEST(MujocoContact, LinksThatAreMeshesMeetObstaclesAsBoxesDo) {
   for (const bool mesh : {false, true}) {
     const std::string shape =
         collision(mesh ? R"(<mesh filename="cube.stl" scale="0.1 0.1 0.1"/>)" : R"(<box size="0.2 0.2 0.2"/>)");
@@ -265,10 +326,10 @@ TEST(MujocoContact, LinksThatAreMeshesMeetObstaclesAndNoLinks) {
     for (const char* name : {"one", "two", "three"}) text += link(name, shape);
     text +=
         slide("a", "base", "one", "1 0 0") + slide("b", "one", "two", "1 0 0") + slide("c", "two", "three", "1 0 0");
-    auto robot = MujocoRobot::make(text + "</robot>", meshes);
+    auto robot = MujocoRobot::make(text + "</robot>", only(stl(1)));
     ASSERT_TRUE(robot) << robot.error();
     ASSERT_EQ(robot->left_out().size(), 1U);
-    EXPECT_EQ(robot->left_out().front().starts_with("contact of links with each other where one is a mesh"), mesh)
+    EXPECT_TRUE(robot->left_out().front().starts_with("contact of links 'one' and 'three'"))
         << robot->left_out().front();
     ASSERT_TRUE(robot->place(std::array{0.0, 0.3, 0.3}));
     ASSERT_TRUE(

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "simulation/mujoco/geoms.hpp"
 #include "simulation/mujoco/mujoco_files.hpp"
 #include "simulation/mujoco/mujoco_spec.hpp"
 
@@ -16,17 +17,24 @@ namespace {
 
 /// Bits by which robots meet each other, one for each, beyond those by which a file or geoms.hpp says what of one robot meets what.
 constexpr int first_robot_bit = 16;
-static_assert(first_robot_bit + most_robots < 31);
+static_assert(first_robot_bit + most_robots < 31 && (of_pieces << most_robots) < 1 << first_robot_bit);
 [[nodiscard]] int bit_of(std::size_t robot) { return 1 << (first_robot_bit + static_cast<int>(robot)); }
 
 /// All that touches at all of this robot meets all of those before it; what it does with itself stays. A hull that is larger than its link is no
-/// matter here: another robot is no neighbour.
-void let_meet(mjSpec& spec, std::size_t robot) {
+/// matter here: another robot is no neighbour, and meets no pieces of it besides. `pieces`: its meshes are cut into such (geoms.hpp).
+void let_meet(mjSpec& spec, std::size_t robot, bool pieces) {
   int before = 0;
   for (std::size_t each = 0; each < robot; ++each) before |= bit_of(each);
   for (auto* each = mjs_firstElement(&spec, mjOBJ_GEOM); each != nullptr; each = mjs_nextElement(&spec, each)) {
     mjsGeom& geom = *mjs_asGeom(each);
     if (geom.contype == 0 && geom.conaffinity == 0) continue;
+    // Each robot has a bit of its own for them.
+    const int own_pieces = of_pieces << static_cast<int>(robot);
+    if (pieces && geom.contype == of_pieces) {
+      geom.contype = geom.conaffinity = own_pieces;
+      continue;
+    }
+    if (pieces && (geom.conaffinity & of_pieces) != 0) geom.conaffinity += own_pieces - of_pieces;
     geom.contype |= bit_of(robot);
     geom.conaffinity |= before;
   }
@@ -75,8 +83,8 @@ std::expected<MujocoSpec, std::string> MujocoSpec::with(MujocoSpec robot, const 
   if (!copy) return copy;
   MujocoSpec& whole = *copy;
   mjSpec& spec = *whole.spec_;
-  if (robots_.size() == 1) let_meet(spec, 0);
-  let_meet(*robot.spec_, robots_.size());
+  if (robots_.size() == 1) let_meet(spec, 0, !is_scene());
+  let_meet(*robot.spec_, robots_.size(), !robot.is_scene());
   // The world is solved as its first robot's is: MuJoCo would say in a file of its own that it does not take the other's.
   robot.spec_->option = spec.option;
   robot.spec_->authored = spec.authored;

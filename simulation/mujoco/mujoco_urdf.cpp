@@ -15,6 +15,7 @@
 
 #include "hirosco/xml/escaped.hpp"
 #include "simulation/mujoco/geoms.hpp"
+#include "simulation/mujoco/mesh_pieces.hpp"
 #include "simulation/mujoco/mujoco_files.hpp"
 #include "simulation/mujoco/rigid_links.hpp"
 
@@ -97,12 +98,50 @@ void add_mimic(const Mimic& mimic, mjSpec& spec) {
   equal.solref[0] = MujocoSpec::friction_s;
 }
 
-void add_mesh(const std::string& name, const std::array<double, 3>& scale, mjSpec& spec) {
+mjsMesh& add_hull(const std::string& name, mjSpec& spec) {
   mjsMesh& mesh = *mjs_addMesh(&spec, nullptr);
   mjs_setName(mesh.element, name.c_str());
+  mesh.inertia = mjMESH_INERTIA_CONVEX;
+  return mesh;
+}
+void add_mesh(const std::string& name, const std::array<double, 3>& scale, mjSpec& spec) {
+  mjsMesh& mesh = add_hull(name, spec);
   mjs_setString(mesh.file, name.c_str());
   std::ranges::copy(scale, mesh.scale);
-  mesh.inertia = mjMESH_INERTIA_CONVEX;
+}
+void add_piece(const std::string& name, const MeshPiece& corners, mjSpec& spec) {
+  std::vector<float> numbers;
+  for (const Corner& corner : corners)
+    for (const double number : corner) numbers.push_back(static_cast<float>(number));
+  mjs_setFloat(add_hull(name, spec).uservert, numbers.data(), static_cast<int>(numbers.size()));
+}
+
+/// Of one with this mesh alone, of which `add` tells it: one that cannot be read would cost the whole robot.
+template <class Add>
+[[nodiscard]] std::expected<MujocoModel, std::string> compiled_alone(const std::string& name, const Add& add,
+                                                                     const std::map<std::string, std::string>& octets) {
+  const std::unique_ptr<mjSpec, MujocoFree> trial{mj_makeSpec()};
+  add(*trial);
+  add_geom({.kind = ShapeKind::Mesh, .mesh = name}, link_friction, 0, *mjs_findBody(trial.get(), "world"));
+  MujocoModel model{mj_compile(trial.get(), MujocoFiles{octets}.get())};
+  if (model == nullptr) return std::unexpected{error_of(*trial)};
+  return model;
+}
+
+/// Of the one mesh of such a model, as its file has it, but scaled: MuJoCo has it about its centre and along its main axes, and lets its geom stand there.
+[[nodiscard]] std::vector<Facet> surface_of(const mjModel& model) {
+  std::array<mjtNum, 9> turned{};
+  mju_quat2Mat(turned.data(), model.geom_quat);
+  std::vector<Facet> surface(static_cast<std::size_t>(model.mesh_facenum[0]));
+  const int* point = model.mesh_face;
+  for (Facet& facet : surface)
+    for (Corner& corner : facet) {
+      const float* own = model.mesh_vert + 3 * std::ptrdiff_t{*point++};
+      const std::array<mjtNum, 3> there{own[0], own[1], own[2]};
+      mju_mulMatVec3(corner.data(), turned.data(), there.data());
+      mju_addTo3(corner.data(), model.geom_pos);
+    }
+  return surface;
 }
 
 [[nodiscard]] std::string name_of(const mjModel& model, int body) {
@@ -110,24 +149,50 @@ void add_mesh(const std::string& name, const std::array<double, 3>& scale, mjSpe
   return name != nullptr ? name : "";
 }
 
-/// The name by which MuJoCo knows it then. Tried by itself: one that cannot be read would cost the whole robot.
-[[nodiscard]] std::expected<std::string, std::string> take_mesh(const Shape& shape, const MeshSource& meshes,
-                                                                std::string_view mark, MujocoSpec::Content& made) {
+/// The names by which MuJoCo knows a mesh and its pieces then.
+struct TakenMesh {
+  std::string whole;
+  std::vector<std::string> pieces{};
+  std::vector<std::string> refused{};  ///< of pieces, why
+};
+
+[[nodiscard]] std::expected<TakenMesh, std::string> take_mesh(const Shape& shape, const MeshSource& meshes,
+                                                              std::string_view mark, MujocoSpec::Content& made) {
   const auto file = mesh_file(shape.mesh);
   if (!file) return std::unexpected{file.error()};
   if (!meshes) return std::unexpected{shape.mesh + ": nobody reads files here"};
   auto octets = meshes(*file);
   if (!octets) return std::unexpected{shape.mesh + " " + octets.error()};
   const std::string name = fmt::format("{}mesh_{}{}", mark, made.octets.size(), file->substr(file->size() - 4));
-  const std::map<std::string, std::string> alone{{name, *octets}};
-  const std::unique_ptr<mjSpec, MujocoFree> trial{mj_makeSpec()};
-  add_mesh(name, shape.sizes, *trial);
-  add_geom({.kind = ShapeKind::Mesh, .mesh = name}, link_friction, 0, *mjs_findBody(trial.get(), "world"));
-  if (!MujocoModel{mj_compile(trial.get(), MujocoFiles{alone}.get())})
-    return std::unexpected{fmt::format("{}: {}", shape.mesh, error_of(*trial))};
+  const auto whole = compiled_alone(name, [&](mjSpec& spec) { add_mesh(name, shape.sizes, spec); }, {{name, *octets}});
+  if (!whole) return std::unexpected{fmt::format("{}: {}", shape.mesh, whole.error())};
   add_mesh(name, shape.sizes, *made.spec);
   made.octets.emplace(name, std::move(*octets));
-  return name;
+  TakenMesh taken{.whole = name};
+  for (const MeshPiece& piece : pieces_of(surface_of(**whole))) {
+    const std::string piece_name = fmt::format("{} piece {}", name, taken.pieces.size());
+    const auto add = [&](mjSpec& spec) { add_piece(piece_name, piece, spec); };
+    if (const auto alone = compiled_alone(piece_name, add, {}); !alone) {
+      taken.refused.push_back(alone.error());
+      continue;
+    }
+    add(*made.spec);
+    taken.pieces.push_back(piece_name);
+  }
+  return taken;
+}
+
+/// Whole for what is no link of this robot, in pieces for its links.
+void add_mesh_geoms(Shape shape, const TakenMesh& mesh, mjsBody& body) {
+  shape.mesh = mesh.whole;
+  mjsGeom& whole = add_geom(shape, link_friction, 0, body);
+  whole.contype = of_meshes;
+  whole.conaffinity = of_others;
+  for (const std::string& name : mesh.pieces) {
+    shape.mesh = name;
+    mjsGeom& piece = add_geom(shape, link_friction, 0, body);
+    piece.contype = piece.conaffinity = of_pieces;
+  }
 }
 
 void add_shapes(const Element& robot, const MeshSource& meshes, std::string_view mark, MujocoSpec::Content& made) {
@@ -142,18 +207,20 @@ void add_shapes(const Element& robot, const MeshSource& meshes, std::string_view
       leave_out("MuJoCo has no such link");
       continue;
     }
-    if (shape.kind == ShapeKind::Mesh) {
-      auto name = take_mesh(shape, meshes, mark, made);
-      if (!name) {
-        leave_out(name.error());
-        continue;
-      }
-      shape.mesh = std::move(*name);
+    if (shape.kind != ShapeKind::Mesh) {
+      add_geom(shape, link_friction, 0, *body).conaffinity = of_links | of_pieces;
+      continue;
     }
-    mjsGeom& geom = add_geom(shape, link_friction, 0, *body);
-    if (shape.kind != ShapeKind::Mesh) continue;
-    geom.contype = of_meshes;
-    geom.conaffinity = of_others;
+    const auto mesh = take_mesh(shape, meshes, mark, made);
+    if (!mesh) {
+      leave_out(mesh.error());
+      continue;
+    }
+    add_mesh_geoms(shape, *mesh, *body);
+    if (!mesh->refused.empty())
+      made.left_out.push_back(fmt::format("contact of link '{}' with links where {} of {} pieces of {} are: {}", link,
+                                          mesh->refused.size(), mesh->refused.size() + mesh->pieces.size(), shape.mesh,
+                                          mesh->refused.front()));
   }
 }
 
@@ -182,7 +249,11 @@ void add_shapes(const Element& robot, const MeshSource& meshes, std::string_view
     return (model.geom_contype[one] & model.geom_conaffinity[other]) != 0 ||
            (model.geom_contype[other] & model.geom_conaffinity[one]) != 0;
   };
-  bool hulls = false;
+  // By the balls around them: most are far from each other, and pieces are many.
+  const auto may_be_near = [&](int one, int other) {
+    return mju_dist3(data->geom_xpos + 3 * one, data->geom_xpos + 3 * other) <
+           model.geom_rbound[one] + model.geom_rbound[other] + near_m;
+  };
   for (int i = 0; i < model.ngeom; ++i)
     for (int j = i + 1; j < model.ngeom; ++j) {
       const std::pair pair{model.geom_bodyid[i], model.geom_bodyid[j]};
@@ -191,18 +262,14 @@ void add_shapes(const Element& robot, const MeshSource& meshes, std::string_view
         return model.body_weldid[model.body_parentid[carried]] == carrier;
       };
       if (one == other || carries(one, other) || carries(other, one)) continue;
-      if (!meet(i, j)) {
-        hulls = true;
+      if (!meet(i, j) || pairs.contains(pair) || !may_be_near(i, j) ||
+          mj_geomDistance(&model, data.get(), i, j, 2 * near_m, nullptr) > near_m)
         continue;
-      }
-      if (pairs.contains(pair) || mj_geomDistance(&model, data.get(), i, j, 2 * near_m, nullptr) > near_m) continue;
       pairs.insert(pair);
       made.left_out.push_back(
           fmt::format("contact of links '{}' and '{}', which are at each other where all joints are at 0",
                       name_of(model, pair.first), name_of(model, pair.second)));
     }
-  if (hulls)
-    made.left_out.emplace_back("contact of links with each other where one is a mesh: hulls are larger than links");
   for (const auto& [one, other] : pairs) {
     if (model.body_geomnum[one] == 0 || model.body_geomnum[other] == 0) continue;
     mjsExclude& exclude = *mjs_addExclude(made.spec.get());

@@ -230,7 +230,9 @@ std::expected<std::string, std::string> mesh_file(std::string_view named) {
   std::string ending = beside->extension().string();
   std::ranges::transform(ending, ending.begin(),
                          [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  if (ending != ".stl" && ending != ".obj") return std::unexpected{fmt::format("{} is neither STL nor OBJ", named)};
+  if (ending != ".stl" && ending != ".obj")
+    return std::unexpected{fmt::format("{} is neither STL nor OBJ{}", named,
+                                       ending == ".dae" ? ": hirosco new robot writes it as STL" : "")};
   return beside->string();
 }
 

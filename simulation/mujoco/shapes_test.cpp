@@ -86,6 +86,9 @@ TEST(Shapes, AMeshLiesBesideItsFile) {
   EXPECT_EQ(mesh_file("package://lab/arm.OBJ"), "lab/arm.OBJ");
   for (const char* elsewhere : {"/opt/arm.stl", "file:///opt/arm.stl", "http://lab/arm.stl", "arm.dae", "stl"})
     EXPECT_FALSE(mesh_file(elsewhere)) << elsewhere;
+  EXPECT_EQ(mesh_file("meshes/arm.DAE").error(),
+            "meshes/arm.DAE is neither STL nor OBJ: hirosco new robot writes it as STL");
+  EXPECT_EQ(mesh_file("arm.ply").error(), "arm.ply is neither STL nor OBJ");
 }
 
 }  // namespace

@@ -146,6 +146,8 @@ TARGETS = {"arguments": (
          (MESH, "at < 0 || at >= points", "at < 0 || at > points"),
      "a corner of a triangle may be a point that there is not":
          (COLLADA, "if ((*numbers)[i] >= mesh_.points.size() - first)", "if ((*numbers)[i] > mesh_.points.size() - first)"),
+     "what is written as STL has another corner":
+         (MESH, "detail::put_point(mesh.points[corner], octets)", "detail::put_point(mesh.points[std::min(corner, triangle[0])], octets)"),
      "a polygon may be longer than what is left":
          (COLLADA, "if (count > corners.size() - at)", "if (count > corners.size() - at + 1)")}),
     "screen": (

@@ -8,7 +8,8 @@
 #include "robotics/shapes/mesh.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
-/// A mesh from whatever octets come, as each kind of file. What is taken has triangles of points that there are, each a place; what is refused says why.
+/// A mesh from whatever octets come, as each kind of file. What is taken has triangles of points that there are, each a place, and
+/// is the same surface where it is written as STL; what is refused says why.
 namespace {
 
 using namespace hirosco::robotics;
@@ -22,6 +23,16 @@ void check(const Mesh& mesh) {
     for (const std::uint32_t corner : triangle)
       expect(corner < mesh.points.size(), "a corner is a point that there is");
   for (const Vector3& point : mesh.points) expect(point.allFinite(), "a point is a place");
+  if (mesh.triangles.size() > most_mesh_points / 3) return;  // each has three points of its own there
+  const auto written = read_mesh(MeshKind::Stl, as_binary_stl(mesh));
+  expect(written && written->triangles.size() == mesh.triangles.size(), "what is written as STL is read as such");
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3& meant = mesh.points[mesh.triangles[i][k]];
+      const Vector3& is = written->points[written->triangles[i][k]];
+      expect((is - meant).cwiseAbs().maxCoeff() <= 1e-7 * meant.cwiseAbs().maxCoeff() + 1e-40,
+             "a corner is where it was, but for the rounding of FLOAT");
+    }
 }
 
 /// One octet from 80 on for each part of a COLLADA file.

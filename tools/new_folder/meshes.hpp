@@ -22,12 +22,12 @@ struct TakenMeshes {
   std::string urdf;  ///< as it was, but for the names of what is in `files`
   std::vector<std::pair<std::string, std::string>>
       files;  ///< names beside the URDF file, "meshes/base.stl", and octets
-  /// Of each that stays where it is: in which place it is named, or wrong, and why. Its link is not seen (docs/urdf-errors.md).
+  /// Of each that stays where it is: in which place it is named, or wrong, and why; its link is not seen. Of each that no world reads, too (U0708, docs/urdf-errors.md).
   std::vector<descriptor::Diagnostic> warnings;
 };
 
 /// All that <collision> elements name and an arm can read: package://A/B below one of `packages` or a folder above `file`, file://, beside
-/// `file`. `text`: of a URDF file that its reader takes.
+/// `file`. COLLADA and STL that is a text become binary STL, which arm and world read alike (docs/adr/0218). `text`: of a URDF file that its reader takes.
 [[nodiscard]] TakenMeshes take_meshes(const std::filesystem::path& file, std::string_view text,
                                       const descriptor::FileSource& source,
                                       std::span<const std::filesystem::path> packages = {});

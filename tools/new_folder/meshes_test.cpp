@@ -8,6 +8,7 @@
 
 #include <map>
 
+#include "robotics/shapes/mesh.hpp"
 #include "tools/new_folder/robot.hpp"
 
 /// Which meshes come along into a robot's folder, and what is told of the others (docs/adr/0131).
@@ -114,6 +115,58 @@ TEST(TakenMeshes, ThatStayWhereTheyAreAreToldWithPlaceReasonAndWhatToDo) {
     const bool of_mesh = said.code == "U0704";
     EXPECT_EQ(said.file, of_mesh ? "/r/wrong.obj" : "/r/r.urdf");
     EXPECT_EQ(said.at.line, of_mesh ? 1 : 3);
+  }
+}
+
+/// A triangle of 300 and 400 mm, as often as is said.
+[[nodiscard]] std::string collada(std::size_t times) {
+  std::string corners;
+  for (std::size_t i = 0; i < times; ++i) corners += "0 1 2 ";
+  return "<COLLADA><asset><unit meter='0.001'/><up_axis>Y_UP</up_axis></asset><library_geometries><geometry "
+         "id='g'><mesh>"
+         "<source id='s'><float_array>0 0 0 300 0 0 0 400 0</float_array></source>"
+         "<vertices id='v'><input semantic='POSITION' source='#s'/></vertices>"
+         "<triangles><input semantic='VERTEX' source='#v' offset='0'/><p>" +
+         corners + "</p></triangles></mesh></geometry></library_geometries></COLLADA>";
+}
+
+TEST(TakenMeshes, ThatNoWorldReadsBecomeStlWhichBothRead) {
+  const std::string text =
+      "solid of words\nfacet\nouter loop\nvertex 0 0 0\nvertex 0.3 0 0\nvertex 0 0.4 0\nendloop\nendfacet\nendsolid\n";
+  const Disk disk{{"/r/a.dae", collada(1)}, {"/r/b.STL", text}};
+  const std::string scaled =
+      "<link name='c'><collision><geometry><mesh filename='a.dae' scale='2 2 2'/></geometry></collision></link>";
+  const auto taken =
+      take_meshes("/r/r.urdf", "<robot>" + link("a.dae") + link("b.STL", "b") + scaled + "</robot>", on(disk));
+  EXPECT_THAT(taken.warnings, IsEmpty());
+  ASSERT_EQ(taken.files.size(), 2u);
+  EXPECT_EQ(taken.files[0].first, "meshes/a.stl");
+  EXPECT_EQ(taken.files[1].first, "meshes/b.stl");
+  for (const auto& [name, octets] : taken.files) {
+    EXPECT_TRUE(robotics::is_binary_stl(octets)) << name;
+    const auto mesh = robotics::read_mesh(robotics::MeshKind::Stl, octets);
+    ASSERT_TRUE(mesh) << name;
+    EXPECT_LT((mesh->points[2] - robotics::Vector3(0, 0.4, 0)).norm(), 1e-7) << "in m, and turned by no axis: " << name;
+  }
+  EXPECT_THAT(taken.urdf, HasSubstr("<collision><geometry><mesh filename=\"meshes/a.stl\"/>"));
+  EXPECT_THAT(taken.urdf, HasSubstr("<mesh filename='meshes/a.stl' scale='2 2 2'/>")) << "its scale is as it was";
+  EXPECT_THAT(taken.urdf, HasSubstr("<visual><geometry><mesh filename=\"a.dae\"/>")) << "nobody reads these";
+}
+
+TEST(TakenMeshes, ThatWouldBeTooLargeAsStlStayWhatTheyAreWhichIsTold) {
+  constexpr std::size_t most = (4 * 1024 * 1024 - 84) / 50;
+  for (const std::size_t triangles : {most, most + 1}) {
+    const Disk disk{{"/r/a.dae", collada(triangles)}};
+    const auto taken = take_meshes("/r/r.urdf", "<robot>\n" + link("a.dae") + "</robot>", on(disk));
+    ASSERT_EQ(taken.files.size(), 1u);
+    EXPECT_EQ(taken.files[0].first, triangles > most ? "meshes/a.dae" : "meshes/a.stl");
+    ASSERT_EQ(taken.warnings.size(), triangles > most ? 1u : 0u);
+    if (taken.warnings.empty()) continue;
+    EXPECT_EQ(taken.warnings[0].code, "U0708");
+    EXPECT_THAT(taken.warnings[0].message, HasSubstr("mesh 'a.dae' of link 'a' has 83885 triangles"));
+    EXPECT_THAT(taken.warnings[0].message, HasSubstr("its world does not"));
+    EXPECT_EQ(taken.warnings[0].at.line, 3);
+    EXPECT_EQ(taken.warnings[0].grade, descriptor::Grade::Warning);
   }
 }
 

@@ -247,7 +247,7 @@ TEST(NewRobot, ProposesAToolThatNearlyAllJointsMove) {
 TEST(NewRobot, EveryCodeIsExplained) {
   const std::string page = in_repository("docs/urdf-errors.md");
   for (const char* code : {"U0601", "U0602", "U0603", "U0604", "U0605", "U0606", "U0607", "U0608", "U0609", "U0610",
-                           "U0611", "U0612", "U0706", "U0707"})
+                           "U0611", "U0612", "U0706", "U0707", "U0708"})
     EXPECT_THAT(page, HasSubstr(std::string{"| "} + code + " |"));
 }
 

@@ -113,12 +113,15 @@ class Taking {
         return stays("U0707", fmt::format("cannot be taken along: {} {}", place.string(), octets.error().text),
                      "make it readable, and coarser where it is too large: a few thousand triangles are enough");
       if (const auto before = taken_at_.find(place); before != taken_at_.end()) return before->second;
-      if (taken_.files.size() == most_taken_meshes || octets_ + octets->size() > most_taken_octets)
+      const auto too_much = [&] {
         return stays("U0707",
                      fmt::format("is too much: a folder takes {} of at most {} MiB in all", most_taken_meshes,
                                  most_taken_octets >> 20U),
                      "make them coarser: a few thousand triangles are enough");
-      if (const auto mesh = robotics::read_mesh(*kind, *octets); !mesh) {
+      };
+      if (taken_.files.size() == most_taken_meshes) return too_much();
+      const auto mesh = robotics::read_mesh(*kind, *octets);
+      if (!mesh) {
         taken_.warnings.push_back(
             {place, mesh.error().at, "U0704",
              fmt::format("the mesh of link '{}' is wrong: {}: it is left out, and this shape is not seen", link,
@@ -126,8 +129,10 @@ class Taking {
              "export it anew", 1, descriptor::Grade::Warning});
         return {};
       }
+      const bool as_stl = becomes_stl(*kind, *mesh, *octets, named, link);
+      if (octets_ + octets->size() > most_taken_octets) return too_much();
       octets_ += octets->size();
-      const std::string name = free_name(place);
+      const std::string name = free_name(as_stl ? fs::path{place}.replace_extension(".stl") : place);
       taken_.files.emplace_back(name, std::move(*octets));
       return taken_at_.emplace(place, name).first->second;
     }
@@ -135,6 +140,29 @@ class Taking {
                  fmt::format("is nowhere: not as {}{}", places.front().string(),
                              places.size() > 1 ? fmt::format(", nor at {} other places", places.size() - 1) : ""),
                  "put it there, or name the folder that has its package: --packages FOLDER");
+  }
+
+  /// Whether `octets` are those of a binary STL of this mesh now: MuJoCo reads no COLLADA and no STL that is a text, so that the world would not have
+  /// what the arm keeps from.
+  [[nodiscard]] bool becomes_stl(robotics::MeshKind kind, const robotics::Mesh& mesh, std::string& octets,
+                                 const xml::Attribute& named, const std::string& link) {
+    using robotics::MeshKind;
+    if (kind == MeshKind::Obj || (kind == MeshKind::Stl && robotics::is_binary_stl(octets))) return false;
+    std::string stl = robotics::as_binary_stl(mesh);
+    if (stl.size() <= xml::max_document_octets) {
+      octets = std::move(stl);
+      return true;
+    }
+    taken_.warnings.push_back({file_,
+                               {named.value_at.line, named.value_at.column},
+                               "U0708",
+                               fmt::format("mesh '{}' of link '{}' has {} triangles, as a binary STL more than {} MiB: "
+                                           "it is taken as it is, its arm sees it, its world does not",
+                                           named.value, link, mesh.triangles.size(), xml::max_document_octets >> 20U),
+                               "make it coarser: a few thousand triangles are enough",
+                               std::max<std::size_t>(1, named.value.size()),
+                               descriptor::Grade::Warning});
+    return false;
   }
 
   /// Where it may be, the likeliest first. None: it is named in no way that is known.

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/mujoco/mesh_pieces.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace hirosco::simulation {
+namespace {
+
+/// Directions are all those of whole numbers up to this.
+constexpr int farthest_direction = 2;
+
+/// Facets, and where they are longest along an axis.
+struct PartOfMesh {
+  std::vector<Facet> facets;
+  std::size_t axis{0};
+  double longest_m{0};
+  double middle_m{0};
+};
+
+[[nodiscard]] PartOfMesh measured(std::vector<Facet> facets) {
+  PartOfMesh part{.facets = std::move(facets)};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Facet& facet : part.facets)
+      for (const Corner& corner : facet) {
+        low = std::min(low, corner[axis]);
+        high = std::max(high, corner[axis]);
+      }
+    if (!(high - low > part.longest_m)) continue;
+    part.axis = axis;
+    part.longest_m = high - low;
+    part.middle_m = low + (high - low) / 2;
+  }
+  return part;
+}
+
+/// What of a facet is on one side of a plane across `axis`: none to two facets. `side`: -1 below it, 1 above.
+void take_side(const Facet& facet, std::size_t axis, double plane_m, double side, std::vector<Facet>& taken) {
+  std::array<Corner, 4> polygon{};
+  std::size_t corners = 0;
+  for (std::size_t i = 0; i < facet.size(); ++i) {
+    const Corner& here = facet[i];
+    const Corner& next = facet[(i + 1) % facet.size()];
+    const double here_m = side * (here[axis] - plane_m), next_m = side * (next[axis] - plane_m);
+    if (here_m >= 0) polygon[corners++] = here;
+    if ((here_m < 0) == (next_m < 0) || here_m == 0 || next_m == 0) continue;
+    Corner& between = polygon[corners++];
+    for (std::size_t k = 0; k < 3; ++k) between[k] = here[k] + (next[k] - here[k]) * (here_m / (here_m - next_m));
+    between[axis] = plane_m;  // without the rounding of the line above: whoever is in the plane is so for both sides
+  }
+  for (std::size_t i = 2; i < corners; ++i) taken.push_back({polygon[0], polygon[i - 1], polygon[i]});
+}
+
+/// All of whole numbers that are no multiples of each other.
+[[nodiscard]] std::vector<Corner> directions() {
+  std::vector<Corner> found;
+  for (int x = -farthest_direction; x <= farthest_direction; ++x)
+    for (int y = -farthest_direction; y <= farthest_direction; ++y)
+      for (int z = -farthest_direction; z <= farthest_direction; ++z)
+        if (std::gcd(std::gcd(x, y), z) == 1)
+          found.push_back({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+  return found;
+}
+
+[[nodiscard]] MeshPiece farthest_of(const std::vector<Facet>& facets) {
+  std::vector<Corner> corners;
+  corners.reserve(3 * facets.size());
+  for (const Facet& facet : facets) corners.insert(corners.end(), facet.begin(), facet.end());
+  const auto once = [](std::vector<Corner>& all) {
+    std::ranges::sort(all);
+    all.erase(std::ranges::unique(all).begin(), all.end());
+  };
+  once(corners);
+  MeshPiece piece;
+  for (const Corner& direction : directions())
+    piece.push_back(*std::ranges::max_element(corners, {}, [&](const Corner& corner) {
+      return corner[0] * direction[0] + corner[1] * direction[1] + corner[2] * direction[2];
+    }));
+  once(piece);
+  return piece;
+}
+
+}  // namespace
+
+std::vector<MeshPiece> pieces_of(std::vector<Facet> surface) {
+  if (surface.empty()) return {};
+  std::vector<PartOfMesh> parts;
+  parts.push_back(measured(std::move(surface)));
+  std::size_t facets = parts.front().facets.size();
+  while (parts.size() < most_pieces && facets <= most_cut_facets) {
+    const auto longest = std::ranges::max_element(parts, {}, &PartOfMesh::longest_m);
+    if (longest->longest_m < 2 * shortest_piece_m) break;
+    const PartOfMesh whole = std::exchange(*longest, PartOfMesh{});
+    std::vector<Facet> below, above;
+    for (const Facet& facet : whole.facets) {
+      take_side(facet, whole.axis, whole.middle_m, -1, below);
+      take_side(facet, whole.axis, whole.middle_m, 1, above);
+    }
+    facets += below.size() + above.size() - whole.facets.size();
+    *longest = measured(std::move(below));
+    parts.push_back(measured(std::move(above)));
+  }
+  std::vector<MeshPiece> pieces;
+  for (const PartOfMesh& part : parts)
+    if (!part.facets.empty()) pieces.push_back(farthest_of(part.facets));
+  return pieces;
+}
+
+}  // namespace hirosco::simulation
