@@ -139,6 +139,11 @@ void CommandedArm::bind_laws() {
     });
   if (offered("TORQUE_J"))
     on_function("TORQUE_J", [this](const FunctionValues& values, Call call) { return drive(values, call); });
+  if (offered("FLOAT"))
+    on_function("FLOAT", [this]() -> Outcome {
+      if (const Outcome may = rules_.may_soften(now()); may.kind == Outcome::Kind::Refused) return may;
+      return yielding_.let_go();
+    });
   if (offered("POSITION_CONTROL"))
     on_function("POSITION_CONTROL", [this]() -> Outcome {
       if (const Outcome may = rules_.may_change_law(now()); may.kind == Outcome::Kind::Refused) return may;
