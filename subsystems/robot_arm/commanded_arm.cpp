@@ -99,6 +99,8 @@ void CommandedArm::bind_motions() {
   bind("JOG_L", &CommandedArm::jog, &Guidance::jog_l);
   bind("RETREAT", &CommandedArm::leave, &Guidance::retreat);
   bind_hold_and_stop();
+  if (robot_arm::Posture::declared(own_descriptor()))
+    posture_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
   if (!robot_arm::AbortPath::declared(own_descriptor())) return;
   abort_path_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
   bind("MOVE_ABORT", &CommandedArm::leave, &Guidance::move_abort);

@@ -48,6 +48,7 @@ TEST(Control, UsesNoHeapInACycle) {
   const JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
   const JointVector zeros = JointVector::Zero(6);
   const Payload payload{2, {0.1, 0, 0}};
+  const PreferredPosture preferred{start, 1};
   using Kind = Setpoints::Kind;
   for (const Kind kind : {Kind::JointPath, Kind::Line, Kind::JointJog, Kind::TipJog, Kind::Retract, Kind::Follow}) {
     if (kind != Kind::Retract) setpoints.begin(start);
@@ -57,10 +58,12 @@ TEST(Control, UsesNoHeapInACycle) {
     search.begin(setpoints.tip_with(pose), setpoints.now().position);
     while (search.step() == PoseSearch::Found::NotYet) {}
     EXPECT_FALSE(search.singular());
+    search.begin(setpoints.tip_with(pose), setpoints.now().position, preferred);
+    while (search.step() == PoseSearch::Found::NotYet) {}
     switch (kind) {
       case Kind::Rest: break;
       case Kind::JointPath: EXPECT_TRUE(setpoints.go(goal, 1)); break;
-      case Kind::Line: EXPECT_TRUE(setpoints.go_straight(pose, {0.2, 0.5})); break;
+      case Kind::Line: EXPECT_TRUE(setpoints.go_straight(pose, {0.2, 0.5}, preferred)); break;
       case Kind::JointJog: setpoints.jog(goal); break;
       case Kind::TipJog: setpoints.jog(Vector6{Vector6::Constant(0.05)}); break;
       case Kind::Retract: setpoints.retract(setpoints.now().position, zeros, 0.1); break;
