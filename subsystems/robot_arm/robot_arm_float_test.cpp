@@ -19,7 +19,8 @@ using robot_arm::testing::folder;
 using ::testing::StartsWith;
 
 struct RobotArmFloats : ::testing::Test {
-  static constexpr std::uint16_t contact = 1025, too_near = 1026, too_fast = 1023, too_strong = 1020, much_too_strong = 1021;
+  static constexpr std::uint16_t contact = 1025, too_near = 1026;
+  static constexpr std::uint16_t too_fast = 1023, too_strong = 1020, much_too_strong = 1021;
   Flown flown{6, std::string{folder} + "robot_arm.urdf"};
   JointVector start = vector_of(std::array{0.2, 0.5, 1.2, -0.6, 0.7, 0.1});
   JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
