@@ -163,7 +163,8 @@ std::optional<std::size_t> Yielding::still_moves() const noexcept {
 Outcome Yielding::let_go() noexcept {
   if (parts_.control.floats()) return ok();
   if (const auto joint = still_moves())
-    return refused(pus::FailureCode::Busy, "it moves yet and would go on: wait, joint", static_cast<std::int64_t>(*joint + 1));
+    return refused(pus::FailureCode::Busy, "it moves yet and would go on: wait, joint",
+                   static_cast<std::int64_t>(*joint + 1));
   take_law(LawKind::Float);
   return ok();
 }

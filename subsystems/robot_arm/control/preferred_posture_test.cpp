@@ -18,8 +18,7 @@ using Found = PoseSearch::Found;
 
 struct PreferredPostureTest : ::testing::Test {
   static constexpr double cycle_s = 0.001;
-  robotics::Model model =
-      testing::model_of(HIROSCO_SOURCE_DIR "/subsystems/robot_arm/floating/floating_arm.urdf");
+  robotics::Model model = testing::model_of(HIROSCO_SOURCE_DIR "/subsystems/robot_arm/floating/floating_arm.urdf");
   std::vector<JointBounds> bounds = testing::bounds_of(model);
   robotics::FrameId tip = model.find_frame("tool").value();
   robotics::Dynamics dynamics{model, robotics::Base::Fixed};
