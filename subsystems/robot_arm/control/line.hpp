@@ -38,7 +38,6 @@ class Line {
                               const Speed& speed, const JointVector& posture) noexcept;
   /// Of this plan, before its survey: joints that the tool leaves free go to that posture while it goes.
   void prefer(const PreferredPosture& preferred) noexcept { preferred_ = preferred; }
-  [[nodiscard]] const PreferredPosture& preferred() const noexcept { return preferred_; }
   /// Walks on by one step at most.
   void survey() noexcept;
   [[nodiscard]] Found found() const noexcept { return found_; }
