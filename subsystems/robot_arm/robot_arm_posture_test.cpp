@@ -57,8 +57,8 @@ struct SevenJoints {
     dynamics.update({.q = there, .qd = JointVector::Zero(7)});
     const robotics::Pose pose = dynamics.frame_pose(flown.model.find_frame("tool").value());
     const robotics::Quaternion wxyz{pose.rotation};
-    const auto request = flown.ask("MOVE_P", {pose.position.x(), pose.position.y(), pose.position.z(), wxyz.w(),
-                                              wxyz.x(), wxyz.y(), wxyz.z(), 1});
+    const auto request = flown.ask(
+        "MOVE_P", {pose.position.x(), pose.position.y(), pose.position.z(), wxyz.w(), wxyz.x(), wxyz.y(), wxyz.z(), 1});
     flown.finish(request);
     return flown.rig.outcome(request);
   }
