@@ -84,6 +84,26 @@ TEST_F(RobotArmFloats, BeginsAndEndsWithoutAStepAndIsCarriedMeanwhile) {
   comes_to_goal();
 }
 
+/// Held for too short a time to be learnt: the law that it is let go into has little of it, and the one that holds it again has nothing.
+TEST_F(RobotArmFloats, GoesOverWithoutAStepWhereSomebodyPushesIt) {
+  const double effort = flown.model.joints()[0].limits.effort.value();
+  flown.outside[0] = 20;
+  flown.cycle(300);
+  ASSERT_LT(flown.commanded[0], -15) << "it is held";
+  const auto floats = flown.ask("FLOAT", {});
+  // In 50 cycles; at once it would be what was not learnt.
+  EXPECT_LT(steepest_in(400), 0.02);
+  EXPECT_EQ(flown.rig.outcome(floats), "1 3 7");
+  EXPECT_GT(place()[0] - start[0], 0.05) << "it is led";
+  EXPECT_LT(flown.commanded[0], -10) << "by its damper";
+  const auto holds = flown.rig.call("HOLD");
+  // Its setpoint brakes as hard as behind a contact, which is no more than that; at once it would be all of its damper's besides.
+  EXPECT_LT(steepest_in(1000), 0.06);
+  EXPECT_EQ(flown.rig.outcome(holds), "1 3 7");
+  EXPECT_NEAR(flown.commanded[0], -20, 0.05 * effort) << "and it is held again";
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+}
+
 TEST_F(RobotArmFloats, HasNoMotionAndNoPayloadUntilItIsToHoldOrIsHardAgain) {
   ASSERT_EQ(asked("FLOAT"), "1 3 7");
   EXPECT_EQ(asked("FLOAT"), "1 3 7") << "it does already";

@@ -95,7 +95,7 @@ void Line::survey() noexcept {
 
 /// In this step, as whoever goes along it does at any pace: the tool's share of its way draws them.
 JointVector Line::drawn_to() const noexcept {
-  if (!preferred_.counts()) return next_;  // to nowhere else
+  if (!preferred_.draws()) return next_;  // to nowhere else
   const double share = share_at(reached_ + 1) - share_at(reached_);
   return one_back_ + (1 - std::exp(-preferred_.gain_per_s * share / rate_)) * (preferred_.joints - one_back_);
 }

@@ -31,8 +31,8 @@ Result<> LineMotion::begin(const robotics::Pose& goal, const Line::Speed& speed,
   off_m_ = 0;
   on_ = {};
   line_.path().at(0, sample_);
-  posture_ = preferred.counts() ? preferred.joints : posture;
-  drawn_per_s_ = preferred.counts() ? preferred.gain_per_s : 1;
+  posture_ = preferred.draws() ? preferred.joints : posture;
+  drawn_per_s_ = preferred.draws() ? preferred.gain_per_s : 1;
   return ok();
 }
 

@@ -35,9 +35,11 @@ PoseSearch::Found PoseSearch::step() noexcept {
   return Found::NotYet;
 }
 
+/// Who has no joint to spare is drawn nowhere: he begins at the posture, and where a search is damped, as that of fewer than 6 joints always is, a draw would keep him off the pose.
 bool PoseSearch::found_one() noexcept {
-  if (preferred_.counts()) return drawn_.solve(tip_, preferred_.joints, posture_).has_value();
-  return kinematics_.solve(tip_, from_, posture_).has_value();
+  if (preferred_.draws()) return drawn_.solve(tip_, preferred_.joints, posture_).has_value();
+  const JointVector to = preferred_.counts() || from_.size() < tool_directions ? posture_ : from_;
+  return kinematics_.solve(tip_, to, posture_).has_value();
 }
 
 bool PoseSearch::singular() noexcept {

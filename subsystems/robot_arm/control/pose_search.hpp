@@ -25,7 +25,7 @@ inline constexpr robotics::InverseKinematicsOptions to_a_posture{.singular = a_l
 
 /// Looks for the posture with the tip in a pose, on the branch that is nearest to where the arm stands, a little in each cycle. The same pose from the
 /// same place is the same posture. Or on the branch that is nearest to a posture that is preferred: the same pose is the same posture from wherever it is looked for, where it is found from
-/// there; else as without it, as near to that one as this branch has it.
+/// there; else as without it, as near to that one as this branch has it. Joints are drawn where there are some to spare (docs/adr/0219).
 class PoseSearch {
  public:
   enum class Found : std::uint8_t { NotYet, Posture, Nothing };
