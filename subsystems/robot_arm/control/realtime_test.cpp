@@ -103,6 +103,33 @@ TEST(Control, UsesNoHeapInACycle) {
   }
 }
 
+/// Of seven joints, of which a tool leaves one free.
+TEST(Control, UsesNoHeapInACycleThatGoesToAPosture) {
+  ASSERT_TRUE(RealtimeScope::hook_present());
+  const robotics::Model model =
+      testing::model_of(HIROSCO_SOURCE_DIR "/subsystems/robot_arm/floating/floating_arm.urdf");
+  const auto bounds = testing::bounds_of(model);
+  const auto tip = model.find_frame("tool").value();
+  PoseSearch search{model, tip, bounds};
+  Setpoints setpoints{model, tip, bounds, period_s};
+  const JointVector ready = vector_of(std::array{0.10, 0.75, -0.30, -1.25, -0.05, 1.85, 0.0});
+  JointVector bent = ready;
+  bent[2] += 0.3;
+  const PreferredPosture preferred{bent, 1};
+  ASSERT_TRUE(preferred.draws());
+  setpoints.begin(ready);
+  const RealtimeScope scope;
+  robotics::Pose pose = setpoints.tool();
+  pose.position.z() += 0.1;
+  search.begin(setpoints.tip_with(pose), setpoints.now().position, preferred);
+  while (search.step() == PoseSearch::Found::NotYet) {}
+  EXPECT_FALSE(search.singular());
+  EXPECT_TRUE(setpoints.go_straight(pose, {0.1, 0.5}, preferred));
+  for (int i = 0; i < 300; ++i) setpoints.advance();
+  EXPECT_EQ(setpoints.line().found(), Line::Found::Way);
+  EXPECT_EQ(scope.count(), AllocationCount{});
+}
+
 /// One joint after the other finds its mark, each after half a radian.
 TEST(Control, UsesNoHeapInACycleThatHomes) {
   ASSERT_TRUE(RealtimeScope::hook_present());
