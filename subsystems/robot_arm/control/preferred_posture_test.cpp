@@ -122,6 +122,19 @@ TEST_F(PreferredPostureTest, IsComeToAlongALineWhichTheToolDoesNotLeave) {
       << "which was foreseen while it stood";
 }
 
+/// As fast as its gain may be joints would go there much faster than they may: the line goes slower, and is not given up.
+TEST_F(PreferredPostureTest, IsComeToWithinAllLimitsHoweverFastItIsWanted) {
+  const JointVector from = swung();
+  robotics::Pose goal = tip_at(from);
+  goal.position += Vector3{-0.1, 0.15, -0.1};
+  ASSERT_EQ(looked_for(goal, from, {ready, 1}), Found::Posture);
+  const JointVector nearest = search.posture();
+  setpoints.rest(from);
+  constexpr double most_gain_per_s = 5, given_up_m = 0.002;
+  EXPECT_LT(go(goal, {ready, most_gain_per_s}), given_up_m);
+  EXPECT_LT((setpoints.now().position - nearest).cwiseAbs().maxCoeff(), 0.02);
+}
+
 TEST_F(PreferredPostureTest, OfAPoseOutOfReachIsNoneWithinTwiceAsManyCycles) {
   robotics::Pose far = tip_at(ready);
   far.position *= 2.5;
