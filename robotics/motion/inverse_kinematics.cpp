@@ -97,9 +97,11 @@ Result<int> InverseKinematics::solve(const Pose& tip, const JointVector& posture
   JointVector qd;
   for (int iteration = 0; iteration <= options_.most_iterations; ++iteration) {
     Vector6 error = left(tip, q);
-    if (error.cwiseAbs().maxCoeff() <= options_.tolerance) return iteration;
-    error *= std::min(1.0, longest_step / error.norm());
+    const bool there = error.cwiseAbs().maxCoeff() <= options_.tolerance;
+    if (there && !std::isfinite(options_.settled)) return iteration;
+    if (!there) error *= std::min(1.0, longest_step / error.norm());
     rates(dynamics_, error, q, posture, qd);
+    if (there && qd.cwiseAbs().maxCoeff() <= options_.settled) return iteration;
     q += qd * std::min(1.0, longest_step * 2 / std::max(qd.cwiseAbs().maxCoeff(), 1e-12));
     for (int i = 0; i < model_->joint_count(); ++i) {
       const JointLimits& limits = joints[static_cast<std::size_t>(i)].limits;

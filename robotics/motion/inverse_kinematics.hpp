@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+
 #include "hirosco/utilities/result.hpp"
 #include "robotics/dynamics/dynamics.hpp"
 
@@ -14,6 +16,8 @@ struct InverseKinematicsOptions {
   double margin{0.05};  ///< rad or m before a limit in which a joint is slowed down on its way there
   double tolerance{1e-9};  ///< rad and m, of solve()
   int most_iterations{200};  ///< of solve()
+  /// Of solve(): it goes on until no joint would move by more, rad or m, so that what is left over has come to the posture, too. Infinite: with the tip in its place it is done.
+  double settled{INFINITY};
 };
 
 /// From what a tip is to do to what the joints do: damped least squares, what is left over goes towards a posture, and no joint beyond

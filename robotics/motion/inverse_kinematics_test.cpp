@@ -112,6 +112,26 @@ TEST(InverseKinematics, JointsMoveTheTipAndWhatIsLeftOverGoesToThePosture) {
   }
 }
 
+TEST(InverseKinematics, GoesOnUntilWhatIsLeftOverIsAsNearToThePostureAsThePlacePermits) {
+  const auto model = seven_joints();
+  Dynamics dynamics{model, Base::Fixed};
+  InverseKinematics inverse{model, {0}, {.posture_gain = 0.5, .settled = 1e-8}}, soon{model, {0}, {}};
+  JointVector posture = bent(), q = bent(), still = bent();
+  posture[0] += 0.4;
+  posture[2] -= 0.4;
+  dynamics.update(at(bent()));
+  const Pose there = dynamics.frame_pose({0});
+  ASSERT_TRUE(soon.solve(there, posture, still));
+  EXPECT_EQ(still, bent()) << "the tip is in its place";
+  ASSERT_TRUE(inverse.solve(there, posture, q));
+  EXPECT_LT(inverse.left(there, q).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_LT((posture - q).norm(), (posture - bent()).norm() - 1e-3);
+  JointVector qd;
+  dynamics.update(at(q));
+  inverse.rates(dynamics, Vector6::Zero(), q, posture, qd);
+  EXPECT_LT(qd.cwiseAbs().maxCoeff(), 1e-7) << "and nothing of it is left";
+}
+
 TEST(InverseKinematics, JointsStaySlowAtASingularity) {
   const auto model = seven_joints();
   Dynamics dynamics{model, Base::Fixed};

@@ -50,21 +50,29 @@ void BaseDevice::tell_wheels(OctetWriter& payload) noexcept {
   for (const double stored : joints_->robot().base().wheels_n_m_s(joints_->robot().data())) payload.put(stored);
 }
 
-void BaseDevice::tell_where(OctetWriter& payload) noexcept {
+BaseDevice::Where BaseDevice::measured() noexcept {
   const MujocoRobot& robot = joints_->robot();
   const FloatingBase& base = robot.base();
   const mjData& data = robot.data();
+  Where where;
+  std::size_t at = 0;
   for (const double place : base.position_m(data))
-    payload.put(place + (position_noise_m_ > 0 ? position_noise_m_ * random_.normal() : 0));
+    where[at++] = place + (position_noise_m_ > 0 ? position_noise_m_ * random_.normal() : 0);
   auto turned = base.orientation(data);
   if (attitude_noise_rad_ > 0) {
     FloatingBase::Vector wrong;
     for (double& each : wrong) each = attitude_noise_rad_ * random_.normal();
     mju_quatIntegrate(turned.data(), wrong.data(), 1);
   }
-  for (const double each : turned) payload.put(each);
-  for (const double rate : base.rate_rad_s(data)) payload.put(rate);
-  for (const double velocity : base.velocity_m_s(data)) payload.put(velocity);
+  for (const double each : turned) where[at++] = each;
+  for (const double rate : base.rate_rad_s(data)) where[at++] = rate;
+  for (const double velocity : base.velocity_m_s(data)) where[at++] = velocity;
+  return where;
+}
+
+void BaseDevice::tell_where(OctetWriter& payload) noexcept {
+  if (!stuck_ || !told_) told_ = measured();
+  for (const double number : *told_) payload.put(number);
 }
 
 Result<> BaseDevice::do_fault(const Words& words) {
@@ -91,10 +99,18 @@ Result<> BaseDevice::do_fault(const Words& words) {
     joints_->robot().base().set_wheels(joints_->robot().data(), stored);
     return ok();
   }
+  if (words[0] == "stuck") {
+    if (words[1] != "on" && words[1] != "off") return fail(ErrorCode::InvalidArgument, "stuck on or off");
+    stuck_ = words[1] == "on";
+    return ok();
+  }
   return fail(ErrorCode::InvalidArgument, "unknown fault");
 }
 
-void BaseDevice::do_heal() noexcept { attitude_noise_rad_ = position_noise_m_ = 0; }
+void BaseDevice::do_heal() noexcept {
+  attitude_noise_rad_ = position_noise_m_ = 0;
+  stuck_ = false;
+}
 
 std::string BaseDevice::do_truth() const {
   if (joints_ == nullptr || !joints_->has_world()) return "no_world=1";

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string_view>
 
 #include "simulation/mujoco/mujoco_device.hpp"
@@ -17,6 +18,7 @@ namespace hirosco::simulation {
 /// Faults besides the common ones, each also a <Setting> of its mission:
 ///   attitude_noise DEG | position_noise M   (standard deviations)
 ///   wheels H1,H2,H3   (N m s, at once)
+///   stuck on|off   (SENSORS go on telling what they told last, as if it were measured anew: nothing tells that but the world)
 class BaseDevice final : public SimulatedDevice {
  public:
   static constexpr std::string_view wheels_endnode = "WHEELS";
@@ -35,12 +37,17 @@ class BaseDevice final : public SimulatedDevice {
   void do_heal() noexcept override;
   void tell_wheels(OctetWriter& payload) noexcept;
   void tell_where(OctetWriter& payload) noexcept;
+  /// As SENSORS has it.
+  using Where = std::array<double, 13>;
+  [[nodiscard]] Where measured() noexcept;
 
   MujocoDevice* joints_;  ///< in whose world it is; null: in none
   Random random_;
   FloatingBase::Vector by_wheels_{}, by_thrusters_{};
   double attitude_noise_rad_{0};
   double position_noise_m_{0};
+  std::optional<Where> told_;
+  bool stuck_{false};
 };
 
 }  // namespace hirosco::simulation

@@ -198,5 +198,29 @@ TEST_F(BaseDeviceTest, MeasuresWithTheNoiseThatItIsGiven) {
   EXPECT_FALSE(base.fault("wheels 9,0,0"));
 }
 
+/// In frames that are new, with a noise that would otherwise never be the same twice.
+TEST_F(BaseDeviceTest, GoesOnTellingWhatItToldLastWhileItIsStuck) {
+  float_it();
+  ASSERT_TRUE(base.fault("position_noise 0.001"));
+  const auto told = [&] {
+    send(*sensors, DeviceMode::Active, {});
+    run();
+    return hear(*sensors, 13);
+  };
+  const auto first = told();
+  EXPECT_NE(told(), first);
+  const auto last = told();
+  ASSERT_TRUE(base.fault("stuck on"));
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(told(), last) << i;
+  ASSERT_TRUE(base.fault("stuck off"));
+  EXPECT_NE(told(), last);
+  ASSERT_TRUE(base.fault("stuck on"));
+  ASSERT_TRUE(base.fault("heal"));
+  ASSERT_TRUE(base.fault("position_noise 0.001"));
+  EXPECT_NE(told(), last);
+  EXPECT_FALSE(base.fault("stuck"));
+  EXPECT_FALSE(base.fault("stuck always"));
+}
+
 }  // namespace
 }  // namespace hirosco::simulation

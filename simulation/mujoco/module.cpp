@@ -15,6 +15,8 @@ using namespace hirosco::simulation;
 constexpr std::array base_lines{
     FaultLine{"attitude_noise 0.003", "the star tracker of a base that floats, standard deviation in degrees"},
     FaultLine{"position_noise 0.001", "how exactly that base knows its place, standard deviation in m"},
+    FaultLine{"stuck on",
+              "that base goes on telling the place and attitude that it told last, as if new; off: it measures again"},
 };
 constexpr auto lines = [] {
   std::array<FaultLine, MujocoDevice::fault_lines.size() + base_lines.size()> all{};

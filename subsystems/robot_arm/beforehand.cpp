@@ -67,9 +67,10 @@ std::optional<Reason> Beforehand::judge_way(Setpoints& setpoints, const JointVec
   return std::nullopt;
 }
 
-void Beforehand::search(const robotics::Pose& tip, const JointVector& here, double speed_share) noexcept {
+void Beforehand::search(const robotics::Pose& tip, const JointVector& here, double speed_share,
+                        const PreferredPosture& preferred) noexcept {
   forget();
-  pose_search_->begin(tip, here);
+  pose_search_->begin(tip, here, preferred);
   speed_share_ = speed_share;
   under_way_ = Of::Pose;
 }

@@ -35,7 +35,8 @@ class Beforehand {
   [[nodiscard]] std::optional<Reason> judge_way(Setpoints& setpoints, const JointVector& goal,
                                                 double speed_share) noexcept;
   /// A posture that has the tip there; then the way to it.
-  void search(const robotics::Pose& tip, const JointVector& here, double speed_share) noexcept;
+  void search(const robotics::Pose& tip, const JointVector& here, double speed_share,
+              const PreferredPosture& preferred) noexcept;
   /// The line that was begun last.
   void judge_line() noexcept { under_way_ = Of::Line; }
 

@@ -99,6 +99,8 @@ void CommandedArm::bind_motions() {
   bind("JOG_L", &CommandedArm::jog, &Guidance::jog_l);
   bind("RETREAT", &CommandedArm::leave, &Guidance::retreat);
   bind_hold_and_stop();
+  if (robot_arm::Posture::declared(own_descriptor()))
+    posture_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
   if (!robot_arm::AbortPath::declared(own_descriptor())) return;
   abort_path_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
   bind("MOVE_ABORT", &CommandedArm::leave, &Guidance::move_abort);
@@ -139,6 +141,11 @@ void CommandedArm::bind_laws() {
     });
   if (offered("TORQUE_J"))
     on_function("TORQUE_J", [this](const FunctionValues& values, Call call) { return drive(values, call); });
+  if (offered("FLOAT"))
+    on_function("FLOAT", [this]() -> Outcome {
+      if (const Outcome may = rules_.may_soften(now()); may.kind == Outcome::Kind::Refused) return may;
+      return yielding_.let_go();
+    });
   if (offered("POSITION_CONTROL"))
     on_function("POSITION_CONTROL", [this]() -> Outcome {
       if (const Outcome may = rules_.may_change_law(now()); may.kind == Outcome::Kind::Refused) return may;

@@ -17,6 +17,7 @@
 #include "subsystems/robot_arm/obstacles.hpp"
 #include "subsystems/robot_arm/on_board_model.hpp"
 #include "subsystems/robot_arm/parameters.hpp"
+#include "subsystems/robot_arm/posture.hpp"
 #include "subsystems/robot_arm/self_check.hpp"
 #include "subsystems/robot_arm/torque_control.hpp"
 #include "subsystems/robot_arm/torque_mode.hpp"
@@ -49,7 +50,8 @@ class CommandedArm : public robotics::MovingSubsystem {
   robot_arm::ForceSensor force_sensor_{{known_, drives_, model_, parameters_}};
   robot_arm::Obstacles obstacles_{{parameters_.clearance_limit_m, parameters_.clearance_m, parameters_.keep_out}};
   robot_arm::AbortPath abort_path_{{known_, obstacles_}};
-  robot_arm::Guidance guidance_{{known_, drives_, obstacles_, parameters_, abort_path_}};
+  robot_arm::Posture posture_{known_};
+  robot_arm::Guidance guidance_{{known_, drives_, obstacles_, parameters_, abort_path_, posture_}};
   robot_arm::Lead lead_{{known_, guidance_}};
   robot_arm::TorqueControl control_{{known_, drives_, limits_, model_, guidance_, parameters_}};
   robot_arm::Homing homing_{{known_, drives_, control_, parameters_}};

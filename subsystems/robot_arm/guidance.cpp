@@ -164,8 +164,10 @@ Outcome Guidance::move_j(const FunctionValues& values) noexcept {
 Outcome Guidance::move_p(const FunctionValues& values) noexcept {
   const Result<robotics::Pose> goal = wanted_pose(values);
   if (!goal) return refused(Trouble::no_goal, goal.error().text);
+  const PreferredPosture preferred = parts_.posture.preferred();
+  if (const auto why = parts_.posture.unfit(preferred)) return refused_for(*why);
   end_motion();
-  before_.search(setpoints_->tip_with(*goal), setpoints_->now().position, values[7]);
+  before_.search(setpoints_->tip_with(*goal), setpoints_->now().position, values[7], preferred);
   arrival_.begin(Arrival::To::Goal);
   arrival_.expect_tool(goal->position);
   return running;
@@ -174,7 +176,9 @@ Outcome Guidance::move_p(const FunctionValues& values) noexcept {
 Outcome Guidance::move_l(const FunctionValues& values) noexcept {
   const Result<robotics::Pose> goal = wanted_pose(values);
   if (!goal) return refused(Trouble::no_goal, goal.error().text);
-  const Outcome started = start(setpoints_->go_straight(*goal, {values[7], values[8]}));
+  const PreferredPosture preferred = parts_.posture.preferred();
+  if (const auto why = parts_.posture.unfit(preferred)) return refused_for(*why);
+  const Outcome started = start(setpoints_->go_straight(*goal, {values[7], values[8]}, preferred));
   if (started.kind == Outcome::Kind::Refused) return started;
   arrival_.expect_tool(goal->position);
   before_.judge_line();

@@ -13,6 +13,7 @@
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/obstacles.hpp"
 #include "subsystems/robot_arm/parameters.hpp"
+#include "subsystems/robot_arm/posture.hpp"
 #include "subsystems/robot_arm/trouble.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
@@ -28,6 +29,7 @@ class Guidance {
     Obstacles& obstacles;  ///< no goal is near them, and no way of joints
     Parameters& parameters;  ///< MOTION tells how far it is
     AbortPath& abort_path;
+    const Posture& posture;
   };
   enum class End : std::uint8_t {
     None,  ///< not yet

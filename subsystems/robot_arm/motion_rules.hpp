@@ -28,7 +28,7 @@ class MotionRules {
 
   [[nodiscard]] Outcome may_move(const Now& now) const noexcept;
   [[nodiscard]] Outcome may_change_law(const Now& now) const noexcept;
-  /// To a law of springs.
+  /// To a law of springs, or of dampers alone.
   [[nodiscard]] Outcome may_soften(const Now& now) const noexcept;
   /// Nothing moves for CHECK_ABORT: in Safe-Operational it needs no actuators. In Operational without them nothing goes on that was begun.
   [[nodiscard]] Outcome may_check(const Now& now, bool operational) const noexcept;

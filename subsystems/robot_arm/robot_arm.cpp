@@ -26,6 +26,7 @@ Result<Step> RobotArm::software_init() {
 
 Result<> RobotArm::configure(const descriptor::Configuration& configuration) {
   HIROSCO_TRY(robot_arm::check_lengths(known_.joints(), own_descriptor(), parameters_, drives_, abort_path_));
+  HIROSCO_TRY(posture_.check(own_descriptor()));
   const double cycle_s = seconds(configuration.sampling);
   known_.limit_motions(parameters_.acceleration.load(), parameters_.jerk.load());
   model_.begin(cycle_s);

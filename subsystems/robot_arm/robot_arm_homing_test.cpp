@@ -239,6 +239,7 @@ TEST_F(RobotArmHoming, KeepsAConfigurationThatHomesForHomingAlone) {
                                                                         {"JOG_L", {0.1, 0, 0, 0, 0, 0, 0.5}},
                                                                         {"IMPEDANCE_J", {9, 9, 9, 9, 9, 9, 1}},
                                                                         {"POSITION_CONTROL", {}},
+                                                                        {"FLOAT", {}},
                                                                         {"CHECK_ABORT", {}},
                                                                         {"FOLLOW", {}}};
   for (const auto& [function, numbers] : others)

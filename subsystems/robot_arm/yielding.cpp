@@ -17,6 +17,8 @@ constexpr std::uint32_t contact_after_cycles = 3;
 constexpr double gone_share = 0.5;
 /// In which it lets go of whoever it met.
 constexpr double let_go_s = 0.05;
+/// Of a joint's velocity: what is faster does not stand. Let go of, it goes on by that over FLOAT_DAMPING.
+constexpr double standing_share = 0.05;
 
 }  // namespace
 
@@ -145,6 +147,26 @@ Outcome Yielding::soften_tool(double stiffness_n_m, double turning_n_m, double d
   impedance.tool_n_m_rad = turning_n_m;
   impedance.damping_ratio = damping;
   return soften(LawKind::ToolImpedance, impedance);
+}
+
+/// A setpoint that rests is not enough: springs may swing the arm, or somebody pushes it on.
+std::optional<std::size_t> Yielding::still_moves() const noexcept {
+  const JointVector& velocity = parts_.drives.measured().velocity;
+  const Bounds bounds = parts_.known.bounds();
+  for (std::size_t joint = 0; joint < bounds.size(); ++joint)
+    // Written so that what is no number moves.
+    if (!(std::abs(velocity[static_cast<Eigen::Index>(joint)]) <= standing_share * bounds[joint].motion.velocity))
+      return joint;
+  return std::nullopt;
+}
+
+Outcome Yielding::let_go() noexcept {
+  if (parts_.control.floats()) return ok();
+  if (const auto joint = still_moves())
+    return refused(pus::FailureCode::Busy, "it moves yet and would go on: wait, joint",
+                   static_cast<std::int64_t>(*joint + 1));
+  take_law(LawKind::Float);
+  return ok();
 }
 
 void Yielding::harden() noexcept {

@@ -76,10 +76,13 @@ class Yielding {
   /// Stiffness of each joint, and damping.
   [[nodiscard]] Outcome soften_joints(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome soften_tool(double stiffness_n_m, double turning_n_m, double damping) noexcept;
+  /// FLOAT: carried and damped alone from now on. Who moves on the way there would go on: it has to stand, as measured, too.
+  [[nodiscard]] Outcome let_go() noexcept;
   /// Hard again, where it is.
   void harden() noexcept;
 
  private:
+  [[nodiscard]] std::optional<std::size_t> still_moves() const noexcept;
   [[nodiscard]] Outcome soften(LawKind kind, const Impedance& impedance) noexcept;
   [[nodiscard]] double counts_from(Eigen::Index joint, double share, double limit) noexcept;
 

@@ -340,6 +340,30 @@ TEST_F(SixJoints, FloatsOrBacksOffWhereItMeetsSomebodyAsItWasTold) {
   }
 }
 
+/// A tenth heavier than its model says: it carries what it has learnt of that, and meets nobody for it.
+TEST_F(SixJoints, FloatsWhenItIsToldToAndIsLedByHand) {
+  fly();
+  flown->craft().run(3s);
+  ASSERT_TRUE(flown->craft().command("ARM", "FLOAT", {}).completed) << flown->story().text();
+  flown->craft().run(2s);
+  std::cout << fmt::format("  floats {:.4f} rad away in 2 s\n", off(start));
+  EXPECT_LT(off(start), 0.05) << "nobody leads it";
+  ASSERT_TRUE(arm().fault("push 0 20 0"));
+  flown->craft().run(600ms);
+  ASSERT_TRUE(arm().fault("push 0 0 0"));
+  flown->craft().run(2s);
+  EXPECT_GT(off(start), 0.1) << "it was led";
+  EXPECT_FALSE(flown->story().has("ARM low CONTACT")) << flown->story().text();
+  EXPECT_EQ(static_cast<std::uint16_t>(move_j(goal).failure.value()), 0x800c);
+  const Joints left = joints();
+  EXPECT_TRUE(flown->craft().command("ARM", "HOLD", {}).completed) << flown->story().text();
+  flown->craft().run(1s);
+  EXPECT_LT(fastest(), 1e-3);
+  EXPECT_LT(off(left), 0.05) << "it holds where it was left";
+  EXPECT_EQ(flown->inhibited("ARM"), 0u) << flown->story().text();
+  EXPECT_TRUE(move_j(goal).completed) << flown->story().text();
+}
+
 TEST_F(SixJoints, IsSoftWhenItIsToldTo) {
   fly();
   ASSERT_TRUE(flown->craft().command("ARM", "IMPEDANCE_L", {500.0, 30.0, 0.7}).completed) << flown->story().text();

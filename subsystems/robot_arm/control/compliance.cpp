@@ -33,22 +33,28 @@ constexpr double heaviest = 1e3;
   return std::min(2 * ratio * std::sqrt(spring * moved), strongest_damper(moved, fastest_rad_s));
 }
 
-/// A spring and a damper of a joint that begin before its range ends, or behind the setpoint where that is nearer to the end; and a
+/// Where a joint may be without a spring: no nearer to an end than before it, or as far as it is to go.
+struct Aim {
+  double lowest;
+  double highest;
+};
+
+/// A spring and a damper of a joint that begin before its range ends, or behind its aim where that is nearer to the end; and a
 /// damper before its velocity, or what is wanted of it. Torques against the motion, or of a potential: nothing that drives.
-[[nodiscard]] double walls(const Setpoint& wanted, const Measured& measured, Eigen::Index joint, double moved,
-                           const JointBounds& bounds, double fastest_rad_s) noexcept {
-  const double position = measured.position[joint], speed = measured.velocity[joint], aim = wanted.position[joint];
+[[nodiscard]] double walls(const Aim& aim, double wanted_speed, const Measured& measured, Eigen::Index joint,
+                           double moved, const JointBounds& bounds, double fastest_rad_s) noexcept {
+  const double position = measured.position[joint], speed = measured.velocity[joint];
   const double spring = std::min(bounds.effort / wall, fastest_rad_s * fastest_rad_s * moved);
   const double widest = std::max(wall, widest_wall_share * (bounds.highest - bounds.lowest));
   const double width = std::clamp(bounds.effort / spring, wall, widest);
-  const double below = std::max(bounds.lowest, std::min(bounds.lowest + width, aim)) - position;
-  const double above = position - std::min(bounds.highest, std::max(bounds.highest - width, aim));
+  const double below = std::max(bounds.lowest, std::min(bounds.lowest + width, aim.lowest)) - position;
+  const double above = position - std::min(bounds.highest, std::max(bounds.highest - width, aim.highest));
   double torque = 0;
   const double depth = std::max(below, above);
   if (depth > 0)
     torque = std::copysign(spring * depth, below - above) -
              std::min(1.0, depth / soft_edge) * damper(spring, moved, 1, fastest_rad_s) * speed;
-  const double brisk = std::max(brisk_share * bounds.motion.velocity, std::abs(wanted.velocity[joint]));
+  const double brisk = std::max(brisk_share * bounds.motion.velocity, std::abs(wanted_speed));
   const double excess = std::abs(speed) - brisk;
   if (excess <= 0) return torque;
   const double most =
@@ -61,7 +67,7 @@ constexpr double heaviest = 1e3;
 Compliance::Compliance(const robotics::Model& model, robotics::FrameId tip)
     : model_{&model}, tip_{tip}, still_{model, robotics::Base::Fixed}, goal_{model, robotics::Base::Fixed} {
   impedance_.joint_n_m_rad.setZero(model.joint_count());
-  state_.q = state_.qd = carrying_ = impedance_.joint_n_m_rad;
+  state_.q = state_.qd = carrying_ = above_lowest_ = below_highest_ = impedance_.joint_n_m_rad;
   driven_ = {carrying_, carrying_};
 }
 
@@ -93,6 +99,17 @@ Vector6 Compliance::tool_inertia(const Jacobian& jacobian) noexcept {
     inertia[axis] = 1 / std::max(row.dot(moved), 1 / heaviest);
   }
   return inertia;
+}
+
+/// Its setpoint is wherever it is, also at an end: a spring that began behind that would never begin.
+void Compliance::remember(const JointVector& position) noexcept {
+  if (let_go_) above_lowest_ = below_highest_ = position;
+  let_go_ = false;
+  // Whoever has come away from an end has its spring begin there.
+  for (Eigen::Index i = 0; i < position.size(); ++i) {
+    above_lowest_[i] = std::max(above_lowest_[i], position[i]);
+    below_highest_[i] = std::min(below_highest_[i], position[i]);
+  }
 }
 
 /// A spring to the place, and one to the orientation whose potential is k (1 - cos angle): it has no step anywhere.
@@ -131,6 +148,7 @@ JointVector Compliance::torque(const Setpoint& wanted, const Measured& measured,
   still_.inverse(wanted.acceleration, force);
   Law::add_payload(payload, tip_, settings.gravity_m_s2, still_, wanted.acceleration, force);
   weigh(dynamics, settings.rotor);
+  if (settings.kind == LawKind::Float) remember(measured.position);
   JointVector torque = force;
   const auto joints = model_->joints();
   for (Eigen::Index i = 0; i < torque.size(); ++i) {
@@ -163,7 +181,9 @@ JointVector Compliance::torque(const Setpoint& wanted, const Measured& measured,
         carrying_[i] += driven_.brake[i];
         break;
     }
-    const double kept_by_walls = walls(wanted, measured, i, moved, its, settings.fastest_rad_s);
+    const Aim aim = settings.kind == LawKind::Float ? Aim{above_lowest_[i], below_highest_[i]}
+                                                    : Aim{wanted.position[i], wanted.position[i]};
+    const double kept_by_walls = walls(aim, wanted.velocity[i], measured, i, moved, its, settings.fastest_rad_s);
     torque[i] += kept_by_walls;
     carrying_[i] += kept_by_walls;
   }

@@ -47,6 +47,8 @@ class Compliance {
   void set_tool(const Vector3& place_m) noexcept { tool_m_ = place_m; }
   void set(const Impedance& impedance) noexcept { impedance_ = impedance; }
   [[nodiscard]] const Impedance& impedance() const noexcept { return impedance_; }
+  /// The law is Float from now on: it begins wherever it is then, and nearer to an end than its spring is no spring pushes it.
+  void let_go() noexcept { let_go_ = true; }
   /// From now on, while the law is Torque.
   void drive(const Driven& driven) noexcept { driven_ = driven; }
 
@@ -64,6 +66,7 @@ class Compliance {
                                                      double rad_s) noexcept;
 
  private:
+  void remember(const JointVector& position) noexcept;
   void weigh(robotics::Dynamics& dynamics, std::span<const double> rotor) noexcept;
   [[nodiscard]] Jacobian tool_jacobian(const robotics::Dynamics& dynamics) const noexcept;
   [[nodiscard]] Vector6 tool_inertia(const Jacobian& jacobian) noexcept;
@@ -76,6 +79,9 @@ class Compliance {
   Impedance impedance_;
   Driven driven_;
   JointVector carrying_;
+  JointVector above_lowest_,
+      below_highest_;  ///< of Float, since let_go(): the farthest that each joint has been from either end
+  bool let_go_{true};
   robotics::Dynamics still_;  ///< as measured, at rest: gravity alone
   robotics::Dynamics goal_;  ///< as wanted
   robotics::State state_;

@@ -31,6 +31,7 @@ void Laws::reset() noexcept {
 
 void Laws::set(LawKind kind, double over_s) noexcept {
   if (kind == LawKind::Position && kind_ != kind) law_.reset();
+  if (kind == LawKind::Float && kind_ != kind) compliance_.let_go();
   kind_ = kind;
   fade_s_ = over_s;
   changed_ = true;

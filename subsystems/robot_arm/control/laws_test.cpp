@@ -230,6 +230,41 @@ TEST_F(LawsTest, FloatingItGoesWhereItIsLedAndStaysThere) {
   EXPECT_LT((plant.measured().position - there).cwiseAbs().maxCoeff(), 2e-3);
 }
 
+/// As an arm has it: where it is to be is where it is, at an end as well.
+TEST_F(LawsTest, FloatingItKeepsARangeThoughItIsToBeWhereverItIs) {
+  plant.friction_factor = 0;
+  laws.set(LawKind::Float);
+  const double highest = bounds[0].highest;
+  const auto pushed = [&](double push_n_m, double seconds) {
+    JointVector push = zeros;
+    push[0] = push_n_m;
+    double farthest = -HUGE_VAL;
+    for (double t = 0; t < seconds; t += cycle_s) {
+      wanted.position = plant.measured().position;
+      plant.step(torque(plant.measured()), cycle_s, &push);
+      farthest = std::max(farthest, plant.measured().position[0]);
+    }
+    return farthest;
+  };
+  const double led = pushed(60, 3);
+  EXPECT_LT(led, highest);
+  EXPECT_GT(led, highest - 0.1) << "it was led there";
+  // Let go of where its spring would begin before: nothing pushes it away, and who leads it away and back meets the spring.
+  laws.reset();
+  JointVector there = start;
+  there[0] = highest - 0.03;
+  plant.place(there);
+  laws.set(LawKind::Float);
+  pushed(0, 2);
+  EXPECT_NEAR(plant.measured().position[0], there[0], 2e-3);
+  pushed(-20, 1);
+  ASSERT_LT(plant.measured().position[0], highest - 0.15);
+  EXPECT_LT(pushed(20, 3), there[0]);
+  // It takes the whole effort in 0.1 rad.
+  constexpr double wall = 0.1;
+  EXPECT_NEAR(plant.measured().position[0], highest - wall + wall * 20 / bounds[0].effort, 2e-3);
+}
+
 TEST_F(LawsTest, KeepARangeAndAVelocityWithWhateverTheyAreLed) {
   plant.friction_factor = 0;
   for (const LawKind kind : soft_kinds) {

@@ -39,6 +39,7 @@ Result<> Line::plan(const robotics::Pose& from, const robotics::Pose& goal, cons
                     const Speed& speed, const JointVector& posture) noexcept {
   from_ = from;
   tool_ = tool_in_tip;
+  preferred_ = {};
   way_m_ = goal.position - from.position;
   const Vector3 turn = rotation_vector(goal.rotation * from.rotation.transpose());
   angle_ = turn.norm();
@@ -81,7 +82,7 @@ double Line::share_at(std::size_t step) const noexcept {
 void Line::survey() noexcept {
   if (found_ != Found::NotYet) return;
   const robotics::Pose tip = at(share_at(reached_ + 1)) * robotics::inverse(tool_);
-  const JointVector drawn = next_;  // to nowhere else
+  const JointVector drawn = drawn_to();
   if (!kinematics_.solve(tip, drawn, next_)) {
     if (++tries_ < most_tries) return;
     if (!nearly_there(tip)) {
@@ -90,6 +91,13 @@ void Line::survey() noexcept {
     }
   }
   take_step();
+}
+
+/// In this step, as whoever goes along it does at any pace: the tool's share of its way draws them.
+JointVector Line::drawn_to() const noexcept {
+  if (!preferred_.draws()) return next_;  // to nowhere else
+  const double share = share_at(reached_ + 1) - share_at(reached_);
+  return one_back_ + (1 - std::exp(-preferred_.gain_per_s * share / rate_)) * (preferred_.joints - one_back_);
 }
 
 bool Line::nearly_there(const robotics::Pose& tip) noexcept {

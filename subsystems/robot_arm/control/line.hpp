@@ -9,6 +9,7 @@
 #include "robotics/motion/inverse_kinematics.hpp"
 #include "robotics/motion/point_to_point.hpp"
 #include "subsystems/robot_arm/control/joints.hpp"
+#include "subsystems/robot_arm/control/preferred_posture.hpp"
 
 namespace hirosco::robot_arm {
 
@@ -35,6 +36,8 @@ class Line {
   /// Of the tool, from rest in this posture; then survey() has found nothing yet. InvalidArgument: there is no way, or no speed.
   [[nodiscard]] Result<> plan(const robotics::Pose& from, const robotics::Pose& goal, const robotics::Pose& tool_in_tip,
                               const Speed& speed, const JointVector& posture) noexcept;
+  /// Of this plan, before its survey: joints that the tool leaves free go to that posture while it goes.
+  void prefer(const PreferredPosture& preferred) noexcept { preferred_ = preferred; }
   /// Walks on by one step at most.
   void survey() noexcept;
   [[nodiscard]] Found found() const noexcept { return found_; }
@@ -72,6 +75,7 @@ class Line {
 
   [[nodiscard]] double step_s() const noexcept { return path_.duration_s() / steps; }
   [[nodiscard]] double share_at(std::size_t step) const noexcept;
+  [[nodiscard]] JointVector drawn_to() const noexcept;
   [[nodiscard]] bool nearly_there(const robotics::Pose& tip) noexcept;
   void take_step() noexcept;
   void bound(std::size_t step) noexcept;
@@ -81,6 +85,7 @@ class Line {
   robotics::InverseKinematics kinematics_;
   robotics::PointToPoint path_{};
   robotics::Pose from_{}, tool_{};
+  PreferredPosture preferred_;
   Vector3 way_m_{Vector3::Zero()}, axis_{Vector3::UnitZ()};
   double angle_{0};
   double rate_{1};

@@ -24,13 +24,15 @@ LineMotion::LineMotion(const robotics::Model& model, robotics::FrameId tip, Boun
 }
 
 Result<> LineMotion::begin(const robotics::Pose& goal, const Line::Speed& speed, const JointVector& posture,
-                           ToolKinematics& tool) noexcept {
+                           ToolKinematics& tool, const PreferredPosture& preferred) noexcept {
   HIROSCO_TRY(line_.plan(tool.pose(posture), goal, tool.in_tip(), speed, posture));
+  line_.prefer(preferred);
   duration_s_ = line_.path().duration_s();
   off_m_ = 0;
   on_ = {};
   line_.path().at(0, sample_);
-  posture_ = posture;
+  posture_ = preferred.draws() ? preferred.joints : posture;
+  drawn_per_s_ = preferred.draws() ? preferred.gain_per_s : 1;
   return ok();
 }
 
@@ -104,7 +106,7 @@ LineMotion::Step LineMotion::advance(const Setpoint& now, bool braking, const Po
   twist.tail<3>() = back_to_line_per_s * beside;
   const JointVector back = tool.rates(line_.kinematics(), twist, now.position, now.position);
   // Joints that the tool leaves free are drawn while it goes, and stand when it does.
-  const JointVector drawn = now.position + rate / line_.rate() * (posture_ - now.position);
+  const JointVector drawn = now.position + drawn_per_s_ * rate / line_.rate() * (posture_ - now.position);
   const JointVector onward = tool.rates(line_.kinematics(), rate * line_.twist(), now.position, drawn);
   keep_pace(onward, back, now.velocity, braking, power);
   JointVector rates = on_.pace * onward + back;

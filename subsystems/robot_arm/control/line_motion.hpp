@@ -26,7 +26,7 @@ class LineMotion {
 
   /// From rest in this posture. InvalidArgument: as of Line.
   [[nodiscard]] Result<> begin(const robotics::Pose& goal, const Line::Speed& speed, const JointVector& posture,
-                               ToolKinematics& tool) noexcept;
+                               ToolKinematics& tool, const PreferredPosture& preferred) noexcept;
   /// From this setpoint to that of the next cycle.
   [[nodiscard]] Step advance(const Setpoint& now, bool braking, const PowerPace& power, ToolKinematics& tool) noexcept;
   /// Where it would come to rest if it went on for a cycle and braked then.
@@ -53,7 +53,8 @@ class LineMotion {
   OnWay on_{};
   double duration_s_{0};
   double off_m_{0};
-  JointVector posture_;  ///< to which joints are drawn that the tool leaves free
+  JointVector posture_;  ///< to which joints are drawn that the tool leaves free, and so fast, 1/s
+  double drawn_per_s_{1};
 };
 
 }  // namespace hirosco::robot_arm

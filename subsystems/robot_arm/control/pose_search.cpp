@@ -14,16 +14,32 @@ constexpr double at_end = 1e-3;
 
 }  // namespace
 
-void PoseSearch::begin(const robotics::Pose& tip, const JointVector& from) noexcept {
+void PoseSearch::begin(const robotics::Pose& tip, const JointVector& from, const PreferredPosture& preferred) noexcept {
   tip_ = tip;
-  from_ = posture_ = from;
+  preferred_ = preferred;
+  from_preferred_ = preferred.counts();
+  from_ = from;
+  posture_ = from_preferred_ ? preferred.joints : from;
   steps_ = 0;
 }
 
+/// First from the posture that is preferred, and nobody asks where the arm stands: so the answer is the goal's alone.
 PoseSearch::Found PoseSearch::step() noexcept {
-  if (kinematics_.solve(tip_, from_, posture_)) return Found::Posture;
+  if (found_one()) return Found::Posture;
   if (++steps_ < most_steps) return Found::NotYet;
-  return kinematics_.left(tip_, posture_).cwiseAbs().maxCoeff() <= near_enough_off ? Found::Posture : Found::Nothing;
+  if (kinematics_.left(tip_, posture_).cwiseAbs().maxCoeff() <= near_enough_off) return Found::Posture;
+  if (!from_preferred_) return Found::Nothing;
+  from_preferred_ = false;
+  posture_ = from_;
+  steps_ = 0;
+  return Found::NotYet;
+}
+
+/// Who has no joint to spare is drawn nowhere: he begins at the posture, and where a search is damped, as that of fewer than 6 joints always is, a draw would keep him off the pose.
+bool PoseSearch::found_one() noexcept {
+  if (preferred_.draws()) return drawn_.solve(tip_, preferred_.joints, posture_).has_value();
+  const JointVector to = preferred_.counts() || from_.size() < tool_directions ? posture_ : from_;
+  return kinematics_.solve(tip_, to, posture_).has_value();
 }
 
 bool PoseSearch::singular() noexcept {

@@ -74,6 +74,37 @@ TEST_F(PoseSearchTest, SaysWhoseRangeEndsBeforeThePose) {
   EXPECT_EQ(search.joint_at_its_end(), 5);
 }
 
+/// The arm of six whose wrist does not bend. Its Jacobian is damped wherever it is: whoever drew it to where it stands would keep it off each pose that is farther away.
+TEST(PoseSearchOfFiveJoints, FindsEveryPoseThatTheyHaveBeenIn) {
+  std::string text = descriptor::file_system()(testing::six_axes).value();
+  const std::string bend = R"(<joint name="bend" type="revolute">)";
+  ASSERT_NE(text.find(bend), std::string::npos);
+  text.replace(text.find(bend), bend.size(), R"(<joint name="bend" type="fixed">)");
+  const auto reading = robotics::urdf::read(testing::six_axes, text);
+  ASSERT_TRUE(reading.value);
+  const robotics::Model model = robotics::Model::make(robotics::urdf::describe(*reading.value)).value();
+  ASSERT_EQ(model.joint_count(), 5);
+  const std::vector<JointBounds> bounds = testing::bounds_of(model);
+  const robotics::FrameId tip = model.find_frame("tool").value();
+  robotics::Dynamics dynamics{model, robotics::Base::Fixed};
+  const JointVector start = vector_of(std::array{0.2, 0.5, 1.2, 0.7, 0.1});
+  PoseSearch search{model, tip, bounds};
+  std::mt19937 random{7};
+  std::uniform_real_distribution<double> way{-0.4, 0.4};
+  for (int i = 0; i < 20; ++i) {
+    const JointVector there = start + JointVector::NullaryExpr(5, [&] { return way(random); });
+    dynamics.update({.q = there, .qd = JointVector::Zero(5)});
+    const robotics::Pose wanted = dynamics.frame_pose(tip);
+    for (const PreferredPosture& preferred : {PreferredPosture{}, PreferredPosture{start + 0.5 * (there - start), 1}}) {
+      search.begin(wanted, start, preferred);
+      Found found = Found::NotYet;
+      for (int step = 0; found == Found::NotYet && step < 50; ++step) found = search.step();
+      EXPECT_EQ(found, Found::Posture) << i;
+      EXPECT_LT((search.posture() - there).cwiseAbs().maxCoeff(), 1e-3) << i;
+    }
+  }
+}
+
 /// The axes of bend and twist fall together where roll is 0.
 TEST_F(PoseSearchTest, SaysThatAPostureIsSingular) {
   JointVector parallel = start;

@@ -48,6 +48,7 @@ TEST(Control, UsesNoHeapInACycle) {
   const JointVector goal = vector_of(std::array{-0.8, -0.2, 0.6, 0.5, -0.5, 1.0});
   const JointVector zeros = JointVector::Zero(6);
   const Payload payload{2, {0.1, 0, 0}};
+  const PreferredPosture preferred{start, 1};
   using Kind = Setpoints::Kind;
   for (const Kind kind : {Kind::JointPath, Kind::Line, Kind::JointJog, Kind::TipJog, Kind::Retract, Kind::Follow}) {
     if (kind != Kind::Retract) setpoints.begin(start);
@@ -57,10 +58,12 @@ TEST(Control, UsesNoHeapInACycle) {
     search.begin(setpoints.tip_with(pose), setpoints.now().position);
     while (search.step() == PoseSearch::Found::NotYet) {}
     EXPECT_FALSE(search.singular());
+    search.begin(setpoints.tip_with(pose), setpoints.now().position, preferred);
+    while (search.step() == PoseSearch::Found::NotYet) {}
     switch (kind) {
       case Kind::Rest: break;
       case Kind::JointPath: EXPECT_TRUE(setpoints.go(goal, 1)); break;
-      case Kind::Line: EXPECT_TRUE(setpoints.go_straight(pose, {0.2, 0.5})); break;
+      case Kind::Line: EXPECT_TRUE(setpoints.go_straight(pose, {0.2, 0.5}, preferred)); break;
       case Kind::JointJog: setpoints.jog(goal); break;
       case Kind::TipJog: setpoints.jog(Vector6{Vector6::Constant(0.05)}); break;
       case Kind::Retract: setpoints.retract(setpoints.now().position, zeros, 0.1); break;
@@ -98,6 +101,33 @@ TEST(Control, UsesNoHeapInACycle) {
     }
     EXPECT_EQ(scope.count(), AllocationCount{}) << static_cast<int>(kind);
   }
+}
+
+/// Of seven joints, of which a tool leaves one free.
+TEST(Control, UsesNoHeapInACycleThatGoesToAPosture) {
+  ASSERT_TRUE(RealtimeScope::hook_present());
+  const robotics::Model model =
+      testing::model_of(HIROSCO_SOURCE_DIR "/subsystems/robot_arm/floating/floating_arm.urdf");
+  const auto bounds = testing::bounds_of(model);
+  const auto tip = model.find_frame("tool").value();
+  PoseSearch search{model, tip, bounds};
+  Setpoints setpoints{model, tip, bounds, period_s};
+  const JointVector ready = vector_of(std::array{0.10, 0.75, -0.30, -1.25, -0.05, 1.85, 0.0});
+  JointVector bent = ready;
+  bent[2] += 0.3;
+  const PreferredPosture preferred{bent, 1};
+  ASSERT_TRUE(preferred.draws());
+  setpoints.begin(ready);
+  const RealtimeScope scope;
+  robotics::Pose pose = setpoints.tool();
+  pose.position.z() += 0.1;
+  search.begin(setpoints.tip_with(pose), setpoints.now().position, preferred);
+  while (search.step() == PoseSearch::Found::NotYet) {}
+  EXPECT_FALSE(search.singular());
+  EXPECT_TRUE(setpoints.go_straight(pose, {0.1, 0.5}, preferred));
+  for (int i = 0; i < 300; ++i) setpoints.advance();
+  EXPECT_EQ(setpoints.line().found(), Line::Found::Way);
+  EXPECT_EQ(scope.count(), AllocationCount{});
 }
 
 /// One joint after the other finds its mark, each after half a radian.

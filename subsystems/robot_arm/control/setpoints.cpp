@@ -63,8 +63,9 @@ Result<> Setpoints::go(const JointVector& goal, double speed_share) noexcept {
   return ok();
 }
 
-Result<> Setpoints::go_straight(const robotics::Pose& goal, const Line::Speed& speed) noexcept {
-  HIROSCO_TRY(line_.begin(goal, speed, now_.position, tool_));
+Result<> Setpoints::go_straight(const robotics::Pose& goal, const Line::Speed& speed,
+                                const PreferredPosture& preferred) noexcept {
+  HIROSCO_TRY(line_.begin(goal, speed, now_.position, tool_, preferred));
   kind_ = Kind::Line;
   braking_ = false;
   on_line_ = true;

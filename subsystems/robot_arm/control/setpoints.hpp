@@ -41,7 +41,9 @@ class Setpoints {
     return path_.foreseen_s(from, goal, speed_share, power_);
   }
   /// The tool on a straight line: it stands until line() has found whether it can, and rests where it cannot. InvalidArgument: as of Line.
-  [[nodiscard]] Result<> go_straight(const robotics::Pose& goal, const Line::Speed& speed) noexcept;
+  /// Joints that it leaves free go to the posture that is preferred.
+  [[nodiscard]] Result<> go_straight(const robotics::Pose& goal, const Line::Speed& speed,
+                                     const PreferredPosture& preferred = {}) noexcept;
   /// The last one.
   [[nodiscard]] const Line& line() const noexcept { return line_.line(); }
   /// With these velocities from now on, until brake(); of the joints, or a twist [ω; v] of the tool in the axes of the base.
