@@ -72,7 +72,7 @@ class CustomService final : public pus::Service {
                   "a report takes numbers or enumerations, bool, std::string_view for text, or a std::array of all but "
                   "text, one for each <Field>");
     static constexpr std::array<NativeField, sizeof...(Values)> types{detail::native_argument<Values>()...};
-    return send(report, to, types, detail::values_of<Values...>(values...));
+    return send(report, to, types, detail::views_of<Values...>(values...));
   }
 
   /// The end of a request whose handler said `running`: exactly one. What still runs when the configuration is released

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -63,26 +64,31 @@ template <ArgumentType T>
   }
 }
 
-template <ArgumentType T>
-void append(std::vector<std::optional<Value>>& values, const T& value) {
-  using Element = typename layout_detail::ArrayOf<T>::Element;
-  if constexpr (std::is_same_v<T, std::string_view>) values.emplace_back(std::string{value});
-  else if constexpr (layout_detail::ArrayOf<T>::value)
-    for (const Element each : value) append<Element>(values, each);
-  else if constexpr (std::is_enum_v<T>) values.emplace_back(Number{static_cast<std::underlying_type_t<T>>(value)});
-  else values.emplace_back(Number{value});
-}
-/// As encoders take them, exactly.
-template <ArgumentType... T>
-[[nodiscard]] std::vector<std::optional<Value>> values_of(const T&... values) {
-  std::vector<std::optional<Value>> all;
-  (append<T>(all, values), ...);
-  return all;
-}
-
 /// What may be sent.
 template <class T>
 concept SentType = ArgumentType<T> && !IsSized<T>::value;
+
+/// Puts what `value` is into `views`, and takes those places off it.
+template <SentType T>
+void put_views(std::span<pus::ValueView>& views, const T& value) noexcept {
+  using Element = typename layout_detail::ArrayOf<T>::Element;
+  if constexpr (layout_detail::ArrayOf<T>::value) {
+    for (const Element each : value) put_views<Element>(views, each);
+  } else {
+    if constexpr (std::is_same_v<T, std::string_view>) views.front() = value;
+    else if constexpr (std::is_enum_v<T>) views.front() = Number{static_cast<std::underlying_type_t<T>>(value)};
+    else views.front() = Number{value};
+    views = views.subspan(1);
+  }
+}
+/// As encoders take them, exactly, while what they are made of is there: nothing is taken from the heap.
+template <SentType... T>
+[[nodiscard]] auto views_of(const T&... values) noexcept {
+  std::array<pus::ValueView, (layout_detail::ArrayOf<T>::count + ... + 0)> all;
+  std::span<pus::ValueView> rest{all};
+  (put_views<T>(rest, values), ...);
+  return all;
+}
 
 }  // namespace detail
 

@@ -47,6 +47,8 @@ using Refused = std::optional<FailureNotice>;
 }  // namespace
 
 std::optional<FailureNotice> DescriptorChanges::judge(std::size_t octets, const MemoryHandle& text) {
+  // Before anything is read: what has been commissioned uses the heap for nothing (adr 0220).
+  if (auto refused = not_now()) return refused;
   coming_.reset();
   if (!platform_.read_again) return refuse(FailureCode::NotPermittedNow, "nobody reads descriptors here");
   if (!text) return refuse(FailureCode::IllegalField, "no text came beside it");
@@ -68,10 +70,16 @@ std::optional<FailureNotice> DescriptorChanges::judge(std::size_t octets, const 
   return std::nullopt;
 }
 
-/// Why it cannot be taken now.
-std::optional<FailureNotice> DescriptorChanges::against(const descriptor::SubsystemDescriptor& fresh) {
+/// Whatever it is.
+std::optional<FailureNotice> DescriptorChanges::not_now() const noexcept {
   if (at_.way || at_.release_owed) return FailureNotice{FailureCode::Busy};
   if (at_.state != State::Offline && at_.state != State::PreOperational) return at_.wrong_state();
+  return std::nullopt;
+}
+
+/// Why it cannot be taken.
+std::optional<FailureNotice> DescriptorChanges::against(const descriptor::SubsystemDescriptor& fresh) {
+  if (auto refused = not_now()) return refused;
   auto found = descriptor::obstacles(descriptor_, fresh);
   if (found.empty() && at_.configuration != nullptr)
     found = descriptor::obstacles_in_force(descriptor_, fresh, at_.configuration->id);
@@ -110,6 +118,7 @@ std::optional<FailureNotice> DescriptorChanges::left_outside(const descriptor::S
 
 std::optional<FailureNotice> DescriptorChanges::take() {
   if (!coming_) return FailureNotice{FailureCode::WrongStatus};
+  if (auto refused = not_now()) return refused;
   descriptor::SubsystemDescriptor fresh = std::move(*coming_);
   coming_.reset();
   {

@@ -39,6 +39,7 @@ class DescriptorChanges final : public pus::DescriptorOwner {
   std::optional<pus::FailureNotice> take() override;
 
  private:
+  [[nodiscard]] std::optional<pus::FailureNotice> not_now() const noexcept;
   [[nodiscard]] std::optional<pus::FailureNotice> against(const descriptor::SubsystemDescriptor& fresh);
   [[nodiscard]] std::optional<pus::FailureNotice> left_outside(const descriptor::SubsystemDescriptor& fresh);
 
