@@ -25,6 +25,13 @@ constexpr std::size_t id_and_interval_octets = 6;
   return FailureNotice{code}.with(static_cast<std::uint8_t>(index));
 }
 
+template <class Wanted>
+[[nodiscard]] std::optional<std::size_t> place_of(std::span<const SampledValue> values, Wanted&& wanted) noexcept {
+  const auto found = std::ranges::find_if(values, wanted);
+  if (found == values.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - values.begin());
+}
+
 }  // namespace
 
 HousekeepingService::HousekeepingService(const descriptor::SubsystemDescriptor& subsystem, HousekeepingSampler& sampler,
@@ -51,9 +58,7 @@ HousekeepingService::Structure* HousekeepingService::find(std::uint16_t id) noex
   return found == structures_.end() ? nullptr : &*found;
 }
 std::optional<std::size_t> HousekeepingService::find_value(std::uint32_t wire) const noexcept {
-  const auto found = std::ranges::find(values_, wire, &SampledValue::wire);
-  if (found == values_.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - values_.begin());
+  return place_of(values_, [wire](const SampledValue& value) { return value.wire == wire; });
 }
 const HousekeepingLayout& HousekeepingService::layout_of(const Structure& structure) const noexcept {
   return sampler_.slots_[structure.slot].layout;
@@ -61,11 +66,9 @@ const HousekeepingLayout& HousekeepingService::layout_of(const Structure& struct
 
 std::optional<std::size_t> HousekeepingService::resolve(const descriptor::ParameterRef& reference) const noexcept {
   const int member = reference.member ? static_cast<int>(*reference.member) : -1;
-  const auto found = std::ranges::find_if(values_, [&reference, member](const SampledValue& value) {
+  return place_of(values_, [&reference, member](const SampledValue& value) {
     return value.parameter == reference.parameter && value.member == member;
   });
-  if (found == values_.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - values_.begin());
 }
 
 Result<> HousekeepingService::load(std::span<const HousekeepingStructure> structures) {
