@@ -77,12 +77,11 @@ std::optional<ProcessEnd> RunningProcesses::ended(std::uint32_t number) {
 }
 
 void RunningProcesses::kill(std::uint32_t number) {
-  if (const auto found = processes_.find(number); found != processes_.end())
-    static_cast<void>(found->second.send_signal(SIGKILL));
+  if (const auto found = processes_.find(number); found != processes_.end()) found->second.kill_with_its_own();
 }
 
 void RunningProcesses::kill_all() {
-  for (auto& [number, process] : processes_) static_cast<void>(process.send_signal(SIGKILL));
+  for (auto& [number, process] : processes_) process.kill_with_its_own();
 }
 
 bool RunningProcesses::any() {

@@ -282,6 +282,13 @@ Result<> Process::send_signal(int signal) noexcept {
   return ok();
 }
 
+/// The group first: while its process has not ended nobody else has that number.
+void Process::kill_with_its_own() noexcept {
+  pollfd look{handle_.get(), POLLIN, 0};
+  if (!ended_ && ::poll(&look, 1, 0) == 0) (void)::kill(-pid_, SIGKILL);
+  static_cast<void>(send_signal(SIGKILL));
+}
+
 void hurry_end(int pid) noexcept {
   std::array<char, 32> path{};
   std::snprintf(path.data(), path.size(), "/proc/%d/task", pid);

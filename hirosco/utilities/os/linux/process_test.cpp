@@ -80,6 +80,21 @@ TEST(Process, RunsUntilASignalEndsIt) {
   EXPECT_EQ(process->send_signal(SIGKILL).error().code, ErrorCode::NotFound);
 }
 
+TEST(Process, TakesWhomItHasStartedWithItWhenItIsKilledSo) {
+  // Whoever still has the pipe holds it open: its end is that of all of them.
+  Pipe pipe;
+  ProcessStart start = shell("sleep 1000 & echo started; wait");
+  start.inherited = {{pipe.write_end.get(), STDOUT_FILENO}};
+  auto process = Process::spawn(start);
+  ASSERT_TRUE(process) << process.error().text;
+  std::array<char, 8> text{};
+  ASSERT_EQ(::read(pipe.read_end.get(), text.data(), text.size()), 8);
+  process->kill_with_its_own();
+  EXPECT_EQ(pipe.rest(), "");
+  EXPECT_EQ(end_of(*process), (ExitStatus{ExitStatus::Kind::Signalled, SIGKILL}));
+  process->kill_with_its_own();  // nobody is there any more
+}
+
 TEST(Process, AnExecutableThatDoesNotExistIsAnErrorAtOnce) {
   const auto process = Process::spawn({.executable = "/nonexistent/executable"});
   ASSERT_FALSE(process);

@@ -14,6 +14,7 @@
 #include <cerrno>
 #include <charconv>
 #include <limits>
+#include <span>
 #include <string>
 
 namespace hirosco {
@@ -25,6 +26,37 @@ constexpr std::uint32_t most_counted = std::numeric_limits<std::uint32_t>::max()
 [[nodiscard]] std::uint32_t own_descriptors() noexcept {
   struct stat folder{};
   return ::stat("/proc/self/fd", &folder) == 0 ? static_cast<std::uint32_t>(folder.st_size) : 0;
+}
+
+/// Of one thread: their numbers, each with a blank behind it.
+[[nodiscard]] std::uint32_t children_of(int tasks, const char* thread) noexcept {
+  constexpr std::string_view file = "/children";
+  std::array<char, 32 + file.size()> path{};
+  const std::string_view name{thread};
+  if (name.size() + file.size() >= path.size()) return 0;
+  std::ranges::copy(file, std::ranges::copy(name, path.begin()).out);
+  const FileDescriptor children{::openat(tasks, path.data(), O_RDONLY | O_CLOEXEC)};
+  if (!children) return 0;
+  std::uint32_t count = 0;
+  std::array<char, 512> text;
+  for (ssize_t octets = 0; (octets = ::read(children.get(), text.data(), text.size())) > 0;)
+    count +=
+        static_cast<std::uint32_t>(std::ranges::count(std::span{text}.first(static_cast<std::size_t>(octets)), ' '));
+  return count;
+}
+
+/// Of all threads. Not by readdir(), which takes from the heap.
+[[nodiscard]] std::uint32_t children_in(int tasks) noexcept {
+  if (tasks < 0 || ::lseek(tasks, 0, SEEK_SET) != 0) return 0;
+  std::uint32_t count = 0;
+  alignas(dirent64) std::array<char, 2048> entries;
+  for (ssize_t octets = 0; (octets = ::getdents64(tasks, entries.data(), entries.size())) > 0;)
+    for (ssize_t at = 0; at < octets;) {
+      const auto* const entry = reinterpret_cast<const dirent64*>(entries.data() + at);
+      if (entry->d_name[0] != '.') count += children_of(tasks, entry->d_name);
+      at += entry->d_reclen;
+    }
+  return count;
 }
 
 [[nodiscard]] Result<FileDescriptor> open_status(const std::string& process) {
@@ -56,15 +88,16 @@ void give_back_what_is_free() noexcept {
 
 Result<ProcessMeter> ProcessMeter::own() {
   HIROSCO_TRY_LET(FileDescriptor status, open_status("self"));
-  return ProcessMeter{std::move(status), Whose::Own, CLOCK_PROCESS_CPUTIME_ID};
+  return ProcessMeter{std::move(status), FileDescriptor{}, Whose::Own, CLOCK_PROCESS_CPUTIME_ID};
 }
 
 Result<ProcessMeter> ProcessMeter::of(int pid) {
   HIROSCO_TRY_LET(FileDescriptor status, open_status(std::to_string(pid)));
+  FileDescriptor tasks{::open(("/proc/" + std::to_string(pid) + "/task").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
   clockid_t clock{};
   if (const int error = ::clock_getcpuclockid(pid, &clock); error != 0)
     return fail(ErrorCode::NotFound, "processor time of a process", error);
-  return ProcessMeter{std::move(status), Whose::Others, clock};
+  return ProcessMeter{std::move(status), std::move(tasks), Whose::Others, clock};
 }
 
 std::optional<ProcessUsage> ProcessMeter::look() noexcept {
@@ -78,6 +111,7 @@ std::optional<ProcessUsage> ProcessMeter::look() noexcept {
   usage.shared_memory_kb = number_in_status(status, "RssShmem");
   usage.threads = number_in_status(status, "Threads");
   if (whose_ == Whose::Own) usage.descriptors = own_descriptors();
+  else usage.processes = 1 + children_in(tasks_.get());
   timespec time{};
   if (::clock_gettime(clock_, &time) == 0) usage.processor = std::chrono::seconds{time.tv_sec} + Duration{time.tv_nsec};
   return usage;
