@@ -79,12 +79,12 @@ Result<> HousekeepingService::load(std::span<const HousekeepingStructure> struct
 Result<> HousekeepingService::load_one(const HousekeepingStructure& declared) {
   draft_.begin(values_, declared.id, declared.interval_cycles);
   bool fits = true;
-  for (const auto& reference : declared.sampled_once)
-    if (const auto place = resolve(reference)) fits = draft_.add_once(*place) && fits;
+  const auto once = [this](std::size_t place) { return draft_.add_once(place); };
+  const auto repeatedly = [this](std::size_t place) { return draft_.add_to_set(place); };
+  for (const auto& each : declared.sampled_once) fits = resolve(each).transform(once).value_or(false) && fits;
   for (const auto& set : declared.sampled_repeatedly) {
     fits = draft_.begin_set(set.repetitions) && fits;
-    for (const auto& reference : set.parameters)
-      if (const auto place = resolve(reference)) fits = draft_.add_to_set(*place) && fits;
+    for (const auto& each : set.parameters) fits = resolve(each).transform(repeatedly).value_or(false) && fits;
   }
   if (!draft_.allows(draft_.interval)) return fail(ErrorCode::OutOfRange, "housekeeping interval", declared.id);
   if (sampler_.free_commands() < 3) return fail(ErrorCode::Unavailable, "housekeeping commands", declared.id);
