@@ -122,7 +122,7 @@ void CraftBooks::add_of_all(std::vector<ResourceRow>& rows) const {
     if (!members_.empty()) rows.back().now = running;
   }
   if (promised <= 0) return;
-  rows.push_back({"cycle_processor_percent", 100, whole_percent(most_share_)});
+  rows.push_back({"cycles_percent", 100, whole_percent(most_share_)});
   if (!members_.empty()) rows.back().now = whole_percent(share);
 }
 
@@ -134,7 +134,7 @@ std::vector<ResourceRow> CraftBooks::rows(const descriptor::SubsystemDescriptor&
   if (found != members_.end()) rows.back().now = member.runs ? 1 : 0;
   if (subsystem.id == mission_.supervisor.id) add_of_all(rows);
   else if (const double most = greatest_share(subsystem); most > 0) {
-    rows.push_back({"cycle_processor_percent", whole_percent(most), whole_percent(member.most_share)});
+    rows.push_back({"cycles_percent", whole_percent(most), whole_percent(member.most_share)});
     if (found != members_.end()) rows.back().now = whole_percent(member.share);
   }
   ResourceRow power{.attribute = "power_W"};
