@@ -26,7 +26,7 @@ using descriptor::State;
          state <= static_cast<std::uint64_t>(State::PostOperational);
 }
 
-[[nodiscard]] bool cycles(std::uint64_t state) noexcept {
+[[nodiscard]] bool runs_cycles(std::uint64_t state) noexcept {
   return state >= static_cast<std::uint64_t>(State::PreOperational) &&
          state <= static_cast<std::uint64_t>(State::ErrorOperational);
 }
@@ -59,7 +59,7 @@ void CraftBooks::take_row(std::uint16_t apid, std::uint64_t state, std::uint8_t 
   const bool runs = state <= static_cast<std::uint64_t>(State::SoftwareDeinit);
   const auto* in_force = described->find_configuration(configuration);
   const double power_w = runs && draws(state) && in_force != nullptr ? in_force->power_w : 0;
-  const double share = runs ? descriptor::cycle_share(*described, cycles(state) ? in_force : nullptr) : 0;
+  const double share = runs ? descriptor::cycle_share(*described, runs_cycles(state) ? in_force : nullptr) : 0;
   Member& member = members_[apid];
   member.has_run |= runs;
   member.most_power_w = std::max(member.most_power_w, power_w);

@@ -5,11 +5,6 @@
 #include <algorithm>
 
 namespace hirosco::pus {
-namespace {
-
-constexpr std::size_t structure_id_octets = 2;
-
-}  // namespace
 
 HousekeepingLayout::HousekeepingLayout() {
   once_.reserve(most_listed);

@@ -25,6 +25,8 @@ struct SampledValue {
 /// or lengthens in flight takes nothing from the heap (adr 0220).
 class HousekeepingLayout {
  public:
+  /// In front of the values of a report.
+  static constexpr std::size_t structure_id_octets = sizeof(std::uint16_t);
   /// What a count of TC[3,1] says at most: values sampled once, sets, values of a set.
   static constexpr std::size_t most_listed = 255;
   /// The values of all sets: more do not fit TM[3,10], where each takes four octets behind the fields of its structure.

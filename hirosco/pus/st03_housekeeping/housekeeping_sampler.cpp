@@ -5,11 +5,6 @@
 #include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
 
 namespace hirosco::pus {
-namespace {
-
-constexpr std::size_t structure_id_octets = 2;
-
-}  // namespace
 
 HousekeepingSampler::HousekeepingSampler() {
   for (auto& slot : slots_) {
@@ -93,13 +88,13 @@ bool HousekeepingSampler::advance(Slot& slot, Collection& collection, SampleSour
   if (collection.phase < collection.interval) return false;
   const MutableOctets buffer{collection.buffer.get(), max_housekeeping_octets};
   OctetWriter{buffer}.put(slot.layout.id);
-  sample_values(slot.layout, slot.layout.once(), buffer.subspan(structure_id_octets), source);
+  sample_values(slot.layout, slot.layout.once(), buffer.subspan(HousekeepingLayout::structure_id_octets), source);
   deliver(slot, collection, sink);
   return true;
 }
 
 void HousekeepingSampler::sample_sets(Slot& slot, Collection& collection, SampleSource& source) noexcept {
-  std::size_t set_at = structure_id_octets + slot.layout.once_octets();
+  std::size_t set_at = HousekeepingLayout::structure_id_octets + slot.layout.once_octets();
   for (const auto& set : slot.layout.sets()) {
     const std::uint32_t spacing = collection.interval / set.repetitions;
     if (collection.phase % spacing == 0) {
