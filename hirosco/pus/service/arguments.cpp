@@ -62,8 +62,11 @@ ValueView view_of(const Value& value) noexcept {
 }
 
 std::optional<ValueView> GivenValues::at(std::size_t place) const noexcept {
-  if (place < views_.size()) return views_[place];
   if (place < typed_.size() && typed_[place]) return view_of(*typed_[place]);
+  for (const NativeValue& each : native_) {
+    if (place < each.count) return each.view(each.at, place);
+    place -= each.count;
+  }
   return std::nullopt;
 }
 

@@ -26,8 +26,15 @@ using ArgumentList = std::span<const Argument>;
 using ValueView = std::variant<Number, std::string_view>;
 [[nodiscard]] ValueView view_of(const Value& value) noexcept;
 
+/// An argument as a call in C++ has it: where it is, how many values it is, and what one of them is. However long it is, nothing is copied.
+struct NativeValue {
+  const void* at{nullptr};
+  std::size_t count{0};
+  ValueView (*view)(const void* at, std::size_t element) noexcept {nullptr};
+};
+
 /// Values in declared order, arrays element by element; where they end or are empty, the declared value is sent. They lie with who
-/// gives them: what somebody typed, or what an author's call has on its stack, for which nothing is taken from the heap.
+/// gives them: what somebody typed, or what an author's call has, for which nothing is taken from the heap.
 class GivenValues {
  public:
   GivenValues() = default;
@@ -35,8 +42,10 @@ class GivenValues {
     requires std::convertible_to<const List&, std::span<const std::optional<Value>>>
   GivenValues(const List& list) noexcept : typed_{list}, size_{typed_.size()} {}
   template <class List>
-    requires std::convertible_to<const List&, std::span<const ValueView>>
-  GivenValues(const List& list) noexcept : views_{list}, size_{views_.size()} {}
+    requires std::convertible_to<const List&, std::span<const NativeValue>>
+  GivenValues(const List& list) noexcept : native_{list} {
+    for (const NativeValue& each : native_) size_ += each.count;
+  }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   /// The one at this place; nothing where it is empty, or behind the last.
@@ -44,7 +53,7 @@ class GivenValues {
 
  private:
   std::span<const std::optional<Value>> typed_;
-  std::span<const ValueView> views_;
+  std::span<const NativeValue> native_;
   std::size_t size_{0};
 };
 

@@ -68,25 +68,20 @@ template <ArgumentType T>
 template <class T>
 concept SentType = ArgumentType<T> && !IsSized<T>::value;
 
-/// Puts what `value` is into `views`, and takes those places off it.
 template <SentType T>
-void put_views(std::span<pus::ValueView>& views, const T& value) noexcept {
+[[nodiscard]] pus::ValueView view_of(const void* at, [[maybe_unused]] std::size_t element) noexcept {
   using Element = typename layout_detail::ArrayOf<T>::Element;
-  if constexpr (layout_detail::ArrayOf<T>::value) {
-    for (const Element each : value) put_views<Element>(views, each);
-  } else {
-    if constexpr (std::is_same_v<T, std::string_view>) views.front() = value;
-    else if constexpr (std::is_enum_v<T>) views.front() = Number{static_cast<std::underlying_type_t<T>>(value)};
-    else views.front() = Number{value};
-    views = views.subspan(1);
-  }
+  const T& value = *static_cast<const T*>(at);
+  if constexpr (std::is_same_v<T, std::string_view>) return value;
+  else if constexpr (layout_detail::ArrayOf<T>::value) return view_of<Element>(&value[element], 0);
+  else if constexpr (std::is_enum_v<T>) return Number{static_cast<std::underlying_type_t<T>>(value)};
+  else return Number{value};
 }
-/// As encoders take them, exactly, while what they are made of is there: nothing is taken from the heap.
+/// As encoders take them, exactly, while the values are there: nothing is copied, nor taken from the heap.
 template <SentType... T>
-[[nodiscard]] auto views_of(const T&... values) noexcept {
-  std::array<pus::ValueView, (layout_detail::ArrayOf<T>::count + ... + 0)> all;
-  std::span<pus::ValueView> rest{all};
-  (put_views<T>(rest, values), ...);
+[[nodiscard]] std::array<pus::NativeValue, sizeof...(T)> views_of(const T&... values) noexcept {
+  std::array<pus::NativeValue, sizeof...(T)> all{
+      pus::NativeValue{&values, layout_detail::ArrayOf<T>::count, view_of<T>}...};
   return all;
 }
 
