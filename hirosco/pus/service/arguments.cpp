@@ -64,8 +64,8 @@ ValueView view_of(const Value& value) noexcept {
 std::optional<ValueView> GivenValues::at(std::size_t place) const noexcept {
   if (place < typed_.size() && typed_[place]) return view_of(*typed_[place]);
   for (const NativeValue& each : native_) {
-    if (place < each.count) return each.view(each.at, place);
-    place -= each.count;
+    if (place < each.how_many) return each.view(each.at, place);
+    place -= each.how_many;
   }
   return std::nullopt;
 }

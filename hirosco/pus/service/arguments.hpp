@@ -29,7 +29,7 @@ using ValueView = std::variant<Number, std::string_view>;
 /// An argument as a call in C++ has it: where it is, how many values it is, and what one of them is. However long it is, nothing is copied.
 struct NativeValue {
   const void* at{nullptr};
-  std::size_t count{0};
+  std::size_t how_many{0};
   ValueView (*view)(const void* at, std::size_t element) noexcept {nullptr};
 };
 
@@ -44,7 +44,7 @@ class GivenValues {
   template <class List>
     requires std::convertible_to<const List&, std::span<const NativeValue>>
   GivenValues(const List& list) noexcept : native_{list} {
-    for (const NativeValue& each : native_) size_ += each.count;
+    for (const NativeValue& each : native_) size_ += each.how_many;
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
