@@ -81,7 +81,8 @@ class Process {
   [[nodiscard]] Result<std::optional<ExitStatus>> poll() noexcept;
   /// Never hits another process that got the same pid later; NotFound when it has ended.
   [[nodiscard]] Result<> send_signal(int signal) noexcept;
-  /// Ends it, and whom it has started in its group: they do not go on without it.
+  /// Ends it, and whom it has started in its group: they do not go on without it. Of one that has ended already, those that it has left
+  /// behind, where the system tells them from others (Linux 6.9); never another process or group that got the same number later.
   void kill_with_its_own() noexcept;
 
  private:

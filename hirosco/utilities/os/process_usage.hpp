@@ -20,7 +20,7 @@ struct ProcessUsage {
   std::uint32_t descriptors{0};  ///< 0 where they cannot be counted: of another process
   Duration processor{};  ///< of all its threads since its start
   std::uint32_t processes{
-      1};  ///< itself, and of another process those that it has started and that run, where the system tells
+      1};  ///< itself, and of another process those that it has started and that have not ended, where the system tells; a hundred are enough
 };
 
 /// Looks at one process again and again.  Realtime: system calls, bounded, no heap. Thread: one at a time.

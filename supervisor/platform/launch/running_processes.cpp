@@ -38,7 +38,7 @@ std::uint32_t RunningProcesses::add(Process process) {
 }
 
 std::uint32_t RunningProcesses::end_now(Process process) {
-  static_cast<void>(process.send_signal(SIGKILL));
+  process.kill_with_its_own();
   pollfd look{process.handle().get(), POLLIN, 0};
   static_cast<void>(::poll(&look, 1, longest_end_ms));
   if (const auto end = process.poll(); end && *end) return 0;
@@ -70,6 +70,7 @@ std::optional<ProcessEnd> RunningProcesses::ended(std::uint32_t number) {
     end_asked_.erase(number);
     if (told) end = {(how & ended_by_signal) != 0, static_cast<int>(how & 0xFF)};
   }
+  found->second.kill_with_its_own();  // whoever it has left behind holds its devices
   processes_.erase(found);
   memory_use_.erase(number);
   meters_.erase(number);

@@ -77,9 +77,11 @@ std::optional<ResourceHandling::Excess> ResourceHandling::excess_of(const Member
     if (const auto limit = amount_of(most, resource); limit && used > *limit) return Excess{resource, used, *limit};
   }
   const auto state = member.state();
-  // Its sandbox lets it start none. Where there is none, what leads to it (a shim of its interpreter) may before it acts.
+  // Its sandbox lets it start none. Where there is none, what leads to it (a shim of its interpreter) may before it acts; where whoever
+  // flies wants none, a debugger may be what began it.
   const bool settled = state && *state != descriptor::State::Offline && !is_transient(*state);
-  if (usage.processes > 1 && settled && !built_with_sanitizer) return Excess{Resource::Processes, usage.processes, 1};
+  const bool may_start = built_with_sanitizer || sandbox_is_unwanted();
+  if (usage.processes > 1 && settled && !may_start) return Excess{Resource::Processes, usage.processes, 1};
   const auto limit = amount_of(most, Resource::Processor);
   const auto percent = seen.processor.look(usage.processor, craft_.now);
   if (!limit || !percent) return std::nullopt;

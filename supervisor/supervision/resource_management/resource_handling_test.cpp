@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 
+#include <cstdlib>
+
 #include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/sanitizer.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
@@ -91,10 +93,20 @@ TEST_F(ResourceHandlingTest, WhoStartsAProcessIsEndedAndNamedOnceItActs) {
   use_of(arm).processes = 2;
   look();
   look();
-  if (built_with_sanitizer) return;  // which may start one of its own
+  if (built_with_sanitizer || sandbox_is_unwanted()) return;  // they may start one
   EXPECT_THAT(killed, ::testing::ElementsAre(played[arm].process));
   EXPECT_TRUE(guard.fenced(arm));
   EXPECT_TRUE(was_told("ARM has taken 2 of processes, each subsystem is 1 at most: it is ended"));
+}
+
+TEST_F(ResourceHandlingTest, WhoFliesWithoutASandboxByHisOwnWishMayHaveADebuggerBeginIt) {
+  const bool was_unwanted = sandbox_is_unwanted();
+  ::setenv("HIROSCO_SANDBOX", "off", 1);
+  start_all(Operational);
+  use_of(arm) = {.threads = 1, .processes = 2};
+  look();
+  EXPECT_TRUE(killed.empty());
+  if (!was_unwanted) ::unsetenv("HIROSCO_SANDBOX");
 }
 
 TEST_F(ResourceHandlingTest, WhatLeadsToOneMayBeTwoProcessesBeforeItActs) {

@@ -16,11 +16,15 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 
 namespace hirosco {
 namespace {
 
 constexpr std::uint32_t most_counted = std::numeric_limits<std::uint32_t>::max();
+/// Who has so many has too many, and each that is looked at takes time.
+constexpr std::uint32_t most_children = 100;
 
 /// Its size is their number since Linux 6.2; before that they are not counted.
 [[nodiscard]] std::uint32_t own_descriptors() noexcept {
@@ -28,8 +32,25 @@ constexpr std::uint32_t most_counted = std::numeric_limits<std::uint32_t>::max()
   return ::stat("/proc/self/fd", &folder) == 0 ? static_cast<std::uint32_t>(folder.st_size) : 0;
 }
 
-/// Of one thread: their numbers, each with a blank behind it.
-[[nodiscard]] std::uint32_t children_of(int tasks, const char* thread) noexcept {
+/// Whether it does anything yet: one that has ended and that nobody waits for keeps its number, and nothing else.
+[[nodiscard]] bool goes_on(std::uint32_t process) noexcept {
+  std::array<char, 32> path{};
+  auto end = std::ranges::copy(std::string_view{"/proc/"}, path.begin()).out;
+  end = std::to_chars(end, path.end(), process).ptr;
+  std::ranges::copy(std::string_view{"/stat"}, end);
+  const FileDescriptor file{::open(path.data(), O_RDONLY | O_CLOEXEC)};
+  std::array<char, 512> text;
+  const auto octets = file ? ::read(file.get(), text.data(), text.size()) : 0;
+  if (octets <= 0) return false;
+  // "PID (NAME) STATE ..."; the name may hold anything.
+  const std::string_view line{text.data(), static_cast<std::size_t>(octets)};
+  const auto name_end = line.rfind(") ");
+  return name_end == line.npos || name_end + 2 >= line.size() ||
+         (line[name_end + 2] != 'Z' && line[name_end + 2] != 'X');
+}
+
+/// Of one thread, at most `most`. The system tells their numbers, each with a blank behind it.
+[[nodiscard]] std::uint32_t children_of(int tasks, const char* thread, std::uint32_t most) noexcept {
   constexpr std::string_view file = "/children";
   std::array<char, 32 + file.size()> path{};
   const std::string_view name{thread};
@@ -37,11 +58,13 @@ constexpr std::uint32_t most_counted = std::numeric_limits<std::uint32_t>::max()
   std::ranges::copy(file, std::ranges::copy(name, path.begin()).out);
   const FileDescriptor children{::openat(tasks, path.data(), O_RDONLY | O_CLOEXEC)};
   if (!children) return 0;
-  std::uint32_t count = 0;
+  std::uint32_t count = 0, process = 0;  // a number may begin in one piece and end in the next
   std::array<char, 512> text;
   for (ssize_t octets = 0; (octets = ::read(children.get(), text.data(), text.size())) > 0;)
-    count +=
-        static_cast<std::uint32_t>(std::ranges::count(std::span{text}.first(static_cast<std::size_t>(octets)), ' '));
+    for (const char each : std::span{text}.first(static_cast<std::size_t>(octets))) {
+      if (each >= '0' && each <= '9') process = 10 * process + static_cast<std::uint32_t>(each - '0');
+      else if (goes_on(std::exchange(process, 0U)) && ++count >= most) return count;
+    }
   return count;
 }
 
@@ -53,7 +76,8 @@ constexpr std::uint32_t most_counted = std::numeric_limits<std::uint32_t>::max()
   for (ssize_t octets = 0; (octets = ::getdents64(tasks, entries.data(), entries.size())) > 0;)
     for (ssize_t at = 0; at < octets;) {
       const auto* const entry = reinterpret_cast<const dirent64*>(entries.data() + at);
-      if (entry->d_name[0] != '.') count += children_of(tasks, entry->d_name);
+      if (entry->d_name[0] != '.') count += children_of(tasks, entry->d_name, most_children - count);
+      if (count >= most_children) return count;
       at += entry->d_reclen;
     }
   return count;

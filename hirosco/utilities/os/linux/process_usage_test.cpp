@@ -86,6 +86,27 @@ TEST(ProcessMeter, CountsTheProcessesThatAnotherHasStartedWhicheverOfItsThreadsD
   for (const int end : {order[0], order[1], done[0], done[1]}) ::close(end);
 }
 
+/// As a shim leaves it that began a process, did not wait for it and gave its place to an interpreter, which knows nothing of it.
+TEST(ProcessMeter, DoesNotCountWhoHasEndedAndWasNotWaitedFor) {
+  std::array<int, 2> done{};
+  ASSERT_EQ(::pipe(done.data()), 0);
+  const pid_t parent = ::fork();
+  if (parent == 0) {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(0);
+    siginfo_t info{};
+    ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOWAIT);
+    (void)!::write(done[1], "x", 1);
+    for (;;) ::pause();
+  }
+  char octet = 0;
+  ASSERT_EQ(::read(done[0], &octet, 1), 1);
+  EXPECT_EQ(ProcessMeter::of(parent).value().look().value().processes, 1U);
+  ::kill(parent, SIGKILL);
+  ::waitpid(parent, nullptr, 0);
+  for (const int end : done) ::close(end);
+}
+
 TEST(ProcessMeter, OfAnotherSaysWhenThatHasEnded) {
   const pid_t child = ::fork();
   if (child == 0)
