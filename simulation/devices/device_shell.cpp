@@ -38,6 +38,7 @@ namespace {
 
 constexpr int priority = 85;         // above every cycle: a device does not wait for those whom it serves
 constexpr Duration control_period = std::chrono::milliseconds{10};
+constexpr std::int64_t longest_stop_ms = 60'000;
 constexpr std::string_view beside = "--beside";
 
 std::map<std::string, Transfer> transfers() {
@@ -112,8 +113,10 @@ bool add_drive(std::string_view text, std::vector<FurtherEndnode>& endnodes) {
   const auto endnode = std::ranges::find(endnodes, parts[0], &FurtherEndnode::name);
   const auto stop = stops.find(std::string{parts[1]});
   std::int64_t within_ms = 0;
-  const auto read = std::from_chars(parts[2].data(), parts[2].data() + parts[2].size(), within_ms);
-  if (endnode == endnodes.end() || stop == stops.end() || read.ec != std::errc{}) return false;
+  const char* const end = parts[2].data() + parts[2].size();
+  const auto read = std::from_chars(parts[2].data(), end, within_ms);
+  const bool is_time = read.ec == std::errc{} && read.ptr == end && within_ms >= 0 && within_ms <= longest_stop_ms;
+  if (endnode == endnodes.end() || stop == stops.end() || !is_time) return false;
   FurtherActuator& made = endnode->actuator.emplace();
   made.stop = stop->second;
   made.stop_within = std::chrono::milliseconds{within_ms};
@@ -153,7 +156,7 @@ std::optional<int> read_options(int argc, char** argv, const char* name, Options
                "It is one: if it is told to be active as it begins, it waits for a higher epoch");
   app.add_option("--stop", options.stop, "What it does by itself when its command is taken away")
       ->transform(CLI::CheckedTransformer{stops});
-  app.add_option("--stop-within-ms", options.stop_within_ms, "Time of a controlled stop")->check(CLI::Range(0, 60'000));
+  app.add_option("--stop-within-ms", options.stop_within_ms, "Time of a controlled stop")->check(CLI::Range(std::int64_t{0}, longest_stop_ms));
   app.add_option("--enable-transfer", options.enable_transfer, "Means of transfer of the second inhibit")
       ->transform(CLI::CheckedTransformer{transfers()});
   app.add_option("--enable-address", options.enable_address, "Its address; without one there is none");

@@ -62,7 +62,7 @@ class FurtherEnds {
     bool plugged{true};
     bool silent{false};
   };
-  /// Answers who asked, once.
+  /// Answers who asked, once; whose epoch is an old one is told that.
   void answer(std::span<FurtherExchange> ends, const Said& said) noexcept;
 
   /// As it boots.

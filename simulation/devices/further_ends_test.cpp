@@ -196,12 +196,19 @@ TEST_F(TurretTest, RefusesAnOldEpochWhereItWasSaidAndTellsItThere) {
   command(tilt, DeviceMode::Active, 5, 6);
   command(turn, DeviceMode::Active, 1, 6);
   step();
-  EXPECT_FALSE(answer(tilt));
+  auto told = answer(tilt);
+  ASSERT_TRUE(told) << "docs/guide/your_device.md, duty 2";
+  EXPECT_NE(told->flags & device_flag::old_epoch_refused, 0);
+  EXPECT_EQ(told->sequence, tilt.sequence - 1) << "of the last one that counts";
   EXPECT_EQ(turret->tilt_rad_s, 1);
   EXPECT_TRUE(turret->active()) << "an epoch of one is none of the other";
+  EXPECT_EQ(turret->flags() & device_flag::old_epoch_refused, 0) << "and nothing that is told there";
   command(tilt, DeviceMode::Off, 0, 7);
   step();
-  EXPECT_EQ(turret->flags() & device_flag::old_epoch_refused, 0);
+  told = answer(tilt);
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->flags & device_flag::old_epoch_refused, 0);
+  EXPECT_EQ(told->sequence, tilt.sequence);
 }
 
 TEST_F(TurretTest, WhoBeginsIsLetGoAtEachOfThem) {
