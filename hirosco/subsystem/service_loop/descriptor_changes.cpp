@@ -47,7 +47,8 @@ using Refused = std::optional<FailureNotice>;
 }  // namespace
 
 std::optional<FailureNotice> DescriptorChanges::judge(std::size_t octets, const MemoryHandle& text) {
-  // Before anything is read: what has been commissioned uses the heap for nothing (adr 0220).
+  newest_ = false;  // whatever becomes of it, the text before it is the newest no more
+  // Before anything is read, or given back: what has been commissioned uses the heap for nothing (adr 0220).
   if (auto refused = not_now()) return refused;
   coming_.reset();
   if (!platform_.read_again) return refuse(FailureCode::NotPermittedNow, "nobody reads descriptors here");
@@ -67,6 +68,7 @@ std::optional<FailureNotice> DescriptorChanges::judge(std::size_t octets, const 
   descriptor::add_framework_events(*reading.value);
   if (auto refused = against(*reading.value)) return refused;
   coming_ = std::move(reading.value);
+  newest_ = true;
   return std::nullopt;
 }
 
@@ -117,7 +119,7 @@ std::optional<FailureNotice> DescriptorChanges::left_outside(const descriptor::S
 }
 
 std::optional<FailureNotice> DescriptorChanges::take() {
-  if (!coming_) return FailureNotice{FailureCode::WrongStatus};
+  if (!coming_ || !newest_) return FailureNotice{FailureCode::WrongStatus};
   if (auto refused = not_now()) return refused;
   descriptor::SubsystemDescriptor fresh = std::move(*coming_);
   coming_.reset();

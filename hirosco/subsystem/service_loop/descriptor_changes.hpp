@@ -49,6 +49,7 @@ class DescriptorChanges final : public pus::DescriptorOwner {
   ParameterValues& values_;
   const OwnLoops& loops_;
   std::optional<descriptor::SubsystemDescriptor> coming_;  ///< judged, and not taken yet
+  bool newest_{false};  ///< nothing was to be judged behind it
   Parameter<DescriptorInForce> in_force_;
   std::uint16_t changes_{0};
 };
