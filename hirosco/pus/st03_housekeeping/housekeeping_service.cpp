@@ -78,14 +78,19 @@ Result<> HousekeepingService::load(std::span<const HousekeepingStructure> struct
 
 Result<> HousekeepingService::load_one(const HousekeepingStructure& declared) {
   draft_.begin(values_, declared.id, declared.interval_cycles);
-  bool fits = true;
-  const auto once = [this](std::size_t place) { return draft_.add_once(place); };
-  const auto repeatedly = [this](std::size_t place) { return draft_.add_to_set(place); };
-  for (const auto& each : declared.sampled_once) fits = resolve(each).transform(once).value_or(false) && fits;
+  bool known = true, fits = true;
+  using List = bool (HousekeepingLayout::*)(std::size_t) noexcept;
+  const auto add = [&](const descriptor::ParameterRef& reference, List to) {
+    const auto place = resolve(reference);
+    known = known && place;
+    if (place) fits = (draft_.*to)(*place) && fits;
+  };
+  for (const auto& each : declared.sampled_once) add(each, &HousekeepingLayout::add_once);
   for (const auto& set : declared.sampled_repeatedly) {
     fits = draft_.begin_set(set.repetitions) && fits;
-    for (const auto& each : set.parameters) fits = resolve(each).transform(repeatedly).value_or(false) && fits;
+    for (const auto& each : set.parameters) add(each, &HousekeepingLayout::add_to_set);
   }
+  if (!known) return fail(ErrorCode::NotFound, "a value of a housekeeping structure", declared.id);
   if (!draft_.allows(draft_.interval)) return fail(ErrorCode::OutOfRange, "housekeeping interval", declared.id);
   if (sampler_.free_commands() < 3) return fail(ErrorCode::Unavailable, "housekeeping commands", declared.id);
   Structure* existing = find(declared.id);

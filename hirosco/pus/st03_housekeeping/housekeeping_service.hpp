@@ -132,12 +132,13 @@ class HousekeepingService final : public Service {
     properties_report = 35,
   };
 
-  /// `subsystem` gives the parameters; it and `sampler` outlive the service.
+  /// `subsystem` gives the parameters; it and `sampler` outlive the service. What `sampler` reports it has from here: behind the service's
+  /// end it ticks no more.
   HousekeepingService(const descriptor::SubsystemDescriptor& subsystem, HousekeepingSampler& sampler,
                       Verification& verification, TelemetrySink& sink);
 
   /// Adds predefined structures; one with an id that exists replaces it (a configuration overrides the subsystem).
-  /// OutOfRange: interval and repetitions do not fit; ResourceExhausted: too many structures or too long a report;
+  /// NotFound: a value that the subsystem does not have; OutOfRange: interval and repetitions do not fit; ResourceExhausted: too many structures or too long a report;
   /// Unavailable: the cycle has not yet taken earlier commands. Structures before the failed one stay.
   [[nodiscard]] Result<> load(std::span<const descriptor::HousekeepingStructure> structures);
   /// Removes all structures, before another configuration. Unavailable as above, and nothing is removed.

@@ -72,6 +72,7 @@ struct Service {
       if (!value) return fail(ErrorCode::InvalidArgument, "argument missing", static_cast<std::int64_t>(next));
       HIROSCO_TRY(pus::write_value(writer, argument, *value, pus::Words::Padded));
     }
+  if (next < values.size()) return fail(ErrorCode::InvalidArgument, "too many arguments");
   return pus::all_written(writer);
 }
 
