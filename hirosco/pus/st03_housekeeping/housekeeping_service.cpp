@@ -78,25 +78,19 @@ Result<> HousekeepingService::load(std::span<const HousekeepingStructure> struct
 
 Result<> HousekeepingService::load_one(const HousekeepingStructure& declared) {
   draft_.begin(values_, declared.id, declared.interval_cycles);
-  bool known = true, fits = true;
-  using List = bool (HousekeepingLayout::*)(std::size_t) noexcept;
-  const auto add = [&](const descriptor::ParameterRef& reference, List to) {
-    const auto place = resolve(reference);
-    known = known && place;
-    if (place) fits = (draft_.*to)(*place) && fits;
-  };
-  for (const auto& each : declared.sampled_once) add(each, &HousekeepingLayout::add_once);
+  const auto has = [this](const descriptor::ParameterRef& each) { return resolve(each).has_value(); };
+  bool known = std::ranges::all_of(declared.sampled_once, has), fits = true;
+  for (const auto& set : declared.sampled_repeatedly) known = known && std::ranges::all_of(set.parameters, has);
+  if (!known) return fail(ErrorCode::NotFound, "a value of a housekeeping structure", declared.id);
+  for (const auto& each : declared.sampled_once) fits = draft_.add_once(*resolve(each)) && fits;
   for (const auto& set : declared.sampled_repeatedly) {
     fits = draft_.begin_set(set.repetitions) && fits;
-    for (const auto& each : set.parameters) add(each, &HousekeepingLayout::add_to_set);
+    for (const auto& each : set.parameters) fits = draft_.add_to_set(*resolve(each)) && fits;
   }
-  if (!known) return fail(ErrorCode::NotFound, "a value of a housekeeping structure", declared.id);
   if (!draft_.allows(draft_.interval)) return fail(ErrorCode::OutOfRange, "housekeeping interval", declared.id);
   if (sampler_.free_commands() < 3) return fail(ErrorCode::Unavailable, "housekeeping commands", declared.id);
-  Structure* existing = find(declared.id);
-  if (!fits || check_capacity(draft_))
-    return fail(ErrorCode::ResourceExhausted, "housekeeping structures", declared.id);
-  if (existing != nullptr) {
+  if (!fits || check_capacity(draft_)) return fail(ErrorCode::ResourceExhausted, "housekeeping structures", declared.id);
+  if (Structure* existing = find(declared.id); existing != nullptr) {
     sampler_.send(HousekeepingSampler::Command::Kind::Remove, existing->slot);
     structures_.erase(structures_.begin() + (existing - structures_.data()));
   }

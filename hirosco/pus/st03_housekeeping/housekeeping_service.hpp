@@ -132,8 +132,7 @@ class HousekeepingService final : public Service {
     properties_report = 35,
   };
 
-  /// `subsystem` gives the parameters; it and `sampler` outlive the service. What `sampler` reports it has from here: behind the service's
-  /// end it ticks no more.
+  /// `subsystem` gives the parameters; it and `sampler` outlive the service, behind whose end `sampler` ticks no more.
   HousekeepingService(const descriptor::SubsystemDescriptor& subsystem, HousekeepingSampler& sampler,
                       Verification& verification, TelemetrySink& sink);
 
