@@ -156,7 +156,8 @@ std::optional<int> read_options(int argc, char** argv, const char* name, Options
                "It is one: if it is told to be active as it begins, it waits for a higher epoch");
   app.add_option("--stop", options.stop, "What it does by itself when its command is taken away")
       ->transform(CLI::CheckedTransformer{stops});
-  app.add_option("--stop-within-ms", options.stop_within_ms, "Time of a controlled stop")->check(CLI::Range(std::int64_t{0}, longest_stop_ms));
+  app.add_option("--stop-within-ms", options.stop_within_ms, "Time of a controlled stop")
+      ->check(CLI::Range(std::int64_t{0}, longest_stop_ms));
   app.add_option("--enable-transfer", options.enable_transfer, "Means of transfer of the second inhibit")
       ->transform(CLI::CheckedTransformer{transfers()});
   app.add_option("--enable-address", options.enable_address, "Its address; without one there is none");
