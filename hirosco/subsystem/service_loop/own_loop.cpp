@@ -116,8 +116,8 @@ TimePoint OwnLoop::due(TimePoint planned) const noexcept {
 }
 
 TimePoint OwnLoop::step(TimePoint planned) {
-  const RealtimeScope watched;
-  const bool acted = commissioned();
+  std::optional<RealtimeScope> watched;
+  if (commissioned()) watched.emplace();
   const Duration used = parts_.clock.processor();
   // To the end: what it took is held against the budget that it was made under.
   const LockGuard lock{mutex_};
@@ -139,8 +139,8 @@ TimePoint OwnLoop::step(TimePoint planned) {
   const TimePoint finished = parts_.clock.now();
   const auto missed = finished <= next ? 0 : (finished - next) / period + 1;
   parts_.meter.account(parts_.place, parts_.clock.processor() - used, static_cast<std::uint64_t>(missed));
-  if (acted && commissioned()) {
-    const AllocationCount uses = watched.count();
+  if (watched && commissioned()) {
+    const AllocationCount uses = watched->count();
     allocations_.fetch_add(uses.allocations, std::memory_order_relaxed);
     frees_.fetch_add(uses.frees, std::memory_order_relaxed);
   }
