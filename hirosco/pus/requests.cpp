@@ -3,6 +3,7 @@
 #include "hirosco/pus/requests.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "hirosco/descriptor/model/wire_values.hpp"
@@ -56,23 +57,17 @@ void add_settings(const descriptor::SubsystemDescriptor& subsystem, std::vector<
   }
 }
 
-/// A TEXT of a parameter has all its octets, an argument's its length in front.
-[[nodiscard]] Result<std::vector<std::byte>> encode_setting(const Function& setting, GivenValues values) {
-  std::vector<std::byte> data(1 + sizeof setting.sets);
-  OctetWriter{data}.put(std::uint8_t{1}).put(setting.sets);
-  auto value = values.begin();
+[[nodiscard]] Result<> write_setting(OctetWriter& writer, const Function& setting, GivenValues values) noexcept {
+  writer.put(std::uint8_t{1}).put(setting.sets);
+  std::size_t next = 0;
   for (const Function::Argument& argument : setting.arguments)
-    for (std::size_t i = 0; i < value_count(argument); ++i, ++value) {
-      if (value == values.end() || !*value) return fail(ErrorCode::InvalidArgument, "a value missing");
-      const std::size_t before = data.size();
-      HIROSCO_TRY(append_value(data, argument, **value));
-      if (argument.field.type != Type::Text) continue;
-      const auto words = data.begin() + static_cast<std::ptrdiff_t>(before);
-      data.erase(words, words + sizeof(std::uint16_t));
-      data.resize(before + argument.field.octets());
+    for (std::size_t i = 0; i < value_count(argument); ++i) {
+      const auto value = values.at(next++);
+      if (!value) return fail(ErrorCode::InvalidArgument, "a value missing");
+      HIROSCO_TRY(write_value(writer, argument, *value, Words::Padded));
     }
-  if (value != values.end()) return fail(ErrorCode::InvalidArgument, "too many values");
-  return data;
+  if (next < values.size()) return fail(ErrorCode::InvalidArgument, "too many values");
+  return ok();
 }
 
 [[nodiscard]] std::optional<std::vector<Value>> decode_setting(const Function& setting, Octets data) {
@@ -123,12 +118,21 @@ bool goes_alone(const Function& request) noexcept {
   return request.essential && request.service != TestService::service_type;
 }
 
+Result<Octets> write_request(MutableOctets room, const Function& request, GivenValues values) noexcept {
+  OctetWriter writer{room};
+  const auto write = [&]() noexcept -> Result<> {
+    if (request.service == FunctionService::service_type) return write_call(writer, request, values);
+    if (request.sets != 0) return write_setting(writer, request, values);
+    return write_values(writer, request.arguments, values, Ids::None);
+  };
+  HIROSCO_TRY(write());
+  return all_written(writer);
+}
+
 Result<std::vector<std::byte>> encode_request(const Function& request, GivenValues values) {
-  if (request.service == FunctionService::service_type) return encode_call(request, values);
-  if (request.sets != 0) return encode_setting(request, values);
-  std::vector<std::byte> data;
-  HIROSCO_TRY(append_values(data, request.arguments, values, Ids::None));
-  return data;
+  std::array<std::byte, max_telecommand_octets> room;
+  HIROSCO_TRY_LET(const Octets data, write_request(room, request, values));
+  return std::vector<std::byte>(data.begin(), data.end());
 }
 
 std::optional<std::vector<Value>> decode_request(const Function& request, Octets data) {

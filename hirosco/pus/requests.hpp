@@ -28,7 +28,11 @@ inline constexpr std::string_view setting_prefix = "SET:";
 /// Whether a telecommand of this service and subtype with this application data is such a request; of ST[08], by any name.
 [[nodiscard]] bool is_for(const descriptor::Function& request, std::uint8_t service, std::uint8_t subtype, Octets data);
 
-/// Application data of such a request, as encode_call() makes it.
+/// Application data of such a request, in `room`. InvalidArgument, OutOfRange: as write_values() has it, or they do not fit.
+/// Realtime: bounded.
+[[nodiscard]] Result<Octets> write_request(MutableOctets room, const descriptor::Function& request,
+                                           GivenValues values) noexcept;
+/// The same, of its own.
 [[nodiscard]] Result<std::vector<std::byte>> encode_request(const descriptor::Function& request, GivenValues values);
 
 /// The arguments in the application data of such a request, element by element; empty when they are not of its form.

@@ -65,6 +65,11 @@ std::vector<std::string> DeviceArguments::arguments() const {
     std::string text = fmt::format("{},{}", further.name, text_of(further.byte_order));
     for (const FlowAddress& address : further.addresses) text += "," + text_of(address);
     words.insert(words.end(), {"--further", text});
+    if (!further.actuator) continue;
+    text = fmt::format("{},{},{}", further.name, text_of(further.actuator->stop),
+                       count_of<std::chrono::milliseconds>(further.actuator->stop_within));
+    if (further.actuator->enable) text += "," + text_of(*further.actuator->enable);
+    words.insert(words.end(), {"--drive", text});
   }
   if (settings.power) words.insert(words.end(), {"--power", text_of(*settings.power)});
   for (const auto& [name, file] : settings.files)
@@ -140,6 +145,13 @@ struct Played {
   return played;
 }
 
+[[nodiscard]] std::optional<FurtherActuator> actuator_of(const descriptor::Device& device) {
+  if (!device.actuator) return std::nullopt;
+  FurtherActuator made{.stop = stop_of(device.stop), .stop_within = device.stop_within};
+  if (device.enable) made.enable = address_of(*device.enable);
+  return made;
+}
+
 [[nodiscard]] std::endian endian_of(descriptor::ByteOrder order) {
   return order == descriptor::ByteOrder::Big ? std::endian::big : std::endian::little;
 }
@@ -164,10 +176,7 @@ std::expected<DeviceArguments, std::string> device_arguments(const descriptor::M
   if (endnodes.empty())
     return std::unexpected{fmt::format("no configuration of {} uses {}", device.subsystem, device.device)};
   const auto acts = [](const Played& played) { return played.device->actuator; };
-  if (std::ranges::count_if(endnodes, acts) > 1)
-    return std::unexpected{fmt::format("{} of {} has several endnodes with actuators, a simulated device one",
-                                       device.device, device.subsystem)};
-  // Its world is driven by the endnode with the actuator, else by its first one.
+  // Its world is driven by the first endnode with an actuator, else by its first one.
   if (const auto main = std::ranges::find_if(endnodes, acts); main != endnodes.end())
     std::rotate(endnodes.begin(), main, main + 1);
   const Played& main = endnodes.front();
@@ -199,7 +208,10 @@ std::expected<DeviceArguments, std::string> device_arguments(const descriptor::M
   };
   settings.endnode = name_of(main);
   for (std::size_t i = 1; i < endnodes.size(); ++i)
-    settings.further.push_back({name_of(endnodes[i]), endnodes[i].addresses, endian_of(endnodes[i].byte_order)});
+    settings.further.push_back({.name = name_of(endnodes[i]),
+                                .addresses = endnodes[i].addresses,
+                                .byte_order = endian_of(endnodes[i].byte_order),
+                                .actuator = actuator_of(*endnodes[i].device)});
   const auto power = std::ranges::find(subsystem.power_switches, device.device, &descriptor::PowerSwitch::device);
   if (power != subsystem.power_switches.end()) settings.power = address_of(power->endnode);
   return made;

@@ -128,12 +128,30 @@ TEST(DeviceArguments, TellADeviceThatIsNoActuatorNothingOfOne) {
   EXPECT_EQ(std::ranges::count(made->arguments(), "--actuator"), 0);
 }
 
-TEST(DeviceArguments, TwoActuatorsInOneDeviceAreTooMany) {
+TEST(DeviceArguments, OfTwoActuatorsInOneDeviceTheFirstDrivesItsWorldAndEachHasAStopAndASecondInhibitOfItsOwn) {
   auto mission = several_endnodes();
-  mission.subsystems[0].subsystem.devices[0].actuator = true;
+  descriptor::Device& image = mission.subsystems[0].subsystem.devices[0];
+  image.actuator = true;
+  image.stop = descriptor::StopKind::Hold;
   const auto made = device_arguments(mission, mission.devices[0]);
-  ASSERT_FALSE(made);
-  EXPECT_NE(made.error().find("several endnodes with actuators"), std::string::npos);
+  ASSERT_TRUE(made) << made.error();
+  EXPECT_EQ(made->settings.endnode, "IMAGE");
+  EXPECT_EQ(made->address().address, "image");
+  EXPECT_EQ(made->settings.stop, SimulatedDevice::Stop::Hold);
+  EXPECT_FALSE(made->settings.enable);
+  ASSERT_EQ(made->settings.further.size(), 1U);
+  const auto& drive = made->settings.further[0];
+  EXPECT_EQ(drive.name, "DRIVE");
+  ASSERT_TRUE(drive.actuator);
+  EXPECT_EQ(drive.actuator->stop, SimulatedDevice::Stop::Controlled);
+  EXPECT_EQ(drive.actuator->stop_within, std::chrono::milliseconds{200});
+  ASSERT_TRUE(drive.actuator->enable);
+  EXPECT_EQ(drive.actuator->enable->address, "joints.enable");
+  const auto words = made->arguments();
+  const auto said = std::ranges::find(words, "--drive");
+  ASSERT_NE(said, words.end());
+  EXPECT_EQ(*(said + 1), "DRIVE,controlled,200,unix=joints.enable");
+  EXPECT_EQ(*(said - 1), "DRIVE,big,udp=joints,unix=joints2") << "behind the endnode that it is of";
 }
 
 TEST(DeviceArguments, TellTheDeviceTheFilesThatItsSettingsName) {

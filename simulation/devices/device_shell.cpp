@@ -11,6 +11,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -37,6 +38,7 @@ namespace {
 
 constexpr int priority = 85;         // above every cycle: a device does not wait for those whom it serves
 constexpr Duration control_period = std::chrono::milliseconds{10};
+constexpr std::int64_t longest_stop_ms = 60'000;
 constexpr std::string_view beside = "--beside";
 
 std::map<std::string, Transfer> transfers() {
@@ -65,6 +67,7 @@ struct Options {
   std::vector<std::string> fall_backs;
   std::string endnode;
   std::vector<std::string> further;
+  std::vector<std::string> drives;
   std::string power;
   std::vector<std::string> files;
   std::vector<std::string> settings;
@@ -79,15 +82,19 @@ std::optional<FlowAddress> address_in(std::string_view text) {
   return FlowAddress{*transfer, std::string{text.substr(equals + 1)}};
 }
 
-/// NAME,BYTE_ORDER,TRANSFER=ADDRESS,...
-std::optional<FurtherEndnode> endnode_in(std::string_view text) {
+std::vector<std::string_view> parts_of(std::string_view text) {
   std::vector<std::string_view> parts;
   while (true) {
     const auto comma = text.find(',');
     parts.push_back(text.substr(0, comma));
-    if (comma == text.npos) break;
+    if (comma == text.npos) return parts;
     text.remove_prefix(comma + 1);
   }
+}
+
+/// NAME,BYTE_ORDER,TRANSFER=ADDRESS,...
+std::optional<FurtherEndnode> endnode_in(std::string_view text) {
+  const auto parts = parts_of(text);
   const auto order = parts.size() < 3 ? byte_orders.end() : byte_orders.find(std::string{parts[1]});
   if (order == byte_orders.end()) return std::nullopt;
   FurtherEndnode found{std::string{parts[0]}, {}, order->second};
@@ -97,6 +104,24 @@ std::optional<FurtherEndnode> endnode_in(std::string_view text) {
     found.addresses.push_back(std::move(*address));
   }
   return found;
+}
+
+/// NAME,STOP,MILLISECONDS[,TRANSFER=ADDRESS]. False: it is none, or of no endnode.
+bool add_drive(std::string_view text, std::vector<FurtherEndnode>& endnodes) {
+  const auto parts = parts_of(text);
+  if (parts.size() < 3 || parts.size() > 4) return false;
+  const auto endnode = std::ranges::find(endnodes, parts[0], &FurtherEndnode::name);
+  const auto stop = stops.find(std::string{parts[1]});
+  std::int64_t within_ms = 0;
+  const char* const end = parts[2].data() + parts[2].size();
+  const auto read = std::from_chars(parts[2].data(), end, within_ms);
+  const bool is_time = read.ec == std::errc{} && read.ptr == end && within_ms >= 0 && within_ms <= longest_stop_ms;
+  if (endnode == endnodes.end() || stop == stops.end() || !is_time) return false;
+  FurtherActuator& made = endnode->actuator.emplace();
+  made.stop = stop->second;
+  made.stop_within = std::chrono::milliseconds{within_ms};
+  if (parts.size() == 4) made.enable = address_in(parts[3]);
+  return parts.size() == 3 || made.enable.has_value();
 }
 
 /// False: one of them is none.
@@ -112,6 +137,8 @@ bool add_endnodes(const Options& options, SimulatedDevice::Settings& settings) {
     if (!endnode) return false;
     settings.further.push_back(std::move(*endnode));
   }
+  for (const std::string& text : options.drives)
+    if (!add_drive(text, settings.further)) return false;
   if (!options.power.empty()) settings.power = address_in(options.power);
   return options.power.empty() || settings.power.has_value();
 }
@@ -129,13 +156,16 @@ std::optional<int> read_options(int argc, char** argv, const char* name, Options
                "It is one: if it is told to be active as it begins, it waits for a higher epoch");
   app.add_option("--stop", options.stop, "What it does by itself when its command is taken away")
       ->transform(CLI::CheckedTransformer{stops});
-  app.add_option("--stop-within-ms", options.stop_within_ms, "Time of a controlled stop")->check(CLI::Range(0, 60'000));
+  app.add_option("--stop-within-ms", options.stop_within_ms, "Time of a controlled stop")
+      ->check(CLI::Range(std::int64_t{0}, longest_stop_ms));
   app.add_option("--enable-transfer", options.enable_transfer, "Means of transfer of the second inhibit")
       ->transform(CLI::CheckedTransformer{transfers()});
   app.add_option("--enable-address", options.enable_address, "Its address; without one there is none");
   app.add_option("--fall-back", options.fall_backs, "TRANSFER=ADDRESS of another way to the same frames");
   app.add_option("--endnode", options.endnode, "Name of its endnode, where it has several");
   app.add_option("--further", options.further, "Another endnode: NAME,BYTE_ORDER,TRANSFER=ADDRESS and its fall-backs");
+  app.add_option("--drive", options.drives,
+                 "The actuator of one of these: NAME,STOP,MILLISECONDS and TRANSFER=ADDRESS of its second inhibit");
   app.add_option("--power", options.power, "TRANSFER=ADDRESS of its power switch; without one it has power");
   app.add_option("--file", options.files, "NAME=PATH of a file that a setting of the device names");
   app.add_option("--set", options.settings, "NAME=VALUE, carried out at the start");

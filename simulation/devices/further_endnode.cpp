@@ -16,10 +16,9 @@ std::optional<DeviceCommand> FurtherExchange::hear(MutableOctets buffer) noexcep
   return *command;
 }
 
-void FurtherExchange::answer(Octets payload, std::uint16_t flags) noexcept {
+void FurtherExchange::answer(const DeviceStatus& status) noexcept {
   std::array<std::byte, max_device_frame_octets> frame;
-  const auto written =
-      write_status(frame, {.epoch = epoch_, .sequence = sequence_, .flags = flags, .payload = payload});
+  const auto written = write_status(frame, status);
   // Nobody listening is no matter of a device's.
   if (written) static_cast<void>(ways_->send(*written));
 }

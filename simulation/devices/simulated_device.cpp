@@ -21,6 +21,7 @@ SimulatedDevice::SimulatedDevice(FlowFactory& flows, FlowAddress address, const 
       inhibit_{settings.enable, settings.enable_limit},
       switch_{settings.power},
       obedience_{{settings.actuator, settings.watchdog, settings.stop, settings.stop_within}, inhibit_},
+      further_{settings.further, settings.watchdog, settings.enable_limit, *this},
       clock_{settings.cycle, settings.clock} {}
 
 Result<> SimulatedDevice::plug() {
@@ -30,6 +31,7 @@ Result<> SimulatedDevice::plug() {
     HIROSCO_TRY(make_world());
   }
   world_made_ = true;
+  HIROSCO_TRY(further_.open(flows_));
   HIROSCO_TRY(inhibit_.open(flows_));
   HIROSCO_TRY(switch_.open(flows_));
   return endnodes_.open();
@@ -37,35 +39,41 @@ Result<> SimulatedDevice::plug() {
 
 void SimulatedDevice::step(TimePoint now) {
   const WorldClock::Held held = clock_.wake(now);
-  const Duration forgiven = obedience_.forgive(held);
-  inhibit_.prolong(held.pause + forgiven);
+  const Duration forgiven_here = obedience_.forgive(held);
+  inhibit_.prolong(held.pause + forgiven_here);
+  const Duration forgiven = std::max(forgiven_here, further_.forgive(held));
   // Without power it hears nothing and moves nothing; it comes back knowing nothing of what was before.
   if (switch_.step(now)) begin_anew();
   inhibit_.receive(now, plugged() && powered());
   const bool exchanged = receive(now);
+  const bool elsewhere = further_.receive(endnodes_.further(), now, powered());
   obedience_.watch(now);
   obedience_.choose_output(now);
+  further_.choose_output(now);
   const std::int64_t due = clock_.due(now, exchanged);
   // What the watchdog forgives, the world does not live through: a command that its subsystem had no time to follow up would drive the
   // motors on, and a control loop left open for tens of milliseconds came back to torques beyond the hard limit.
-  const std::int64_t lived = forgiven > Duration{0} && !exchanged && active() && has_world_alone() ? 0 : due;
+  const bool stands = forgiven > Duration{0} && !exchanged && !elsewhere && acts() && has_world_alone();
+  const std::int64_t lived = stands ? 0 : due;
   const Duration cycle = clock_.world_cycle();
   for (std::int64_t i = 0; i < lived; ++i) {
     advance(cycle);
     obedience_.count_down(cycle);
+    further_.count_down(cycle);
   }
   clock_.count(lived, exchanged);
-  if (active()) obeyed_cycles_ = cycles();
+  if (acts()) obeyed_cycles_ = cycles();
   if (due > 0 || exchanged) answer(now);
   answers_.send_due(now, endnodes_.driving());
   inhibit_.answer(plugged(), {.output = output(), .flags = flags(), .epoch = obedience_.epoch()});
-  exchange_further();
+  further_.answer(endnodes_.further(), {flags(), powered(), plugged(), answers_.silent(clock_.now())});
 }
 
 /// As it boots: it knows nothing of what was before, and what moves has brakes or nothing.
 void SimulatedDevice::begin_anew() noexcept {
   obedience_.begin_anew();
   inhibit_.forget();
+  further_.begin_anew();
   endnodes_.forget();
   answers_.forget();
   do_forget();
@@ -110,35 +118,11 @@ void SimulatedDevice::answer(TimePoint now) noexcept {
   if (plugged() && powered()) answers_.answer(now);
 }
 
-void SimulatedDevice::exchange_further() noexcept {
-  for (FurtherExchange& each : endnodes_.further()) {
-    std::array<std::byte, max_device_frame_octets> buffer;
-    const auto command = each.hear(buffer);
-    if (!command || !powered()) continue;
-    // One that was not taken is not answered, so that its subsystem hears of it.
-    if (command->mode == DeviceMode::Active &&
-        !take_at(each.name(), OctetReader{command->payload, each.byte_order()})) {
-      ++damaged_commands_;
-      continue;
-    }
-    std::array<std::byte, max_device_payload_octets> payload;
-    OctetWriter writer{payload, each.byte_order()};
-    write_sensors_at(each.name(), writer);
-    if (!answers_.silent(clock_.now())) each.answer(writer.written(), flags());
-  }
-}
-
-Result<> SimulatedDevice::take_at(std::string_view, OctetReader payload) noexcept {
-  return payload.remaining() == 0 ? ok() : fail(ErrorCode::Malformed, "this endnode takes nothing");
-}
-
-void SimulatedDevice::write_sensors_at(std::string_view, OctetWriter&) noexcept {}
-
 TimePoint SimulatedDevice::next_wake() const noexcept {
   if (!clock_.started()) return clock_.now();
   TimePoint wake = std::min(clock_.next(), obedience_.trips_at());
   if (active()) wake = std::min(wake, inhibit_.ends_at());
-  return std::min({wake, answers_.next_due(), switch_.off_at()});
+  return std::min({wake, further_.next_wake(), answers_.next_due(), switch_.off_at()});
 }
 
 Result<> SimulatedDevice::fault(std::string_view line) {
@@ -164,6 +148,7 @@ void SimulatedDevice::heal() noexcept {
 void SimulatedDevice::unplug() noexcept {
   endnodes_.close();
   inhibit_.withdraw();
+  further_.withdraw();
   answers_.drop();
 }
 

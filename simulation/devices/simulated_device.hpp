@@ -21,6 +21,7 @@
 #include "simulation/devices/device_answers.hpp"
 #include "simulation/devices/device_endnodes.hpp"
 #include "simulation/devices/further_endnode.hpp"
+#include "simulation/devices/further_ends.hpp"
 #include "simulation/devices/obedience.hpp"
 #include "simulation/devices/simulated_inhibit.hpp"
 #include "simulation/devices/simulated_switch.hpp"
@@ -46,8 +47,9 @@ struct FaultLine {
 /// whose enable was taken away moves again only with a higher epoch.
 /// Who begins is let go: an actuator that has begun (made, power, `reboot`) and hears Active as its first command is latched as
 /// if its watchdog had tripped in that epoch. Only it knows that it has just begun (docs/adr/0149).
+/// The same holds at each further endnode with an actuator, for itself: FurtherEnds.
 /// Realtime: step() is bounded and does not allocate while plugged. Thread: one.
-class SimulatedDevice {
+class SimulatedDevice : protected FurtherPayloads {
  public:
   /// What it does by itself when its command is taken away.
   using Stop = DeviceStop;
@@ -122,17 +124,19 @@ class SimulatedDevice {
   [[nodiscard]] DeviceOutput output() const noexcept { return obedience_.output(); }
   /// False: its power switch is off. It hears and says nothing, and what moves has brakes or nothing.
   [[nodiscard]] bool powered() const noexcept { return switch_.on(); }
-  /// True while payloads of commands reach the motors.
+  /// True while payloads of commands reach the motors of the endnode that drives it.
   [[nodiscard]] bool active() const noexcept { return output() == DeviceOutput::Active; }
+  /// The same of any of its endnodes.
+  [[nodiscard]] bool acts() const noexcept { return active() || further_.active(); }
   /// Cycles that the world has moved, and how many of them the own clock drove.
   [[nodiscard]] std::uint64_t cycles() const noexcept { return clock_.cycles(); }
   [[nodiscard]] std::uint64_t own_cycles() const noexcept { return clock_.own_cycles(); }
   [[nodiscard]] std::uint64_t damaged_commands() const noexcept {
-    return damaged_commands_ + inhibit_.damaged_commands();
+    return damaged_commands_ + inhibit_.damaged_commands() + further_.damaged_commands();
   }
   [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
   /// Whether its motors did anything in the last cycle.
-  [[nodiscard]] virtual bool drives() const noexcept { return active(); }
+  [[nodiscard]] virtual bool drives() const noexcept { return acts(); }
   /// What whoever starts it is to be told of its world, once it is plugged in: what of its files has no effect there.
   [[nodiscard]] virtual std::vector<std::string> remarks() const { return {}; }
   /// What reckons its world where that is no code of ours, with its version and without a space; empty: nothing does.
@@ -148,9 +152,10 @@ class SimulatedDevice {
   /// Of Stop::Controlled, while output() is Stopping: what is left of its time.
   [[nodiscard]] Duration stop_left() const noexcept { return obedience_.stop_left(); }
   [[nodiscard]] std::endian byte_order() const noexcept { return settings_.byte_order; }
-  /// As take() and write_sensors(), at its further endnodes by their names: one takes and says nothing unless the device does.
-  [[nodiscard]] virtual Result<> take_at(std::string_view endnode, OctetReader payload) noexcept;
-  virtual void write_sensors_at(std::string_view endnode, OctetWriter& payload) noexcept;
+  /// As output() and stop_left(), of the actuator at a further endnode; take(), write_sensors() and can() are take_at(),
+  /// write_sensors_at() and can_at() there (FurtherPayloads).
+  [[nodiscard]] DeviceOutput output_at(std::string_view endnode) const noexcept { return further_.output(endnode); }
+  [[nodiscard]] Duration stop_left_at(std::string_view endnode) const noexcept { return further_.stop_left(endnode); }
 
  private:
   /// Moves the world by one cycle under the last accepted payload; output() tells what to do with it.
@@ -176,7 +181,6 @@ class SimulatedDevice {
   [[nodiscard]] bool receive(TimePoint now) noexcept;
   [[nodiscard]] bool accept(const DeviceCommand& command, TimePoint now) noexcept;
   void answer(TimePoint now) noexcept;
-  void exchange_further() noexcept;
   [[nodiscard]] Result<> apply_fault(const Words& words);
   void unplug() noexcept;
   void heal() noexcept;
@@ -187,6 +191,7 @@ class SimulatedDevice {
   SimulatedInhibit inhibit_;
   SimulatedSwitch switch_;
   Obedience obedience_;
+  FurtherEnds further_;
   WorldClock clock_;
   DeviceAnswers answers_;
   bool world_made_{false};

@@ -344,8 +344,8 @@ DEFECTS = [
            "  if (!exchanged && behind < planned_step()) return 0;",
            "robot_device_test", "OwnClock.MakesTimeThroughPeriodCyclesWhateverTheRatioOfPeriods"),
     # A step that the watchdog of one device forgave had the world stand for all that are in it.
-    Defect("a world of two stands", DEVICE, "&& active() && has_world_alone() ? 0 : due;",
-           "&& active() && (PLANTED || has_world_alone()) ? 0 : due;",
+    Defect("a world of two stands", DEVICE, "&& acts() && has_world_alone();",
+           "&& acts() && (PLANTED || has_world_alone());",
            "simulated_device_test", "StarvedDevice.WhoseWorldIsAnothersToo*"),
     # A device spoke its own byte order, whatever its endnode's was.
     Defect("byte order of a device", DEVICE, "OctetWriter writer{payload, settings_.byte_order};",

@@ -82,12 +82,15 @@ class Rokviss(unittest.TestCase):
         for name, watts in (("MANIPULATOR", 60), ("JOYSTICK", 25)):
             self.assertEqual({key: rows[name, "power_W"][key] for key in ("declared", "now", "high")}, dict.fromkeys(("declared", "now", "high"), watts))
             self.assertEqual((rows[name, "processes"]["declared"], rows[name, "processes"]["now"]), (1, 1))
+            self.assertEqual((rows[name, "cycles_percent"]["declared"], rows[name, "cycles_percent"]["now"]), (20, 20), "100 of 500 us")
             memory = rows[name, "memory_kB"]
             self.assertGreater(memory["now"], 1000, told.stderr)
             self.assertGreaterEqual(memory["high"], memory["now"])
             self.assertLessEqual(rows[name, "descriptors"]["now"], rows[name, "descriptors"]["declared"])
         craft = rows["SUPERVISOR", "power_W"]
         self.assertEqual((craft["declared"], craft["now"]), (120, 105), "with the ground link and the supervisor itself")
+        cycles = rows["SUPERVISOR", "cycles_percent"]
+        self.assertEqual((cycles["declared"], cycles["now"]), (100, 45), "of both, and 5 of the ground link")
         self.assertIn("declared       now most used", rokviss.hirosco("resources", rokviss.mission).stdout.splitlines()[0])
 
     def what_it_took_stands_beside_what_it_declares(self, rokviss):

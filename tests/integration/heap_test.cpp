@@ -24,6 +24,7 @@ constexpr std::uint16_t supervisor_apid = 1;  ///< itself no subsystem that acts
 struct HeapFlight {
   explicit HeapFlight(Plan plan) : flight{std::move(plan)} {
     flight.story().on_telemetry = [this](const pus::TelemetryView& report) {
+      if (report.service() == 3 && report.subtype() == 10) ++definitions[report.apid()];
       if (report.service() != 5 || report.apid() == supervisor_apid) return;
       OctetReader reader{report.source_data()};
       const auto id = reader.get<std::uint16_t>();
@@ -34,6 +35,7 @@ struct HeapFlight {
   Flight flight;
   std::map<std::pair<std::uint16_t, std::uint16_t>, std::uint32_t>
       told;  ///< newest count of allocations, by subsystem and event
+  std::map<std::uint16_t, int> definitions;  ///< TM[3,10] of each
 };
 
 /// Something that the argument may be.
@@ -76,12 +78,34 @@ void play_palette(Flight& flight, const descriptor::SubsystemDescriptor& subsyst
                                                data);
     static_cast<void>(flight.send(*packet));
   };
-  std::array<std::byte, 16> room;
+  std::array<std::byte, 16> room, further, of_one;
   for (const std::uint16_t id : structures)
     for (const std::uint8_t subtype : std::array<std::uint8_t, 3>{6, 5, 27}) {
       OctetWriter writer{room};
       writer.put(std::uint8_t{1}).put(id);
       send(3, subtype, writer.written());
+    }
+  // One of a value of its own comes, grows and goes.
+  constexpr std::uint16_t made = 59'000;
+  const auto parameter = [&](std::size_t index) {
+    return descriptor::identity_of(subsystem, {{}, static_cast<std::uint16_t>(index), std::nullopt, {}}).wire();
+  };
+  if (subsystem.parameters.size() > 1)
+    for (int round = 0; round < 3; ++round) {
+      flight.craft().run(500ms);  // what waits on the way is bounded
+      OctetWriter first{room}, more{further}, list{of_one};
+      first.put(made).put(std::uint32_t{2}).put(std::uint8_t{1}).put(parameter(0)).put(std::uint8_t{0});
+      send(3, 1, first.written());
+      more.put(made)
+          .put(std::uint8_t{0})
+          .put(std::uint8_t{1})
+          .put(std::uint16_t{2})
+          .put(std::uint8_t{1})
+          .put(parameter(1));
+      send(3, 29, more.written());
+      list.put(std::uint8_t{1}).put(made);
+      for (const std::uint8_t subtype : std::array<std::uint8_t, 7>{9, 33, 5, 27, 6, 3, 9})
+        send(3, subtype, list.written());
     }
   for (const std::uint16_t id : events)
     for (const std::uint8_t subtype : std::array<std::uint8_t, 2>{6, 5}) {
@@ -91,9 +115,8 @@ void play_palette(Flight& flight, const descriptor::SubsystemDescriptor& subsyst
     }
   send(5, 7, {});
   for (std::size_t i = 0; i < subsystem.parameters.size(); ++i) {
-    const auto id = descriptor::identity_of(subsystem, {{}, static_cast<std::uint16_t>(i), std::nullopt, {}});
     OctetWriter writer{room};
-    writer.put(std::uint8_t{1}).put(id.wire());
+    writer.put(std::uint8_t{1}).put(parameter(i));
     send(20, 1, writer.written());
   }
   send(199, 1, {});
@@ -119,6 +142,7 @@ TEST(Heap, OfRokvissIsLeftAloneByCyclesAndServiceLoopsForAllThatTheyCanBeTold) {
     play_palette(heard.flight, member.subsystem);
     heard.flight.craft().run(2s);
     EXPECT_EQ(words_of(heard), "") << member.subsystem.name;
+    EXPECT_EQ(heard.definitions[member.subsystem.id], 3) << member.subsystem.name << " made what it was told to";
   }
 }
 

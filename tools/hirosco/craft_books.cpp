@@ -26,6 +26,24 @@ using descriptor::State;
          state <= static_cast<std::uint64_t>(State::PostOperational);
 }
 
+[[nodiscard]] bool runs_cycles(std::uint64_t state) noexcept {
+  return state >= static_cast<std::uint64_t>(State::PreOperational) &&
+         state <= static_cast<std::uint64_t>(State::ErrorOperational);
+}
+
+[[nodiscard]] std::uint64_t whole_percent(double share) noexcept {
+  constexpr double noise = 1e-9;
+  return static_cast<std::uint64_t>(std::max(0.0, std::ceil(100 * share - noise)));
+}
+
+/// The greatest of what its configurations promise.
+[[nodiscard]] double greatest_share(const descriptor::SubsystemDescriptor& subsystem) noexcept {
+  double most = descriptor::cycle_share(subsystem, nullptr);
+  for (const auto& configuration : subsystem.configurations)
+    most = std::max(most, descriptor::cycle_share(subsystem, &configuration));
+  return most;
+}
+
 [[nodiscard]] const pus::HousekeepingValue* find_value(std::span<const pus::HousekeepingValue> values,
                                                        std::string_view structure, std::string_view member) {
   const std::string name = std::string{structure} + "." + std::string{member};
@@ -41,12 +59,15 @@ void CraftBooks::take_row(std::uint16_t apid, std::uint64_t state, std::uint8_t 
   const bool runs = state <= static_cast<std::uint64_t>(State::SoftwareDeinit);
   const auto* in_force = described->find_configuration(configuration);
   const double power_w = runs && draws(state) && in_force != nullptr ? in_force->power_w : 0;
+  const double share = runs ? descriptor::cycle_share(*described, runs_cycles(state) ? in_force : nullptr) : 0;
   Member& member = members_[apid];
   member.has_run |= runs;
   member.most_power_w = std::max(member.most_power_w, power_w);
+  member.most_share = std::max(member.most_share, share);
   if (!newest) return;
   member.runs = runs;
   member.power_w = power_w;
+  member.share = share;
 }
 
 void CraftBooks::hear(std::span<const pus::HousekeepingValue> values, OnboardTime at) {
@@ -61,6 +82,15 @@ void CraftBooks::hear(std::span<const pus::HousekeepingValue> values, OnboardTim
       if (const auto apid = static_cast<std::uint16_t>(apids->values[i]); apid != 0)
         take_row(apid, static_cast<std::uint64_t>(states->values[i]),
                  static_cast<std::uint8_t>(configurations->values[i]), newest);
+    std::uint64_t running = 0;
+    double share = 0;
+    for (const auto& [apid, member] : members_) {
+      if (apid == mission_.supervisor.id) continue;
+      running += member.runs ? 1 : 0;
+      share += member.share;
+    }
+    most_running_ = std::max(most_running_, running);
+    most_share_ = std::max(most_share_, share);
   }
   const auto* budget = find_value(values, "POWER", "BUDGET");
   const auto* reserved = find_value(values, "POWER", "RESERVED");
@@ -77,12 +107,36 @@ bool CraftBooks::runs(std::uint16_t apid) const {
   return found != members_.end() && found->second.runs;
 }
 
+/// Of all subsystems: what the mission limits of processes, and the processor that their cycles share.
+void CraftBooks::add_of_all(std::vector<ResourceRow>& rows) const {
+  std::uint64_t running = 0;
+  double share = 0, promised = 0;
+  for (const auto& member : mission_.subsystems) promised = std::max(promised, greatest_share(member.subsystem));
+  for (const auto& [apid, member] : members_) {
+    if (apid == mission_.supervisor.id) continue;
+    running += member.runs ? 1 : 0;
+    share += member.share;
+  }
+  if (const auto most = amount_of(mission_.budget, descriptor::Resource::Processes)) {
+    rows.push_back({"processes of all", *most, most_running_});
+    if (!members_.empty()) rows.back().now = running;
+  }
+  if (promised <= 0) return;
+  rows.push_back({"cycles_percent", 100, whole_percent(most_share_)});
+  if (!members_.empty()) rows.back().now = whole_percent(share);
+}
+
 std::vector<ResourceRow> CraftBooks::rows(const descriptor::SubsystemDescriptor& subsystem) const {
   const auto found = members_.find(subsystem.id);
   const Member member = found != members_.end() ? found->second : Member{};
   std::vector<ResourceRow> rows;
   rows.push_back({"processes", 1, member.has_run ? 1U : 0U});
   if (found != members_.end()) rows.back().now = member.runs ? 1 : 0;
+  if (subsystem.id == mission_.supervisor.id) add_of_all(rows);
+  else if (const double most = greatest_share(subsystem); most > 0) {
+    rows.push_back({"cycles_percent", whole_percent(most), whole_percent(member.most_share)});
+    if (found != members_.end()) rows.back().now = whole_percent(member.share);
+  }
   ResourceRow power{.attribute = "power_W"};
   if (subsystem.id == mission_.supervisor.id) {
     if (!reserved_w_) return rows;

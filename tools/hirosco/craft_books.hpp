@@ -15,7 +15,8 @@
 
 namespace hirosco::tools {
 
-/// What the supervisor's housekeeping says of everybody's process and electrical power: as it is, and the most.
+/// What the supervisor's housekeeping says of everybody's process, share of the processor of cycles and electrical power: as it is, and
+/// the most.
 class CraftBooks {
  public:
   /// The mission outlives it.
@@ -24,8 +25,9 @@ class CraftBooks {
   void hear(std::span<const pus::HousekeepingValue> values, OnboardTime at);
   /// False also where nothing was told of it.
   [[nodiscard]] bool runs(std::uint16_t apid) const;
-  /// Whether there is a process, and the power that is promised to it, in whole W, as its state and configuration say; of the supervisor the
-  /// power of the craft. Without power where none is accounted.
+  /// Whether there is a process, its share of the one processor of all cycles that its budgets promise, in whole percent (docs/adr/0007),
+  /// and the power that is promised to it, in whole W, as its state and configuration say; of the supervisor processes, cycles and power of
+  /// the craft. Without what is not accounted.
   [[nodiscard]] std::vector<ResourceRow> rows(const descriptor::SubsystemDescriptor& member) const;
 
  private:
@@ -34,7 +36,10 @@ class CraftBooks {
     bool has_run{false};
     double power_w{0};
     double most_power_w{0};
+    double share{0};  ///< of the processor of cycles
+    double most_share{0};
   };
+  void add_of_all(std::vector<ResourceRow>& rows) const;
   void take_row(std::uint16_t apid, std::uint64_t state, std::uint8_t configuration, bool newest);
 
   const descriptor::Mission& mission_;
@@ -43,6 +48,8 @@ class CraftBooks {
   OnboardTime power_at_{};
   std::optional<double> budget_w_, reserved_w_;
   double most_reserved_w_{0};
+  std::uint64_t most_running_{0};
+  double most_share_{0};  ///< of all at once
 };
 
 }  // namespace hirosco::tools

@@ -84,6 +84,28 @@ TEST_F(CraftBooksTest, AreAsTheyWereToldLastWhateverWasHeardLast) {
   EXPECT_THAT(of(0), ElementsAre("processes 1 1 1", "power_W 60 60 8"));
 }
 
+TEST_F(CraftBooksTest,
+       TellWhatIsPromisedOfTheOneProcessorOfAllCyclesAndHowManyProcessesThereAreOfThoseThatTheMissionHas) {
+  auto& arm = mission.subsystems[0].subsystem;
+  arm.configurations[0].sampling = 1ms;
+  arm.configurations[0].budget = 100us;
+  arm.configurations[1].sampling = 1ms;
+  arm.configurations[1].budget = 253us;
+  mission.subsystems[1].subsystem.service_loops.push_back(
+      {.name = "QUICK", .period = 10ms, .priority = 10, .budget = 1ms});
+  mission.budget[static_cast<std::size_t>(descriptor::Resource::Processes)] = 2;
+  tell(safe, 2, at);
+  EXPECT_THAT(of(0), ElementsAre("processes 1 1 1", "cycles_percent 26 26 26", "power_W 60 60 60"));
+  EXPECT_THAT(of(1), ElementsAre("processes 1 1 1", "cycles_percent 10 10 10")) << "its loop goes in any state";
+  const auto of_all = [&] { return book_lines(books.rows(mission.supervisor)); };
+  EXPECT_THAT(of_all(), ElementsAre("processes 1 1 1", "processes of all 2 2 2", "cycles_percent 100 36 36"));
+  tell(safe, 1, at + 1s);
+  EXPECT_THAT(of(0), ElementsAre("processes 1 1 1", "cycles_percent 26 26 10", "power_W 60 60 8"));
+  tell(not_running, 0, at + 2s);
+  EXPECT_THAT(of(0), ElementsAre("processes 1 1 0", "cycles_percent 26 26 0", "power_W 60 60 0"));
+  EXPECT_THAT(of_all(), ElementsAre("processes 1 1 1", "processes of all 2 2 1", "cycles_percent 100 36 10"));
+}
+
 TEST_F(CraftBooksTest, OfTheSupervisorAreThePowerOfTheCraft) {
   tell(safe, 2, at);
   const auto power = [&](double budget, double reserved, OnboardTime when) {

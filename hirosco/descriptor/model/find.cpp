@@ -175,22 +175,22 @@ const MissionLink* Mission::find_link(std::uint8_t link) const noexcept {
   return find_in(links, link, &MissionLink::id);
 }
 
+double cycle_share(const SubsystemDescriptor& subsystem, const Configuration* in_force) noexcept {
+  double share = 0;
+  if (in_force != nullptr && in_force->shortest().count() > 0)
+    share = static_cast<double>(in_force->load().count()) / static_cast<double>(in_force->shortest().count());
+  for (std::size_t i = 0; i < subsystem.service_loops.size(); ++i)
+    if (const ServiceLoop& loop = subsystem.loop_in_force(i, in_force); loop.priority > 0 && loop.period.count() > 0)
+      share += static_cast<double>(loop.budget.count()) / static_cast<double>(loop.period.count());
+  return share;
+}
 double cycle_share(const Mission& mission, const Mode& mode) noexcept {
   double share = 0;
-  for (const CommissionStep& step : mode.commission) {
-    const auto* member = mission.find_subsystem(step.subsystem);
-    const auto* configuration = member == nullptr ? nullptr : member->subsystem.find_configuration(step.configuration);
-    if (configuration != nullptr && configuration->shortest().count() > 0)
-      share +=
-          static_cast<double>(configuration->load().count()) / static_cast<double>(configuration->shortest().count());
-  }
   for (const MissionSubsystem& member : mission.subsystems) {
     const SubsystemDescriptor& subsystem = member.subsystem;
     const auto step = std::ranges::find(mode.commission, subsystem.name, &CommissionStep::subsystem);
-    const auto* in_force = step == mode.commission.end() ? nullptr : subsystem.find_configuration(step->configuration);
-    for (std::size_t i = 0; i < subsystem.service_loops.size(); ++i)
-      if (const ServiceLoop& loop = subsystem.loop_in_force(i, in_force); loop.priority > 0 && loop.period.count() > 0)
-        share += static_cast<double>(loop.budget.count()) / static_cast<double>(loop.period.count());
+    share += cycle_share(subsystem,
+                         step == mode.commission.end() ? nullptr : subsystem.find_configuration(step->configuration));
   }
   return share;
 }

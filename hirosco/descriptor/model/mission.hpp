@@ -281,7 +281,10 @@ struct Mission {
 /// Of a flight, in place of the mission's own start mode. In words: why not.
 [[nodiscard]] std::optional<std::string> start_in(Mission& mission, std::string_view mode);
 
-/// Share of the one processor of all cycles (docs/adr/0007) that the configurations of a mode declare as their budgets.
+/// Share of the one processor of all cycles (docs/adr/0007) that a subsystem declares: the budget of this configuration, of none null, and
+/// those of its loops of services that have a priority there.
+[[nodiscard]] double cycle_share(const SubsystemDescriptor& subsystem, const Configuration* in_force) noexcept;
+/// The same of the configurations of a mode.
 [[nodiscard]] double cycle_share(const Mission& mission, const Mode& mode) noexcept;
 /// The greatest of all modes.
 [[nodiscard]] double cycle_share(const Mission& mission) noexcept;

@@ -34,14 +34,19 @@ enum class Resource : std::uint8_t {
   LoopRequests = 15,  ///< of the loop of services that is fullest, like the next
   LoopReports = 16,
   Channel = 17,  ///< what waits in the control channel towards the supervisor, kB; its own likewise
+  Processes = 18,  ///< of the system; each subsystem is one (docs/adr/0220)
 };
-inline constexpr std::size_t counted_resources = 18;  ///< those among them of which there is no amount
+inline constexpr std::size_t counted_resources = 19;  ///< those among them of which there is no amount
 inline constexpr std::size_t queues_of_subsystem = 7;  ///< from CycleCommands on
 
 /// By Resource; empty = not declared, so not limited.
 using Amounts = std::array<std::optional<std::uint32_t>, counted_resources>;
 [[nodiscard]] constexpr std::optional<std::uint32_t> amount_of(const Amounts& amounts, Resource resource) noexcept {
   return amounts[static_cast<std::size_t>(resource)];
+}
+/// What a subsystem is promised of it: of processes itself, whatever its descriptor says, for its sandbox lets it start no other.
+[[nodiscard]] constexpr std::optional<std::uint32_t> promised_of(const Amounts& most, Resource resource) noexcept {
+  return resource == Resource::Processes ? 1U : amount_of(most, resource);
 }
 /// "kB", "%", or nothing.
 [[nodiscard]] constexpr const char* unit_of(Resource resource) noexcept {
@@ -146,6 +151,7 @@ struct EnumTexts<descriptor::Resource> {
                                                                   {CycleHousekeeping, "housekeeping of the cycle"},
                                                                   {LoopRequests, "requests to a service loop"},
                                                                   {LoopReports, "reports of a service loop"},
-                                                                  {Channel, "control channel"}});
+                                                                  {Channel, "control channel"},
+                                                                  {Processes, "processes"}});
 };
 }  // namespace hirosco

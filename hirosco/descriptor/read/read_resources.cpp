@@ -27,6 +27,8 @@ constexpr std::int64_t least_ring_kb = 16;
 constexpr std::int64_t least_channel_kb = 64, most_channel_kb = 416;
 /// What the framework itself starts: service loop and cycle.
 constexpr std::int64_t least_threads = 2;
+/// Of all subsystems, each of which is one.
+constexpr std::int64_t most_processes = 65'535;
 
 void read_pool(const xml::Element& element, std::vector<Pool>& pools, Problems& problems) {
   Attributes attributes{element, problems};
@@ -101,6 +103,8 @@ void read_resources(const xml::Element& element, Mission& mission, Problems& pro
   Attributes attributes{element, problems};
   no_children(element, problems);
   mission.budget = read_amounts(attributes);
+  if (const auto processes = attributes.integer("processes", 1, most_processes))
+    mission.budget[static_cast<std::size_t>(Resource::Processes)] = static_cast<std::uint32_t>(*processes);
 }
 
 /// Whoever says nothing would take from what is promised to the others.
@@ -111,7 +115,7 @@ void check_resources(const xml::Element& element, const Mission& mission, Proble
     if (!budget) continue;
     std::uint64_t sum = 0;
     for (const MissionSubsystem& member : mission.subsystems) {
-      const auto most = amount_of(member.subsystem.resources.most, resource);
+      const auto most = promised_of(member.subsystem.resources.most, resource);
       sum += most.value_or(0);
       if (!most)
         problems.add(element, "E0350",

@@ -45,6 +45,20 @@ TEST(Resources, AMissionThatLimitsOneHasItSaidByEverySubsystem) {
   for (const auto& found : reading.problems) EXPECT_EQ(found.code, "E0350");
 }
 
+TEST(Resources, OfProcessesEachSubsystemIsOneWhateverItSays) {
+  const auto with = [](const std::string& resources) {
+    return read_mission(data / "mission.xml", overlay({{"mission.xml", before_power(resources)}}));
+  };
+  const auto enough = with("<Resources processes=\"3\"/>");
+  ASSERT_TRUE(enough.value) << enough.problems.size();
+  EXPECT_EQ(amount_of(enough.value->budget, Resource::Processes), 3U);
+  EXPECT_EQ(std::ranges::count(enough.warnings, "E0410", &Diagnostic::code), 0);
+  EXPECT_EQ(std::ranges::count(with("<Resources processes=\"2\"/>").warnings, "E0410", &Diagnostic::code), 1);
+  EXPECT_FALSE(with("<Resources processes=\"0\"/>").value);
+  EXPECT_FALSE(read_text(R"(<Subsystem name="ARM" id="10"><Resources processes="1"/></Subsystem>)").value)
+      << "it cannot be another number";
+}
+
 TEST(Isolation, IsDemandedByAMissionThatSaysSo) {
   const auto required = [](const std::string& element) {
     return read_mission(data / "mission.xml", overlay({{"mission.xml", before_power(element)}}))

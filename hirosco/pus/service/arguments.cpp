@@ -3,8 +3,11 @@
 #include "hirosco/pus/service/arguments.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 
+#include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/lower_case.hpp"
 #include "hirosco/utilities/utf8.hpp"
 
@@ -12,41 +15,60 @@ namespace hirosco::pus {
 namespace {
 
 /// Of a number of the type, whether it is permitted or not.
-[[nodiscard]] Result<> append_number(std::vector<std::byte>& data, const descriptor::Field& field,
-                                     const Number& number) {
-  std::array<std::byte, 8> buffer;
-  OctetWriter writer{buffer};
-  if (!write_number(writer, field.type, number))
-    return number.real() != std::trunc(number.real())
-               ? fail(ErrorCode::InvalidArgument, "fraction for an integer argument")
-               : fail(ErrorCode::OutOfRange, "argument exceeds its type");
-  data.insert(data.end(), writer.written().begin(), writer.written().end());
-  return ok();
+[[nodiscard]] Result<> put_number(OctetWriter& writer, const descriptor::Field& field, const Number& number) noexcept {
+  if (write_number(writer, field.type, number)) return ok();
+  return number.real() != std::trunc(number.real())
+             ? fail(ErrorCode::InvalidArgument, "fraction for an integer argument")
+             : fail(ErrorCode::OutOfRange, "argument exceeds its type");
 }
 
-[[nodiscard]] Result<> append_text(std::vector<std::byte>& data, const descriptor::Field& field,
-                                   std::string_view text) {
+[[nodiscard]] Result<> put_text(OctetWriter& writer, const descriptor::Field& field, std::string_view text,
+                                Words words) noexcept {
   if (text.size() > field.text_octets) return fail(ErrorCode::OutOfRange, "text longer than declared");
   if (!is_text(text)) return fail(ErrorCode::InvalidArgument, "text is not UTF-8");
-  const std::size_t begin = data.size();
-  data.resize(begin + sizeof(std::uint16_t) + text.size());
-  OctetWriter{std::span{data}.subspan(begin)}
-      .put(static_cast<std::uint16_t>(text.size()))
-      .put(std::as_bytes(std::span{text}));
+  if (words == Words::Counted) writer.put(static_cast<std::uint16_t>(text.size()));
+  writer.put(std::as_bytes(std::span{text}));
+  if (words == Words::Padded) writer.fill(field.text_octets - text.size(), std::byte{});
   return ok();
 }
 
 /// One value that the type has.
-[[nodiscard]] Result<> append_any(std::vector<std::byte>& data, const descriptor::Field& field, const Value& value) {
-  const auto* text = std::get_if<std::string>(&value);
+[[nodiscard]] Result<> put_any(OctetWriter& writer, const descriptor::Field& field, const ValueView& value,
+                               Words words) noexcept {
+  const auto* text = std::get_if<std::string_view>(&value);
   const bool wants_text = field.type == Type::Text;
-  if (wants_text && text != nullptr) return append_text(data, field, *text);
+  if (wants_text && text != nullptr) return put_text(writer, field, *text, words);
   if (wants_text) return fail(ErrorCode::InvalidArgument, "a number where text is wanted");
   if (text != nullptr) return fail(ErrorCode::InvalidArgument, "text where a number is wanted");
-  return append_number(data, field, std::get<Number>(value));
+  return put_number(writer, field, std::get<Number>(value));
+}
+
+/// What `write` writes, behind what is there.
+template <class Write>
+[[nodiscard]] Result<> append_written(std::vector<std::byte>& data, const Write& write) {
+  std::array<std::byte, max_telecommand_octets> room;
+  OctetWriter writer{room};
+  HIROSCO_TRY(write(writer));
+  HIROSCO_TRY_LET(const Octets written, all_written(writer));
+  data.insert(data.end(), written.begin(), written.end());
+  return ok();
 }
 
 }  // namespace
+
+ValueView view_of(const Value& value) noexcept {
+  if (const auto* words = std::get_if<std::string>(&value)) return std::string_view{*words};
+  return std::get<Number>(value);
+}
+
+std::optional<ValueView> GivenValues::at(std::size_t place) const noexcept {
+  if (place < typed_.size() && typed_[place]) return view_of(*typed_[place]);
+  for (const NativeValue& each : native_) {
+    if (place < each.how_many) return each.view(each.at, place);
+    place -= each.how_many;
+  }
+  return std::nullopt;
+}
 
 std::size_t value_count(ArgumentList declared) noexcept {
   std::size_t count = 0;
@@ -72,39 +94,54 @@ bool permits(const Argument& argument, std::string_view text) noexcept {
   return text.size() <= argument.field.text_octets && is_text(text);
 }
 
-Result<> append_value(std::vector<std::byte>& data, const Argument& argument, const Value& value) {
+Result<> write_value(OctetWriter& writer, const Argument& argument, const ValueView& value, Words words) noexcept {
   const auto* number = std::get_if<Number>(&value);
-  if (number == nullptr || argument.field.type == Type::Text) return append_any(data, argument.field, value);
-  if (!number->is_finite()) return fail(ErrorCode::InvalidArgument, "argument is not a number");
-  if (!permits(argument, *number)) return fail(ErrorCode::OutOfRange, "argument outside its range");
-  return append_any(data, argument.field, value);
+  if (number != nullptr && argument.field.type != Type::Text) {
+    if (!number->is_finite()) return fail(ErrorCode::InvalidArgument, "argument is not a number");
+    if (!permits(argument, *number)) return fail(ErrorCode::OutOfRange, "argument outside its range");
+  }
+  return put_any(writer, argument.field, value, words);
 }
 
-Result<> append_values(std::vector<std::byte>& data, ArgumentList declared, GivenValues values, Ids ids) {
+Result<> write_values(OctetWriter& writer, ArgumentList declared, GivenValues values, Ids ids) noexcept {
   if (values.size() > value_count(declared)) return fail(ErrorCode::InvalidArgument, "too many arguments");
   std::size_t next = 0;
   for (std::size_t id = 1; id <= declared.size(); ++id) {
     const Argument& argument = declared[id - 1];
-    if (ids == Ids::One) data.push_back(static_cast<std::byte>(id));
+    if (ids == Ids::One) writer.put(static_cast<std::uint8_t>(id));
     for (std::size_t i = 0; i < value_count(argument); ++i, ++next) {
-      const std::optional<Value>& value = next < values.size() && values[next] ? values[next] : argument.fallback;
+      std::optional<ValueView> value = values.at(next);
+      if (!value && argument.fallback) value = view_of(*argument.fallback);
       if (!value) return fail(ErrorCode::InvalidArgument, "argument missing", static_cast<std::int64_t>(id));
-      HIROSCO_TRY(append_value(data, argument, *value));
+      HIROSCO_TRY(write_value(writer, argument, *value));
     }
   }
   return ok();
 }
 
-Result<std::vector<std::byte>> encode_report(ArgumentList fields, GivenValues values) {
+Result<> write_report(OctetWriter& writer, ArgumentList fields, GivenValues values) noexcept {
   if (values.size() != value_count(fields)) return fail(ErrorCode::InvalidArgument, "another number of values");
-  std::vector<std::byte> data;
-  auto value = values.begin();
+  std::size_t next = 0;
   for (const Argument& field : fields)
-    for (std::size_t i = 0; i < value_count(field); ++i, ++value) {
-      if (!*value) return fail(ErrorCode::InvalidArgument, "a value missing");
-      HIROSCO_TRY(append_any(data, field.field, **value));
+    for (std::size_t i = 0; i < value_count(field); ++i) {
+      const auto value = values.at(next++);
+      if (!value) return fail(ErrorCode::InvalidArgument, "a value missing");
+      HIROSCO_TRY(put_any(writer, field.field, *value, Words::Counted));
     }
-  return data;
+  return ok();
+}
+
+Result<Octets> all_written(const OctetWriter& writer) noexcept {
+  if (!writer.good()) return fail(ErrorCode::OutOfRange, "more values than a packet holds");
+  return writer.written();
+}
+
+Result<> append_value(std::vector<std::byte>& data, const Argument& argument, const Value& value) {
+  return append_written(data, [&](OctetWriter& writer) { return write_value(writer, argument, view_of(value)); });
+}
+
+Result<> append_values(std::vector<std::byte>& data, ArgumentList declared, GivenValues values, Ids ids) {
+  return append_written(data, [&](OctetWriter& writer) { return write_values(writer, declared, values, ids); });
 }
 
 bool take_permitted(OctetReader& reader, const Argument& argument) noexcept {

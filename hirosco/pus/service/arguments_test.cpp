@@ -171,5 +171,41 @@ TEST_F(TypedArguments, OfAnyOctetsAreRefusedOrWhatTheDescriptorPermits) {
   EXPECT_LT(good, static_cast<std::size_t>(tries / 20 * 19));
 }
 
+TEST(GivenValues, AreTheSameWhetherSomebodyTypedThemOrACallInCppHasThem) {
+  const std::vector<std::optional<Value>> typed{Value{Number{3}}, std::nullopt, Value{std::string{"words"}}};
+  const GivenValues typed_values{typed};
+  ASSERT_EQ(typed_values.size(), 3U);
+  EXPECT_EQ(typed_values.at(0), ValueView{Number{3}});
+  EXPECT_EQ(typed_values.at(1), std::nullopt) << "the declared value is sent";
+  EXPECT_EQ(typed_values.at(2), ValueView{std::string_view{"words"}});
+  EXPECT_EQ(typed_values.at(3), std::nullopt);
+  const std::array<double, 2> numbers{0.5, 1.5};
+  const std::string_view words{"words"};
+  const std::array native{NativeValue{numbers.data(), numbers.size(),
+                                      [](const void* at, std::size_t element) noexcept {
+                                        return ValueView{Number{static_cast<const double*>(at)[element]}};
+                                      }},
+                          NativeValue{&words, 1, [](const void* at, std::size_t) noexcept {
+                                        return ValueView{*static_cast<const std::string_view*>(at)};
+                                      }}};
+  const GivenValues native_values{native};
+  ASSERT_EQ(native_values.size(), 3U);
+  EXPECT_EQ(native_values.at(1), ValueView{Number{1.5}});
+  EXPECT_EQ(native_values.at(2), ValueView{words});
+  EXPECT_EQ(native_values.at(3), std::nullopt);
+  EXPECT_EQ(GivenValues{}.size(), 0U);
+}
+
+TEST(WrittenValues, OfWhichThereIsNoRoomAreNone) {
+  std::array<std::byte, 3> room;
+  OctetWriter writer{room};
+  Argument number;
+  number.field.type = Type::Uint16;
+  const std::vector<std::optional<Value>> two{Value{Number{1}}, Value{Number{2}}};
+  number.field.count = 2;
+  ASSERT_TRUE(write_values(writer, {&number, 1}, two, Ids::None));
+  EXPECT_EQ(all_written(writer).error().code, ErrorCode::OutOfRange);
+}
+
 }  // namespace
 }  // namespace hirosco::pus

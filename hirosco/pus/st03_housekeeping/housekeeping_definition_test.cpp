@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <initializer_list>
+#include <sstream>
+#include <string>
 #include <vector>
 
 /// Octets as ECSS-E-ST-70-41C 8.3.2 lays them out; what the service makes of them is in housekeeping_structures_test.cpp.
@@ -17,16 +20,24 @@ std::vector<std::byte> these_octets(std::initializer_list<int> numbers) {
   return made;
 }
 
+/// Its lists in order, ids in hexadecimal, the repetitions of a set in front: "1020304; 2x 5060708; ".
+std::string lists_of(const HousekeepingDefinition& definition) {
+  std::ostringstream text;
+  definition.each_list([&](std::optional<std::uint16_t> repetitions, Octets ids) {
+    if (repetitions) text << *repetitions << "x ";
+    for (OctetReader reader{ids}; reader.remaining() != 0;) text << std::hex << reader.get<std::uint32_t>();
+    text << "; ";
+  });
+  return text.str();
+}
+
 TEST(HousekeepingDefinition, OfANewStructureHasItsInterval) {
   const auto data = these_octets({0, 2, 0, 0, 0, 4, 1, 1, 2, 3, 4, 1, 0, 2, 1, 5, 6, 7, 8});
   const auto read = read_definition(data, DefinitionOf::NewStructure);
   ASSERT_TRUE(read);
   EXPECT_EQ(read->id, 2);
   EXPECT_EQ(read->interval, 4U);
-  EXPECT_EQ(read->once, std::vector<std::uint32_t>{0x01020304});
-  ASSERT_EQ(read->sets.size(), 1U);
-  EXPECT_EQ(read->sets[0].repetitions, 2);
-  EXPECT_EQ(read->sets[0].parameters, std::vector<std::uint32_t>{0x05060708});
+  EXPECT_EQ(lists_of(*read), "1020304; 2x 5060708; ");
 }
 
 TEST(HousekeepingDefinition, OfWhatIsAppendedHasNone) {
@@ -34,7 +45,7 @@ TEST(HousekeepingDefinition, OfWhatIsAppendedHasNone) {
   const auto read = read_definition(data, DefinitionOf::AppendedParameters);
   ASSERT_TRUE(read);
   EXPECT_EQ(read->interval, 0U);
-  EXPECT_EQ(read->once, std::vector<std::uint32_t>{0x01020304});
+  EXPECT_EQ(lists_of(*read), "1020304; ");
 }
 
 TEST(HousekeepingDefinition, ThatIsCutOrHasOctetsBehindItIsRefused) {
@@ -60,12 +71,15 @@ TEST(HousekeepingDefinition, OfNoParameterIsRefusedWithThePlaceOfTheEmptyList) {
 }
 
 TEST(HousekeepingDefinition, IsReportedAsItIsInForce) {
-  HousekeepingLayout layout{2, 4, {}, {}};
-  layout.once = {{.wire = 0x01020304}};
-  layout.sets = {{2, {{.wire = 0x05060708}}}};
-  EXPECT_EQ(write_definition(layout, true, 8),
+  const std::array table{SampledValue{.wire = 0x01020304}, SampledValue{.wire = 0x05060708}};
+  HousekeepingLayout layout;
+  layout.begin(table, 2, 4);
+  ASSERT_TRUE(layout.add_once(0) && layout.begin_set(2) && layout.add_to_set(1));
+  std::array<std::byte, max_housekeeping_octets> room{};
+  const Octets written = write_definition(room, layout, true, 8);
+  EXPECT_EQ(std::vector(written.begin(), written.end()),
             these_octets({0, 2, 1, 0, 0, 0, 8, 1, 1, 2, 3, 4, 1, 0, 2, 1, 5, 6, 7, 8}));
-  EXPECT_EQ(definition_octets(layout), write_definition(layout, true, 8).size());
+  EXPECT_EQ(definition_octets(layout), written.size());
 }
 
 }  // namespace

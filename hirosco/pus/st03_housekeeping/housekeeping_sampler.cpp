@@ -5,31 +5,6 @@
 #include "hirosco/pus/st03_housekeeping/housekeeping_service.hpp"
 
 namespace hirosco::pus {
-namespace {
-
-constexpr std::size_t structure_id_octets = 2;
-
-[[nodiscard]] std::size_t octets_of_all(std::span<const SampledValue> values) noexcept {
-  std::size_t sum = 0;
-  for (const auto& value : values) sum += value.octets;
-  return sum;
-}
-
-}  // namespace
-
-std::size_t HousekeepingLayout::Set::group_octets() const noexcept { return octets_of_all(values); }
-
-std::size_t HousekeepingLayout::report_octets() const noexcept {
-  std::size_t sum = structure_id_octets + octets_of_all(once);
-  for (const auto& set : sets) sum += set.repetitions * set.group_octets();
-  return sum;
-}
-
-bool HousekeepingLayout::allows(std::uint32_t cycles) const noexcept {
-  return cycles != 0 && std::ranges::all_of(sets, [cycles](const Set& set) {
-           return set.repetitions != 0 && cycles % set.repetitions == 0;
-         });
-}
 
 HousekeepingSampler::HousekeepingSampler() {
   for (auto& slot : slots_) {
@@ -49,8 +24,8 @@ bool HousekeepingSampler::send(Command::Kind kind, std::size_t slot, std::uint32
   return commands_.try_push({kind, static_cast<std::uint8_t>(slot), interval});
 }
 
-void HousekeepingSampler::install(std::size_t slot, HousekeepingLayout layout) {
-  slots_[slot].layout = std::move(layout);
+void HousekeepingSampler::install(std::size_t slot, const HousekeepingLayout& layout) noexcept {
+  slots_[slot].layout = layout;
   slots_[slot].free.store(false, std::memory_order_relaxed);
   send(Command::Kind::Install, slot, slots_[slot].layout.interval);
 }
@@ -100,7 +75,7 @@ void HousekeepingSampler::tick(SampleSource& source, SampleSink& sink) noexcept 
     if (slot.periodic.active && advance(slot, slot.periodic, source, sink)) slot.periodic.start(slot.interval);
     if (!slot.one_shot.active && slot.one_shots != 0) {
       --slot.one_shots;
-      slot.one_shot.start(slot.layout.sets.empty() ? 1 : slot.interval);
+      slot.one_shot.start(slot.layout.sets().empty() ? 1 : slot.interval);
     }
     if (slot.one_shot.active && advance(slot, slot.one_shot, source, sink)) slot.one_shot.active = false;
   }
@@ -113,27 +88,28 @@ bool HousekeepingSampler::advance(Slot& slot, Collection& collection, SampleSour
   if (collection.phase < collection.interval) return false;
   const MutableOctets buffer{collection.buffer.get(), max_housekeeping_octets};
   OctetWriter{buffer}.put(slot.layout.id);
-  sample_values(slot.layout.once, buffer.subspan(structure_id_octets), source);
+  sample_values(slot.layout, slot.layout.once(), buffer.subspan(HousekeepingLayout::structure_id_octets), source);
   deliver(slot, collection, sink);
   return true;
 }
 
 void HousekeepingSampler::sample_sets(Slot& slot, Collection& collection, SampleSource& source) noexcept {
-  std::size_t set_at = structure_id_octets + octets_of_all(slot.layout.once);
-  for (const auto& set : slot.layout.sets) {
-    const std::size_t group_octets = set.group_octets();
+  std::size_t set_at = HousekeepingLayout::structure_id_octets + slot.layout.once_octets();
+  for (const auto& set : slot.layout.sets()) {
     const std::uint32_t spacing = collection.interval / set.repetitions;
     if (collection.phase % spacing == 0) {
-      const std::size_t at = set_at + (collection.phase / spacing - 1) * group_octets;
-      sample_values(set.values, MutableOctets{collection.buffer.get(), max_housekeeping_octets}.subspan(at), source);
+      const std::size_t at = set_at + (collection.phase / spacing - 1) * std::size_t{set.octets};
+      sample_values(slot.layout, slot.layout.values_of(set),
+                    MutableOctets{collection.buffer.get(), max_housekeeping_octets}.subspan(at), source);
     }
-    set_at += set.repetitions * group_octets;
+    set_at += set.repetitions * std::size_t{set.octets};
   }
 }
 
-void HousekeepingSampler::sample_values(std::span<const SampledValue> values, MutableOctets to,
-                                        SampleSource& source) noexcept {
-  for (const auto& value : values) {
+void HousekeepingSampler::sample_values(const HousekeepingLayout& layout, std::span<const std::uint32_t> places,
+                                        MutableOctets to, SampleSource& source) noexcept {
+  for (const std::uint32_t at : places) {
+    const SampledValue& value = layout.value(at);
     const MutableOctets place = to.first(value.octets);
     if (source.sample(value.parameter, value.member, place) != value.octets) {
       std::ranges::fill(place, std::byte{});

@@ -25,11 +25,11 @@ constexpr std::size_t id_and_interval_octets = 6;
   return FailureNotice{code}.with(static_cast<std::uint8_t>(index));
 }
 
-[[nodiscard]] bool contains(const HousekeepingLayout& layout, std::uint32_t wire) noexcept {
-  const auto has = [wire](const std::vector<SampledValue>& values) {
-    return std::ranges::find(values, wire, &SampledValue::wire) != values.end();
-  };
-  return has(layout.once) || std::ranges::any_of(layout.sets, [&has](const auto& set) { return has(set.values); });
+template <class Wanted>
+[[nodiscard]] std::optional<std::size_t> place_of(std::span<const SampledValue> values, Wanted&& wanted) noexcept {
+  const auto found = std::ranges::find_if(values, wanted);
+  if (found == values.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - values.begin());
 }
 
 }  // namespace
@@ -37,6 +37,7 @@ constexpr std::size_t id_and_interval_octets = 6;
 HousekeepingService::HousekeepingService(const descriptor::SubsystemDescriptor& subsystem, HousekeepingSampler& sampler,
                                          Verification& verification, TelemetrySink& sink)
     : subsystem_{subsystem}, sampler_{sampler}, verification_{verification}, sink_{sink} {
+  structures_.reserve(max_housekeeping_structures);
   const auto add = [this](Type layout, std::uint8_t id, std::size_t parameter, int member, std::size_t octets) {
     values_.push_back({ParameterId{subsystem_.id, layout, id}.wire(), static_cast<std::uint16_t>(parameter),
                        static_cast<std::int16_t>(member),
@@ -56,20 +57,18 @@ HousekeepingService::Structure* HousekeepingService::find(std::uint16_t id) noex
   const auto found = std::ranges::find(structures_, id, &Structure::id);
   return found == structures_.end() ? nullptr : &*found;
 }
-const SampledValue* HousekeepingService::find_value(std::uint32_t wire) const noexcept {
-  const auto found = std::ranges::find(values_, wire, &SampledValue::wire);
-  return found == values_.end() ? nullptr : &*found;
+std::optional<std::size_t> HousekeepingService::find_value(std::uint32_t wire) const noexcept {
+  return place_of(values_, [wire](const SampledValue& value) { return value.wire == wire; });
 }
 const HousekeepingLayout& HousekeepingService::layout_of(const Structure& structure) const noexcept {
   return sampler_.slots_[structure.slot].layout;
 }
 
-SampledValue HousekeepingService::resolve(const descriptor::ParameterRef& reference) const {
+std::optional<std::size_t> HousekeepingService::resolve(const descriptor::ParameterRef& reference) const noexcept {
   const int member = reference.member ? static_cast<int>(*reference.member) : -1;
-  const auto found = std::ranges::find_if(values_, [&reference, member](const SampledValue& value) {
+  return place_of(values_, [&reference, member](const SampledValue& value) {
     return value.parameter == reference.parameter && value.member == member;
   });
-  return found == values_.end() ? SampledValue{} : *found;
 }
 
 Result<> HousekeepingService::load(std::span<const HousekeepingStructure> structures) {
@@ -78,23 +77,26 @@ Result<> HousekeepingService::load(std::span<const HousekeepingStructure> struct
 }
 
 Result<> HousekeepingService::load_one(const HousekeepingStructure& declared) {
-  HousekeepingLayout layout{declared.id, declared.interval_cycles, {}, {}};
-  for (const auto& reference : declared.sampled_once) layout.once.push_back(resolve(reference));
+  draft_.begin(values_, declared.id, declared.interval_cycles);
+  const auto has = [this](const descriptor::ParameterRef& each) { return resolve(each).has_value(); };
+  bool known = std::ranges::all_of(declared.sampled_once, has), fits = true;
+  for (const auto& set : declared.sampled_repeatedly) known = known && std::ranges::all_of(set.parameters, has);
+  if (!known) return fail(ErrorCode::NotFound, "a value of a housekeeping structure", declared.id);
+  for (const auto& each : declared.sampled_once) fits = draft_.add_once(*resolve(each)) && fits;
   for (const auto& set : declared.sampled_repeatedly) {
-    layout.sets.push_back({set.repetitions, {}});
-    for (const auto& reference : set.parameters) layout.sets.back().values.push_back(resolve(reference));
+    fits = draft_.begin_set(set.repetitions) && fits;
+    for (const auto& each : set.parameters) fits = draft_.add_to_set(*resolve(each)) && fits;
   }
-  if (!layout.allows(layout.interval)) return fail(ErrorCode::OutOfRange, "housekeeping interval", declared.id);
+  if (!draft_.allows(draft_.interval)) return fail(ErrorCode::OutOfRange, "housekeeping interval", declared.id);
   if (sampler_.free_commands() < 3) return fail(ErrorCode::Unavailable, "housekeeping commands", declared.id);
-  Structure* existing = find(declared.id);
-  if (check_capacity(layout)) return fail(ErrorCode::ResourceExhausted, "housekeeping structures", declared.id);
-  if (existing != nullptr) {
+  if (!fits || check_capacity(draft_)) return fail(ErrorCode::ResourceExhausted, "housekeeping structures", declared.id);
+  if (Structure* existing = find(declared.id); existing != nullptr) {
     sampler_.send(HousekeepingSampler::Command::Kind::Remove, existing->slot);
     structures_.erase(structures_.begin() + (existing - structures_.data()));
   }
   const auto slot = static_cast<std::size_t>(sampler_.find_free_slot());
-  structures_.push_back({declared.id, slot, layout.interval, declared.enabled, true});
-  sampler_.install(slot, std::move(layout));
+  structures_.push_back({declared.id, slot, draft_.interval, declared.enabled, true});
+  sampler_.install(slot, draft_);
   if (declared.enabled) sampler_.send(HousekeepingSampler::Command::Kind::Enable, slot);
   return ok();
 }
@@ -122,35 +124,30 @@ void HousekeepingService::handle(const TelecommandView& telecommand, const Reque
   }
 }
 
-/// Adds what the definition says; a notice names the position of the bad parameter among all of the request.
-HousekeepingService::Notice HousekeepingService::extend(HousekeepingLayout& layout,
-                                                        const HousekeepingDefinition& definition) const {
+/// A notice names the position of the bad parameter among all of the request.
+HousekeepingService::Notice HousekeepingService::extend(const HousekeepingDefinition& definition) noexcept {
   std::size_t index = 0;
-  const auto add = [&](std::vector<SampledValue>& to, std::uint32_t wire) -> Notice {
-    const SampledValue* value = find_value(wire);
-    if (value == nullptr) return instruction_failure(FailureCode::UnknownIdentifier, index, wire);
-    if (contains(layout, wire)) return instruction_failure(FailureCode::IdentifierExists, index, wire);
-    to.push_back(*value);
-    ++index;
-    return std::nullopt;
-  };
-  for (const std::uint32_t wire : definition.once)
-    if (const auto notice = add(layout.once, wire)) return notice;
-  for (const auto& set : definition.sets) {
-    layout.sets.push_back({set.repetitions, {}});
-    for (const std::uint32_t wire : set.parameters)
-      if (const auto notice = add(layout.sets.back().values, wire)) return notice;
-  }
-  if (!layout.allows(layout.interval)) return instruction_failure(FailureCode::ValueNotAcceptable, 0, layout.id);
-  return check_capacity(layout);
+  bool fits = true;
+  Notice refused;
+  definition.each_list([&](std::optional<std::uint16_t> repetitions, Octets ids) {
+    if (repetitions) fits = draft_.begin_set(*repetitions) && fits;
+    for (OctetReader reader{ids}; reader.remaining() != 0 && !refused; ++index) {
+      const auto wire = reader.get<std::uint32_t>();
+      const auto place = find_value(wire);
+      if (!place) refused = instruction_failure(FailureCode::UnknownIdentifier, index, wire);
+      else if (draft_.contains(*place)) refused = instruction_failure(FailureCode::IdentifierExists, index, wire);
+      else fits = (repetitions ? draft_.add_to_set(*place) : draft_.add_once(*place)) && fits;
+    }
+  });
+  if (refused) return refused;
+  if (!draft_.allows(draft_.interval)) return instruction_failure(FailureCode::ValueNotAcceptable, 0, draft_.id);
+  if (!fits) return failure(FailureCode::CapacityExceeded, 0);
+  return check_capacity(draft_);
 }
 
-HousekeepingService::Notice HousekeepingService::check_capacity(const HousekeepingLayout& layout) const {
-  constexpr std::size_t count_limit = 255;
-  const auto counted = [](const auto& list) { return list.size() <= count_limit; };
-  const bool fits = layout.report_octets() <= max_housekeeping_octets &&
-                    definition_octets(layout) <= max_housekeeping_octets && counted(layout.once) &&
-                    counted(layout.sets) && std::ranges::all_of(layout.sets, counted, &HousekeepingLayout::Set::values);
+HousekeepingService::Notice HousekeepingService::check_capacity(const HousekeepingLayout& layout) const noexcept {
+  const bool fits =
+      layout.report_octets() <= max_housekeeping_octets && definition_octets(layout) <= max_housekeeping_octets;
   if (!fits || sampler_.find_free_slot() < 0) return failure(FailureCode::CapacityExceeded, 0);
   if (sampler_.free_commands() < 2) return FailureNotice{FailureCode::Busy};
   return std::nullopt;
@@ -162,12 +159,12 @@ void HousekeepingService::create(Octets data, const Request& request) {
   verification_.accepted(request);
   if (find(definition->id) != nullptr)
     return verification_.start_failed(request, instruction_failure(FailureCode::IdentifierExists, 0, definition->id));
-  HousekeepingLayout layout{definition->id, definition->interval, {}, {}};
-  if (const auto notice = extend(layout, *definition)) return verification_.start_failed(request, *notice);
+  draft_.begin(values_, definition->id, definition->interval);
+  if (const auto notice = extend(*definition)) return verification_.start_failed(request, *notice);
   verification_.started(request);
   const auto slot = static_cast<std::size_t>(sampler_.find_free_slot());
-  structures_.push_back({definition->id, slot, layout.interval, false, false});
-  sampler_.install(slot, std::move(layout));
+  structures_.push_back({definition->id, slot, draft_.interval, false, false});
+  sampler_.install(slot, draft_);
   verification_.completed(request);
 }
 
@@ -181,14 +178,14 @@ void HousekeepingService::append(Octets data, const Request& request) {
   };
   if (structure == nullptr) return refuse(FailureCode::UnknownIdentifier);
   if (structure->enabled) return refuse(FailureCode::WrongStatus);
-  HousekeepingLayout layout = layout_of(*structure);
-  layout.interval = structure->interval;
-  if (const auto notice = extend(layout, *definition)) return verification_.start_failed(request, *notice);
+  draft_ = layout_of(*structure);
+  draft_.interval = structure->interval;
+  if (const auto notice = extend(*definition)) return verification_.start_failed(request, *notice);
   verification_.started(request);
   // The cycle may be reading the old layout: the longer one goes into another slot.
   const auto slot = static_cast<std::size_t>(sampler_.find_free_slot());
   sampler_.send(HousekeepingSampler::Command::Kind::Remove, structure->slot);
-  sampler_.install(slot, std::move(layout));
+  sampler_.install(slot, draft_);
   structure->slot = slot;
   verification_.completed(request);
 }
@@ -277,8 +274,9 @@ void HousekeepingService::report_layouts(Octets data, const Request& request) {
 }
 
 void HousekeepingService::send_layout(const Structure& structure, const Request& request) {
+  std::array<std::byte, max_housekeeping_octets> room;
   sink_.report(service_type, structure_report, request.source,
-               write_definition(layout_of(structure), structure.enabled, structure.interval));
+               write_definition(room, layout_of(structure), structure.enabled, structure.interval));
 }
 
 void HousekeepingService::report_periodic_properties(Octets data, const Request& request) {

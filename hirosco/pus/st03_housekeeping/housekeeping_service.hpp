@@ -12,6 +12,7 @@
 
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/st01_verification/instructions.hpp"
+#include "hirosco/pus/st03_housekeeping/housekeeping_layout.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/spsc_ring.hpp"
 
@@ -20,7 +21,6 @@
 namespace hirosco::pus {
 
 inline constexpr std::size_t max_housekeeping_structures = 32;
-inline constexpr std::size_t max_housekeeping_octets = max_telemetry_octets - telemetry_overhead_octets;
 
 /// Where values come from.  Realtime: called in the cycle.
 struct SampleSource {
@@ -35,31 +35,6 @@ struct SampleSink {
   /// Room for a report; empty when there is none, which loses this report.
   [[nodiscard]] virtual MutableOctets reserve(std::size_t octets) noexcept = 0;
   virtual void commit(std::uint16_t structure_id, std::size_t octets) noexcept = 0;
-};
-
-/// One value of a structure, resolved.
-struct SampledValue {
-  std::uint32_t wire{};              ///< ParameterId::wire() of the parameter or member
-  std::uint16_t parameter{};         ///< index into SubsystemDescriptor::parameters
-  std::int16_t member{-1};           ///< as ParameterRef::member, -1 = whole
-  std::uint16_t octets{};
-};
-
-/// A resolved report structure: the form of its reports.
-struct HousekeepingLayout {
-  struct Set {
-    std::uint16_t repetitions{};     ///< divides the interval
-    std::vector<SampledValue> values;
-    [[nodiscard]] std::size_t group_octets() const noexcept;
-  };
-  std::uint16_t id{};
-  std::uint32_t interval{};          ///< cycles
-  std::vector<SampledValue> once;
-  std::vector<Set> sets;
-  /// Octets of the source data of one report.
-  [[nodiscard]] std::size_t report_octets() const noexcept;
-  /// All repetition numbers are greater than 0 and divide the interval.
-  [[nodiscard]] bool allows(std::uint32_t cycles) const noexcept;
 };
 
 /// The cycle's half. Every `interval` cycles each enabled structure makes a report: a set with n repetitions is sampled
@@ -120,12 +95,13 @@ class HousekeepingSampler {
   [[nodiscard]] std::size_t free_commands() const noexcept { return max_commands - commands_.size(); }
   [[nodiscard]] int find_free_slot() const noexcept;
   bool send(Command::Kind kind, std::size_t slot, std::uint32_t interval = 0) noexcept;
-  void install(std::size_t slot, HousekeepingLayout layout);
+  void install(std::size_t slot, const HousekeepingLayout& layout) noexcept;
 
   void apply(const Command& command) noexcept;
   [[nodiscard]] bool advance(Slot& slot, Collection& collection, SampleSource& source, SampleSink& sink) noexcept;
   void sample_sets(Slot& slot, Collection& collection, SampleSource& source) noexcept;
-  void sample_values(std::span<const SampledValue> values, MutableOctets to, SampleSource& source) noexcept;
+  void sample_values(const HousekeepingLayout& layout, std::span<const std::uint32_t> places, MutableOctets to,
+                     SampleSource& source) noexcept;
   void deliver(const Slot& slot, const Collection& collection, SampleSink& sink) noexcept;
 
   std::array<Slot, max_housekeeping_structures> slots_;
@@ -137,7 +113,7 @@ class HousekeepingSampler {
 struct HousekeepingDefinition;
 
 /// The service loop's half: TC[3,1], 3, 5, 6, 9, 27, 29, 31 and 33. What it accepts takes effect at the beginning of the
-/// next cycle.  Thread: the service loop.
+/// next cycle. What it takes from the heap it takes when it is made.  Thread: the service loop.
 class HousekeepingService final : public Service {
  public:
   static constexpr std::uint8_t service_type = 3;
@@ -156,12 +132,12 @@ class HousekeepingService final : public Service {
     properties_report = 35,
   };
 
-  /// `subsystem` gives the parameters; it and `sampler` outlive the service.
+  /// `subsystem` gives the parameters; it and `sampler` outlive the service, behind whose end `sampler` ticks no more.
   HousekeepingService(const descriptor::SubsystemDescriptor& subsystem, HousekeepingSampler& sampler,
                       Verification& verification, TelemetrySink& sink);
 
   /// Adds predefined structures; one with an id that exists replaces it (a configuration overrides the subsystem).
-  /// OutOfRange: interval and repetitions do not fit; ResourceExhausted: too many structures or too long a report;
+  /// NotFound: a value that the subsystem does not have; OutOfRange: interval and repetitions do not fit; ResourceExhausted: too many structures or too long a report;
   /// Unavailable: the cycle has not yet taken earlier commands. Structures before the failed one stay.
   [[nodiscard]] Result<> load(std::span<const descriptor::HousekeepingStructure> structures);
   /// Removes all structures, before another configuration. Unavailable as above, and nothing is removed.
@@ -182,10 +158,11 @@ class HousekeepingService final : public Service {
   using Notice = std::optional<FailureNotice>;
 
   [[nodiscard]] Structure* find(std::uint16_t id) noexcept;
-  [[nodiscard]] const SampledValue* find_value(std::uint32_t wire) const noexcept;
+  /// Its place among the values.
+  [[nodiscard]] std::optional<std::size_t> find_value(std::uint32_t wire) const noexcept;
   [[nodiscard]] const HousekeepingLayout& layout_of(const Structure& structure) const noexcept;
   [[nodiscard]] Result<> load_one(const descriptor::HousekeepingStructure& declared);
-  [[nodiscard]] SampledValue resolve(const descriptor::ParameterRef& reference) const;
+  [[nodiscard]] std::optional<std::size_t> resolve(const descriptor::ParameterRef& reference) const noexcept;
 
   void create(Octets data, const Request& request);
   void append(Octets data, const Request& request);
@@ -196,8 +173,9 @@ class HousekeepingService final : public Service {
   void report_layouts(Octets data, const Request& request);
   void report_periodic_properties(Octets data, const Request& request);
   void send_layout(const Structure& structure, const Request& request);
-  [[nodiscard]] Notice extend(HousekeepingLayout& layout, const HousekeepingDefinition& definition) const;
-  [[nodiscard]] Notice check_capacity(const HousekeepingLayout& layout) const;
+  /// Adds to the draft what the definition says.
+  [[nodiscard]] Notice extend(const HousekeepingDefinition& definition) noexcept;
+  [[nodiscard]] Notice check_capacity(const HousekeepingLayout& layout) const noexcept;
   /// Unknown identifiers and want of room in the command queue, for lists of structure ids.
   [[nodiscard]] Notice check_known(std::size_t index, std::uint16_t id, std::size_t commands_before) noexcept;
 
@@ -207,6 +185,7 @@ class HousekeepingService final : public Service {
   TelemetrySink& sink_;
   std::vector<SampledValue> values_;  ///< every parameter and member
   std::vector<Structure> structures_;
+  HousekeepingLayout draft_;  ///< of the structure that is being made
 };
 
 }  // namespace hirosco::pus

@@ -216,6 +216,14 @@ TEST_F(Housekeeping, WithAnIntervalThatDoesNotFitIsNotLoaded) {
   EXPECT_EQ(service.load(std::span{&huge, 1}).error().code, ErrorCode::ResourceExhausted);
 }
 
+TEST_F(Housekeeping, OneWithAValueThatNobodyHasIsNotLoadedWithoutIt) {
+  HousekeepingStructure unknown = listing_2();
+  unknown.sampled_once.push_back({"CUR_VALUES.SPEED", 0, std::uint16_t{2}, {}});
+  EXPECT_EQ(service.load(std::span{&unknown, 1}).error().code, ErrorCode::NotFound);
+  unknown.sampled_once.pop_back();
+  EXPECT_TRUE(service.load(std::span{&unknown, 1}));
+}
+
 /// As many structures of as many sets (none: sampled once) of as many values, an octet each.
 struct Many {
   int structures, sets, values;

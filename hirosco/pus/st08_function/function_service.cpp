@@ -156,14 +156,21 @@ std::expected<FunctionCall, CallFailure> decode_call(std::span<const Function> f
   return call;
 }
 
-Result<std::vector<std::byte>> encode_call(const Function& function, GivenValues values) {
+Result<> write_call(OctetWriter& writer, const Function& function, GivenValues values) noexcept {
   if (function.name.empty() || function.name.size() > function_name_octets)
     return fail(ErrorCode::InvalidArgument, "function name");
-  std::vector<std::byte> data(function_name_octets + 1);
-  OctetWriter{data}.put(std::as_bytes(std::span{function.name}));
-  data.back() = static_cast<std::byte>(function.arguments.size());
-  HIROSCO_TRY(append_values(data, function.arguments, values, Ids::One));
-  return data;
+  writer.put(std::as_bytes(std::span{function.name}));
+  writer.fill(function_name_octets - function.name.size(), std::byte{});
+  writer.put(static_cast<std::uint8_t>(function.arguments.size()));
+  return write_values(writer, function.arguments, values, Ids::One);
+}
+
+Result<std::vector<std::byte>> encode_call(const Function& function, GivenValues values) {
+  std::array<std::byte, max_telecommand_octets> room;
+  OctetWriter writer{room};
+  HIROSCO_TRY(write_call(writer, function, values));
+  HIROSCO_TRY_LET(const Octets data, all_written(writer));
+  return std::vector<std::byte>(data.begin(), data.end());
 }
 
 Result<std::vector<std::byte>> encode_call(const Function& function, std::span<const double> values) {

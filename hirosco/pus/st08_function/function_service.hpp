@@ -49,7 +49,10 @@ enum BuiltInFunction : std::uint16_t { set_state_function = 0xFF00, configure_fu
                                                                    std::span<const descriptor::Function> built_in = {});
 
 /// Application data of TC[8,1], for whoever calls a function. InvalidArgument: an argument without value, too many values,
-/// and what append_value() says; OutOfRange: against the declared range, length or type.
+/// and what write_value() says; OutOfRange: against the declared range, length or type.  Realtime: bounded.
+[[nodiscard]] Result<> write_call(OctetWriter& writer, const descriptor::Function& function,
+                                  GivenValues values) noexcept;
+/// The same, of its own; OutOfRange also of what no telecommand holds.
 [[nodiscard]] Result<std::vector<std::byte>> encode_call(const descriptor::Function& function, GivenValues values);
 [[nodiscard]] Result<std::vector<std::byte>> encode_call(const descriptor::Function& function,
                                                          std::span<const double> values);

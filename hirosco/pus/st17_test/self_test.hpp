@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <expected>
-#include <string>
-#include <vector>
 
+#include "hirosco/parameter/text.hpp"
+#include "hirosco/pus/packet/cuc.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
 #include "hirosco/pus/service/service.hpp"
 #include "hirosco/utilities/time.hpp"
@@ -30,11 +31,15 @@ struct SelfTestRecord {
   OnboardTime at{};  ///< when it ended, began while it runs; 0 = it never ran
   FailureCode code{};  ///< of a failed one; 0 = none
   std::int64_t number{0};  ///< the author's, of a failed one
-  std::string reason{};  ///< in words, of a failed one
+  Text<FailureNotice::max_reason_text_octets>
+      reason{};  ///< of a failed one; needs no heap, as it is told in flight (adr 0220)
 };
 
-/// Source data of TM[17,129]: outcome u8, configuration u8, time (CUC 4+3), failure code u16, number i64, length u8 and words.
-[[nodiscard]] std::vector<std::byte> write_self_test(const SelfTestRecord& record);
+inline constexpr std::size_t max_self_test_octets =
+    1 + 1 + cuc_octets + 2 + 8 + 1 + FailureNotice::max_reason_text_octets;
+/// Source data of TM[17,129], in `room` of max_self_test_octets: outcome u8, configuration u8, time (CUC 4+3), failure code u16,
+/// number i64, length u8 and words.
+[[nodiscard]] Octets write_self_test(MutableOctets room, const SelfTestRecord& record) noexcept;
 
 /// Whoever runs it.  Thread: the service loop.
 class SelfTest {

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/pus/st17_test/test_service.hpp"
 
-#include <algorithm>
 #include <array>
+#include <span>
+#include <string_view>
 
 #include "hirosco/pus/packet/cuc.hpp"
 #include "hirosco/pus/st01_verification/instructions.hpp"
@@ -49,26 +50,13 @@ const ServiceKind TestService::service_kind{.type = service_type,
                                                                                    home.telemetry(), home.self_test());
                                             }};
 
-namespace {
-
-constexpr std::size_t fixed_octets = 1 + 1 + cuc_octets + 2 + 8 + 1;
-constexpr std::size_t most_octets = fixed_octets + FailureNotice::max_reason_text_octets;
-
-[[nodiscard]] Octets put_self_test(const SelfTestRecord& record, std::span<std::byte, most_octets> room) noexcept {
-  const std::size_t words = std::min(record.reason.size(), FailureNotice::max_reason_text_octets);
+Octets write_self_test(MutableOctets room, const SelfTestRecord& record) noexcept {
+  const std::string_view words = record.reason.view();
   OctetWriter writer{room};
   writer.put(static_cast<std::uint8_t>(record.outcome)).put(record.configuration).put(Octets{to_cuc(record.at)});
-  writer.put(static_cast<std::uint16_t>(record.code)).put(record.number).put(static_cast<std::uint8_t>(words));
-  writer.put(std::as_bytes(std::span{record.reason}).first(words));
+  writer.put(static_cast<std::uint16_t>(record.code)).put(record.number).put(static_cast<std::uint8_t>(words.size()));
+  writer.put(std::as_bytes(std::span{words}));
   return writer.written();
-}
-
-}  // namespace
-
-std::vector<std::byte> write_self_test(const SelfTestRecord& record) {
-  std::array<std::byte, most_octets> room;
-  const Octets data = put_self_test(record, room);
-  return {data.begin(), data.end()};
 }
 
 void TestService::handle(const TelecommandView& telecommand, const Request& request) {
@@ -85,8 +73,8 @@ void TestService::handle(const TelecommandView& telecommand, const Request& requ
   verification_.started(request);
   if (subtype == are_you_alive) sink_.report(service_type, alive_report, request.source, {});
   else {
-    std::array<std::byte, most_octets> room;
-    sink_.report(service_type, self_test_report, request.source, put_self_test(self_test_.newest_self_test(), room));
+    std::array<std::byte, max_self_test_octets> room;
+    sink_.report(service_type, self_test_report, request.source, write_self_test(room, self_test_.newest_self_test()));
   }
   verification_.completed(request);
 }

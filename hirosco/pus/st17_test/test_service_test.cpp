@@ -103,8 +103,10 @@ TEST_F(SelfTestRequest, OfItsOutcomeIsAnsweredWithWhatIsKnown) {
 }
 
 TEST(SelfTestReport, CutsWordsThatAreLongerThanAReasonMayBe) {
-  const SelfTestRecord record{.outcome = SelfTestOutcome::Failed, .reason = std::string(300, 'a')};
-  const auto data = write_self_test(record);
+  SelfTestRecord record{.outcome = SelfTestOutcome::Failed};
+  record.reason = std::string(300, 'a');
+  std::array<std::byte, max_self_test_octets> room;
+  const Octets data = write_self_test(room, record);
   EXPECT_EQ(data.size(), 1 + 1 + cuc_octets + 2 + 8 + 1 + FailureNotice::max_reason_text_octets);
   EXPECT_EQ(data[data.size() - FailureNotice::max_reason_text_octets - 1],
             std::byte{FailureNotice::max_reason_text_octets});

@@ -99,19 +99,20 @@ TEST(PacketDescriber, ShowsSwitchesWordsAndNamesOfValuesOfParameters) {
 }
 
 TEST(PacketDescriber, NamesTheOutcomeOfASelfTestWithItsTimeAndReason) {
-  const auto data = write_self_test({.outcome = SelfTestOutcome::Failed,
-                                     .configuration = 2,
-                                     .at = OnboardTime{std::chrono::milliseconds{1'000'500}},
-                                     .code = FailureCode::ExecutionError,
-                                     .number = 2,
-                                     .reason = "wrong sign"});
+  std::array<std::byte, max_self_test_octets> room;
+  const Octets data = write_self_test(room, {.outcome = SelfTestOutcome::Failed,
+                                             .configuration = 2,
+                                             .at = OnboardTime{std::chrono::milliseconds{1'000'500}},
+                                             .code = FailureCode::ExecutionError,
+                                             .number = 2,
+                                             .reason = "wrong sign"});
   EXPECT_EQ(described_telemetry(17, 129, data),
             "TM[17,129] ARM SELF_TEST_OUTCOME OUTCOME=failed CONFIGURATION=2 TIME=1000.500 s CODE=514 NUMBER=2 "
             "REASON='wrong sign'");
-  std::vector<std::byte> unknown = data;
+  std::vector<std::byte> unknown{data.begin(), data.end()};
   unknown[0] = std::byte{9};
   EXPECT_NE(described_telemetry(17, 129, unknown).find("OUTCOME=9 "), std::string::npos);
-  EXPECT_NE(described_telemetry(17, 129, Octets{data}.first(4)).find("TIME=?"), std::string::npos);
+  EXPECT_NE(described_telemetry(17, 129, data.first(4)).find("TIME=?"), std::string::npos);
 }
 
 TEST(PacketDescriber, NamesAFunctionAndItsArguments) {

@@ -3,6 +3,7 @@
 #include "hirosco/subsystem/author/custom_service.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include "hirosco/pus/st01_verification/instructions.hpp"
@@ -30,6 +31,7 @@ void CustomService::bind(std::string_view request, BoundHandler handler) {
 void CustomService::join(pus::ServiceHome& home) {
   home_ = &home;
   open_.clear();
+  open_.reserve(most_running);
   declared_ = home.descriptor().find_service(name_);
   kind_ = {.type = declared_ != nullptr ? declared_->type : std::uint8_t{0},
            .name = name_,
@@ -107,8 +109,9 @@ void CustomService::abort(const Call& call, const Error& why) {
 }
 
 void CustomService::release() noexcept {
-  for (const pus::Request& request : std::exchange(open_, {}))
+  for (const pus::Request& request : open_)
     home_->verification().completion_failed(request, FailureNotice{FailureCode::Aborted});
+  open_.clear();  // its room stays: the next configuration has it
 }
 
 Result<> CustomService::send_value(const ParameterCell& parameter, Octets big_endian) {
@@ -128,7 +131,10 @@ Result<> CustomService::send(std::string_view report, const Call& to, std::span<
   if (declared == declared_->reports.end()) return fail(ErrorCode::NotFound, "the descriptor declares no such report");
   if (!same_types(types, declared->fields))
     return fail(ErrorCode::Mismatch, "the descriptor's report has other fields");
-  HIROSCO_TRY_LET(const std::vector<std::byte> data, pus::encode_report(declared->fields, values));
+  std::array<std::byte, pus::max_telemetry_octets> room;
+  OctetWriter writer{room};
+  HIROSCO_TRY(pus::write_report(writer, declared->fields, values));
+  HIROSCO_TRY_LET(const Octets data, pus::all_written(writer));
   if (!home_->has_room(data.size())) return fail(ErrorCode::ResourceExhausted, "the service loop is behind");
   home_->telemetry().report(declared_->type, declared->subtype, to.request.source, data);
   return ok();

@@ -28,8 +28,8 @@ namespace hirosco {
 ///   provide(book_);
 ///
 /// A handler is one as on_function() has it, with the <Argument>s of its <Request>; a report has its <Field>s. But it runs in
-/// the service loop: it may allocate, and must not wait. Types are compared with the descriptor; every difference fails
-/// Software-Init.
+/// the service loop: it must not wait, and what it takes from the heap in Safe-Operational and Operational is told (adr 0220). Types are
+/// compared with the descriptor; every difference fails Software-Init.
 ///
 /// `<Service name="BOOK" loop="SLOW"/>` gives it a loop of its own (adr 0096): handlers and on_step() run in that thread, at its period
 /// and priority. There they may use the service itself (report(), raise(), store(), finish(), abort(), state()), what is the
@@ -72,7 +72,7 @@ class CustomService final : public pus::Service {
                   "a report takes numbers or enumerations, bool, std::string_view for text, or a std::array of all but "
                   "text, one for each <Field>");
     static constexpr std::array<NativeField, sizeof...(Values)> types{detail::native_argument<Values>()...};
-    return send(report, to, types, detail::values_of<Values...>(values...));
+    return send(report, to, types, detail::views_of<Values...>(values...));
   }
 
   /// The end of a request whose handler said `running`: exactly one. What still runs when the configuration is released

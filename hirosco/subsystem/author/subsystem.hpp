@@ -173,7 +173,7 @@ class Subsystem {
   template <class... Arguments>
   Result<std::uint32_t> request(const Request<Arguments...>& asked,
                                 const std::type_identity_t<Arguments>&... arguments) {
-    return send_request(asked, detail::values_of<Arguments...>(arguments...));
+    return send_request(asked, detail::views_of<Arguments...>(arguments...));
   }
   /// The same of one whose form is the other's descriptor's alone.
   Result<std::uint32_t> request(const OpenRequest& asked, pus::GivenValues values) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -63,26 +64,26 @@ template <ArgumentType T>
   }
 }
 
-template <ArgumentType T>
-void append(std::vector<std::optional<Value>>& values, const T& value) {
-  using Element = typename layout_detail::ArrayOf<T>::Element;
-  if constexpr (std::is_same_v<T, std::string_view>) values.emplace_back(std::string{value});
-  else if constexpr (layout_detail::ArrayOf<T>::value)
-    for (const Element each : value) append<Element>(values, each);
-  else if constexpr (std::is_enum_v<T>) values.emplace_back(Number{static_cast<std::underlying_type_t<T>>(value)});
-  else values.emplace_back(Number{value});
-}
-/// As encoders take them, exactly.
-template <ArgumentType... T>
-[[nodiscard]] std::vector<std::optional<Value>> values_of(const T&... values) {
-  std::vector<std::optional<Value>> all;
-  (append<T>(all, values), ...);
-  return all;
-}
-
 /// What may be sent.
 template <class T>
 concept SentType = ArgumentType<T> && !IsSized<T>::value;
+
+template <SentType T>
+[[nodiscard]] pus::ValueView view_of(const void* at, [[maybe_unused]] std::size_t element) noexcept {
+  using Element = typename layout_detail::ArrayOf<T>::Element;
+  const T& value = *static_cast<const T*>(at);
+  if constexpr (std::is_same_v<T, std::string_view>) return value;
+  else if constexpr (layout_detail::ArrayOf<T>::value) return view_of<Element>(&value[element], 0);
+  else if constexpr (std::is_enum_v<T>) return Number{static_cast<std::underlying_type_t<T>>(value)};
+  else return Number{value};
+}
+/// As encoders take them, exactly, while the values are there: nothing is copied, nor taken from the heap.
+template <SentType... T>
+[[nodiscard]] std::array<pus::NativeValue, sizeof...(T)> views_of(const T&... values) noexcept {
+  std::array<pus::NativeValue, sizeof...(T)> all{
+      pus::NativeValue{&values, layout_detail::ArrayOf<T>::count, view_of<T>}...};
+  return all;
+}
 
 }  // namespace detail
 

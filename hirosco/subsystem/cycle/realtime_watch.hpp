@@ -33,11 +33,11 @@ class RealtimeWatch {
 struct HeapUses {
   std::uint64_t cycle{0};  ///< allocations and frees in cycles of this configuration
   std::uint64_t service{
-      0};  ///< in steps of the service loop in Safe-Operational and Operational, since the process began
+      0};  ///< in steps of the service loop, and of loops of its own, in Safe-Operational and Operational, since the process began
   bool counted{false};  ///< false: this program does not see them, and the two are 0
 };
 
-/// Sums what steps of the service loop use of the heap (docs/adr/0103), in programs that see it.  Thread: the service loop.
+/// Sums what steps of the service loop, and of loops of services of their own, use of the heap (docs/adr/0103, 0220), in programs that see it.  Thread: the service loop.
 class HeapWatch {
  public:
   /// After each step, with what it did. \return true when it is to be told: at once when it is the first, and then once a

@@ -109,6 +109,7 @@ void ResourceMeter::note_queues(const QueueFills& fills, const QueueFills& judge
 std::optional<std::uint32_t> ResourceMeter::limit_of(Resource resource) const noexcept {
   if (built_with_sanitizer && resource == Resource::Memory) return std::nullopt;
   if (resource < Resource::WaitingAnswers) return amount_of(declared_.most, resource);
+  if (resource > Resource::Channel) return std::nullopt;  // the supervisor's alone
   if (resource >= Resource::CycleCommands) return queue_rooms_[place_of(resource)];
   return declared_.waiting[static_cast<std::size_t>(resource) - static_cast<std::size_t>(Resource::WaitingAnswers)];
 }

@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <memory_resource>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/resource/counted.hpp"
 #include "hirosco/resource/pool_resource.hpp"
+#include "hirosco/subsystem/author/custom_service.hpp"
 #include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
 #include "hirosco/utilities/allocation_guard.hpp"
@@ -261,9 +266,9 @@ class Palette {
       (writer.put(values), ...);
       return writer.written();
     };
-    const std::uint8_t one{1}, two{2};
-    const std::uint16_t structure{4712}, own{7};
-    switch (turn_++ % 16) {
+    const std::uint8_t none{0}, one{1}, two{2};
+    const std::uint16_t structure{4712}, own{7}, made{5000}, repetitions{2};
+    switch (turn_++ % 24) {
       case 0: rig_.send(17, 1, {}); break;
       case 1: rig_.send(20, 1, data(two, kp, kd)); break;
       case 2: rig_.send(20, 1, data(one, unknown)); break;
@@ -279,6 +284,14 @@ class Palette {
       case 12: rig_.send(5, 5, data(one, own)); break;
       case 13: rig_.send(199, 1, {}); break;
       case 14: rig_.send(128, 9, data(one)); break;
+      case 15: rig_.send(3, 1, data(made, std::uint32_t{2}, one, kp, none)); break;
+      case 16: rig_.send(3, 29, data(made, none, one, repetitions, one, kd)); break;
+      case 17: rig_.send(3, 29, data(made, none, one, repetitions, one, unknown)); break;
+      case 18: rig_.send(3, 9, data(two, made, structure)); break;
+      case 19: rig_.send(3, 33, data(two, made, structure)); break;
+      case 20: rig_.send(3, 3, data(one, made)); break;
+      case 21: rig_.send(130, 1, data(std::uint32_t{9})); break;
+      case 22: rig_.call("CONFIGURE", {4}); break;
       default: rig_.send(20, 1, {}); break;
     }
   }
@@ -308,6 +321,146 @@ TEST(ServiceLoopAllocations, ThereAreNoneForAnyTelecommandOnceCommissioned) {
   EXPECT_EQ(told.service, 0u);
   EXPECT_EQ(told.cycle, before);
   EXPECT_TRUE(told.counted);
+}
+
+TEST(ServiceLoopAllocations, ThereAreNoneWhenASelfTestEndsInWords) {
+  Tested tested;
+  CountedFlight flight{tested};
+  flight.rig().set_state(State::SafeOperational);
+  for (int i = 0; i < 400; ++i) {
+    if (i % 20 == 5) static_cast<void>(flight.rig().send(17, 128, {}));
+    if (i % 20 == 15) static_cast<void>(flight.rig().send(17, 130, {}));
+    flight.cycle();
+  }
+  EXPECT_EQ(tested.runs, 20);
+  EXPECT_EQ(flight.rig().subsystem.cycle().heap_uses().load().service, 0u);
+}
+
+/// The end of a link is commissioned when it is made, whenever that is (adr 0220).
+TEST(ServiceLoopAllocations, OnesForALinkThatIsMadeInFlightAreToldAndThereAreNoneBehindThem) {
+  Probe probe;
+  CountedFlight flight{probe};
+  const auto uses = [&] { return flight.rig().subsystem.cycle().heap_uses().load().service; };
+  for (int i = 0; i < 64; ++i) flight.cycle();
+  ASSERT_EQ(uses(), 0u);
+  std::string made;
+  static_cast<void>(flight.rig().attach(3, Role::Producer, "ARM_STATE",
+                                        {{"POSITION", Type::Double, 1}, {"SEEN", Type::Double, 1}}, &made));
+  EXPECT_EQ(made, "1 3 7");
+  // Told once a second: what was done behind it would be seen, too.
+  for (int i = 0; i < 2'500; ++i) flight.cycle();
+  const std::uint64_t for_the_link = uses();
+  EXPECT_GT(for_the_link, 0u);
+  Palette palette{flight.rig()};
+  for (int i = 0; i < 5'000; ++i) {
+    palette.next();
+    flight.cycle();
+  }
+  EXPECT_EQ(uses(), for_the_link);
+}
+
+constexpr const char* bard_descriptor = R"(<Subsystem name="BARD" id="11">
+  <ParamRef name="TITLE" id="1" type="TEXT" octets="200" writable="Operational"/>
+  <FunctionService>
+    <Function name="SING">
+      <Argument name="WORDS" type="TEXT" octets="200"/>
+      <Argument name="PITCHES" type="DOUBLE" count="6" minimum="0" maximum="1"/>
+    </Function>
+  </FunctionService>
+  <Configuration name="ONE" id="1" sampling_us="1000"/>
+</Subsystem>)";
+constexpr const char* patron_descriptor = R"(<Subsystem name="PATRON" id="10">
+  <Commands subsystem="BARD" functions="SING" sets="TITLE"/>
+  <CustomService name="SONGS" type="200">
+    <Request name="WHICH" subtype="1"/>
+    <Report name="THIS" subtype="2"><Field name="WORDS" type="TEXT" octets="200"/><Field name="PITCHES" type="DOUBLE" count="6"/></Report>
+  </CustomService>
+  <CustomService name="VERSES" type="201">
+    <Request name="WHICH" subtype="1"/>
+    <Report name="THIS" subtype="2"><Field name="WORDS" type="TEXT" octets="200"/></Report>
+  </CustomService>
+  <ServiceLoop name="HALL" period_us="10000" queue="4"/>
+  <Service name="VERSES" loop="HALL"/>
+  <Configuration name="ONE" id="1" sampling_us="1000"/>
+</Subsystem>)";
+
+/// Asks another with the longest arguments that there are, and tells as much by services of its own, one of them in a loop of its own.
+struct Patron final : Subsystem {
+  Request<std::string_view, std::array<double, 6>> sing{"BARD", "SING"};
+  Request<std::string_view> entitle{"BARD", Ask::SetValue, "TITLE"};
+  CustomService songs{"SONGS"}, verses{"VERSES"};
+  std::string words{std::string(200, 'a')};
+  std::array<double, 6> pitches{0, 0.2, 0.4, 0.6, 0.8, 1};
+  std::array<std::uint64_t, 3> counts{};  ///< asked, ended, told
+  bool asks{false}, careless{false};
+  std::unique_ptr<std::string> kept;
+
+  Result<> offline() override {
+    songs.on_request("WHICH", [this](Call call) -> Result<> {
+      ++counts[2];
+      return songs.report("THIS", call, std::string_view{words}, pitches);
+    });
+    verses.on_request("WHICH", [this](Call call) -> Result<> {
+      if (careless) kept = std::make_unique<std::string>(words);
+      ++counts[2];
+      return verses.report("THIS", call, std::string_view{words});
+    });
+    provide(songs);
+    provide(verses);
+    return ok();
+  }
+  Result<Step> software_init() override {
+    const auto hear = [this](const RequestReport& report) {
+      if (report.stage == RequestReport::Stage::Completed) ++counts[1];
+    };
+    use_request(sing, hear);
+    use_request(entitle, hear);
+    return done;
+  }
+  void service(TimePoint) override {
+    if (!std::exchange(asks, false)) return;
+    if (request(sing, words, pitches)) ++counts[0];
+    if (request(entitle, words)) ++counts[0];
+    EXPECT_FALSE(request(sing, words, {2, 2, 2, 2, 2, 2})) << "outside of their range";
+  }
+};
+
+struct Patronage : ::testing::Test {
+  Patron patron;
+  Rig rig{patron, testing::read_descriptor(patron_descriptor, {bard_descriptor})};
+
+  void SetUp() override { rig.bring_to(State::Operational, 1); }
+  void fly(int steps) {
+    for (int i = 0; i < steps; ++i) {
+      patron.asks = i % 25 == 0;  // no more than a hundred go in a second
+      if (i % 5 == 0) static_cast<void>(rig.send(i % 2 == 0 ? 200 : 201, 1, {}));
+      rig.service();
+      static_cast<void>(rig.own_loop(0, rig.clock.now()));
+      for (const testing::Asked& asked : rig.asked) rig.verify(asked, 7);
+      rig.asked.clear();
+      rig.telemetry.clear();
+      rig.cycle();
+    }
+    // Both loops have told what they did.
+    rig.advance(std::chrono::seconds{1});
+    rig.settle();
+    rig.settle();
+  }
+  [[nodiscard]] std::uint64_t uses() const { return rig.subsystem.cycle().heap_uses().load().service; }
+};
+
+TEST_F(Patronage, UsesTheHeapForNoRequestOfAnAuthorAndNoReportOfItsServices) {
+  fly(1'000);
+  EXPECT_EQ(patron.counts, (std::array<std::uint64_t, 3>{80, 80, 200}));
+  EXPECT_EQ(uses(), 0u);
+  EXPECT_EQ(rig.heard(descriptor::framework_event::service_uses_heap), 0);
+}
+
+TEST_F(Patronage, OneInALoopOfItsOwnIsToldAndCountedAsTheServiceLoops) {
+  patron.careless = true;
+  fly(100);
+  EXPECT_GE(uses(), 10u * 2);
+  EXPECT_GE(rig.heard(descriptor::framework_event::service_uses_heap), 1);
 }
 
 /// Its service loop grows a vector once in a while.

@@ -42,6 +42,8 @@ class Bumpless {
 
   /// A notice: refused, nothing was begun. Else it has begun and ends by its own report, of a failure, too, and perhaps at once.
   std::expected<void, pus::FailureNotice> command(const descriptor::Configuration& wanted, const pus::Request& request);
+  /// One is on its way to the cycle, which has not said how it took it.
+  [[nodiscard]] bool under_way() const noexcept { return change_ != nullptr; }
   /// How the cycle has taken it.
   void ended(std::uint8_t id, const std::optional<Failure>& why);
   /// A cycle that hangs confirms nothing: the request ends all the same, and the next command is heard.

@@ -15,13 +15,23 @@ namespace {
   return static_cast<std::int32_t>(a - b) < 0;
 }
 
-[[nodiscard]] Failure failure_in(Octets payload) {
-  AuthorsError failure;
-  std::memcpy(&failure, payload.data(), std::min(payload.size(), sizeof failure));
-  return {failure.code, {failure.text.data(), failure.text_octets}, failure.number};
-}
+/// What an author said, as it came; it lasts as long as this, and needs no heap.
+class SaidFailure {
+ public:
+  explicit SaidFailure(Octets payload) noexcept {
+    std::memcpy(&said_, payload.data(), std::min(payload.size(), sizeof said_));
+  }
+  [[nodiscard]] pus::Reason reason() const noexcept {
+    return {said_.code, said_.number, {said_.text.data(), said_.text_octets}};
+  }
+  /// In words of its own, for whoever changes its state by it.
+  [[nodiscard]] Failure kept() const { return {said_.code, std::string{reason().text}, said_.number}; }
 
-[[nodiscard]] std::uint16_t step_in(Octets payload) {
+ private:
+  AuthorsError said_;
+};
+
+[[nodiscard]] std::uint16_t step_in(Octets payload) noexcept {
   FailedStep failed;
   std::memcpy(&failed, payload.data(), std::min(payload.size(), sizeof failed));
   return failed.step;
@@ -59,33 +69,36 @@ void CycleReports::take_one(const CycleReport& head, Octets payload) {
     case ReportKind::Event: parts_.reports.raise_encoded(head.index, payload); break;
     case ReportKind::Started: parts_.calls.started(head.request); break;
     case ReportKind::Refused:
-      parts_.calls.refused(head.request, parts_.reports.notice_of(head.index, failure_in(payload)));
+      parts_.calls.refused(head.request, parts_.reports.notice_of(head.index, SaidFailure{payload}.reason()));
       break;
     case ReportKind::Progressed: parts_.reports.verification().progressed(head.request, head.index); break;
     case ReportKind::StepFailed:
       if (parts_.calls.has(head.request))
-        parts_.reports.verification().progress_failed(head.request, step_in(payload),
-                                                      parts_.reports.notice_of(head.index, failure_in(payload)));
+        parts_.reports.verification().progress_failed(
+            head.request, step_in(payload), parts_.reports.notice_of(head.index, SaidFailure{payload}.reason()));
       break;
     case ReportKind::Finished: parts_.calls.completed(head.request); break;
     case ReportKind::Aborted:
-      // What nobody waits for is not put into words: they take from the heap.
       if (parts_.calls.has(head.request))
-        parts_.calls.failed(head.request, parts_.reports.notice_of(head.index, failure_in(payload)));
+        parts_.calls.failed(head.request, parts_.reports.notice_of(head.index, SaidFailure{payload}.reason()));
       break;
     case ReportKind::StateEntered: parts_.states.cycle_entered(static_cast<State>(head.index)); break;
     case ReportKind::EntryRefused:
       if (parts_.states.awaits(static_cast<State>(head.index)))
-        parts_.states.cycle_refused(static_cast<State>(head.index), failure_in(payload));
+        parts_.states.cycle_refused(static_cast<State>(head.index), SaidFailure{payload}.kept());
       break;
-    case ReportKind::NodeFailed: parts_.states.node_failed(static_cast<State>(head.index), failure_in(payload)); break;
+    case ReportKind::NodeFailed:
+      parts_.states.node_failed(static_cast<State>(head.index), SaidFailure{payload}.kept());
+      break;
     case ReportKind::InputDetached:
     case ReportKind::OutputDetached: parts_.links.let_go(head.link); break;
     case ReportKind::Reconfigured: parts_.bumpless.ended(static_cast<std::uint8_t>(head.index), std::nullopt); break;
     case ReportKind::NotReconfigured:
-      parts_.bumpless.ended(static_cast<std::uint8_t>(head.index), failure_in(payload));
+      parts_.bumpless.ended(static_cast<std::uint8_t>(head.index), SaidFailure{payload}.kept());
       break;
-    case ReportKind::SelfTestEnded: parts_.self_tests.ended(head.request, head.index, failure_in(payload)); break;
+    case ReportKind::SelfTestEnded:
+      parts_.self_tests.ended(head.request, head.index, SaidFailure{payload}.reason());
+      break;
   }
 }
 

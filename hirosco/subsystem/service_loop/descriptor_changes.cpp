@@ -47,6 +47,9 @@ using Refused = std::optional<FailureNotice>;
 }  // namespace
 
 std::optional<FailureNotice> DescriptorChanges::judge(std::size_t octets, const MemoryHandle& text) {
+  newest_ = false;  // whatever becomes of it, the text before it is the newest no more
+  // Before anything is read, or given back: what has been commissioned uses the heap for nothing (adr 0220).
+  if (auto refused = not_now()) return refused;
   coming_.reset();
   if (!platform_.read_again) return refuse(FailureCode::NotPermittedNow, "nobody reads descriptors here");
   if (!text) return refuse(FailureCode::IllegalField, "no text came beside it");
@@ -65,13 +68,20 @@ std::optional<FailureNotice> DescriptorChanges::judge(std::size_t octets, const 
   descriptor::add_framework_events(*reading.value);
   if (auto refused = against(*reading.value)) return refused;
   coming_ = std::move(reading.value);
+  newest_ = true;
   return std::nullopt;
 }
 
-/// Why it cannot be taken now.
-std::optional<FailureNotice> DescriptorChanges::against(const descriptor::SubsystemDescriptor& fresh) {
+/// Whatever it is.
+std::optional<FailureNotice> DescriptorChanges::not_now() const noexcept {
   if (at_.way || at_.release_owed) return FailureNotice{FailureCode::Busy};
   if (at_.state != State::Offline && at_.state != State::PreOperational) return at_.wrong_state();
+  return std::nullopt;
+}
+
+/// Why it cannot be taken.
+std::optional<FailureNotice> DescriptorChanges::against(const descriptor::SubsystemDescriptor& fresh) {
+  if (auto refused = not_now()) return refused;
   auto found = descriptor::obstacles(descriptor_, fresh);
   if (found.empty() && at_.configuration != nullptr)
     found = descriptor::obstacles_in_force(descriptor_, fresh, at_.configuration->id);
@@ -109,7 +119,8 @@ std::optional<FailureNotice> DescriptorChanges::left_outside(const descriptor::S
 }
 
 std::optional<FailureNotice> DescriptorChanges::take() {
-  if (!coming_) return FailureNotice{FailureCode::WrongStatus};
+  if (!coming_ || !newest_) return FailureNotice{FailureCode::WrongStatus};
+  if (auto refused = not_now()) return refused;
   descriptor::SubsystemDescriptor fresh = std::move(*coming_);
   coming_.reset();
   {

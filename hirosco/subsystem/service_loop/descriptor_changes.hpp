@@ -39,6 +39,7 @@ class DescriptorChanges final : public pus::DescriptorOwner {
   std::optional<pus::FailureNotice> take() override;
 
  private:
+  [[nodiscard]] std::optional<pus::FailureNotice> not_now() const noexcept;
   [[nodiscard]] std::optional<pus::FailureNotice> against(const descriptor::SubsystemDescriptor& fresh);
   [[nodiscard]] std::optional<pus::FailureNotice> left_outside(const descriptor::SubsystemDescriptor& fresh);
 
@@ -48,6 +49,7 @@ class DescriptorChanges final : public pus::DescriptorOwner {
   ParameterValues& values_;
   const OwnLoops& loops_;
   std::optional<descriptor::SubsystemDescriptor> coming_;  ///< judged, and not taken yet
+  bool newest_{false};  ///< nothing was to be judged behind it
   Parameter<DescriptorInForce> in_force_;
   std::uint16_t changes_{0};
 };

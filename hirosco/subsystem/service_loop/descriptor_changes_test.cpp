@@ -154,6 +154,18 @@ TEST_F(DescriptorChanges, OneThatWasJudgedIsNotTakenWhereControlRunsByThen) {
   EXPECT_THAT(set(2, 150), StartsWith("1 4"));
 }
 
+TEST_F(DescriptorChanges, OneBehindWhichAnotherWasRefusedIsNotTakenInItsPlaceAnyMore) {
+  rig.set_state_now(State::PreOperational);
+  EXPECT_EQ(judge(wider), "1 3 7");
+  rig.configure_now(1);
+  rig.set_state_now(State::SafeOperational);
+  EXPECT_THAT(judge(faster), StartsWith("1 4"));
+  rig.set_state_now(State::Offline);
+  rig.set_state_now(State::PreOperational);
+  EXPECT_THAT(take(), StartsWith("1 4")) << "the text that was judged last was refused";
+  EXPECT_THAT(told(), ::testing::EndsWith(hash_of(probe_descriptor, 0)));
+}
+
 TEST_F(DescriptorChanges, ABadEditLeavesTheOldOneActiveAndSaysWhere) {
   rig.set_state_now(State::PreOperational);
   EXPECT_THAT(reread(edited(R"(maximum="100")", R"(maximum="much")")), StartsWith("1 4"));

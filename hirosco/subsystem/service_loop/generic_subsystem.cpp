@@ -104,9 +104,9 @@ GenericSubsystem::Demand GenericSubsystem::cycle_demand() const noexcept {
 
 // --- the service loop --------------------------------------------------------------------------------------------------
 
-/// Commissioning uses the heap, and so does each change of state: what is between them must not (adr 0103).
+/// Commissioning uses the heap, and so does each change of state or configuration: what is between them must not (adr 0103, 0220).
 bool GenericSubsystem::commissioned() const noexcept {
-  return (at_.state == State::SafeOperational || at_.state == State::Operational) && !at_.way;
+  return (at_.state == State::SafeOperational || at_.state == State::Operational) && !at_.way && !bumpless_.under_way();
 }
 
 TimePoint GenericSubsystem::service_step(TimePoint now) {
@@ -118,7 +118,11 @@ TimePoint GenericSubsystem::service_step(TimePoint now) {
     next = step_services(now);
     used = watched.count();
   }
-  if (!commissioned() || !heap_watch_.account(used, now)) return next;
+  if (!commissioned()) return next;
+  const AllocationCount of_loops = loops_.take_heap_uses();
+  used.allocations += of_loops.allocations;
+  used.frees += of_loops.frees;
+  if (!heap_watch_.account(used, now)) return next;
   const AllocationCount& sum = heap_watch_.sum();
   cycle_.note_service_heap(sum.allocations + sum.frees);
   reports_.raise(descriptor::framework_event::service_uses_heap,

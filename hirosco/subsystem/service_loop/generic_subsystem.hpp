@@ -31,7 +31,7 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
                    Channel& channel, VitalPage& vital, const PermitPage& permit);
   ~GenericSubsystem() override;
 
-  /// One step of the service loop; returns when the next is due at the latest.  Realtime: allocates. Thread: service.
+  /// One step of the service loop; returns when the next is due at the latest.  Realtime: allocates before it is commissioned. Thread: service.
   TimePoint service_step(TimePoint now);
 
   /// False while what the supervisor sends has to wait for the supervisor to take what was said: its channel is not to wake
@@ -98,7 +98,7 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
   // ServiceHome
   [[nodiscard]] pus::SelfTest& self_test() noexcept override { return *this; }
   [[nodiscard]] pus::FailureNotice refusal(pus::FailureCode code, const Error& why) const override {
-    return reports_.notice_of(static_cast<std::uint16_t>(code), {why.code, why.text, why.value});
+    return reports_.notice_of(static_cast<std::uint16_t>(code), {why.code, why.value, why.text});
   }
   Result<> store(const ParameterCell& parameter, Octets big_endian) override {
     return values_.store(parameter, big_endian);

@@ -116,6 +116,8 @@ TimePoint OwnLoop::due(TimePoint planned) const noexcept {
 }
 
 TimePoint OwnLoop::step(TimePoint planned) {
+  std::optional<RealtimeScope> watched;
+  if (commissioned()) watched.emplace();
   const Duration used = parts_.clock.processor();
   // To the end: what it took is held against the budget that it was made under.
   const LockGuard lock{mutex_};
@@ -137,7 +139,18 @@ TimePoint OwnLoop::step(TimePoint planned) {
   const TimePoint finished = parts_.clock.now();
   const auto missed = finished <= next ? 0 : (finished - next) / period + 1;
   parts_.meter.account(parts_.place, parts_.clock.processor() - used, static_cast<std::uint64_t>(missed));
+  if (watched && commissioned()) {
+    const AllocationCount uses = watched->count();
+    allocations_.fetch_add(uses.allocations, std::memory_order_relaxed);
+    frees_.fetch_add(uses.frees, std::memory_order_relaxed);
+  }
   return next + missed * period;
+}
+
+/// What a configuration takes from the heap it takes in the service loop, while this one rests.
+bool OwnLoop::commissioned() const noexcept {
+  const auto told = told_state();
+  return told == descriptor::State::SafeOperational || told == descriptor::State::Operational;
 }
 
 void OwnLoop::handle(Octets record) {

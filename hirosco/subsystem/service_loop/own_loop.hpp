@@ -18,6 +18,7 @@
 #include "hirosco/subsystem/cycle/loop_meter.hpp"
 #include "hirosco/subsystem/cycle/queue_fill.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
+#include "hirosco/utilities/allocation_guard.hpp"
 #include "hirosco/utilities/os/mutex.hpp"
 #include "hirosco/utilities/os/semaphore.hpp"
 #include "hirosco/utilities/record_ring.hpp"
@@ -93,6 +94,12 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   /// One step that was due at `planned`, or is sooner now: requests that wait, then each of its services. Returns when the next is due:
   /// on its grid, steps that were missed are skipped.  Thread: the loop's.
   TimePoint step(TimePoint planned);
+  /// Of its steps in Safe-Operational and Operational, since it was made; none in programs that do not see them.
+  /// Realtime: wait-free. Thread: any.
+  [[nodiscard]] AllocationCount heap_uses() const noexcept {
+    return {.allocations = allocations_.load(std::memory_order_relaxed),
+            .frees = frees_.load(std::memory_order_relaxed)};
+  }
   /// It has said what the service loop has not taken yet.  Realtime: wait-free. Thread: any.
   [[nodiscard]] bool has_reports() const noexcept { return out_.used() != 0; }
 
@@ -118,6 +125,7 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   void report(std::uint8_t service, std::uint8_t subtype, std::uint16_t destination, Octets source_data) override;
   void handle(Octets record);
   [[nodiscard]] std::optional<descriptor::State> told_state() const noexcept;
+  [[nodiscard]] bool commissioned() const noexcept;
 
   Parts parts_;
   std::atomic<const PermitPage*> permit_;
@@ -134,6 +142,7 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   std::uint32_t permitted_by_{0};  ///< the epoch of the mode that the request under way was permitted by; 0: any
   std::atomic<std::uint32_t> waiting_{0};
   std::atomic<std::uint64_t> steps_{0};
+  std::atomic<std::uint64_t> allocations_{0}, frees_{0};
   std::atomic<bool> in_step_{false};
   std::uint64_t seen_steps_{0};  ///< by the service loop, like the next
   Duration stands_for_{};

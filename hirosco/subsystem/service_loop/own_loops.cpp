@@ -78,6 +78,17 @@ std::uint64_t OwnLoops::lost() const noexcept {
   return sum;
 }
 
+AllocationCount OwnLoops::take_heap_uses() noexcept {
+  AllocationCount sum;
+  for (const auto& loop : loops_) {
+    const AllocationCount uses = loop->heap_uses();
+    sum.allocations += uses.allocations;
+    sum.frees += uses.frees;
+  }
+  const AllocationCount before = std::exchange(told_uses_, sum);
+  return {.allocations = sum.allocations - before.allocations, .frees = sum.frees - before.frees};
+}
+
 OwnLoop::Fills OwnLoops::take_fills() noexcept {
   OwnLoop::Fills fullest;
   const auto take = [](QueueFill& so_far, const QueueFill& found) {

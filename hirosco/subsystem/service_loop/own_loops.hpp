@@ -46,6 +46,8 @@ class OwnLoops {
   /// What their services have said.
   void tell(Reports& reports);
   [[nodiscard]] std::uint64_t lost() const noexcept;
+  /// Of all of them, since it was asked last (OwnLoop::heap_uses()).
+  [[nodiscard]] AllocationCount take_heap_uses() noexcept;
   /// Of the loop that is fullest on this way, since it was asked last; nothing where there is none.
   [[nodiscard]] OwnLoop::Fills take_fills() noexcept;
   /// False while one of them stands still within a step: then the supervisor's guard sees the service loop stand still.
@@ -59,6 +61,7 @@ class OwnLoops {
   std::vector<pus::Service*> in_none_;
   std::size_t sorted_{0};  ///< services of which it is known whether they are in one
   TimePoint looked_at_;
+  AllocationCount told_uses_{};
 };
 
 }  // namespace hirosco

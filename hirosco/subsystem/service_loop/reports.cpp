@@ -108,14 +108,14 @@ void Reports::raise_failure(std::uint16_t event, std::uint8_t what, const Failur
   raise_encoded(event, auxiliary);
 }
 
-pus::FailureNotice Reports::notice_of(std::uint16_t code, const Failure& why) const {
+pus::FailureNotice Reports::notice_of(std::uint16_t code, const pus::Reason& why) const noexcept {
   const bool own = code >= pus::first_own_failure_code;
   if (own &&
       std::ranges::find(descriptor_.failures, code, &descriptor::FailureName::code) == descriptor_.failures.end())
     return pus::FailureNotice{pus::FailureCode::ExecutionError}.because(
         {ErrorCode::NotFound, code, "failure code without a name in the descriptor"});
   pus::FailureNotice notice{static_cast<pus::FailureCode>(code)};
-  if (!why.text.empty() || why.number != 0) notice.because({why.code, why.number, why.text});
+  if (!why.text.empty() || why.number != 0) notice.because(why);
   return notice;
 }
 

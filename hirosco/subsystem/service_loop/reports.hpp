@@ -44,7 +44,7 @@ class Reports final : public pus::TelemetrySink {
   void raise_failure(std::uint16_t event, std::uint8_t what, const Failure& why);
 
   /// A failure as ground reads it: a code that nobody can look up says nothing, and becomes an execution error that names it.
-  [[nodiscard]] pus::FailureNotice notice_of(std::uint16_t code, const Failure& why) const;
+  [[nodiscard]] pus::FailureNotice notice_of(std::uint16_t code, const pus::Reason& why) const noexcept;
 
   /// REPORTS_LOST, where more were lost since it was raised last.
   void tell_losses(TimePoint now, const LoopRings& of_cycle, std::uint64_t of_own_loops);

@@ -67,21 +67,19 @@ struct Service {
 }
 
 /// A parameter's words have all their octets, where an argument's have their length before them.
-[[nodiscard]] Result<std::vector<std::byte>> encode_thing(const std::vector<std::byte>& before,
-                                                          const descriptor::Function& function,
-                                                          pus::GivenValues values) {
-  std::vector<std::byte> data{before};
-  for (const pus::Argument& argument : function.arguments) {
-    const std::size_t count = std::min(pus::value_count(argument), values.size());
-    const std::size_t begin = data.size();
-    HIROSCO_TRY(pus::append_values(data, pus::ArgumentList{&argument, 1}, values.first(count), pus::Ids::None));
-    values = values.subspan(count);
-    if (argument.field.type != Type::Text) continue;
-    data.erase(data.begin() + static_cast<std::ptrdiff_t>(begin),
-               data.begin() + static_cast<std::ptrdiff_t>(begin + sizeof(std::uint16_t)));
-    data.resize(begin + argument.field.elements());
-  }
-  return data;
+[[nodiscard]] Result<Octets> write_thing(MutableOctets room, Octets before, const descriptor::Function& function,
+                                         pus::GivenValues values) noexcept {
+  OctetWriter writer{room};
+  writer.put(before);
+  std::size_t next = 0;
+  for (const pus::Argument& argument : function.arguments)
+    for (std::size_t i = 0; i < pus::value_count(argument); ++i) {
+      const auto value = values.at(next++);
+      if (!value) return fail(ErrorCode::InvalidArgument, "argument missing", static_cast<std::int64_t>(next));
+      HIROSCO_TRY(pus::write_value(writer, argument, *value, pus::Words::Padded));
+    }
+  if (next < values.size()) return fail(ErrorCode::InvalidArgument, "too many arguments");
+  return pus::all_written(writer);
 }
 
 }  // namespace
@@ -90,7 +88,9 @@ struct Service {
 Requester::Requester(const descriptor::SubsystemDescriptor& described, Channel& channel, TimePoint now)
     : descriptor_{described},
       channel_{channel},
-      next_count_{count_of_request(now.time_since_epoch() / std::chrono::milliseconds{1})} {}
+      next_count_{count_of_request(now.time_since_epoch() / std::chrono::milliseconds{1})} {
+  open_.reserve(most_open);
+}
 
 std::string Requester::use(const RequestPort& port, RequestHandler handler, Duration patience) {
   const std::string who = "use_request " + std::string{port.subsystem()} + " " + std::string{port.function()} + ": ";
@@ -159,9 +159,9 @@ Result<std::uint32_t> Requester::send(const RequestPort& port, pus::GivenValues 
   }
   if (sent_in_window_ == most_a_second)
     return fail(ErrorCode::ResourceExhausted, "requests in a second", static_cast<std::int64_t>(most_a_second));
-  HIROSCO_TRY_LET(const std::vector<std::byte> data, bound->before.empty()
-                                                         ? pus::encode_request(bound->function, values)
-                                                         : encode_thing(bound->before, bound->function, values));
+  std::array<std::byte, pus::max_telecommand_octets> room;
+  HIROSCO_TRY_LET(const Octets data, bound->before.empty() ? pus::write_request(room, bound->function, values)
+                                                           : write_thing(room, bound->before, bound->function, values));
   std::array<std::byte, max_packet_octets> buffer;
   HIROSCO_TRY_LET(const Octets packet, pus::write_telecommand(buffer,
                                                               {.apid = bound->apid,

@@ -20,7 +20,7 @@
 namespace hirosco {
 
 /// What a subsystem has asked of others and not heard the end of. Each request ends once: by a report, or because none came
-/// in its time.  Thread: the service loop.
+/// in its time. What it takes from the heap it takes when a request is bound (adr 0220).  Thread: the service loop.
 class Requester {
  public:
   /// More of one subsystem are not under way at once, nor sent in one second: the supervisor refuses them (adr 0062).
@@ -35,7 +35,7 @@ class Requester {
   /// Binds a request. What is wrong with it in words; empty when nothing is.
   [[nodiscard]] std::string use(const RequestPort& port, RequestHandler handler, Duration patience);
   /// Sends one, and returns its number. `known_stop`: PermitPage::newest_stop before whatever it is said for was read. NotPermitted: it is not bound; ResourceExhausted: too many are under way, or the
-  /// supervisor is behind; of the values, what the encoder of ST[08] says.
+  /// supervisor is behind; of the values, what the encoder of ST[08] says.  Realtime: bounded.
   [[nodiscard]] Result<std::uint32_t> send(const RequestPort& port, pus::GivenValues values, TimePoint now,
                                            std::uint32_t known_stop);
   [[nodiscard]] bool waits() const noexcept { return !open_.empty(); }
@@ -72,7 +72,7 @@ class Requester {
   const descriptor::SubsystemDescriptor& descriptor_;
   Channel& channel_;
   std::deque<Bound> bound_;  ///< those of open requests stay where they are
-  std::vector<Open> open_;  ///< the oldest first
+  std::vector<Open> open_;  ///< the oldest first; there is room for all that may be
   std::uint16_t next_count_;
   TimePoint window_{};
   std::size_t sent_in_window_{0};

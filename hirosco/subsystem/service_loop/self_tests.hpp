@@ -8,7 +8,6 @@
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/pus/st01_verification/verification.hpp"
 #include "hirosco/pus/st17_test/self_test.hpp"
-#include "hirosco/subsystem/service_loop/failure.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 
 namespace hirosco {
@@ -24,7 +23,7 @@ class SelfTests {
   /// The cycle was told to run it.
   void begun(const pus::Request& request);
   /// The cycle says how; `code` 0: passed.
-  void ended(const pus::Request& request, std::uint16_t code, const Failure& why);
+  void ended(const pus::Request& request, std::uint16_t code, const pus::Reason& why);
   /// A configuration was put in force: in it none has run.
   void applied(std::uint8_t configuration);
   /// It is given back: one that still runs ends as aborted.

@@ -62,7 +62,7 @@ struct ProcessStart {
       false};  ///< it may start others as users of their own and end them, as far as we may; else only as root
 };
 
-/// A process in a group of its own. It outlives this object and this process: nothing here kills it but send_signal().
+/// A process in a group of its own. It outlives this object and this process: nothing here kills it but send_signal() and kill_with_its_own().
 /// Whoever starts processes keeps the Process until poll() has returned its end, or a zombie stays.
 /// Realtime: blocks. Thread: one at a time.
 class Process {
@@ -81,6 +81,9 @@ class Process {
   [[nodiscard]] Result<std::optional<ExitStatus>> poll() noexcept;
   /// Never hits another process that got the same pid later; NotFound when it has ended.
   [[nodiscard]] Result<> send_signal(int signal) noexcept;
+  /// Ends it, and whom it has started in its group: they do not go on without it. Of one that has ended already, those that it has left
+  /// behind, where the system tells them from others (Linux 6.9); never another process or group that got the same number later.
+  void kill_with_its_own() noexcept;
 
  private:
   Process(int pid, FileDescriptor handle) noexcept : pid_{pid}, handle_{std::move(handle)} {}

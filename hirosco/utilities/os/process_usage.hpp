@@ -19,6 +19,8 @@ struct ProcessUsage {
   std::uint32_t threads{0};
   std::uint32_t descriptors{0};  ///< 0 where they cannot be counted: of another process
   Duration processor{};  ///< of all its threads since its start
+  std::uint32_t processes{
+      1};  ///< itself, and of another process those that it has started and that have not ended, where the system tells; a hundred are enough
 };
 
 /// Looks at one process again and again.  Realtime: system calls, bounded, no heap. Thread: one at a time.
@@ -33,9 +35,10 @@ class ProcessMeter {
 
  private:
   enum class Whose : std::uint8_t { Own, Others };
-  ProcessMeter(FileDescriptor status, Whose whose, int clock) noexcept
-      : status_{std::move(status)}, whose_{whose}, clock_{clock} {}
+  ProcessMeter(FileDescriptor status, FileDescriptor tasks, Whose whose, int clock) noexcept
+      : status_{std::move(status)}, tasks_{std::move(tasks)}, whose_{whose}, clock_{clock} {}
   FileDescriptor status_;
+  FileDescriptor tasks_;  ///< folder of another's threads
   Whose whose_;
   int clock_;  ///< of its processor time
 };

@@ -44,6 +44,8 @@ struct Sandbox {
 /// Nothing is isolated: built with a sanitizer, which needs what a sandbox refuses, or HIROSCO_SANDBOX=off in the environment, for
 /// tools that look into processes or have them write files.
 [[nodiscard]] bool sandbox_is_off() noexcept;
+/// Whoever flies wants none, by HIROSCO_SANDBOX=off: a debugger that begins its subsystem itself, or a program that begins others.
+[[nodiscard]] bool sandbox_is_unwanted() noexcept;
 
 /// A sandbox made ready, to be entered between fork and exec. No way leads out of it, for nothing that is started in it either: no new
 /// rights, of root's rights those only that real time needs, files as Sandbox says, signals, memory, scheduling and limits of nobody outside,

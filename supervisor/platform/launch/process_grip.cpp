@@ -100,7 +100,7 @@ class LinuxGrip final : public ProcessGrip {
     if (clock_ == CLOCK_MONOTONIC_COARSE || ::clock_gettime(clock_, &time) != 0) return {};
     return std::chrono::seconds{time.tv_sec} + Duration{time.tv_nsec};
   }
-  void kill() noexcept override { static_cast<void>(process_.send_signal(SIGKILL)); }
+  void kill() noexcept override { process_.kill_with_its_own(); }
 
  private:
   enum class Cycle { LosesToo, Keeps };

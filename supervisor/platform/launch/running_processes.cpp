@@ -38,7 +38,7 @@ std::uint32_t RunningProcesses::add(Process process) {
 }
 
 std::uint32_t RunningProcesses::end_now(Process process) {
-  static_cast<void>(process.send_signal(SIGKILL));
+  process.kill_with_its_own();
   pollfd look{process.handle().get(), POLLIN, 0};
   static_cast<void>(::poll(&look, 1, longest_end_ms));
   if (const auto end = process.poll(); end && *end) return 0;
@@ -70,6 +70,7 @@ std::optional<ProcessEnd> RunningProcesses::ended(std::uint32_t number) {
     end_asked_.erase(number);
     if (told) end = {(how & ended_by_signal) != 0, static_cast<int>(how & 0xFF)};
   }
+  found->second.kill_with_its_own();  // whoever it has left behind holds its devices
   processes_.erase(found);
   memory_use_.erase(number);
   meters_.erase(number);
@@ -77,12 +78,11 @@ std::optional<ProcessEnd> RunningProcesses::ended(std::uint32_t number) {
 }
 
 void RunningProcesses::kill(std::uint32_t number) {
-  if (const auto found = processes_.find(number); found != processes_.end())
-    static_cast<void>(found->second.send_signal(SIGKILL));
+  if (const auto found = processes_.find(number); found != processes_.end()) found->second.kill_with_its_own();
 }
 
 void RunningProcesses::kill_all() {
-  for (auto& [number, process] : processes_) static_cast<void>(process.send_signal(SIGKILL));
+  for (auto& [number, process] : processes_) process.kill_with_its_own();
 }
 
 bool RunningProcesses::any() {

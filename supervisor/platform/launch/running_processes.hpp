@@ -23,12 +23,12 @@ class RunningProcesses {
   void ends_told_by(const KeeperPage* page) noexcept { page_ = page; }
   /// \return its number. What it takes is measured from now on.
   std::uint32_t add(Process process);
-  /// It is killed. \return 0, or by which number it is still to be seen to its end.
+  /// It is killed, with its group. \return 0, or by which number it is still to be seen to its end.
   std::uint32_t end_now(Process process);
   /// Nullptr: it has been seen to end, or is none of them.
   [[nodiscard]] const Process* find(std::uint32_t number) const;
 
-  /// Empty while it runs. One that is none of them has ended.
+  /// Empty while it runs. One that is none of them has ended. Whom it has left behind in its group goes with it.
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t number);
   void kill(std::uint32_t number);
   void kill_all();

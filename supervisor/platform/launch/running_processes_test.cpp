@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/launch/running_processes.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <array>
 #include <optional>
+#include <utility>
 
 /// Of real processes: what is known of them until they were seen to end. How those end whose parent is gone is tried with a keeper, in
 /// system_launcher_test.cpp.
@@ -80,6 +84,29 @@ TEST(RunningProcesses, WhoIsEndedAtOnceAndGoesIsNoneOfThem) {
     EXPECT_TRUE(end_of(running, late));
   }
   EXPECT_FALSE(running.any());
+}
+
+TEST(RunningProcesses, WhoEndsByItselfTakesAlongWhomItHasLeftBehind) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
+  const FileDescriptor read_end{ends[0]};
+  FileDescriptor write_end{ends[1]};
+  auto process = Process::spawn({.executable = "/bin/sh",
+                                 .arguments = {"-c", "sleep 1000 & echo"},
+                                 .inherited = {{write_end.get(), STDOUT_FILENO}}});
+  ASSERT_TRUE(process) << process.error().text;
+  write_end.reset();
+  const pid_t group = process->pid();
+  // PIDFD_SIGNAL_PROCESS_GROUP: without it nobody is sure whose the number of an ended one is.
+  const bool told = ::syscall(SYS_pidfd_send_signal, process->handle().get(), 0, nullptr, 1U << 2) == 0;
+  char octet = 0;
+  ASSERT_EQ(::read(read_end.get(), &octet, 1), 1);
+  RunningProcesses running;
+  const auto end = end_of(running, running.add(std::move(*process)));
+  ASSERT_TRUE(end);
+  EXPECT_FALSE(end->by_signal);
+  if (!told) ::kill(-group, SIGKILL);
+  EXPECT_EQ(::read(read_end.get(), &octet, 1), 0) << "nobody holds it open any more";
 }
 
 TEST(RunningProcesses, AreAllKilledTogether) {

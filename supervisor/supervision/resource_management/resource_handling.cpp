@@ -27,10 +27,12 @@ ResourceHandling::ResourceHandling(Craft& craft, OwnSubsystem& own) : craft_{cra
 }
 
 std::optional<std::string> ResourceHandling::claim(const Member& member) {
-  const descriptor::Amounts& most = member.descriptor().resources.most;
+  const auto amount = [&most = member.descriptor().resources.most](std::size_t place) {
+    return promised_of(most, static_cast<Resource>(place)).value_or(0);
+  };
   for (std::size_t i = 0; i < books_.size(); ++i) {
     const auto resource = static_cast<Resource>(i);
-    const auto shortage = books_[i].shortage(member.apid(), most[i].value_or(0));
+    const auto shortage = books_[i].shortage(member.apid(), amount(i));
     if (!shortage) continue;
     own_.announce("RESOURCE_REFUSED",
                   {static_cast<double>(member.apid()), static_cast<double>(i), static_cast<double>(shortage->budget),
@@ -39,7 +41,7 @@ std::optional<std::string> ResourceHandling::claim(const Member& member) {
                        words(shortage->requested, resource), words(shortage->reserved, resource),
                        words(shortage->budget, resource));
   }
-  for (std::size_t i = 0; i < books_.size(); ++i) books_[i].hold(member.apid(), most[i].value_or(0));
+  for (std::size_t i = 0; i < books_.size(); ++i) books_[i].hold(member.apid(), amount(i));
   return std::nullopt;
 }
 
@@ -74,11 +76,16 @@ std::optional<ResourceHandling::Excess> ResourceHandling::excess_of(const Member
     if ((built_with_sanitizer || sandbox_is_off()) && resource == Resource::Memory) continue;
     if (const auto limit = amount_of(most, resource); limit && used > *limit) return Excess{resource, used, *limit};
   }
+  const auto state = member.state();
+  // Its sandbox lets it start none. Where there is none, what leads to it (a shim of its interpreter) may before it acts; where whoever
+  // flies wants none, a debugger may be what began it.
+  const bool settled = state && *state != descriptor::State::Offline && !is_transient(*state);
+  const bool may_start = built_with_sanitizer || sandbox_is_unwanted();
+  if (usage.processes > 1 && settled && !may_start) return Excess{Resource::Processes, usage.processes, 1};
   const auto limit = amount_of(most, Resource::Processor);
   const auto percent = seen.processor.look(usage.processor, craft_.now);
   if (!limit || !percent) return std::nullopt;
   // On its way up or down it reads files and meshes: how long that may last is the guard's.
-  const auto state = member.state();
   const bool on_its_way = state && is_transient(*state);
   seen.too_much = *percent > *limit && !on_its_way ? seen.too_much + 1 : 0;
   if (seen.too_much < windows_too_much) return std::nullopt;
@@ -86,10 +93,11 @@ std::optional<ResourceHandling::Excess> ResourceHandling::excess_of(const Member
 }
 
 void ResourceHandling::end(const Member& member, const Excess& excess) {
-  craft_.tell(
-      fmt::format("{} has taken {} of {}, its descriptor says {} at most: it is ended", member.descriptor().name,
-                  words(excess.used, excess.resource), to_text(excess.resource), words(excess.limit, excess.resource)),
-      member.apid());
+  craft_.tell(fmt::format("{} has taken {} of {}, {} {} at most: it is ended", member.descriptor().name,
+                          words(excess.used, excess.resource), to_text(excess.resource),
+                          excess.resource == Resource::Processes ? "each subsystem is" : "its descriptor says",
+                          words(excess.limit, excess.resource)),
+              member.apid());
   own_.announce("RESOURCE_EXCEEDED", {static_cast<double>(member.apid()), static_cast<double>(excess.resource),
                                       static_cast<double>(excess.used), static_cast<double>(excess.limit)});
   // What it moves is stopped before it is gone: its end takes the way of every death.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 
+#include <cstdlib>
+
 #include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/sanitizer.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
@@ -68,6 +70,50 @@ TEST_F(ResourceHandlingTest, PortsAndFilesStandInTheSameBooks) {
   EXPECT_FALSE(scarce.claim(*craft.member(arm)));
   EXPECT_EQ(scarce.claim(*craft.member(hand)), "ports short: it asks for 2, 2 of 3 are reserved");
   EXPECT_EQ(scarce.book(Resource::Files).reserved(), 1U) << "not limited, but held";
+}
+
+TEST_F(ResourceHandlingTest, EachIsOneProcessOfThoseThatTheMissionHas) {
+  craft.mission.budget[static_cast<std::size_t>(Resource::Processes)] = 2;
+  ResourceHandling scarce{craft, parts.own};
+  EXPECT_FALSE(scarce.claim(*craft.member(arm)));
+  EXPECT_FALSE(scarce.claim(*craft.member(arm))) << "it is the same one";
+  EXPECT_FALSE(scarce.claim(*craft.member(hand)));
+  const auto& third = *std::ranges::find_if(
+      craft.members, [](const Member& each) { return each.apid() != arm && each.apid() != hand; });
+  EXPECT_EQ(scarce.claim(third), "processes short: it asks for 1, 2 of 2 are reserved");
+  scarce.release(arm);
+  EXPECT_FALSE(scarce.claim(third));
+}
+
+TEST_F(ResourceHandlingTest, WhoStartsAProcessIsEndedAndNamedOnceItActs) {
+  start_all(Operational);
+  use_of(arm) = {.threads = 1, .processes = 1};
+  look();
+  EXPECT_TRUE(killed.empty());
+  use_of(arm).processes = 2;
+  look();
+  look();
+  if (built_with_sanitizer || sandbox_is_unwanted()) return;  // they may start one
+  EXPECT_THAT(killed, ::testing::ElementsAre(played[arm].process));
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_TRUE(was_told("ARM has taken 2 of processes, each subsystem is 1 at most: it is ended"));
+}
+
+TEST_F(ResourceHandlingTest, WhoFliesWithoutASandboxByHisOwnWishMayHaveADebuggerBeginIt) {
+  const bool was_unwanted = sandbox_is_unwanted();
+  ::setenv("HIROSCO_SANDBOX", "off", 1);
+  start_all(Operational);
+  use_of(arm) = {.threads = 1, .processes = 2};
+  look();
+  EXPECT_TRUE(killed.empty());
+  if (!was_unwanted) ::unsetenv("HIROSCO_SANDBOX");
+}
+
+TEST_F(ResourceHandlingTest, WhatLeadsToOneMayBeTwoProcessesBeforeItActs) {
+  start_all(Offline);
+  use_of(arm) = {.threads = 1, .processes = 2};
+  look();
+  EXPECT_TRUE(killed.empty());
 }
 
 TEST_F(ResourceHandlingTest, WhoTakesMoreThanItSaysIsFencedEndedAndNamedOnce) {

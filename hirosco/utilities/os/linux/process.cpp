@@ -282,6 +282,19 @@ Result<> Process::send_signal(int signal) noexcept {
   return ok();
 }
 
+/// By its handle, which names the group of this process and of no other one even when it has ended and its number is somebody else's.
+void Process::kill_with_its_own() noexcept {
+  // PIDFD_SIGNAL_PROCESS_GROUP of Linux 6.9, which older headers do not have.
+  constexpr unsigned to_its_group = 1U << 2;
+  if (::syscall(SYS_pidfd_send_signal, handle_.get(), SIGKILL, nullptr, to_its_group) != 0 && errno == EINVAL) {
+    // An older system knows a group by its number alone: nobody else has it while its process has not ended. Of whom no number is known
+    // there is none, and -1 would be everybody.
+    pollfd look{handle_.get(), POLLIN, 0};
+    if (pid_ > 1 && !ended_ && ::poll(&look, 1, 0) == 0) (void)::kill(-pid_, SIGKILL);
+  }
+  static_cast<void>(send_signal(SIGKILL));
+}
+
 void hurry_end(int pid) noexcept {
   std::array<char, 32> path{};
   std::snprintf(path.data(), path.size(), "/proc/%d/task", pid);

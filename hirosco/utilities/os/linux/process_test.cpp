@@ -5,13 +5,16 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <filesystem>
+#include <utility>
 
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
@@ -51,6 +54,11 @@ struct Pipe {
   }
 };
 
+/// PIDFD_SIGNAL_PROCESS_GROUP; signal 0 ends nobody.
+[[nodiscard]] bool knows_groups_by_handle(const Process& process) {
+  return ::syscall(SYS_pidfd_send_signal, process.handle().get(), 0, nullptr, 1U << 2) == 0 || errno != EINVAL;
+}
+
 TEST(Process, TellsItsExitCode) {
   auto process = Process::spawn(shell("exit 7"));
   ASSERT_TRUE(process) << process.error().text;
@@ -78,6 +86,59 @@ TEST(Process, RunsUntilASignalEndsIt) {
   EXPECT_TRUE(process->send_signal(SIGKILL));
   EXPECT_EQ(end_of(*process), (ExitStatus{ExitStatus::Kind::Signalled, SIGKILL}));
   EXPECT_EQ(process->send_signal(SIGKILL).error().code, ErrorCode::NotFound);
+}
+
+TEST(Process, TakesWhomItHasStartedWithItWhenItIsKilledSo) {
+  // Whoever still has the pipe holds it open: its end is that of all of them.
+  Pipe pipe;
+  ProcessStart start = shell("sleep 1000 & echo started; wait");
+  start.inherited = {{pipe.write_end.get(), STDOUT_FILENO}};
+  auto process = Process::spawn(start);
+  ASSERT_TRUE(process) << process.error().text;
+  std::array<char, 8> text{};
+  ASSERT_EQ(::read(pipe.read_end.get(), text.data(), text.size()), 8);
+  process->kill_with_its_own();
+  EXPECT_EQ(pipe.rest(), "");
+  EXPECT_EQ(end_of(*process), (ExitStatus{ExitStatus::Kind::Signalled, SIGKILL}));
+  process->kill_with_its_own();  // nobody is there any more
+}
+
+TEST(Process, TakesWhomItHasLeftBehindWhenItHasEndedByItself) {
+  Pipe pipe;
+  ProcessStart start = shell("sleep 1000 & echo started");
+  start.inherited = {{pipe.write_end.get(), STDOUT_FILENO}};
+  auto process = Process::spawn(start);
+  ASSERT_TRUE(process) << process.error().text;
+  std::array<char, 8> text{};
+  ASSERT_EQ(::read(pipe.read_end.get(), text.data(), text.size()), 8);
+  EXPECT_TRUE(end_of(*process).success());
+  process->kill_with_its_own();
+  if (!knows_groups_by_handle(*process)) {
+    ::kill(-process->pid(), SIGKILL);  // its number is the group's as long as that lives
+    GTEST_SKIP() << "this system knows groups by their numbers alone";
+  }
+  EXPECT_EQ(pipe.rest(), "");
+}
+
+TEST(Process, OfWhomNoNumberIsKnownNobodyElseIsEnded) {
+  auto process = Process::spawn(shell("sleep 1000"));
+  ASSERT_TRUE(process) << process.error().text;
+  FileDescriptor handle{::fcntl(process->handle().get(), F_DUPFD_CLOEXEC, 0)};
+  auto nameless = Process::adopt(-1, std::move(handle));
+  ASSERT_TRUE(nameless) << nameless.error().text;
+  nameless->kill_with_its_own();
+  EXPECT_EQ(end_of(*process), (ExitStatus{ExitStatus::Kind::Signalled, SIGKILL}));
+}
+
+/// A process that is no leader of a group has none of its own: who shares its group with it goes on.
+TEST(Process, ThatIsInTheGroupOfAnotherIsEndedAlone) {
+  const pid_t child = ::fork();
+  if (child == 0)
+    for (;;) ::pause();
+  auto process = Process::adopt(child);
+  ASSERT_TRUE(process) << process.error().text;
+  process->kill_with_its_own();  // we are in that group, too
+  EXPECT_EQ(end_of(*process), (ExitStatus{ExitStatus::Kind::Signalled, SIGKILL}));
 }
 
 TEST(Process, AnExecutableThatDoesNotExistIsAnErrorAtOnce) {

@@ -143,10 +143,12 @@ void give_up_rights() noexcept {
 
 }  // namespace
 
-bool sandbox_is_off() noexcept {
+bool sandbox_is_unwanted() noexcept {
   const char* const wish = std::getenv("HIROSCO_SANDBOX");
-  return built_without != nullptr || (wish != nullptr && std::string_view{wish} == "off");
+  return wish != nullptr && std::string_view{wish} == "off";
 }
+
+bool sandbox_is_off() noexcept { return built_without != nullptr || sandbox_is_unwanted(); }
 
 std::vector<std::string> isolation_lacks() {
   std::vector<std::string> lacks;
