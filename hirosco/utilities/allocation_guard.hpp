@@ -12,6 +12,12 @@ struct AllocationCount {
   std::uint64_t allocations{0};  ///< malloc, calloc, realloc, aligned_alloc and what stands on them (operator new)
   std::uint64_t frees{0};
   std::uint64_t octets{0};       ///< asked for
+  AllocationCount& operator+=(const AllocationCount& more) noexcept {
+    allocations += more.allocations;
+    frees += more.frees;
+    octets += more.octets;
+    return *this;
+  }
   friend bool operator==(const AllocationCount&, const AllocationCount&) = default;
 };
 

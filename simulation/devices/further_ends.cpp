@@ -84,7 +84,8 @@ bool FurtherEnds::receive(FurtherExchange& end, Drive& drive, TimePoint now, boo
   if (!command) return refuse();
   const Obedience::Judgement judgement = drive.obedience.judge(*command, now);
   if (judgement.verdict == Refused) {
-    drive.asked = true;  // it is told so, by a flag and the sequence that counts: nobody else is, nor would hear of it otherwise
+    drive.asked =
+        true;  // it is told so, by a flag and the sequence that counts: nobody else is, nor would hear of it otherwise
     return false;
   }
   if (judgement.verdict == Heard) return true;

@@ -85,12 +85,12 @@ TEST(JoystickSelfTest, PassesInAFewCyclesAndPushesNobody) {
 }
 
 TEST(JoystickSelfTest, KeepsAForceOfTheWrongSignAndAHandleOutsideOfItsRangeFromOperational) {
-  TestedJoystick reversed{[](joystick::DisplayLaw& law, const joystick::DisplayLaw::Input& input,
-                             double scale) noexcept {
-    joystick::Axes torque = law.torque(input, scale);
-    for (double& each : torque) each = -each;
-    return torque;
-  }};
+  TestedJoystick reversed{
+      [](joystick::DisplayLaw& law, const joystick::DisplayLaw::Input& input, double scale) noexcept {
+        joystick::Axes torque = law.torque(input, scale);
+        for (double& each : torque) each = -each;
+        return torque;
+      }};
   TestedJoystick astray;
   astray.position_rad[1] = 0.6;
   for (const auto& [tested, words] :

@@ -97,8 +97,7 @@ Result<> SelfCheck::check_law(double period_s, double force_scale) const noexcep
         return fails("it would show a robot that does not act, axis", axis);
       input.peer_active = true;
       const Axes answer = shown(input);
-      const double wanted =
-          std::clamp(-force_scale * pressed, -DisplayLaw::torque_max_n_m, DisplayLaw::torque_max_n_m);
+      const double wanted = std::clamp(-force_scale * pressed, -DisplayLaw::torque_max_n_m, DisplayLaw::torque_max_n_m);
       if (!is_within(answer[axis] - wanted, smallest_n_m))
         return fails("it would push otherwise than against what the robot presses on, axis", axis);
       const std::size_t other = 1 - axis;

@@ -29,7 +29,7 @@ class SelfCheck {
     bool alive{false};  ///< the handle answers
     Axes position_rad{};
     Axes velocity_rad_s{};
-    std::uint8_t hand{0};   ///< whose hand is on it
+    std::uint8_t hand{0};  ///< whose hand is on it
     std::uint8_t hands{0};  ///< bit of each hand that there is
     Axes shown_n_m{};  ///< what the law has just put out
     bool peer_active{false};  ///< there is a robot whose torque may be shown
@@ -50,7 +50,7 @@ class SelfCheck {
   [[nodiscard]] Result<> check_damping(double period_s, double force_scale) const noexcept;
 
   Law law_;
-  int done_{0};   ///< cycles
+  int done_{0};  ///< cycles
   int quiet_{0};  ///< cycles in a row without a robot that presses
   Axes last_rad_{};
 };

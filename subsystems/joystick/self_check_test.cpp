@@ -15,9 +15,7 @@ namespace {
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 /// A handle that nobody holds, coupled to a robot that does not act.
-SelfCheck::Seen at_rest() {
-  return {.alive = true, .hand = 0, .hands = 1, .force_scale = 0.02, .period_s = 0.0005};
-}
+SelfCheck::Seen at_rest() { return {.alive = true, .hand = 0, .hands = 1, .force_scale = 0.02, .period_s = 0.0005}; }
 
 /// "passed after 6", or why not; `change` spoils what is seen from this cycle on, counted from 0.
 template <class Change>

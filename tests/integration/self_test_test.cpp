@@ -97,12 +97,12 @@ TEST(SelfTestInFlight, OfArmAndStickIsPassedByBothOnTheWayUpAndWhenTheModeChange
 TEST(SelfTestInFlight, KeepsAHandFromAForceThatWouldDrawItIn) {
   Plan plan{.edit = requires_of({"JOYSTICK"})};
   plan.subsystems["hirosco-joystick"] = [] {
-    return make_joystick_with([](joystick::DisplayLaw& law, const joystick::DisplayLaw::Input& input,
-                                 double scale) noexcept {
-      joystick::Axes torque = law.torque(input, scale);
-      for (double& each : torque) each = -each;
-      return torque;
-    });
+    return make_joystick_with(
+        [](joystick::DisplayLaw& law, const joystick::DisplayLaw::Input& input, double scale) noexcept {
+          joystick::Axes torque = law.torque(input, scale);
+          for (double& each : torque) each = -each;
+          return torque;
+        });
   };
   Flight flight{plan};
   EXPECT_FALSE(flight.commission());

@@ -199,7 +199,8 @@ TEST(Commands, OfTheSupervisorAreLikeThoseOfEveryOtherMember) {
            R"(<Subscribes subsystem=")" + whom + R"(" housekeeping="4701" events="RECOVERY_STEP"/>)" +
            R"(<ParamRef name="SEEN" id="1" type="UINT8" from=")" + whom + R"(.MODE" age_ms="1000"/>)";
   };
-  const std::string meant = R"(<Commands subsystem="BOSS" to="SUPERVISOR"/><Subscribes subsystem="BOSS" to="SUPERVISOR"/>)";
+  const std::string meant =
+      R"(<Commands subsystem="BOSS" to="SUPERVISOR"/><Subscribes subsystem="BOSS" to="SUPERVISOR"/>)";
   for (const auto& [whom, inside] : {std::pair<std::string, std::string>{"SUPERVISOR", ""}, {"BOSS", meant}}) {
     const auto source = with_adviser(says(whom), inside);
     const auto reading = read_mission(data / "mission.xml", source);
@@ -226,7 +227,8 @@ TEST(Commands, OfTheSupervisorAreLikeThoseOfEveryOtherMember) {
 
 TEST(Commands, OfTheSupervisorForWhatIsTheGroundsAloneAreRefused) {
   EXPECT_EQ(first_problem(with_adviser(R"(<Commands subsystem="SUPERVISOR" functions="SET_MODE"/>)")), "");
-  EXPECT_EQ(first_problem(with_adviser(R"(<Commands subsystem="SUPERVISOR" functions="SET_MODE SHUTDOWN"/>)")), "E0357");
+  EXPECT_EQ(first_problem(with_adviser(R"(<Commands subsystem="SUPERVISOR" functions="SET_MODE SHUTDOWN"/>)")),
+            "E0357");
   EXPECT_EQ(first_problem(with_adviser(R"(<Commands subsystem="SUPERVISOR" functions="SET_STATE"/>)")), "E0310");
 }
 

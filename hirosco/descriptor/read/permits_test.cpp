@@ -72,8 +72,8 @@ TEST(PermittedOrigins, AreTheGroundAndWhoAsksForSomethingOfWhomThePermitMeans) {
 
 TEST(PermittedOrigins, ThatAreNotThereOrAskForNothingAreRefused) {
   const auto problem = [](const std::string& from, const std::string& whom = "CORONAGRAPH") {
-    return permit_problem(with_permit(R"(<Permit subsystem=")" + whom + R"(" services="3" from=")" + from + R"("/>)",
-                                      asks_coronagraph));
+    return permit_problem(
+        with_permit(R"(<Permit subsystem=")" + whom + R"(" services="3" from=")" + from + R"("/>)", asks_coronagraph));
   };
   EXPECT_EQ(problem("ground FLYWEEL"), "E0304 subsystem 'FLYWEEL' is not in the mission");
   EXPECT_EQ(problem("Ground"), "E0304 subsystem 'Ground' is not in the mission");
@@ -86,9 +86,9 @@ TEST(PermittedOrigins, ThatAreNotThereOrAskForNothingAreRefused) {
 
 TEST(PermittedOrigins, OpenNothingOfTheSupervisorThatIsTheGroundsAlone) {
   const auto problem = [](const std::string& from) {
-    return permit_problem(with_permit(
-        R"(<Permit subsystem="SUPERVISOR" functions="SET_MODE SHUTDOWN" from=")" + from + R"("/>)",
-        R"(<Commands subsystem="SUPERVISOR" reads="MODE"/>)"));
+    return permit_problem(
+        with_permit(R"(<Permit subsystem="SUPERVISOR" functions="SET_MODE SHUTDOWN" from=")" + from + R"("/>)",
+                    R"(<Commands subsystem="SUPERVISOR" reads="MODE"/>)"));
   };
   EXPECT_EQ(problem("FLYWHEEL"), "E0357 'SHUTDOWN' of the supervisor is the ground's alone to ask for");
   EXPECT_EQ(problem("ground FLYWHEEL"), "0");

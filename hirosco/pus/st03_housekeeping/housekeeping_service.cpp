@@ -89,7 +89,8 @@ Result<> HousekeepingService::load_one(const HousekeepingStructure& declared) {
   }
   if (!draft_.allows(draft_.interval)) return fail(ErrorCode::OutOfRange, "housekeeping interval", declared.id);
   if (sampler_.free_commands() < 3) return fail(ErrorCode::Unavailable, "housekeeping commands", declared.id);
-  if (!fits || check_capacity(draft_)) return fail(ErrorCode::ResourceExhausted, "housekeeping structures", declared.id);
+  if (!fits || check_capacity(draft_))
+    return fail(ErrorCode::ResourceExhausted, "housekeeping structures", declared.id);
   if (Structure* existing = find(declared.id); existing != nullptr) {
     sampler_.send(HousekeepingSampler::Command::Kind::Remove, existing->slot);
     structures_.erase(structures_.begin() + (existing - structures_.data()));

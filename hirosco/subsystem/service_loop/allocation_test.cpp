@@ -70,9 +70,7 @@ class CountedFlight {
     rig_.advance(500us);
     const RealtimeScope no_heap;
     static_cast<void>(rig_.subsystem.cycle_step(rig_.clock.now()));
-    const AllocationCount count = no_heap.count();
-    uses_.allocations += count.allocations;
-    uses_.frees += count.frees;
+    uses_ += no_heap.count();
   }
   [[nodiscard]] const AllocationCount& uses() const { return uses_; }
   [[nodiscard]] Rig& rig() { return rig_; }
@@ -195,9 +193,7 @@ TEST(CycleAllocations, ThereAreNoneForAQueueOfSamplesEither) {
     rig.advance(10ms);
     const RealtimeScope no_heap;
     static_cast<void>(rig.subsystem.cycle_step(rig.clock.now()));
-    const AllocationCount count = no_heap.count();
-    uses.allocations += count.allocations;
-    uses.frees += count.frees;
+    uses += no_heap.count();
   }
   EXPECT_EQ(uses.allocations, 0u);
   EXPECT_EQ(uses.frees, 0u);

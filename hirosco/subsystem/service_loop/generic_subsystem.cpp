@@ -119,9 +119,7 @@ TimePoint GenericSubsystem::service_step(TimePoint now) {
     used = watched.count();
   }
   if (!commissioned()) return next;
-  const AllocationCount of_loops = loops_.take_heap_uses();
-  used.allocations += of_loops.allocations;
-  used.frees += of_loops.frees;
+  used += loops_.take_heap_uses();
   if (!heap_watch_.account(used, now)) return next;
   const AllocationCount& sum = heap_watch_.sum();
   cycle_.note_service_heap(sum.allocations + sum.frees);

@@ -80,11 +80,7 @@ std::uint64_t OwnLoops::lost() const noexcept {
 
 AllocationCount OwnLoops::take_heap_uses() noexcept {
   AllocationCount sum;
-  for (const auto& loop : loops_) {
-    const AllocationCount uses = loop->heap_uses();
-    sum.allocations += uses.allocations;
-    sum.frees += uses.frees;
-  }
+  for (const auto& loop : loops_) sum += loop->heap_uses();
   const AllocationCount before = std::exchange(told_uses_, sum);
   return {.allocations = sum.allocations - before.allocations, .frees = sum.frees - before.frees};
 }

@@ -205,11 +205,10 @@ struct PermissionProperty : ::testing::Test {
     mission.subsystems[2].subsystem.commands = {of_hand, all};
     mission.subsystems[1].subsystem.commands = {
         {.subsystem = "SUPERVISOR", .functions = {"SET_MODE"}, .at = {}, .apid = supervisor_apid}};
-    mission.subsystems[0].subsystem.subscribes = {
-        {.subsystem = "SUPERVISOR",
-         .things = {{Housekeeping, "4701", heard_structure, {}}},
-         .at = {},
-         .apid = supervisor_apid}};
+    mission.subsystems[0].subsystem.subscribes = {{.subsystem = "SUPERVISOR",
+                                                   .things = {{Housekeeping, "4701", heard_structure, {}}},
+                                                   .at = {},
+                                                   .apid = supervisor_apid}};
     // The other mode, which is not in force, permits everything to everybody.
     mission.modes[1].permits = {{.subsystem = "*",
                                  .functions = {"*"},

@@ -26,9 +26,9 @@ void SafeAll::carry_out(const pus::Request& request) {
   after_stop("SAFE_ALL");
   if (kept) return;
   pus::FailureNotice notice{pus::FailureCode::ExecutionError};
-  own_.verification().completion_failed(
-      request, notice.because({ErrorCode::ResourceExhausted, most_waiting,
-                               "carried out; the outcome is told for so many at once:"}));
+  own_.verification().completion_failed(request,
+                                        notice.because({ErrorCode::ResourceExhausted, most_waiting,
+                                                        "carried out; the outcome is told for so many at once:"}));
 }
 
 bool SafeAll::has_room_for(const pus::Request& request) const {

@@ -43,8 +43,8 @@ std::optional<Outcome> Modes::not_now(const Call& call) const {
   if (runner_.running()) return refused(pus::FailureCode::Busy, "another change of mode is under way");
   if (parts_.commissioning.running()) return refused(pus::FailureCode::Busy, "the craft is being commissioned");
   if (is_of_subsystem(call) && craft_.now < subsystems_wait_until_)
-    return refused(pus::FailureCode::Busy, "a subsystem was given a mode just now; pause, s:",
-                   pause_of_subsystems / std::chrono::seconds{1});
+    return refused(pus::FailureCode::Busy,
+                   "a subsystem was given a mode just now; pause, s:", pause_of_subsystems / std::chrono::seconds{1});
   return std::nullopt;
 }
 
