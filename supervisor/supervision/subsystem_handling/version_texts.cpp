@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/supervision/subsystem_handling/version_texts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hirosco/descriptor/model/in_flight.hpp"
+#include "supervisor/keeper/kept.hpp"
+#include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
+#include "supervisor/supervision/subsystem_handling/fresh_descriptor.hpp"
+
+namespace hirosco::supervisor {
+
+using descriptor::MissionSubsystem;
+using descriptor::TakenBy;
+
+namespace {
+
+/// What the keeper holds for the next supervisor, but for paths and lengths.
+constexpr std::size_t most_octets_of_texts = texts_octets / 2 - (std::size_t{64} << 10);
+
+/// Where a text that is not in force stands among those of the mission: no file has that name.
+[[nodiscard]] std::filesystem::path place_of(const std::filesystem::path& file, std::string_view version) {
+  return file.native() + "@" + std::string{version};
+}
+
+/// The parts that the program of this version has to have.
+[[nodiscard]] std::string additions(const descriptor::SubsystemDescriptor& flown,
+                                    const descriptor::SubsystemDescriptor& fresh) {
+  std::string words;
+  for (const auto& each : descriptor::obstacles(flown, fresh, TakenBy::SameProcess))
+    if (each.addition) words.append(words.empty() ? "" : ", ").append(each.what);
+  return words;
+}
+
+}  // namespace
+
+MissionSubsystem& VersionTexts::flown(const Member& subject) {
+  return *std::ranges::find(craft_.mission.subsystems, subject.apid(),
+                            [](const MissionSubsystem& each) { return each.subsystem.id; });
+}
+
+VersionTexts::Found VersionTexts::look(Member& subject, std::uint16_t asked_by) {
+  if (parts_.readings == nullptr) return Found::InForce;
+  if (late_) return Found::NotYet;
+  if (reading_ != subject.apid()) {
+    // One file at a time, judged with all others as they are.
+    const bool changes = std::ranges::any_of(craft_.members, &Member::descriptor_changes);
+    if (reading_ || changes || !parts_.readings->begin(craft_.mission, subject.descriptor().file)) return Found::NotYet;
+    reading_ = subject.apid();
+  }
+  auto reading = parts_.readings->outcome();
+  if (!reading) return Found::NotYet;
+  reading_.reset();
+  return judge(subject, std::move(*reading), asked_by);
+}
+
+VersionTexts::Found VersionTexts::judge(Member& subject, DescriptorReading reading, std::uint16_t asked_by) {
+  const MissionSubsystem& now = flown(subject);
+  const auto& file = now.subsystem.file;
+  const auto refuse = [&](const DescriptorProblems& problems) {
+    problems_ = problems.size();
+    tell_problems(craft_, parts_.own, subject.apid(), asked_by, problems);
+    return Found::Refused;
+  };
+  if (reading.text && now.subsystem.text && *reading.text == *now.subsystem.text) return Found::InForce;
+  if (!reading.mission.value) return refuse(reading.mission.problems);
+  DescriptorProblems problems;
+  for (const MissionSubsystem& other : craft_.mission.subsystems)
+    if (other.subsystem.file == file && other.subsystem.id != subject.apid())
+      add_problem(problems, file, {},
+                  fmt::format("it differs from what flies, and {} flies by it, too", other.subsystem.name),
+                  "a version takes a text for itself alone: a file of its own for each, or the text as it is in force");
+  const auto* found = reading.mission.value->find_subsystem(subject.apid());
+  if (found == nullptr || found->subsystem.name != now.subsystem.name) {
+    add_problem(problems, file, {}, "name or id of " + now.subsystem.name + " cannot change in flight",
+                "everybody knows it by them");
+    return refuse(problems);
+  }
+  add_obstacles(problems, file, descriptor::obstacles(now.subsystem, found->subsystem, TakenBy::AnotherProcess));
+  MissionSubsystem tried = *found;
+  carry_values(now, tried, problems);
+  std::size_t octets = reading.text->size();
+  for (const auto& [path, text] : craft_.mission.texts) octets += text->size();
+  if (octets > most_octets_of_texts)
+    add_problem(problems, file, {}, "there is no room to keep the text before",
+                fmt::format("all texts of a flight take {} octets at most", most_octets_of_texts));
+  if (!problems.empty()) return refuse(problems);
+  fresh_.insert_or_assign(subject.apid(),
+                          Fresh{*found, std::move(reading.text), std::move(reading.mission.value->texts)});
+  subject.brings_text = true;
+  return Found::Another;
+}
+
+void VersionTexts::let_go(Member& subject) {
+  if (reading_ == subject.apid()) late_ = true;
+  fresh_.erase(subject.apid());
+  subject.brings_text = false;
+}
+
+void VersionTexts::watch() {
+  if (!late_ || !parts_.readings->outcome()) return;
+  late_ = false;
+  reading_.reset();
+}
+
+void VersionTexts::take(const Member& subject, const std::string& leaving) {
+  auto found = fresh_.extract(subject.apid());
+  if (found.empty()) return;
+  MissionSubsystem& now = flown(subject);
+  Fresh& fresh = found.mapped();
+  const std::string added = additions(now.subsystem, fresh.declared.subsystem);
+  keep(now, leaving);
+  put(now, std::move(fresh.declared));
+  for (auto& [file, text] : fresh.texts) craft_.mission.texts[file] = std::move(text);
+  craft_.mission.texts[now.subsystem.file] = std::move(fresh.text);
+  if (!added.empty())
+    craft_.tell(
+        fmt::format("of {} {}: hirosco tc, status and log read it in the file; a ground station and a client that "
+                    "run know it when they are started again",
+                    now.subsystem.name, added),
+        subject.apid());
+}
+
+void VersionTexts::go_back(const Member& subject, const std::string& leaving, const std::string& version) {
+  const auto found = kept_.find({subject.apid(), version});
+  if (found == kept_.end()) return;
+  MissionSubsystem& now = flown(subject);
+  MissionSubsystem declared = found->second;
+  auto text = declared.subsystem.text;
+  // A supervisor before may have gone back that far.
+  if (text && now.subsystem.text && *text == *now.subsystem.text) return;
+  keep(now, leaving);
+  put(now, std::move(declared));
+  if (text) craft_.mission.texts[now.subsystem.file] = std::move(text);
+  craft_.tell(fmt::format("{} flies by the text before: who reads {} needs that text in it again", now.subsystem.name,
+                          now.subsystem.file.string()),
+              subject.apid());
+}
+
+/// As it was declared: what was set by then may be another when it is gone back to.
+void VersionTexts::keep(const MissionSubsystem& flown, const std::string& version) {
+  MissionSubsystem declared = flown;
+  parts_.stored.undo(declared.subsystem);
+  if (flown.subsystem.text) craft_.mission.texts[place_of(flown.subsystem.file, version)] = flown.subsystem.text;
+  kept_.insert_or_assign({flown.subsystem.id, version}, std::move(declared));
+}
+
+void VersionTexts::put(MissionSubsystem& flown, MissionSubsystem declared) {
+  const auto text = declared.subsystem.text;
+  // Before what goes on is looked at: of what was stored it forgets what does not fit any more.
+  parts_.stored.redeclared(declared.subsystem);
+  std::erase_if(flown.overrides,
+                [&](const descriptor::Override& each) { return !apply_override(declared.subsystem, to_string(each)); });
+  put_in_force(craft_, parts_.own, flown, std::move(declared), text ? *text : std::string{});
+}
+
+void VersionTexts::keep_only(const Member& subject, const std::string* version) {
+  std::erase_if(kept_, [&](const auto& each) {
+    return each.first.first == subject.apid() && (version == nullptr || each.first.second != *version);
+  });
+  const auto& file = subject.descriptor().file;
+  const std::string all = place_of(file, "").native();
+  std::erase_if(craft_.mission.texts, [&](const auto& each) {
+    return each.first.native().starts_with(all) && (version == nullptr || each.first != place_of(file, *version));
+  });
+}
+
+bool VersionTexts::recall(const Member& subject, const std::string& version) {
+  const auto& file = subject.descriptor().file;
+  const auto text = craft_.mission.texts.find(place_of(file, version));
+  if (text == craft_.mission.texts.end()) return false;
+  const auto reading = descriptor::read_again(craft_.mission, file, *text->second,
+                                              [&](const std::filesystem::path& asked) -> Result<std::string> {
+                                                const auto known = craft_.mission.texts.find(asked);
+                                                if (known == craft_.mission.texts.end())
+                                                  return fail(ErrorCode::NotFound, "is no file of this flight");
+                                                return *known->second;
+                                              });
+  const auto* found = reading.value ? reading.value->find_subsystem(subject.apid()) : nullptr;
+  if (found == nullptr) {
+    craft_.tell(subject.descriptor().name + "'s text before cannot be read: it stays by the one in force",
+                subject.apid());
+    return false;
+  }
+  kept_.insert_or_assign({subject.apid(), version}, *found);
+  return true;
+}
+
+}  // namespace hirosco::supervisor
