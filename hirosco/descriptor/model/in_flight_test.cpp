@@ -189,30 +189,30 @@ TEST(InFlight, WhatIsAddedNeedsAProgramThatHasIt) {
 }
 
 TEST(InFlight, WhatIsNoPureAdditionIsRefusedForAnotherProcess) {
-  for (const Edit& edit : std::initializer_list<Edit>{
-           {R"(<ParamRef name="TITLE")", R"(<ParamRef name="FRESH" id="8" type="DOUBLE"/><ParamRef name="TITLE")",
-            "parameter FRESH is new and stands before others"},
-           {"</StructRef>",
-            R"(</StructRef><ParamRef name="FRESH" id="8" type="DOUBLE" persistent="yes" writable="PreOperational"/>)",
-            "parameter FRESH is new and is to outlive the flight"},
-           {R"(<ParamRef name="ANGLE" id="9")",
-            R"(<ParamRef name="MORE" id="7" type="FLOAT"/><ParamRef name="ANGLE" id="9")",
-            "parameter SEEN: member MORE is new"},
-           {R"(<ParamRef name="TITLE" id="1" type="TEXT" octets="8" init="old"/>)", "", "parameter TITLE is gone"},
-           {R"(name="GAIN" id="1" type="DOUBLE")", R"(name="GAIN" id="4" type="DOUBLE")", "parameter GAIN: its id"},
-           {R"(name="BUMP" id="7")", R"(name="BUMP" id="8")", "event BUMP: its id"},
-           {R"(<Argument name="WHERE" type="DOUBLE"/>)", R"(<Argument name="WHERE" type="FLOAT"/>)",
-            "event BUMP: field WHERE: its type"},
-           {R"(<Request name="LOOK")",
-            R"(<Request name="BLINK" subtype="5" states="Operational"/><Request name="LOOK")",
-            "service GAZE: request BLINK is new"},
-           {R"(<SampledOnce><ParamRef name="GAIN"/>)", R"(<SampledOnce><ParamRef name="SEEN"/>)",
-            "housekeeping 11: what it reports"},
-           {R"(<Field name="X" type="DOUBLE"/></Requires>)",
-            R"(<Field name="X" type="DOUBLE"/><Field name="Y" type="DOUBLE"/></Requires>)",
-            "required set IN: field Y is new"},
-           {R"(memory_kB="100000")", R"(memory_kB="90000")", "its resources"},
-           {R"(sampling_us="1000")", R"(sampling_us="2000")", "configuration FAST: priority, sampling time or budget"}})
+  for (
+      const Edit& edit : std::initializer_list<Edit>{
+          {R"(<ParamRef name="TITLE")", R"(<ParamRef name="FRESH" id="8" type="DOUBLE"/><ParamRef name="TITLE")",
+           "parameter FRESH is new and stands before others"},
+          {"</StructRef>",
+           R"(</StructRef><ParamRef name="FRESH" id="8" type="DOUBLE" minimum="0" maximum="7" persistent="yes" writable="PreOperational"/>)",
+           "parameter FRESH is new and is to outlive the flight"},
+          {R"(<ParamRef name="ANGLE" id="9")",
+           R"(<ParamRef name="MORE" id="7" type="FLOAT"/><ParamRef name="ANGLE" id="9")",
+           "parameter SEEN: member MORE is new"},
+          {R"(<ParamRef name="TITLE" id="1" type="TEXT" octets="8" init="old"/>)", "", "parameter TITLE is gone"},
+          {R"(name="GAIN" id="1" type="DOUBLE")", R"(name="GAIN" id="4" type="DOUBLE")", "parameter GAIN: its id"},
+          {R"(name="BUMP" id="7")", R"(name="BUMP" id="8")", "event BUMP: its id"},
+          {R"(<Argument name="WHERE" type="DOUBLE"/>)", R"(<Argument name="WHERE" type="FLOAT"/>)",
+           "event BUMP: field WHERE: its type"},
+          {R"(<Request name="LOOK")", R"(<Request name="BLINK" subtype="5" states="Operational"/><Request name="LOOK")",
+           "service GAZE: request BLINK is new"},
+          {R"(<SampledOnce><ParamRef name="GAIN"/>)", R"(<SampledOnce><ParamRef name="SEEN"/>)",
+           "housekeeping 11: what it reports"},
+          {R"(<Field name="X" type="DOUBLE"/></Requires>)",
+           R"(<Field name="X" type="DOUBLE"/><Field name="Y" type="DOUBLE"/></Requires>)",
+           "required set IN: field Y is new"},
+          {R"(memory_kB="100000")", R"(memory_kB="90000")", "its resources"},
+          {R"(sampling_us="1000")", R"(sampling_us="2000")", "configuration FAST: priority, sampling time or budget"}})
     EXPECT_THAT(
         all(obstacles(read(flown_text), read(changed(edit.from, edit.to, flown_text)), TakenBy::AnotherProcess)),
         HasSubstr(edit.told))
@@ -220,7 +220,7 @@ TEST(InFlight, WhatIsNoPureAdditionIsRefusedForAnotherProcess) {
 }
 
 /// A structure's only parameter, by the place that it refers to.
-[[nodiscard]] std::string reported(const SubsystemDescriptor& subsystem, std::uint16_t id) {
+[[nodiscard]] std::string only_value_of(const SubsystemDescriptor& subsystem, std::uint16_t id) {
   for (const HousekeepingStructure& each : subsystem.configurations.front().housekeeping)
     if (each.id == id) return subsystem.parameters.at(each.sampled_once.front().parameter).field.name;
   return "none";
@@ -249,16 +249,16 @@ TEST(InFlight, WhatIsAddedIsTakenAndTakenBackWithAllThatRefersToIt) {
   EXPECT_NE(flown.find_function("SPIN"), nullptr);
   EXPECT_EQ(flown.find_event("CRACK")->severity, Severity::High);
   EXPECT_EQ(flown.failures.size(), 1U);
-  EXPECT_EQ(reported(flown, 13), "FRESH");
-  EXPECT_EQ(reported(flown, 12), "CYCLE_STATS");
+  EXPECT_EQ(only_value_of(flown, 13), "FRESH");
+  EXPECT_EQ(only_value_of(flown, 12), "CYCLE_STATS");
 
   take_over(flown, read(text));
   EXPECT_EQ(all(obstacles(flown, read(text))), "");
   EXPECT_EQ(*flown.text, text);
   EXPECT_EQ(flown.find_parameter("FRESH"), nullptr);
   EXPECT_EQ(flown.find_function("SPIN"), nullptr);
-  EXPECT_EQ(reported(flown, 13), "none");
-  EXPECT_EQ(reported(flown, 12), "CYCLE_STATS");
+  EXPECT_EQ(only_value_of(flown, 13), "none");
+  EXPECT_EQ(only_value_of(flown, 12), "CYCLE_STATS");
 }
 
 TEST(InFlight, AnObstacleSaysWhereItStands) {
