@@ -118,8 +118,8 @@ void VersionTexts::take(const Member& subject, const std::string& leaving) {
   craft_.mission.texts[now.subsystem.file] = std::move(fresh.text);
   if (!added.empty())
     craft_.tell(
-        fmt::format("of {} {}: hirosco tc, status and log read it in the file; a ground station and a client that "
-                    "run know it when they are started again",
+        fmt::format("of {} {}: hirosco tc, status and log read it in the file; it has names in a ground station "
+                    "that is started now (hirosco ground --archive FILE), and in a client that is exported anew",
                     now.subsystem.name, added),
         subject.apid());
 }
