@@ -155,14 +155,19 @@ class Comparison {
     }
   }
 
-  /// The same of what another process may have more of: only what was there has to be there, in its order.
+  /// The same of what another process may have more of.
   template <class T>
   void growing(const std::vector<T>& flown, const std::vector<T>& fresh, const std::string& kind, auto&& name,
                auto&& at, std::string_view why, auto&& pair) {
-    if (by_ == TakenBy::SameProcess)
-      for (const T& each : fresh)
-        if (!is_listed(flown, name(each), name))
-          found_.push_back({at(each), kind + name(each) + " is new", addition_why, true});
+    for (const T& each : fresh)
+      if (by_ == TakenBy::SameProcess && !is_listed(flown, name(each), name))
+        found_.push_back({at(each), kind + name(each) + " is new", addition_why, true});
+    kept(flown, fresh, kind, name, at, why, pair);
+  }
+  /// Only what was there has to be there, in its order.
+  template <class T>
+  void kept(const std::vector<T>& flown, const std::vector<T>& fresh, const std::string& kind, auto&& name, auto&& at,
+            std::string_view why, auto&& pair) {
     auto next = fresh.begin();
     for (const T& each : flown) {
       const auto same = std::ranges::find(fresh, name(each), name);
@@ -370,10 +375,10 @@ class Comparison {
     lists(
         flown.services, services, "service ", its_name, [](const CustomService& each) { return each.at; }, code_why,
         [&](const CustomService& a, const CustomService& b) { service(a, b); });
-    growing(flown.failures, failures, "failure ", its_name, no_place, meaning_why,
-            [&](const FailureName& a, const FailureName& b) {
-              unless(a.code == b.code, {}, "failure " + b.name + ": its code", meaning_why);
-            });
+    kept(flown.failures, failures, "failure ", its_name, no_place, meaning_why,
+         [&](const FailureName& a, const FailureName& b) {
+           unless(a.code == b.code, {}, "failure " + b.name + ": its code", meaning_why);
+         });
     structures(flown.housekeeping, housekeeping, "housekeeping");
     lists(
         flown.commands, commands, "command of ", [](const Commands& each) { return each.subsystem; },

@@ -15,8 +15,8 @@
 /// May: ranges, initial values and `writable` of parameters; ranges and defaults of arguments; housekeeping structures; of a
 /// configuration its power, its <Set>s, how long its self test may take and its limit of overruns; of a device in a configuration its
 /// endnode, fall-backs, limits and the values of its settings; ranges and safe values of what a device is told that is no
-/// actuator; the age after which a required set is stale; descriptions.
-/// With another process also: parameters, events, functions, enumerations and failure codes that are new, behind those that were there.
+/// actuator; the age after which a required set is stale; failure codes that are new; descriptions.
+/// With another process also: parameters, events, functions and enumerations that are new.
 /// Everything else is what memory, threads, links, sandbox or guard were made by.
 namespace hirosco::descriptor {
 

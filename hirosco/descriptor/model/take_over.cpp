@@ -69,15 +69,13 @@ void take_lists(SubsystemDescriptor& flown, const SubsystemDescriptor& fresh) {
   const auto same = [&](auto list, auto name) { return std::ranges::equal(flown.*list, fresh.*list, {}, name, name); };
   if (same(&SubsystemDescriptor::parameters, [](const Parameter& each) -> const auto& { return each.field.name; }) &&
       same(&SubsystemDescriptor::events, &Event::name) && same(&SubsystemDescriptor::functions, &Function::name) &&
-      same(&SubsystemDescriptor::enumerations, &Enumeration::name) &&
-      same(&SubsystemDescriptor::failures, &FailureName::name))
+      same(&SubsystemDescriptor::enumerations, &Enumeration::name))
     return;
   flown.parameters = fresh.parameters;
   flown.events = fresh.events;
   flown.functions = fresh.functions;
   flown.services = fresh.services;
   flown.enumerations = fresh.enumerations;
-  flown.failures = fresh.failures;
   flown.resources.queues = fresh.resources.queues;
   for (std::size_t i = 0; i < flown.subscribes.size(); ++i)
     for (std::size_t k = 0; k < flown.subscribes[i].foreign.size(); ++k)
@@ -92,6 +90,8 @@ void take_lists(SubsystemDescriptor& flown, const SubsystemDescriptor& fresh) {
 void take_over(SubsystemDescriptor& flown, SubsystemDescriptor&& fresh) {
   flown.description = std::move(fresh.description);
   flown.text = std::move(fresh.text);
+  if (!std::ranges::equal(flown.failures, fresh.failures, {}, &FailureName::name, &FailureName::name))
+    flown.failures = std::move(fresh.failures);
   take_lists(flown, fresh);
   for (std::size_t i = 0; i < flown.parameters.size(); ++i) {
     Parameter &had = flown.parameters[i], &has = fresh.parameters[i];
