@@ -114,7 +114,7 @@ void Descriptors::judge(DescriptorReading reading) {
     // What its files bring along may be another all the same.
     for (descriptor::MissionSubsystem* member : flown)
       if (auto* fresh = reading.mission.value->find_subsystem(member->subsystem.id)) member->brought = fresh->brought;
-    take_texts();
+    take_texts(craft_, file_, text_, std::move(texts_));
     craft_.tell(fmt::format("{}: the text is the one in force", file_.string()), apid_);
     return finish();
   }
@@ -223,14 +223,7 @@ void Descriptors::take_over() {
     parts_.stored.redeclared(declared_.at(member->subsystem.id));
     put_in_force(craft_, parts_.own, *member, std::move(fresh.mapped()), *text_);
   }
-  take_texts();
-}
-
-/// Its own and those of the files that bring others along; all others are the same.
-void Descriptors::take_texts() {
-  for (auto& [file, text] : texts_) craft_.mission.texts[file] = std::move(text);
-  craft_.mission.texts[file_] = text_;
-  texts_.clear();
+  take_texts(craft_, file_, text_, std::move(texts_));
 }
 
 void Descriptors::refuse(const DescriptorProblems& problems) {

@@ -65,7 +65,6 @@ class Descriptors final : public Watch {
   void judged();
   void taken();
   void take_over();
-  void take_texts();
   void refuse(const DescriptorProblems& problems);
   void finish();
   void give_up(pus::FailureCode code, const char* words, std::int64_t number = 0);
@@ -81,7 +80,7 @@ class Descriptors final : public Watch {
   bool late_{false};  ///< a reading that was given up has not ended
   std::uint32_t round_{0};  ///< answers to an earlier one count for nothing
   std::shared_ptr<const std::string> text_;
-  std::map<std::filesystem::path, std::shared_ptr<const std::string>> texts_;  ///< all that the newest reading read
+  MissionTexts texts_;  ///< all that the newest reading read
   std::map<std::uint16_t, descriptor::SubsystemDescriptor> declared_;  ///< the same before anything was set
   std::map<std::uint16_t, descriptor::MissionSubsystem> fresh_;  ///< by APID: who flies the file
   std::map<std::uint16_t, Asked> asked_;  ///< of them those whose process runs

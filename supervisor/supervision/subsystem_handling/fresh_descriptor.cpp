@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "hirosco/descriptor/read/brought_files.hpp"
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/utilities/crc32.hpp"
 
@@ -106,6 +107,13 @@ void put_in_force(Craft& craft, OwnSubsystem& own, descriptor::MissionSubsystem&
                          flown.subsystem.file.string(), hash),
              apid);
   own.announce("DESCRIPTOR_TAKEN", {static_cast<double>(apid), static_cast<double>(hash)});
+}
+
+void take_texts(Craft& craft, const std::filesystem::path& file, std::shared_ptr<const std::string> text,
+                MissionTexts&& read) {
+  for (auto& [path, other] : read)
+    if (descriptor::bringing_format_of(path) != nullptr) craft.mission.texts[path] = std::move(other);
+  craft.mission.texts[file] = std::move(text);
 }
 
 }  // namespace hirosco::supervisor

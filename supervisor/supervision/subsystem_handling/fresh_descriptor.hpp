@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -18,6 +19,8 @@
 /// Thread: the supervisor's.
 namespace hirosco::supervisor {
 
+/// As descriptor::Mission has them.
+using MissionTexts = std::map<std::filesystem::path, std::shared_ptr<const std::string>>;
 using DescriptorProblems = std::vector<descriptor::Diagnostic>;
 
 /// E0380, once for all who fly the file.
@@ -39,5 +42,10 @@ void tell_problems(Craft& craft, OwnSubsystem& own, std::uint16_t apid, std::uin
 /// `fresh`: with the values that go on. Who runs with it meanwhile, and the texts of the mission, are the caller's.
 void put_in_force(Craft& craft, OwnSubsystem& own, descriptor::MissionSubsystem& flown,
                   descriptor::MissionSubsystem&& fresh, const std::string& text);
+
+/// Among the texts of the mission that of this file, and of `read` with it those of files that bring others along: all other descriptors are
+/// what flies by now, which may be another text than was read.
+void take_texts(Craft& craft, const std::filesystem::path& file, std::shared_ptr<const std::string> text,
+                MissionTexts&& read);
 
 }  // namespace hirosco::supervisor

@@ -9,7 +9,6 @@
 #include "hirosco/descriptor/model/in_flight.hpp"
 #include "supervisor/keeper/kept.hpp"
 #include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
-#include "supervisor/supervision/subsystem_handling/fresh_descriptor.hpp"
 
 namespace hirosco::supervisor {
 
@@ -114,8 +113,7 @@ void VersionTexts::take(const Member& subject, const std::string& leaving) {
   const std::string added = additions(now.subsystem, fresh.declared.subsystem);
   keep(now, leaving);
   put(now, std::move(fresh.declared));
-  for (auto& [file, text] : fresh.texts) craft_.mission.texts[file] = std::move(text);
-  craft_.mission.texts[now.subsystem.file] = std::move(fresh.text);
+  take_texts(craft_, now.subsystem.file, std::move(fresh.text), std::move(fresh.texts));
   if (!added.empty())
     craft_.tell(
         fmt::format("of {} {}: hirosco tc, status and log read it in the file; it has names in a ground station "

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "supervisor/platform/launch/descriptor_readings.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/subsystem_handling/fresh_descriptor.hpp"
 
 namespace hirosco::supervisor {
 
@@ -65,7 +65,7 @@ class VersionTexts {
   struct Fresh {
     descriptor::MissionSubsystem declared;  ///< before anything was set
     std::shared_ptr<const std::string> text;
-    std::map<std::filesystem::path, std::shared_ptr<const std::string>> texts;  ///< that were read with it
+    MissionTexts texts;  ///< that were read with it
   };
   [[nodiscard]] descriptor::MissionSubsystem& flown(const Member& subject);
   [[nodiscard]] Found judge(Member& subject, DescriptorReading reading, std::uint16_t asked_by);

@@ -111,8 +111,10 @@ TEST_F(VersionTextsTest, WhatAVersionBringsIsInForceAndCanBeNotedBeforeItsProces
   watch();
   EXPECT_FALSE(craft.member(arm)->alive());
   EXPECT_FALSE(has_more());
+  craft.mission.texts["HAND.xml"] = std::make_shared<const std::string>("gone back meanwhile");
   process_ends();
   EXPECT_TRUE(has_more());
+  EXPECT_EQ(*craft.mission.texts.at("HAND.xml"), "gone back meanwhile") << "not as it was read";
   EXPECT_THAT(started_with, IsEmpty());
   EXPECT_EQ(parts.processes.start(arm).error().code, ErrorCode::Unavailable) << "nor does anybody else start it";
   begins();
