@@ -127,6 +127,21 @@ TEST_F(VersionTextsTest, WhatAVersionBringsIsInForceAndCanBeNotedBeforeItsProces
   EXPECT_EQ(flown().failures.size(), 1U);
 }
 
+TEST_F(VersionTextsTest, WhatItHasMoreIsPermittedAsItsTextSays) {
+  on_trial();
+  const auto permits_it = [&] {
+    static_cast<void>(PartsTest::texts(arm));
+    const auto packet = telecommand(arm, 8, 1, call_data("SPIN"));
+    parts.telecommands.take({.packet = packet, .origin = Origin::ground(0)});
+    parts.telecommands.forward_durable();
+    return !PartsTest::texts(arm).empty();
+  };
+  set(arm, SafeOperational);
+  EXPECT_FALSE(permits_it());
+  set(arm, Operational);
+  EXPECT_TRUE(permits_it());
+}
+
 TEST_F(VersionTextsTest, NotConfirmedBothGoBack) {
   on_trial();
   wait(31s);
