@@ -268,6 +268,66 @@ TEST_F(VersionTextsTest, AFileThatIsNotReadInTimeIsGivenUpAndWhatComesLateIsNobo
   EXPECT_EQ(readings.asked.size(), 2U);
 }
 
+/// ARM's LIMIT is persistent, from 0 to 10; the version knows it up to 100.
+struct VersionTextsAndValues : VersionTextsTest {
+  void SetUp() override {
+    descriptor::Parameter limit;
+    limit.field.name = "LIMIT";
+    limit.field.type = Type::Uint16;
+    limit.field.minimum = Number{0};
+    limit.field.maximum = Number{10};
+    limit.id = 1;
+    limit.init = {Number{5}};
+    limit.writable_states = in_states({PreOperational});
+    limit.persistent = true;
+    craft.mission.subsystems.front().subsystem.parameters = {limit};
+    VersionTextsTest::SetUp();
+    parts.stored.begin();
+    ASSERT_EQ(replace().kind, Came::Running);
+    readings.next = reading_of("wider", [](descriptor::SubsystemDescriptor& subsystem) {
+      subsystem.parameters.front().field.maximum = Number{100};
+      subsystem.functions.push_back(function("SPIN", in_states({Operational})));
+    });
+    watch();
+    process_ends();
+    begins();
+    ASSERT_TRUE(has_more());
+  }
+  void is_set(std::uint16_t value) {
+    std::array<std::byte, 7> data;
+    OctetWriter{data}.put(std::uint8_t{1}).put(ParameterId{arm, Type::Uint16, 1}.wire()).put(value);
+    const auto packet = telecommand(arm, 20, 3, data);
+    const auto telecommand = *pus::TelecommandView::parse(packet);
+    parts.stored.forwarded(arm, telecommand);
+    verify(arm, telecommand.request_id(), 7, {}, 7);
+  }
+  void is_taken_back() {
+    ASSERT_EQ(replacement.take_back(arm, {}).kind, Came::Running);
+    process_ends();
+    begins();
+    ASSERT_FALSE(has_more());
+  }
+  [[nodiscard]] const descriptor::MissionSubsystem& described() const { return craft.mission.subsystems.front(); }
+};
+
+TEST_F(VersionTextsAndValues, WhatIsStoredGoesOnWithTheTextBeforeWhereThatHoldsIt) {
+  is_set(9);
+  EXPECT_EQ(described().overrides.size(), 1U);
+  is_taken_back();
+  EXPECT_EQ(described().subsystem.parameters.front().init, std::vector<Value>{Number{9}});
+  EXPECT_EQ(described().subsystem.parameters.front().field.maximum, Number{10});
+  EXPECT_EQ(described().overrides.size(), 1U);
+}
+
+TEST_F(VersionTextsAndValues, WhatTheTextBeforeDoesNotHoldIsForgottenAndTold) {
+  is_set(50);
+  EXPECT_EQ(described().subsystem.parameters.front().init, std::vector<Value>{Number{50}});
+  is_taken_back();
+  EXPECT_TRUE(was_told("stored values of ARM leave their ranges: LIMIT"));
+  EXPECT_EQ(described().subsystem.parameters.front().init, std::vector<Value>{Number{5}});
+  EXPECT_THAT(described().overrides, IsEmpty());
+}
+
 /// A supervisor that goes on for another has the texts of the mission, and among them that to go back to.
 struct RecalledTexts : PartsTest {
   static constexpr std::uint16_t wheel = 11;
