@@ -7,6 +7,7 @@
 
 #include "hirosco/descriptor/model/alike.hpp"
 #include "hirosco/descriptor/model/framework_parameters.hpp"
+#include "hirosco/descriptor/model/supervisor_events.hpp"
 
 namespace hirosco::descriptor {
 namespace {
@@ -27,6 +28,9 @@ constexpr std::string_view addition_why =
     "a program has to have it: REPLACE starts one that does, in Offline, and takes this text with it";
 constexpr std::string_view stored_why = "what is stored was laid out when the flight began";
 constexpr std::string_view foreign_why = "whom it hears was made known to it and to others when the flight began";
+constexpr std::string_view bound_why =
+    "no mode and no state would bind it, and it would not wait for the log: the flight has what it began with";
+constexpr std::string_view told_why = "the supervisor tells of that by this name, and plans would be chosen otherwise";
 constexpr std::string_view behind_why = "what is new stands behind what was there, whose place is kept";
 
 using alike::same_address;
@@ -123,6 +127,16 @@ void judge_new_parameters(const SubsystemDescriptor& flown, const SubsystemDescr
     unless(each->from.empty(), "has the value of another subsystem's", foreign_why);
     unless(!something_behind, "stands before others", behind_why);
   }
+}
+
+/// What passes every mode, and by what name plans are chosen, is as it was when the flight began.
+void judge_new_names(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh, std::vector<Obstacle>& found) {
+  for (const Function& each : fresh.functions)
+    if (each.essential && !is_listed(flown.functions, each.name, its_name))
+      found.push_back({each.at, "function " + each.name + " is new and essential: that", bound_why});
+  for (const Event& each : fresh.events)
+    if (is_about_subsystem(each.name) && !is_listed(flown.events, each.name, its_name))
+      found.push_back({each.at, "event " + each.name + " is new: that", told_why});
 }
 
 /// Collects what differs. Each struct is taken apart by all of its members: one that is added has to be decided on here.
@@ -372,6 +386,7 @@ class Comparison {
             [&](const Event& a, const Event& b) { event(a, b); });
     growing(flown.functions, functions_, "function ", its_name, its_place, code_why,
             [&](const Function& a, const Function& b) { function(a, b, "function "); });
+    if (by_ == TakenBy::AnotherProcess) judge_new_names(flown, fresh_, found_);
     lists(
         flown.services, services, "service ", its_name, [](const CustomService& each) { return each.at; }, code_why,
         [&](const CustomService& a, const CustomService& b) { service(a, b); });
