@@ -386,7 +386,6 @@ class Comparison {
             [&](const Event& a, const Event& b) { event(a, b); });
     growing(flown.functions, functions_, "function ", its_name, its_place, code_why,
             [&](const Function& a, const Function& b) { function(a, b, "function "); });
-    if (by_ == TakenBy::AnotherProcess) judge_new_names(flown, fresh_, found_);
     lists(
         flown.services, services, "service ", its_name, [](const CustomService& each) { return each.at; }, code_why,
         [&](const CustomService& a, const CustomService& b) { service(a, b); });
@@ -450,7 +449,9 @@ const char* const not_in_flight = "E0380";
 std::vector<Obstacle> obstacles(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh, TakenBy by) {
   Comparison comparison{flown, fresh, by};
   comparison.subsystem();
-  return comparison.take();
+  auto found = comparison.take();
+  if (by == TakenBy::AnotherProcess) judge_new_names(flown, fresh, found);
+  return found;
 }
 
 std::vector<Obstacle> obstacles_in_force(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh,

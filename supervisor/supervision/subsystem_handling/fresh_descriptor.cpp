@@ -98,14 +98,14 @@ void tell_problems(Craft& craft, OwnSubsystem& own, std::uint16_t apid, std::uin
 }
 
 void put_in_force(Craft& craft, OwnSubsystem& own, descriptor::MissionSubsystem& flown,
-                  descriptor::MissionSubsystem&& fresh, const std::string& text) {
+                  descriptor::MissionSubsystem&& fresh, const std::string& text, std::string_view how) {
   const std::uint16_t apid = flown.subsystem.id;
   const std::uint32_t hash = crc32(std::as_bytes(std::span{text}));
   descriptor::take_over(flown.subsystem, std::move(fresh.subsystem));
   flown.brought = std::move(fresh.brought);
-  craft.tell(fmt::format("{} flies by {} as it is now, CRC-32 {:08x}", flown.subsystem.name,
-                         flown.subsystem.file.string(), hash),
-             apid);
+  craft.tell(
+      fmt::format("{} flies by {} {}, CRC-32 {:08x}", flown.subsystem.name, flown.subsystem.file.string(), how, hash),
+      apid);
   own.announce("DESCRIPTOR_TAKEN", {static_cast<double>(apid), static_cast<double>(hash)});
 }
 

@@ -39,9 +39,9 @@ void tell_problems(Craft& craft, OwnSubsystem& own, std::uint16_t apid, std::uin
                    const DescriptorProblems& problems);
 
 /// The supervisor's own copy, in this one step: permission, modes, ledger, forms of its story, and with what the next process starts.
-/// `fresh`: with the values that go on. Who runs with it meanwhile, and the texts of the mission, are the caller's.
+/// `fresh`: with the values that go on; `how`: whether its file says so now. Who runs with it meanwhile, and the texts of the mission, are the caller's.
 void put_in_force(Craft& craft, OwnSubsystem& own, descriptor::MissionSubsystem& flown,
-                  descriptor::MissionSubsystem&& fresh, const std::string& text);
+                  descriptor::MissionSubsystem&& fresh, const std::string& text, std::string_view how = "as it is now");
 
 /// Among the texts of the mission that of this file, and of `read` with it those of files that bring others along: all other descriptors are
 /// what flies by now, which may be another text than was read.

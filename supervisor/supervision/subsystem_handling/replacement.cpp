@@ -92,6 +92,7 @@ Outcome Replacement::take_back(std::uint16_t apid, const Call& call) {
     found->second.before = std::exchange(earlier_[apid], in_force_[apid]);
   }
   found->second.go_back();
+  subject->brings_text = parts_.texts.has(apid, found->second.wanted);
   found->second.call = call;
   end_process(*subject, found->second);
   return running;
@@ -184,6 +185,7 @@ bool Replacement::read(Member& subject, Change& change, TimePoint now) {
   if (!ready) {
     craft_.tell(fmt::format("{} stays {}: {}", subject.descriptor().name, words_of(change.before), ready.error().words),
                 subject.apid());
+    parts_.texts.let_go(subject);
     give_up(change, FailureCode::ExecutionError, ready.error().why.text);
     return true;
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "hirosco/descriptor/model/in_flight.hpp"
+#include "hirosco/descriptor/read/brought_files.hpp"
 #include "supervisor/keeper/kept.hpp"
 #include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
 
@@ -20,9 +21,9 @@ namespace {
 /// What the keeper holds for the next supervisor, but for paths and lengths.
 constexpr std::size_t most_octets_of_texts = texts_octets / 2 - (std::size_t{64} << 10);
 
-/// Where a text that is not in force stands among those of the mission: no file has that name.
+/// Where a text that is not in force stands among those of the mission: behind a file as if that were a folder, where no file can be.
 [[nodiscard]] std::filesystem::path place_of(const std::filesystem::path& file, std::string_view version) {
-  return file.native() + "@" + std::string{version};
+  return file / ("@" + std::string{version});
 }
 
 /// The parts that the program of this version has to have.
@@ -45,8 +46,10 @@ VersionTexts::Found VersionTexts::look(Member& subject, std::uint16_t asked_by) 
   if (parts_.readings == nullptr) return Found::InForce;
   if (late_) return Found::NotYet;
   if (reading_ != subject.apid()) {
-    // One file at a time, judged with all others as they are.
-    const bool changes = std::ranges::any_of(craft_.members, &Member::descriptor_changes);
+    // One file at a time, judged with all others as they are: none of them changes in this moment.
+    const bool changes = std::ranges::any_of(craft_.members, [&](const Member& each) {
+      return each.descriptor_changes || (each.exchanged && each.brings_text);
+    });
     if (reading_ || changes || !parts_.readings->begin(craft_.mission, subject.descriptor().file)) return Found::NotYet;
     reading_ = subject.apid();
   }
@@ -62,6 +65,11 @@ VersionTexts::Found VersionTexts::judge(Member& subject, DescriptorReading readi
   const auto refuse = [&](const DescriptorProblems& problems) {
     problems_ = problems.size();
     tell_problems(craft_, parts_.own, subject.apid(), asked_by, problems);
+    craft_.tell(
+        fmt::format("{} stays the version that it is: {} says neither what is in force nor that and more; where "
+                    "it says what is in force, nothing but the program changes",
+                    now.subsystem.name, file.string()),
+        subject.apid());
     return Found::Refused;
   };
   if (reading.text && now.subsystem.text && *reading.text == *now.subsystem.text) return Found::InForce;
@@ -81,9 +89,7 @@ VersionTexts::Found VersionTexts::judge(Member& subject, DescriptorReading readi
   add_obstacles(problems, file, descriptor::obstacles(now.subsystem, found->subsystem, TakenBy::AnotherProcess));
   MissionSubsystem tried = *found;
   carry_values(now, tried, problems);
-  std::size_t octets = reading.text->size();
-  for (const auto& [path, text] : craft_.mission.texts) octets += text->size();
-  if (octets > most_octets_of_texts)
+  if (octets_beside(*reading.text, reading.mission.value->texts) > most_octets_of_texts)
     add_problem(problems, file, {}, "there is no room to keep the text before",
                 fmt::format("all texts of a flight take {} octets at most", most_octets_of_texts));
   if (!problems.empty()) return refuse(problems);
@@ -91,6 +97,16 @@ VersionTexts::Found VersionTexts::judge(Member& subject, DescriptorReading readi
                           Fresh{*found, std::move(reading.text), std::move(reading.mission.value->texts)});
   subject.brings_text = true;
   return Found::Another;
+}
+
+/// Of all texts once this one is in force and the one before is kept; of files that are brought along, as they are now.
+std::size_t VersionTexts::octets_beside(const std::string& text, const MissionTexts& read) const {
+  std::size_t octets = text.size();
+  for (const auto& [path, each] : craft_.mission.texts)
+    if (descriptor::bringing_format_of(path) == nullptr || !read.contains(path)) octets += each->size();
+  for (const auto& [path, each] : read)
+    if (descriptor::bringing_format_of(path) != nullptr) octets += each->size();
+  return octets;
 }
 
 void VersionTexts::let_go(Member& subject) {
@@ -112,7 +128,7 @@ void VersionTexts::take(const Member& subject, const std::string& leaving) {
   Fresh& fresh = found.mapped();
   const std::string added = additions(now.subsystem, fresh.declared.subsystem);
   keep(now, leaving);
-  put(now, std::move(fresh.declared));
+  put(now, std::move(fresh.declared), "as it is now");
   take_texts(craft_, now.subsystem.file, std::move(fresh.text), std::move(fresh.texts));
   if (!added.empty())
     craft_.tell(
@@ -128,11 +144,15 @@ void VersionTexts::go_back(const Member& subject, const std::string& leaving, co
   MissionSubsystem& now = flown(subject);
   MissionSubsystem declared = found->second;
   auto text = declared.subsystem.text;
-  // A supervisor before may have gone back that far.
+  // Read again since, it may say the same.
   if (text && now.subsystem.text && *text == *now.subsystem.text) return;
   keep(now, leaving);
-  put(now, std::move(declared));
+  put(now, std::move(declared), "as it was");
   if (text) craft_.mission.texts[now.subsystem.file] = std::move(text);
+  // It stands among the texts once, as that in force: room for it twice nobody has judged. A next supervisor that finds no text to go back to
+  // starts the version before by that in force.
+  craft_.mission.texts.erase(place_of(now.subsystem.file, version));
+  kept_.erase(found);
   craft_.tell(fmt::format("{} flies by the text before: who reads {} needs that text in it again", now.subsystem.name,
                           now.subsystem.file.string()),
               subject.apid());
@@ -146,13 +166,13 @@ void VersionTexts::keep(const MissionSubsystem& flown, const std::string& versio
   kept_.insert_or_assign({flown.subsystem.id, version}, std::move(declared));
 }
 
-void VersionTexts::put(MissionSubsystem& flown, MissionSubsystem declared) {
+void VersionTexts::put(MissionSubsystem& flown, MissionSubsystem declared, std::string_view how) {
   const auto text = declared.subsystem.text;
   // Before what goes on is looked at: of what was stored it forgets what does not fit any more.
   parts_.stored.redeclared(declared.subsystem);
   std::erase_if(flown.overrides,
                 [&](const descriptor::Override& each) { return !apply_override(declared.subsystem, to_string(each)); });
-  put_in_force(craft_, parts_.own, flown, std::move(declared), text ? *text : std::string{});
+  put_in_force(craft_, parts_.own, flown, std::move(declared), text ? *text : std::string{}, how);
 }
 
 void VersionTexts::keep_only(const Member& subject, const std::string* version) {

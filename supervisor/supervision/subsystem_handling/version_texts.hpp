@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "supervisor/platform/launch/descriptor_readings.hpp"
@@ -19,7 +20,7 @@ namespace hirosco::supervisor {
 class StoredValues;
 
 /// The text of its descriptor that comes with another version of a program, and the one to go back to (docs/adr/0214). A text is put in force
-/// while no process of the subsystem runs. Those to go back to are kept among the texts of the mission, as FILE@VERSION, where the next
+/// while no process of the subsystem runs. Those to go back to are kept among the texts of the mission, as FILE/@VERSION, where the next
 /// supervisor finds them.  Thread: the supervisor's.
 class VersionTexts {
  public:
@@ -70,7 +71,8 @@ class VersionTexts {
   [[nodiscard]] descriptor::MissionSubsystem& flown(const Member& subject);
   [[nodiscard]] Found judge(Member& subject, DescriptorReading reading, std::uint16_t asked_by);
   void keep(const descriptor::MissionSubsystem& flown, const std::string& version);
-  void put(descriptor::MissionSubsystem& flown, descriptor::MissionSubsystem declared);
+  void put(descriptor::MissionSubsystem& flown, descriptor::MissionSubsystem declared, std::string_view how);
+  [[nodiscard]] std::size_t octets_beside(const std::string& text, const MissionTexts& read) const;
 
   Parts parts_;
   Craft& craft_;

@@ -31,10 +31,11 @@ struct VersionTextsTest : PartsTest {
   Descriptors descriptors{{craft, parts.own, desk, parts.under_way, parts.stored, &readings}};
   std::vector<std::string> used, started_with;
   int starts_that_fail{0};
+  std::expected<bool, StartRefusal> ready{true};
 
   [[nodiscard]] std::expected<bool, StartRefusal> prepare(const descriptor::MissionSubsystem&,
                                                           const std::string&) override {
-    return true;
+    return ready;
   }
   void use(const descriptor::MissionSubsystem&, const std::string& version) override { used.push_back(version); }
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override {
@@ -121,7 +122,7 @@ TEST_F(VersionTextsTest, WhatAVersionBringsIsInForceAndCanBeNotedBeforeItsProces
   EXPECT_THAT(started_with, ElementsAre("more"));
   EXPECT_THAT(used, ElementsAre("2"));
   EXPECT_EQ(*craft.mission.texts.at("ARM.xml"), "more");
-  EXPECT_EQ(*craft.mission.texts.at("ARM.xml@"), "old") << "where the next supervisor finds it";
+  EXPECT_EQ(*craft.mission.texts.at("ARM.xml/@"), "old") << "where the next supervisor finds it";
   EXPECT_TRUE(was_told("ARM flies by ARM.xml as it is now"));
   EXPECT_TRUE(was_told("of ARM function SPIN is new: hirosco tc"));
   EXPECT_EQ(flown().failures.size(), 1U);
@@ -150,9 +151,21 @@ TEST_F(VersionTextsTest, NotConfirmedBothGoBack) {
   EXPECT_THAT(used, ElementsAre("2", ""));
   EXPECT_FALSE(has_more());
   EXPECT_EQ(*craft.mission.texts.at("ARM.xml"), "old");
-  EXPECT_FALSE(craft.mission.texts.contains("ARM.xml@")) << "nobody needs it any more";
-  EXPECT_FALSE(craft.mission.texts.contains("ARM.xml@2"));
+  EXPECT_FALSE(craft.mission.texts.contains("ARM.xml/@")) << "nobody needs it any more";
+  EXPECT_FALSE(craft.mission.texts.contains("ARM.xml/@2"));
   EXPECT_TRUE(was_told("ARM flies by the text before"));
+}
+
+TEST_F(VersionTextsTest, ATextThatIsInForceAgainStandsAmongTheTextsOnce) {
+  on_trial();
+  wait(31s);
+  watch();
+  watch();
+  process_ends();
+  EXPECT_EQ(*craft.mission.texts.at("ARM.xml"), "old");
+  EXPECT_FALSE(craft.mission.texts.contains("ARM.xml/@"));
+  EXPECT_EQ(*craft.mission.texts.at("ARM.xml/@2"), "more");
+  EXPECT_TRUE(was_told("ARM flies by ARM.xml as it was")) << "which the file need not say";
 }
 
 TEST_F(VersionTextsTest, WhatDiesOnTrialGoesBackWithItsText) {
@@ -186,7 +199,7 @@ TEST_F(VersionTextsTest, ConfirmedBothStayUntilTheyAreTakenBackByCommandAndToAnd
   wait(60s);
   watch();
   EXPECT_TRUE(has_more());
-  EXPECT_EQ(*craft.mission.texts.at("ARM.xml@"), "old");
+  EXPECT_EQ(*craft.mission.texts.at("ARM.xml/@"), "old");
   for (const bool back : {true, false, true}) {
     ASSERT_EQ(replacement.take_back(arm, {}).kind, Came::Running);
     process_ends();
@@ -195,7 +208,7 @@ TEST_F(VersionTextsTest, ConfirmedBothStayUntilTheyAreTakenBackByCommandAndToAnd
     EXPECT_EQ(started_with.back(), back ? "old" : "more");
     EXPECT_EQ(used.back(), back ? "" : "2");
     EXPECT_EQ(*craft.mission.texts.at("ARM.xml"), back ? "old" : "more");
-    EXPECT_EQ(*craft.mission.texts.at(back ? "ARM.xml@2" : "ARM.xml@"), back ? "more" : "old");
+    EXPECT_EQ(*craft.mission.texts.at(back ? "ARM.xml/@2" : "ARM.xml/@"), back ? "more" : "old");
   }
 }
 
@@ -205,6 +218,7 @@ TEST_F(VersionTextsTest, WhatIsNoPureAdditionKeepsTheVersionOut) {
       reading_of("less", [](descriptor::SubsystemDescriptor& subsystem) { subsystem.functions.pop_back(); });
   watch();
   EXPECT_TRUE(was_told("E0380: function BRAKE is gone cannot change in flight"));
+  EXPECT_TRUE(was_told("ARM stays the version that it is: ARM.xml says neither"));
   EXPECT_TRUE(craft.member(arm)->alive());
   EXPECT_THAT(used, IsEmpty());
   parts.reception.read_own();
@@ -250,6 +264,30 @@ TEST_F(VersionTextsTest, NobodyRereadsWhatIsOnTrial) {
   EXPECT_EQ(descriptors.reread(arm, Call{}).code, pus::FailureCode::Busy);
   EXPECT_EQ(replacement.confirm(arm).kind, Came::Done);
   EXPECT_EQ(descriptors.reread(arm, Call{}).kind, Came::Running);
+}
+
+TEST_F(VersionTextsTest, NobodyIsJudgedWithATextThatIsAboutToChange) {
+  ASSERT_EQ(replace().kind, Came::Running);
+  readings.next = more();
+  watch();
+  ASSERT_EQ(replacement.replace(hand, "2", 30s, Call{}).kind, Came::Running);
+  process_ends();
+  EXPECT_THAT(readings.asked, ElementsAre("ARM.xml"));
+  begins();
+  EXPECT_THAT(readings.asked, ElementsAre("ARM.xml", "HAND.xml"));
+}
+
+TEST_F(VersionTextsTest, WhatIsReadForAProgramThatIsRefusedMeanwhileIsNobodys) {
+  ASSERT_EQ(replace().kind, Came::Running);
+  watch();
+  ready = std::unexpected{StartRefusal{{ErrorCode::Mismatch, "its digest is not the one in the manifest"}, "another"}};
+  watch();
+  ready = true;
+  readings.next = more();
+  ASSERT_EQ(replace().kind, Came::Running);
+  watch();
+  EXPECT_EQ(readings.asked.size(), 2U);
+  EXPECT_TRUE(craft.member(arm)->alive());
 }
 
 TEST_F(VersionTextsTest, AFileThatIsNotReadInTimeIsGivenUpAndWhatComesLateIsNobodys) {
@@ -341,7 +379,7 @@ struct RecalledTexts : PartsTest {
     const auto& file = first.find_subsystem(wheel)->subsystem.file;
     const auto before = first.texts.at(file);
     descriptor::Mission left = *descriptor::read_again(first, file, with_more(*before), source).value;
-    left.texts[file.native() + "@"] = before;
+    left.texts[file.native() + "/@"] = before;
     left.supervisor = parts_mission().supervisor;
     return left;
   }
@@ -356,16 +394,33 @@ TEST_F(RecalledTexts, AreGoneBackToByTheNextSupervisor) {
   ASSERT_NE(member.descriptor().find_function("SPIN"), nullptr);
   EXPECT_FALSE(texts.recall(member, "9")) << "it flew by no other text";
   ASSERT_TRUE(texts.recall(member, ""));
-  for (int time = 0; time < 2; ++time) {  // the one before may have gone back already
+  for (int time = 0; time < 2; ++time) {  // once more does nothing
     texts.go_back(member, "2", "");
     EXPECT_EQ(member.descriptor().find_function("SPIN"), nullptr);
     EXPECT_EQ(*craft.mission.texts.at(file), *member.descriptor().text);
-    EXPECT_EQ(*craft.mission.texts.at(file + "@2"), in_force);
+    EXPECT_EQ(*craft.mission.texts.at(file + "/@2"), in_force);
   }
   texts.keep_only(member, nullptr);
   EXPECT_FALSE(texts.has(wheel, ""));
-  EXPECT_FALSE(craft.mission.texts.contains(file + "@"));
+  EXPECT_FALSE(craft.mission.texts.contains(file + "/@"));
   EXPECT_TRUE(craft.mission.texts.contains(file)) << "that in force";
+}
+
+TEST_F(RecalledTexts, GoWithTheVersionThatWasOnTrial) {
+  VersionNotes notes;
+  notes.on_trial.push_back({.apid = wheel, .wanted = "2", .before = ""});
+  std::vector<std::byte> octets(64);
+  OctetWriter writer{octets};
+  write(writer, notes);
+  OctetReader reader{writer.written()};
+  Replacement replacement{{craft, parts.own, parts.processes, parts.reactions, parts.under_way, texts}};
+  replacement.recall(reader);
+  const Member& member = *craft.member(wheel);
+  EXPECT_TRUE(member.brings_text);
+  ASSERT_NE(member.descriptor().find_function("SPIN"), nullptr);
+  for (int step = 0; step < 4; ++step) replacement.watch(clock.now());
+  EXPECT_EQ(member.descriptor().find_function("SPIN"), nullptr);
+  EXPECT_FALSE(member.brings_text);
 }
 
 /// What is noted goes back in the next supervisor, also where it was on its way there: from its begin.
