@@ -26,13 +26,17 @@ constexpr std::size_t most_octets_of_texts = texts_octets / 2 - (std::size_t{64}
   return file / ("@" + std::string{version});
 }
 
+/// Of what comes with a version, in one line of the story.
+constexpr std::size_t most_named = 20;
+
 /// The parts that the program of this version has to have.
 [[nodiscard]] std::string additions(const descriptor::SubsystemDescriptor& flown,
                                     const descriptor::SubsystemDescriptor& fresh) {
   std::string words;
+  std::size_t count = 0;
   for (const auto& each : descriptor::obstacles(flown, fresh, TakenBy::SameProcess))
-    if (each.addition) words.append(words.empty() ? "" : ", ").append(each.what);
-  return words;
+    if (each.addition && ++count <= most_named) words.append(words.empty() ? "" : ", ").append(each.what);
+  return count <= most_named ? words : words + fmt::format(" and {} more", count - most_named);
 }
 
 }  // namespace
@@ -146,7 +150,8 @@ void VersionTexts::go_back(const Member& subject, const std::string& leaving, co
   auto text = declared.subsystem.text;
   // Read again since, it may say the same.
   if (text && now.subsystem.text && *text == *now.subsystem.text) return;
-  keep(now, leaving);
+  // What failed on trial under the name of a version that was confirmed is not what that flew by.
+  if (!has(subject.apid(), leaving)) keep(now, leaving);
   put(now, std::move(declared), "as it was");
   if (text) craft_.mission.texts[now.subsystem.file] = std::move(text);
   // It stands among the texts once, as that in force: room for it twice nobody has judged. A next supervisor that finds no text to go back to

@@ -54,7 +54,7 @@ class VersionTexts {
   [[nodiscard]] bool has(std::uint16_t apid, const std::string& version) const {
     return kept_.contains({apid, version});
   }
-  /// The text of `version`, which it has(), is in force again; that in force is kept as that of `leaving`.
+  /// The text of `version`, which it has(), is in force again; that in force is kept as that of `leaving`, unless it has one.
   void go_back(const Member& subject, const std::string& leaving, const std::string& version);
   /// Of other versions none is needed any more; null: of none at all.
   void keep_only(const Member& subject, const std::string* version);

@@ -212,6 +212,28 @@ TEST_F(VersionTextsTest, ConfirmedBothStayUntilTheyAreTakenBackByCommandAndToAnd
   }
 }
 
+TEST_F(VersionTextsTest, ATrialThatFailsTakesNoTextFromAVersionThatWasConfirmed) {
+  const auto is_taken_back = [&] {
+    ASSERT_EQ(replacement.take_back(arm, {}).kind, Came::Running);
+    process_ends();
+    begins();
+  };
+  on_trial();
+  ASSERT_EQ(replacement.confirm(arm).kind, Came::Done);
+  is_taken_back();
+  ASSERT_EQ(replace().kind, Came::Running);
+  readings.next = reading_of("other", [](descriptor::SubsystemDescriptor& subsystem) {
+    subsystem.functions.push_back(function("STALL", in_states({Operational})));
+  });
+  watch();
+  process_ends();
+  begins();
+  wait(31s);
+  falls_back();
+  is_taken_back();
+  EXPECT_THAT(started_with, ElementsAre("more", "old", "other", "old", "more"));
+}
+
 TEST_F(VersionTextsTest, WhatIsNoPureAdditionKeepsTheVersionOut) {
   ASSERT_EQ(replace().kind, Came::Running);
   readings.next =
