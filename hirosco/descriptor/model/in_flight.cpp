@@ -450,7 +450,7 @@ std::vector<Obstacle> obstacles(const SubsystemDescriptor& flown, const Subsyste
   Comparison comparison{flown, fresh, by};
   comparison.subsystem();
   auto found = comparison.take();
-  if (by == TakenBy::AnotherProcess) judge_new_names(flown, fresh, found);
+  judge_new_names(flown, fresh, found);
   return found;
 }
 

@@ -188,6 +188,13 @@ TEST(InFlight, WhatIsAddedNeedsAProgramThatHasIt) {
   }
 }
 
+TEST(InFlight, NobodyIsSentToAnotherProcessForWhatThatMayNotHaveEither) {
+  const auto fresh =
+      read(changed(R"(<Function name="RAISE_LIMIT")",
+                   R"(<Function name="SPIN" essential="yes"/><Function name="RAISE_LIMIT")", flown_text));
+  EXPECT_THAT(all(obstacles(read(flown_text), fresh)), HasSubstr("function SPIN is new and essential: that"));
+}
+
 TEST(InFlight, WhatIsNoPureAdditionIsRefusedForAnotherProcess) {
   for (
       const Edit& edit : std::initializer_list<Edit>{
