@@ -35,6 +35,7 @@
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
 #include "supervisor/supervision/subsystem_handling/replacement.hpp"
 #include "supervisor/supervision/subsystem_handling/restoration.hpp"
+#include "supervisor/supervision/subsystem_handling/version_texts.hpp"
 #include "supervisor/supervisor.hpp"
 
 namespace hirosco::supervisor {
@@ -49,6 +50,7 @@ struct SupervisorParts final : OwnSubsystem::Author {
         log_watch{craft, own, telecommands, outside.open_database},
         own_telecommands{craft, telecommands, outside.first_sequence_count},
         retrieval{{craft, own, telemetry, outside.log_readings}},
+        version_texts{{craft, own, stored, outside.readings}},
         descriptors{{craft, own, own_telecommands, under_way, stored, outside.readings}},
         memory{outside.journal,
                {&adoption, &modes, &links, &telecommands, &safe_all, &own, &commanded, &restarts, &power, &replacement,
@@ -133,7 +135,8 @@ struct SupervisorParts final : OwnSubsystem::Author {
   LinkLosses losses{means, own};
   Processes processes{{craft, own, reception, reactions, safe_all, links, telecommands, own_telecommands, ground_link,
                        ground_loss, restarts, restoration, resources, replacement, stored}};
-  Replacement replacement{{craft, own, processes, reactions, under_way}};
+  VersionTexts version_texts;
+  Replacement replacement{{craft, own, processes, reactions, under_way, version_texts}};
   Descriptors descriptors;
   Housekeeping housekeeping{{craft, own, links, power.ledger(), traffic}};
   // what outlives this supervisor

@@ -481,6 +481,7 @@ int fly(int argc, char** argv, const MakeDeployment& deploy) {
   auto reading = descriptor::read_mission(options.mission, source);
   for (const auto& problem : reading.problems) errors.say(descriptor::render(problem, source, false));
   if (!reading.value) return exit_finding;
+  keeper.add_kept_texts(*reading.value);
   if (!options.mode.empty())
     if (const auto why_not = descriptor::start_in(*reading.value, options.mode)) {
       errors.say(fmt::format("{}: {}\n", argv[0], *why_not));

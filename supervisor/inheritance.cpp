@@ -48,6 +48,12 @@ descriptor::FileSource Inheritance::source() const {
   };
 }
 
+void Inheritance::add_kept_texts(descriptor::Mission& mission) const {
+  if (!goes_on() || !texts_) return;
+  auto kept = texts_->newest();
+  mission.texts.merge(kept);
+}
+
 void Inheritance::watch_this_thread() const noexcept {
   // In this order: until it is held the word tells of the end of the guard before, which must not be taken for this one's.
   if (hold_life(page_->guard_life)) page_->guarded.store(page_->starts.load(), std::memory_order_release);

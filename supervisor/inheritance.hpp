@@ -39,6 +39,8 @@ class Inheritance {
   [[nodiscard]] InhibitNotes notes(const descriptor::Mission& mission) const { return InhibitNotes{mission, *page_}; }
   /// By what the supervisor before flew: its files may say something else by now, and nobody has judged that.
   [[nodiscard]] descriptor::FileSource source() const;
+  /// Those beside the mission's files that the supervisor before kept to go back to (docs/adr/0214).
+  void add_kept_texts(descriptor::Mission& mission) const;
   /// False: they have no room. The next supervisor reads the files.
   bool note(const TextsInForce::Texts& texts) { return !texts_ || texts_->note(texts); }
   /// The keeper hears of the end of the calling thread before the system has given this process's memory back (docs/adr/0135).

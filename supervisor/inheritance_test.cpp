@@ -203,6 +203,25 @@ TEST_F(KeeperInheritance, WhoGoesOnReadsWhatTheOneBeforeFlewAndNoFileThatItDidNo
   EXPECT_EQ(unknown.error().code, ErrorCode::NotFound);
 }
 
+TEST_F(KeeperInheritance, WhoGoesOnHasTheTextsToGoBackToBesideThoseThatItHasRead) {
+  const auto file = write("of the disk");
+  descriptor::Mission mission;
+  mission.texts = texts(file, "read");
+  {
+    Inheritance first;
+    auto noted = texts(file, "flown");
+    noted.merge(texts(file.native() + "@", "before"));
+    ASSERT_TRUE(first.note(noted));
+    first.add_kept_texts(mission);
+    EXPECT_EQ(mission.texts.size(), 1U) << "nobody was before it";
+  }
+  page->starts = 2;
+  Inheritance{}.add_kept_texts(mission);
+  ASSERT_EQ(mission.texts.size(), 2U);
+  EXPECT_EQ(*mission.texts.at(file), "read");
+  EXPECT_EQ(*mission.texts.at(file.native() + "@"), "before");
+}
+
 TEST_F(KeeperInheritance, WhoGoesOnReadsTheFilesWhereNothingWasNotedOrWhatWasHadNoRoom) {
   const auto file = write("of the disk");
   page->starts = 2;

@@ -105,6 +105,7 @@ ELSEWHERE = {
     "supervisor/platform/storage/value_disk.cpp": "supervisor/platform/storage/value_store_test.cpp",
     "supervisor/supervision/event_handling/plans_before.cpp": "supervisor/supervision/succession/plans_of_the_living_test.cpp",
     "supervisor/supervision/procedures/steps/": "supervisor/supervision/procedures/plan_step_kinds_test.cpp",
+    "supervisor/supervision/subsystem_handling/fresh_descriptor.cpp": "supervisor/supervision/subsystem_handling/descriptors_test.cpp",
     "supervisor/supervisor.cpp": "tests/integration/commissioning_test.cpp",
     "ground/api/schemas.cpp": "ground/api/openapi_test.cpp",
     "ground/archive/archive_file.cpp": "ground/archive/archive_test.cpp",

@@ -6,10 +6,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "ground/model/json.hpp"
 #include "hirosco/parameter/number.hpp"
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
+#include "hirosco/utilities/crc32.hpp"
 
 namespace hirosco::ground {
 namespace {
@@ -50,6 +52,18 @@ constexpr std::array<std::string_view, 11> stages{"",         "accepted",  "fail
   }
   verdict.last = subtype == 7 || (failure && subtype != 6);
   return reader.good() ? std::optional{std::move(verdict)} : std::nullopt;
+}
+
+/// What is behind the event that a subsystem flies by another text of its descriptor; empty: the station has read that one, or cannot tell. What
+/// is new has no names here: columns, forms and replays are made once, of what was read at the start (docs/adr/0214).
+[[nodiscard]] std::string unread_text(const Catalogue& catalogue, Octets of_event) {
+  OctetReader reader{of_event};
+  const auto apid = reader.get<std::uint16_t>();
+  const auto hash = reader.get<std::uint32_t>();
+  const auto* subsystem = reader.good() ? catalogue.find(apid) : nullptr;
+  if (subsystem == nullptr || !subsystem->text || crc32(std::as_bytes(std::span{*subsystem->text})) == hash) return {};
+  return " by another text than this station has read of " + subsystem->name +
+         ": what is new has names in one that is started now (hirosco ground --archive FILE)";
 }
 
 }  // namespace
@@ -285,6 +299,8 @@ void Model::take_event(const pus::TelemetryView& packet, Heard& heard) {
     }
   }
   event.text = describer_.describe_event(packet.apid(), packet.source_data()).substr(0, longest_text);
+  if (packet.apid() == pus::supervisor_apid && event.name == "DESCRIPTOR_TAKEN")
+    event.text += unread_text(catalogue_, packet.source_data().subspan(sizeof event.id));
   event.values = to_string(values);
   heard.event = std::move(event);
 }

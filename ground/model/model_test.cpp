@@ -11,6 +11,7 @@
 
 #include "ground/model/views.hpp"
 #include "hirosco/descriptor/read/read.hpp"
+#include "hirosco/utilities/crc32.hpp"
 
 namespace hirosco::ground {
 namespace {
@@ -145,6 +146,26 @@ TEST(AModel, KnowsEachOfMoreThanSixteenSubsystemsAndLinks) {
     if (row == 18) EXPECT_TRUE(status["links"][row]["lost"].is_null());
     else EXPECT_EQ(status["links"][row]["lost"], row);
   }
+}
+
+TEST(AModel, SaysWhoFliesByAnotherTextThanItHasRead) {
+  const Catalogue catalogue{mission_of_a_crowd()};
+  Model model{catalogue};
+  const auto taken = [&](std::uint32_t hash) {
+    const auto event = catalogue.mission().supervisor.find_event("DESCRIPTOR_TAKEN");
+    std::vector<std::byte> data(8);
+    OctetWriter{data}.put(event->id).put(std::uint16_t{10}).put(hash);
+    std::array<std::byte, pus::max_telemetry_octets> buffer;
+    const auto packet = pus::write_telemetry(
+        buffer, {.apid = 1, .service = 5, .subtype = 1, .time = OnboardTime{std::chrono::seconds{2'145'916'900}}},
+        data);
+    const Heard heard = model.take(*pus::TelemetryView::parse(*packet));
+    return heard.event ? heard.event->text : std::string{};
+  };
+  const std::uint32_t read = crc32(std::as_bytes(std::span{*catalogue.find(10)->text}));
+  EXPECT_EQ(taken(read).find("another text"), std::string::npos) << taken(read);
+  EXPECT_NE(taken(read + 1).find("by another text than this station has read of CAMERA"), std::string::npos)
+      << taken(read + 1);
 }
 
 TEST(AModel, TellsSwitchesAsTrueAndFalseAndTextsAsWords) {

@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "hirosco/descriptor/model/alike.hpp"
+#include "hirosco/descriptor/model/framework_parameters.hpp"
+#include "hirosco/descriptor/model/supervisor_events.hpp"
+
 namespace hirosco::descriptor {
 namespace {
 
@@ -20,20 +24,29 @@ constexpr std::string_view limit_why = "pools, limits and the books of resources
 constexpr std::string_view safety_why = "nothing that safety rests on is loosened in flight";
 constexpr std::string_view force_why =
     "the configuration in force was made of it: read before CONFIGURE, or in Offline";
+constexpr std::string_view addition_why =
+    "a program has to have it: REPLACE starts one that does, in Offline, and takes this text with it";
+constexpr std::string_view stored_why = "what is stored was laid out when the flight began";
+constexpr std::string_view foreign_why = "whom it hears was made known to it and to others when the flight began";
+constexpr std::string_view bound_why =
+    "no mode and no state would bind it, and it would not wait for the log: the flight has what it began with";
+constexpr std::string_view told_why = "the supervisor tells of that by this name, and plans would be chosen otherwise";
+constexpr std::string_view behind_why = "what is new stands behind what was there, whose place is kept";
+
+using alike::same_address;
+using alike::same_limit;
+using alike::same_outputs;
+using alike::same_structures;
+using alike::same_use;
 
 constexpr auto its_name = [](const auto& each) { return each.name; };
+constexpr auto parameter_name = [](const Parameter& each) { return each.field.name; };
 constexpr auto its_place = [](const auto& each) { return each.at; };
 constexpr auto no_place = [](const auto&) { return Location{}; };
 
-[[nodiscard]] bool same_limit(const CycleLimit& a, const CycleLimit& b) {
-  return a.realtime == b.realtime && a.reduced == b.reduced;
-}
 [[nodiscard]] bool same_texts(const std::vector<EnumerationText>& a, const std::vector<EnumerationText>& b) {
   return std::ranges::equal(
       a, b, [](const EnumerationText& x, const EnumerationText& y) { return x.value == y.value && x.text == y.text; });
-}
-[[nodiscard]] bool same_address(const Endnode& a, const Endnode& b) {
-  return a.transfer == b.transfer && a.address == b.address && a.byte_order == b.byte_order && a.framing == b.framing;
 }
 [[nodiscard]] bool same_end(const std::optional<Endnode>& a, const std::optional<Endnode>& b) {
   return a.has_value() == b.has_value() && (!a || same_address(*a, *b));
@@ -41,24 +54,6 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
 [[nodiscard]] bool same_terms(const LinkTerms& a, const LinkTerms& b) {
   return a.methods == b.methods && a.byte_orders == b.byte_orders && a.kinds == b.kinds;
 }
-[[nodiscard]] bool same_reference(const ParameterRef& a, const ParameterRef& b) {
-  return a.parameter == b.parameter && a.member == b.member;
-}
-[[nodiscard]] bool same_content(const HousekeepingStructure& a, const HousekeepingStructure& b) {
-  return std::ranges::equal(a.sampled_once, b.sampled_once, same_reference) &&
-         std::ranges::equal(a.sampled_repeatedly, b.sampled_repeatedly,
-                            [](const HousekeepingStructure::SampledSet& x, const HousekeepingStructure::SampledSet& y) {
-                              return x.repetitions == y.repetitions &&
-                                     std::ranges::equal(x.parameters, y.parameters, same_reference);
-                            });
-}
-[[nodiscard]] bool same_structures(const std::vector<HousekeepingStructure>& a,
-                                   const std::vector<HousekeepingStructure>& b) {
-  return std::ranges::equal(a, b, [](const HousekeepingStructure& x, const HousekeepingStructure& y) {
-    return x.id == y.id && x.interval_cycles == y.interval_cycles && x.enabled == y.enabled && same_content(x, y);
-  });
-}
-
 [[nodiscard]] bool same_use_of_service(const ServiceUse& a, const ServiceUse& b) {
   return a.type == b.type && a.offered == b.offered && a.loop == b.loop;
 }
@@ -68,8 +63,9 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
            return x.device == y.device && x.output == y.output && x.most == y.most;
          });
 }
-[[nodiscard]] bool same_resources(const Resources& a, const Resources& b) {
-  return a.most == b.most && a.waiting == b.waiting && a.queues == b.queues && a.channel_kb == b.channel_kb &&
+/// But for its queues, which are as long as what it says takes.
+[[nodiscard]] bool same_budget(const Resources& a, const Resources& b) {
+  return a.most == b.most && a.waiting == b.waiting && a.channel_kb == b.channel_kb &&
          a.warning_percent == b.warning_percent &&
          std::ranges::equal(a.pools, b.pools, [](const Pool& x, const Pool& y) {
            return x.block_octets == y.block_octets && x.blocks == y.blocks;
@@ -79,18 +75,6 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
   return a.period == b.period && a.priority == b.priority && a.budget == b.budget && a.queue == b.queue;
 }
 [[nodiscard]] bool same_pace(const ServiceLoop& a, const ServiceLoop& b) { return a.name == b.name && same_loop(a, b); }
-[[nodiscard]] bool same_outputs(const Device& a, const Device& b) {
-  return std::ranges::equal(a.output, b.output, [](const Device::Output& x, const Device::Output& y) {
-    return x.safe == y.safe && x.field.minimum == y.field.minimum && x.field.maximum == y.field.maximum;
-  });
-}
-/// But for which device it is.
-[[nodiscard]] bool same_use(const DeviceUse& a, const DeviceUse& b) {
-  return same_limit(a.silence, b.silence) && a.every == b.every && a.watchdog_us == b.watchdog_us &&
-         a.watchdog_reduced_us == b.watchdog_reduced_us && same_address(a.endnode, b.endnode) &&
-         std::ranges::equal(a.fall_backs, b.fall_backs, same_address) &&
-         std::ranges::equal(a.settings, b.settings, {}, &Setting::value, &Setting::value);
-}
 [[nodiscard]] bool same_script(const ScriptFile& a, const ScriptFile& b) {
   return a.name == b.name && a.file == b.file;
 }
@@ -105,13 +89,62 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
   });
 }
 
+/// Places, each in its own descriptor: what is added moves others in the list, not in meaning.
+[[nodiscard]] bool same_places(const SubsystemDescriptor& flown, const std::vector<ParameterRef>& those,
+                               const SubsystemDescriptor& fresh, const std::vector<ParameterRef>& these) {
+  return std::ranges::equal(those, these, [&](const ParameterRef& a, const ParameterRef& b) {
+    return a.member == b.member &&
+           flown.parameters.at(a.parameter).field.name == fresh.parameters.at(b.parameter).field.name;
+  });
+}
+[[nodiscard]] bool same_report(const SubsystemDescriptor& flown, const HousekeepingStructure& before,
+                               const SubsystemDescriptor& fresh, const HousekeepingStructure& now) {
+  using Sampled = HousekeepingStructure::SampledSet;
+  return same_places(flown, before.sampled_once, fresh, now.sampled_once) &&
+         std::ranges::equal(before.sampled_repeatedly, now.sampled_repeatedly, [&](const Sampled& a, const Sampled& b) {
+           return a.repetitions == b.repetitions && same_places(flown, a.parameters, fresh, b.parameters);
+         });
+}
+
 [[nodiscard]] bool is_listed(const auto& list, const auto& wanted, const auto& name) {
   return std::ranges::find(list, wanted, name) != list.end();
+}
+
+/// Of those that another process is to have: what was made of the others by their places in the list stays true.
+void judge_new_parameters(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh,
+                          std::vector<Obstacle>& found) {
+  const auto built_in = built_in_parameters(fresh);
+  bool something_behind = false;
+  for (auto each = fresh.parameters.rbegin(); each != fresh.parameters.rend(); ++each) {
+    const std::string& name = each->field.name;
+    if (is_listed(flown.parameters, name, parameter_name)) {
+      something_behind = something_behind || std::ranges::find(built_in, name) == built_in.end();
+      continue;
+    }
+    const auto unless = [&](bool good, const char* what, std::string_view why) {
+      if (!good) found.push_back({each->field.at, "parameter " + name + " is new and " + what + ": that", why});
+    };
+    unless(!each->persistent, "is to outlive the flight", stored_why);
+    unless(each->from.empty(), "has the value of another subsystem's", foreign_why);
+    unless(!something_behind, "stands before others", behind_why);
+  }
+}
+
+/// What passes every mode, and by what name plans are chosen, is as it was when the flight began.
+void judge_new_names(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh, std::vector<Obstacle>& found) {
+  for (const Function& each : fresh.functions)
+    if (each.essential && !is_listed(flown.functions, each.name, its_name))
+      found.push_back({each.at, "function " + each.name + " is new and essential: that", bound_why});
+  for (const Event& each : fresh.events)
+    if (is_about_subsystem(each.name) && !is_listed(flown.events, each.name, its_name))
+      found.push_back({each.at, "event " + each.name + " is new: that", told_why});
 }
 
 /// Collects what differs. Each struct is taken apart by all of its members: one that is added has to be decided on here.
 class Comparison {
  public:
+  Comparison(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh, TakenBy by)
+      : flown_{flown}, fresh_{fresh}, by_{by} {}
   [[nodiscard]] std::vector<Obstacle> take() { return std::move(found_); }
 
   void unless(bool same, Location at, std::string what, std::string_view why) {
@@ -134,6 +167,31 @@ class Comparison {
     for (std::size_t i = 0; i < flown.size() && i < fresh.size(); ++i) {
       if (name(flown[i]) != name(fresh[i])) return told(fresh[i], " has another place in the order");
       pair(flown[i], fresh[i]);
+    }
+  }
+
+  /// The same of what another process may have more of.
+  template <class T>
+  void growing(const std::vector<T>& flown, const std::vector<T>& fresh, const std::string& kind, auto&& name,
+               auto&& at, std::string_view why, auto&& pair) {
+    for (const T& each : fresh)
+      if (by_ == TakenBy::SameProcess && !is_listed(flown, name(each), name))
+        found_.push_back({at(each), kind + name(each) + " is new", addition_why, true});
+    kept(flown, fresh, kind, name, at, why, pair);
+  }
+  /// Only what was there has to be there, in its order.
+  template <class T>
+  void kept(const std::vector<T>& flown, const std::vector<T>& fresh, const std::string& kind, auto&& name, auto&& at,
+            std::string_view why, auto&& pair) {
+    auto next = fresh.begin();
+    for (const T& each : flown) {
+      const auto same = std::ranges::find(fresh, name(each), name);
+      unless(same != fresh.end(), at(each), kind + name(each) + " is gone", why);
+      if (same == fresh.end()) continue;
+      unless(same >= next, at(*same), kind + name(each) + " has another place in the order", why);
+      if (same < next) continue;
+      pair(each, *same);
+      next = same + 1;
     }
   }
 
@@ -202,11 +260,12 @@ class Comparison {
     unless(same_parts(flown.parts, parts), value.at, what + ": the structures within", layout_why);
     unless(flown.from == from && flown.age == age, value.at, what + ": whose value it has", code_why);
   }
-  void parameters(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh) {
-    lists(
-        flown.parameters, fresh.parameters, "parameter ", [](const Parameter& each) { return each.field.name; },
+  void parameters() {
+    growing(
+        flown_.parameters, fresh_.parameters, "parameter ", parameter_name,
         [](const Parameter& each) { return each.field.at; }, layout_why,
         [&](const Parameter& a, const Parameter& b) { parameter(a, b); });
+    if (by_ == TakenBy::AnotherProcess) judge_new_parameters(flown_, fresh_, found_);
   }
   /// One may come, go, be switched or have another interval; what it reports stays with its id.
   void structures(const std::vector<HousekeepingStructure>& flown, const std::vector<HousekeepingStructure>& fresh,
@@ -214,8 +273,8 @@ class Comparison {
     for (const HousekeepingStructure& each : fresh) {
       const auto before = std::ranges::find(flown, each.id, &HousekeepingStructure::id);
       if (before == flown.end()) continue;
-      unless(same_content(*before, each), each.at, what + " " + std::to_string(each.id) + ": what it reports",
-             content_why);
+      unless(same_report(flown_, *before, fresh_, each), each.at,
+             what + " " + std::to_string(each.id) + ": what it reports", content_why);
     }
   }
   void event(const Event& flown, const Event& fresh) {
@@ -267,23 +326,23 @@ class Comparison {
     [[maybe_unused]] const auto& [name, terms, parameters_, fields_, at] = fresh;
     const std::string what = whose + ": provided set " + name;
     unless(same_terms(flown.terms, terms), at, what + ": its terms", link_why);
-    unless(std::ranges::equal(flown.parameters, parameters_, same_reference), at, what + ": its parameters", link_why);
+    unless(same_places(flown_, flown.parameters, fresh_, parameters_), at, what + ": its parameters", link_why);
     fields(flown.fields, fields_, what, link_why);
   }
-  void use(const SubsystemDescriptor& of, const DeviceUse& flown, const DeviceUse& fresh, const std::string& whose) {
+  void use(const DeviceUse& flown, const DeviceUse& fresh, const std::string& whose) {
     [[maybe_unused]] const auto& [device_, silence, every, watchdog_us, watchdog_reduced_us, settings, endnode,
                                   fall_backs, at] = fresh;
-    const std::string what = whose + ": device " + of.devices[device_].name;
+    const std::string what = whose + ": device " + fresh_.devices[device_].name;
     unless(flown.device == device_, at, what + ": which it is", code_why);
     unless(flown.endnode.byte_order == endnode.byte_order, at, what + ": its byte order", layout_why);
     unless(std::ranges::equal(flown.settings, settings, {}, &Setting::name, &Setting::name), at,
            what + ": which settings it has", code_why);
-    unless(!of.devices[device_].actuator ||
+    unless(!fresh_.devices[device_].actuator ||
                (flown.watchdog_us == watchdog_us && flown.watchdog_reduced_us == watchdog_reduced_us),
            at, what + ": the watchdog of an actuator", safety_why);
     unless(flown.fall_backs.empty() == fall_backs.empty(), at, what + ": whether it has fall-backs", code_why);
   }
-  void configuration(const SubsystemDescriptor& subsystem, const Configuration& flown, const Configuration& fresh) {
+  void configuration(const Configuration& flown, const Configuration& fresh) {
     [[maybe_unused]] const auto& [name, id, priority, sampling, started_by, least, budget, spin, power_w, overruns,
                                   self_test, self_test_within, housekeeping, provides, requires_, devices, initial,
                                   services, paces, at] = fresh;
@@ -307,32 +366,34 @@ class Comparison {
     lists(
         flown.devices, devices, what + ": device ",
         [&](const DeviceUse& each) {
-          return each.device < subsystem.devices.size() ? subsystem.devices[each.device].name : std::string{};
+          return each.device < fresh_.devices.size() ? fresh_.devices[each.device].name : std::string{};
         },
         [](const DeviceUse& each) { return each.at; }, code_why,
-        [&](const DeviceUse& a, const DeviceUse& b) { use(subsystem, a, b, what); });
+        [&](const DeviceUse& a, const DeviceUse& b) { use(a, b, what); });
   }
-  void subsystem(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh) {
+  void subsystem() {
+    const SubsystemDescriptor& flown = flown_;
     [[maybe_unused]] const auto& [name, id, description, file, text, enumerations, parameters_, events, functions_,
                                   services, failures, commands, subscribes, housekeeping, devices, power_switches,
-                                  configurations, hang, resources, loops, uses, bumpless, scripts] = fresh;
+                                  configurations, hang, resources, loops, uses, bumpless, scripts] = fresh_;
     unless(flown.name == name && flown.id == id, {}, "its name or id", code_why);
-    lists(flown.enumerations, enumerations, "enumeration ", its_name, no_place, meaning_why,
-          [&](const Enumeration& a, const Enumeration& b) {
-            unless(same_texts(a.texts, b.texts), {}, "enumeration " + b.name + ": its values and their names",
-                   meaning_why);
-          });
-    parameters(flown, fresh);
-    lists(flown.events, events, "event ", its_name, its_place, code_why,
-          [&](const Event& a, const Event& b) { event(a, b); });
-    functions(flown.functions, functions_, "function ");
+    growing(flown.enumerations, enumerations, "enumeration ", its_name, no_place, meaning_why,
+            [&](const Enumeration& a, const Enumeration& b) {
+              unless(same_texts(a.texts, b.texts), {}, "enumeration " + b.name + ": its values and their names",
+                     meaning_why);
+            });
+    parameters();
+    growing(flown.events, events, "event ", its_name, its_place, code_why,
+            [&](const Event& a, const Event& b) { event(a, b); });
+    growing(flown.functions, functions_, "function ", its_name, its_place, code_why,
+            [&](const Function& a, const Function& b) { function(a, b, "function "); });
     lists(
         flown.services, services, "service ", its_name, [](const CustomService& each) { return each.at; }, code_why,
         [&](const CustomService& a, const CustomService& b) { service(a, b); });
-    lists(flown.failures, failures, "failure ", its_name, no_place, meaning_why,
-          [&](const FailureName& a, const FailureName& b) {
-            unless(a.code == b.code, {}, "failure " + b.name + ": its code", meaning_why);
-          });
+    kept(flown.failures, failures, "failure ", its_name, no_place, meaning_why,
+         [&](const FailureName& a, const FailureName& b) {
+           unless(a.code == b.code, {}, "failure " + b.name + ": its code", meaning_why);
+         });
     structures(flown.housekeeping, housekeeping, "housekeeping");
     lists(
         flown.commands, commands, "command of ", [](const Commands& each) { return each.subsystem; },
@@ -368,124 +429,57 @@ class Comparison {
       lists(
           flown.configurations, configurations, "configuration ", its_name,
           [](const Configuration& each) { return each.at; }, code_why,
-          [&](const Configuration& a, const Configuration& b) { configuration(fresh, a, b); });
+          [&](const Configuration& a, const Configuration& b) { configuration(a, b); });
     unless(flown.hang.realtime == hang.realtime && flown.hang.reduced == hang.reduced, {}, "when it counts as hanging",
            guard_why);
-    unless(same_resources(flown.resources, resources), {}, "its resources", limit_why);
-  }
-
-  // --- what the configuration in force was made of ---------------------------------------------------------------------
-  void in_force(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh, const Configuration& now,
-                const Configuration& then) {
-    const std::string what = "configuration " + now.name;
-    unless(same_structures(flown.housekeeping, fresh.housekeeping), then.at, what + ": housekeeping of the subsystem",
-           force_why);
-    unless(same_structures(now.housekeeping, then.housekeeping), then.at, what + ": its housekeeping", force_why);
-    unless(same_limit(now.overruns, then.overruns) && now.self_test_within == then.self_test_within &&
-               now.power_w == then.power_w,
-           then.at, what + ": its limits or power", force_why);
-    for (std::size_t i = 0; i < now.requires_.size() && i < then.requires_.size(); ++i)
-      unless(same_limit(now.requires_[i].age, then.requires_[i].age), then.requires_[i].at,
-             what + ": required set " + then.requires_[i].name + ": its age", force_why);
-    for (std::size_t i = 0; i < now.devices.size() && i < then.devices.size(); ++i) {
-      const DeviceUse &a = now.devices[i], &b = then.devices[i];
-      const Device &had = flown.devices[a.device], &has = fresh.devices[b.device];
-      unless(same_use(a, b), b.at, what + ": device " + has.name + ": its endnodes, limits or settings", force_why);
-      unless(same_outputs(had, has), has.at, what + ": device " + has.name + ": what it may be told", force_why);
-    }
+    const bool same_queues = by_ == TakenBy::AnotherProcess || flown.resources.queues == resources.queues;
+    unless(same_budget(flown.resources, resources) && same_queues, {}, "its resources", limit_why);
   }
 
  private:
+  const SubsystemDescriptor& flown_;
+  const SubsystemDescriptor& fresh_;
+  TakenBy by_;
   std::vector<Obstacle> found_;
 };
-
-// What is the same is not touched: a cycle may be reading it, and what it reads and is different obstacles_in_force() has refused. Of ranges
-// and defaults of arguments it reads none: those are judged and filled in where a call is asked for.
-
-void take_field(Field& flown, const Field& fresh) {
-  flown.minimum = fresh.minimum;
-  flown.maximum = fresh.maximum;
-  flown.at = fresh.at;
-}
-
-void take_functions(std::vector<Function>& flown, std::vector<Function>& fresh) {
-  for (std::size_t i = 0; i < flown.size(); ++i) {
-    flown[i].description = std::move(fresh[i].description);
-    flown[i].at = fresh[i].at;
-    for (std::size_t a = 0; a < flown[i].arguments.size(); ++a) {
-      take_field(flown[i].arguments[a].field, fresh[i].arguments[a].field);
-      flown[i].arguments[a].fallback = std::move(fresh[i].arguments[a].fallback);
-    }
-  }
-}
-
-void take_structures(std::vector<HousekeepingStructure>& flown, std::vector<HousekeepingStructure>& fresh) {
-  if (!same_structures(flown, fresh)) flown = std::move(fresh);
-}
-
-void take_configuration(Configuration& flown, Configuration& fresh) {
-  flown.power_w = fresh.power_w;
-  flown.overruns = fresh.overruns;
-  flown.self_test_within = fresh.self_test_within;
-  take_structures(flown.housekeeping, fresh.housekeeping);
-  flown.initial = std::move(fresh.initial);
-  flown.at = fresh.at;
-  for (std::size_t i = 0; i < flown.requires_.size(); ++i) {
-    flown.requires_[i].age = fresh.requires_[i].age;
-    flown.requires_[i].at = fresh.requires_[i].at;
-  }
-  for (std::size_t i = 0; i < flown.devices.size(); ++i)
-    if (same_use(flown.devices[i], fresh.devices[i])) flown.devices[i].at = fresh.devices[i].at;
-    else flown.devices[i] = std::move(fresh.devices[i]);
-}
-
-void take_device(Device& flown, Device& fresh) {
-  flown.at = fresh.at;
-  const bool same = same_outputs(flown, fresh);
-  for (std::size_t i = 0; i < flown.output.size(); ++i) {
-    flown.output[i].field.at = fresh.output[i].field.at;
-    if (same) continue;
-    take_field(flown.output[i].field, fresh.output[i].field);
-    flown.output[i].safe = std::move(fresh.output[i].safe);
-  }
-}
 
 }  // namespace
 
 const char* const not_in_flight = "E0380";
 
-std::vector<Obstacle> obstacles(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh) {
-  Comparison comparison;
-  comparison.subsystem(flown, fresh);
-  return comparison.take();
+std::vector<Obstacle> obstacles(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh, TakenBy by) {
+  Comparison comparison{flown, fresh, by};
+  comparison.subsystem();
+  auto found = comparison.take();
+  judge_new_names(flown, fresh, found);
+  return found;
 }
 
 std::vector<Obstacle> obstacles_in_force(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh,
                                          std::uint8_t id) {
-  Comparison comparison;
+  std::vector<Obstacle> found;
   const Configuration* now = flown.find_configuration(id);
   const Configuration* then = fresh.find_configuration(id);
-  if (now != nullptr && then != nullptr) comparison.in_force(flown, fresh, *now, *then);
-  return comparison.take();
-}
-
-void take_over(SubsystemDescriptor& flown, SubsystemDescriptor&& fresh) {
-  flown.description = std::move(fresh.description);
-  flown.text = std::move(fresh.text);
-  for (std::size_t i = 0; i < flown.parameters.size(); ++i) {
-    Parameter &had = flown.parameters[i], &has = fresh.parameters[i];
-    take_field(had.field, has.field);
-    had.init = std::move(has.init);
-    had.writable_states = has.writable_states;
-    for (std::size_t m = 0; m < had.members.size(); ++m) take_field(had.members[m].field, has.members[m].field);
+  if (now == nullptr || then == nullptr) return found;
+  const std::string what = "configuration " + now->name;
+  const auto unless = [&](bool same, Location at, const std::string& which) {
+    if (!same) found.push_back({at, what + ": " + which, force_why});
+  };
+  unless(same_structures(flown.housekeeping, fresh.housekeeping), then->at, "housekeeping of the subsystem");
+  unless(same_structures(now->housekeeping, then->housekeeping), then->at, "its housekeeping");
+  unless(same_limit(now->overruns, then->overruns) && now->self_test_within == then->self_test_within &&
+             now->power_w == then->power_w,
+         then->at, "its limits or power");
+  for (std::size_t i = 0; i < now->requires_.size() && i < then->requires_.size(); ++i)
+    unless(same_limit(now->requires_[i].age, then->requires_[i].age), then->requires_[i].at,
+           "required set " + then->requires_[i].name + ": its age");
+  for (std::size_t i = 0; i < now->devices.size() && i < then->devices.size(); ++i) {
+    const DeviceUse &a = now->devices[i], &b = then->devices[i];
+    const Device &had = flown.devices[a.device], &has = fresh.devices[b.device];
+    unless(same_use(a, b), b.at, "device " + has.name + ": its endnodes, limits or settings");
+    unless(same_outputs(had, has), has.at, "device " + has.name + ": what it may be told");
   }
-  take_functions(flown.functions, fresh.functions);
-  for (std::size_t i = 0; i < flown.services.size(); ++i)
-    take_functions(flown.services[i].requests, fresh.services[i].requests);
-  take_structures(flown.housekeeping, fresh.housekeeping);
-  for (std::size_t i = 0; i < flown.devices.size(); ++i) take_device(flown.devices[i], fresh.devices[i]);
-  for (std::size_t i = 0; i < flown.configurations.size(); ++i)
-    take_configuration(flown.configurations[i], fresh.configurations[i]);
+  return found;
 }
 
 }  // namespace hirosco::descriptor

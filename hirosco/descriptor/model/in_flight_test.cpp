@@ -96,6 +96,7 @@ TEST(InFlight, WhatIsNotBuiltInMayChange) {
            {R"("UINT8" minimum="0" maximum="1")", R"("UINT8" minimum="1" maximum="2")"},
            {R"(power_W="5")", R"(power_W="6" overruns="9")"},
            {R"(age="3")", R"(age="5")"},
+           {"<EventService>", R"(<Failure code="0x8001" name="BENT"/><EventService>)"},
            {R"(<Set parameter="GAIN" value="4"/>)", R"(<Set parameter="GAIN" value="6"/>)"}})
     EXPECT_EQ(all(obstacles(read(flown_text), read(changed(edit.from, edit.to, flown_text)))), "") << edit.from;
 }
@@ -162,6 +163,116 @@ TEST(InFlight, WhatMemoryThreadsLinksAndGuardWereMadeByIsRefusedByName) {
     const SubsystemDescriptor fresh = read(changed(edit.from, edit.to, flown_text));
     EXPECT_THAT(all(obstacles(read(flown_text), fresh)), HasSubstr(edit.told)) << edit.from;
   }
+}
+
+/// Each is behind what was there, but for events and functions, whose order nobody goes by.
+const std::initializer_list<Edit> additions = {
+    {"</StructRef>", R"(</StructRef><ParamRef name="FRESH" id="8" type="DOUBLE" init="7" minimum="0" maximum="9"/>)",
+     "parameter FRESH is new"},
+    {"<EventService>", R"(<EventService><Event name="CRACK" id="6" severity="high"/>)", "event CRACK is new"},
+    {R"(<Function name="RAISE_LIMIT")", R"(<Function name="SPIN" states="Operational"/><Function name="RAISE_LIMIT")",
+     "function SPIN is new"},
+    {R"(<Enumeration name="SIDES">)",
+     R"(<Enumeration name="ENDS"><Text value="0">top</Text></Enumeration><Enumeration name="SIDES">)",
+     "enumeration ENDS is new"}};
+
+TEST(InFlight, WhatIsAddedNeedsAProgramThatHasIt) {
+  for (const Edit& edit : additions) {
+    const SubsystemDescriptor fresh = read(changed(edit.from, edit.to, flown_text));
+    const auto found = obstacles(read(flown_text), fresh);
+    EXPECT_EQ(all(found), std::string{edit.told} + "\n");
+    for (const Obstacle& each : found) {
+      EXPECT_TRUE(each.addition) << each.what;
+      EXPECT_THAT(each.why, HasSubstr("REPLACE"));
+    }
+    EXPECT_EQ(all(obstacles(read(flown_text), fresh, TakenBy::AnotherProcess)), "");
+  }
+}
+
+TEST(InFlight, NobodyIsSentToAnotherProcessForWhatThatMayNotHaveEither) {
+  const auto fresh =
+      read(changed(R"(<Function name="RAISE_LIMIT")",
+                   R"(<Function name="SPIN" essential="yes"/><Function name="RAISE_LIMIT")", flown_text));
+  EXPECT_THAT(all(obstacles(read(flown_text), fresh)), HasSubstr("function SPIN is new and essential: that"));
+}
+
+TEST(InFlight, WhatIsNoPureAdditionIsRefusedForAnotherProcess) {
+  for (
+      const Edit& edit : std::initializer_list<Edit>{
+          {R"(<ParamRef name="TITLE")", R"(<ParamRef name="FRESH" id="8" type="DOUBLE"/><ParamRef name="TITLE")",
+           "parameter FRESH is new and stands before others"},
+          {"</StructRef>",
+           R"(</StructRef><ParamRef name="FRESH" id="8" type="DOUBLE" minimum="0" maximum="7" persistent="yes" writable="PreOperational"/>)",
+           "parameter FRESH is new and is to outlive the flight"},
+          {R"(<ParamRef name="ANGLE" id="9")",
+           R"(<ParamRef name="MORE" id="7" type="FLOAT"/><ParamRef name="ANGLE" id="9")",
+           "parameter SEEN: member MORE is new"},
+          {R"(<Function name="RAISE_LIMIT")",
+           R"(<Function name="SPIN" states="Operational" essential="yes"/><Function name="RAISE_LIMIT")",
+           "function SPIN is new and essential"},
+          {"<EventService>", R"(<EventService><Event name="HANG" id="6" severity="low"/>)", "event HANG is new: that"},
+          {R"(<ParamRef name="TITLE" id="1" type="TEXT" octets="8" init="old"/>)", "", "parameter TITLE is gone"},
+          {R"(name="GAIN" id="1" type="DOUBLE")", R"(name="GAIN" id="4" type="DOUBLE")", "parameter GAIN: its id"},
+          {R"(name="BUMP" id="7")", R"(name="BUMP" id="8")", "event BUMP: its id"},
+          {R"(<Argument name="WHERE" type="DOUBLE"/>)", R"(<Argument name="WHERE" type="FLOAT"/>)",
+           "event BUMP: field WHERE: its type"},
+          {R"(<Request name="LOOK")", R"(<Request name="BLINK" subtype="5" states="Operational"/><Request name="LOOK")",
+           "service GAZE: request BLINK is new"},
+          {R"(<SampledOnce><ParamRef name="GAIN"/>)", R"(<SampledOnce><ParamRef name="SEEN"/>)",
+           "housekeeping 11: what it reports"},
+          {R"(<Field name="X" type="DOUBLE"/></Requires>)",
+           R"(<Field name="X" type="DOUBLE"/><Field name="Y" type="DOUBLE"/></Requires>)",
+           "required set IN: field Y is new"},
+          {R"(memory_kB="100000")", R"(memory_kB="90000")", "its resources"},
+          {R"(sampling_us="1000")", R"(sampling_us="2000")", "configuration FAST: priority, sampling time or budget"}})
+    EXPECT_THAT(
+        all(obstacles(read(flown_text), read(changed(edit.from, edit.to, flown_text)), TakenBy::AnotherProcess)),
+        HasSubstr(edit.told))
+        << edit.from;
+}
+
+/// A structure's only parameter, by the place that it refers to.
+[[nodiscard]] std::string only_value_of(const SubsystemDescriptor& subsystem, std::uint16_t id) {
+  for (const HousekeepingStructure& each : subsystem.configurations.front().housekeeping)
+    if (each.id == id) return subsystem.parameters.at(each.sampled_once.front().parameter).field.name;
+  return "none";
+}
+
+// The parameters of the framework stand behind those of the author: what is added moves them.
+TEST(InFlight, WhatIsAddedIsTakenAndTakenBackWithAllThatRefersToIt) {
+  const std::string structure = R"(<HKService id="11" interval="10">)";
+  const std::string text = changed(
+      structure,
+      R"(<HKService id="12" interval="10"><SampledOnce><ParamRef name="CYCLE_STATS"/></SampledOnce></HKService>)" +
+          structure,
+      flown_text);
+  std::string more = changed(
+      structure,
+      R"(<HKService id="13" interval="10"><SampledOnce><ParamRef name="FRESH"/></SampledOnce></HKService>)" + structure,
+      text);
+  for (const Edit& edit : additions) more = changed(edit.from, edit.to, more);
+  more = changed("<EventService>", R"(<Failure code="0x8001" name="BENT"/><EventService>)", more);
+  SubsystemDescriptor flown = read(text);
+  ASSERT_EQ(all(obstacles(flown, read(more), TakenBy::AnotherProcess)), "");
+
+  take_over(flown, read(more));
+  EXPECT_EQ(all(obstacles(flown, read(more))), "");
+  EXPECT_EQ(*flown.text, more);
+  EXPECT_EQ(flown.find_parameter("FRESH")->init, std::vector<Value>{Number{7.0}});
+  EXPECT_NE(flown.find_function("SPIN"), nullptr);
+  EXPECT_EQ(flown.find_event("CRACK")->severity, Severity::High);
+  EXPECT_EQ(flown.failures.size(), 1U);
+  EXPECT_EQ(only_value_of(flown, 13), "FRESH");
+  EXPECT_EQ(only_value_of(flown, 12), "CYCLE_STATS");
+
+  take_over(flown, read(text));
+  EXPECT_EQ(all(obstacles(flown, read(text))), "");
+  EXPECT_EQ(*flown.text, text);
+  EXPECT_TRUE(flown.failures.empty());
+  EXPECT_EQ(flown.find_parameter("FRESH"), nullptr);
+  EXPECT_EQ(flown.find_function("SPIN"), nullptr);
+  EXPECT_EQ(only_value_of(flown, 13), "none");
+  EXPECT_EQ(only_value_of(flown, 12), "CYCLE_STATS");
 }
 
 TEST(InFlight, AnObstacleSaysWhereItStands) {

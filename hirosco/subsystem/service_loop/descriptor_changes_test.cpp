@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "hirosco/pus/st130_descriptor/descriptor_service.hpp"
@@ -102,6 +103,13 @@ TEST_F(DescriptorChanges, AnInitialValueThatIsGoneIsZero) {
   EXPECT_EQ(reread(edited(R"(init="3" )", "")), "1 3 7");
   rig.set_state_now(State::PreOperational);
   EXPECT_EQ(probe.kp.load(), 0.0);
+}
+
+TEST_F(DescriptorChanges, AFailureCodeThatIsNewHasItsNameAtOnce) {
+  const std::size_t before = rig.descriptor().failures.size();
+  EXPECT_EQ(reread(edited("<Parameters>", R"(<Failure code="0x8123" name="FRESH"/><Parameters>)")), "1 3 7");
+  ASSERT_EQ(rig.descriptor().failures.size(), before + 1);
+  EXPECT_TRUE(std::ranges::any_of(rig.descriptor().failures, [](const auto& each) { return each.name == "FRESH"; }));
 }
 
 TEST_F(DescriptorChanges, HousekeepingIsThatOfTheNextConfigure) {

@@ -54,6 +54,8 @@ class Member {
   bool was_started{false};
   /// Its process ends for another version of it, or has: nobody else starts it.
   bool exchanged{false};
+  /// The version that takes its place, or is on trial, has a text of its own: nobody else changes that (docs/adr/0214).
+  bool brings_text{false};
   /// Another text of its descriptor is on its way to it: nothing is permitted that the old one would judge.
   bool descriptor_changes{false};
   /// In how many steps in a row the operating system refused to read its channel.

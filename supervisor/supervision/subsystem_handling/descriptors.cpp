@@ -9,44 +9,19 @@
 #include <cstring>
 #include <utility>
 
-#include "hirosco/descriptor/model/in_flight.hpp"
-#include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/pus/st130_descriptor/descriptor_service.hpp"
-#include "hirosco/utilities/crc32.hpp"
 #include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
 #include "supervisor/supervision/modes/under_way.hpp"
+#include "supervisor/supervision/subsystem_handling/fresh_descriptor.hpp"
 
 namespace hirosco::supervisor {
 
-using descriptor::Diagnostic;
 using descriptor::not_in_flight;
 using descriptor::State;
 using pus::DescriptorService;
 using pus::FailureCode;
 
 namespace {
-
-[[nodiscard]] std::string line_of(const Diagnostic& problem) {
-  std::string line = fmt::format("{}:{}:{}: error: {}: {}", problem.file.string(), problem.at.line, problem.at.column,
-                                 problem.code, problem.message);
-  return problem.hint.empty() ? line : line + " (" + problem.hint + ")";
-}
-
-/// A value that begins its next Software-Init and that no telecommand could set any more.
-[[nodiscard]] const descriptor::Parameter* outside(const descriptor::SubsystemDescriptor& fresh,
-                                                   const descriptor::Override& kept) {
-  const auto place = descriptor::find_place(fresh, kept.parameter);
-  if (!place) return nullptr;
-  bool good = true;
-  auto value = kept.values.begin();
-  for (const descriptor::Field& field : descriptor::fields_of(fresh, *place))
-    for (std::uint32_t i = 0; i < field.values() && value != kept.values.end(); ++i, ++value) {
-      const Number* const number = std::get_if<Number>(&*value);
-      good = good && (number == nullptr ||
-                      !((field.minimum && *number < *field.minimum) || (field.maximum && *number > *field.maximum)));
-    }
-  return good ? nullptr : &fresh.parameters[place->parameter];
-}
 
 /// Sealed memory that holds the text.
 [[nodiscard]] Result<MemoryHandle> sealed(MemoryProvider& memory, const std::string& text) {
@@ -69,8 +44,13 @@ std::optional<Outcome> Descriptors::against(const Member* subject) const {
   if (craft_.shutting_down) return refused(FailureCode::NotPermittedNow, "the craft shuts down");
   if (parts_.under_way.running()) return refused(FailureCode::Busy, "the craft is commissioned or changes its mode");
   for (const Member& member : craft_.members) {
+    // The whole mission is judged, and that text of it changes in this moment.
+    if (member.exchanged && member.brings_text)
+      return refused(FailureCode::Busy, "a version that brings its text is about to be started", member.apid());
     if (member.descriptor().file != subject->descriptor().file) continue;
     if (member.exchanged) return refused(FailureCode::Busy, "another version of it is about to be started");
+    if (member.brings_text)
+      return refused(FailureCode::Busy, "a version that brought its text is on trial: CONFIRM or TAKE_BACK");
     if (!member.alive()) continue;
     if (member.recovery.running()) return refused(FailureCode::Busy, "a plan has it in hand");
     const auto state = member.state();
@@ -104,13 +84,15 @@ Outcome Descriptors::reread(std::uint16_t apid, const Call& call) {
 
 void Descriptors::watch(TimePoint now) {
   // What a disk gives that late is of no use to anybody, but keeps no later one from being read.
-  if (phase_ == Phase::Idle && parts_.readings != nullptr) static_cast<void>(parts_.readings->outcome());
+  if (late_ && parts_.readings->outcome()) late_ = false;
   const bool open = std::ranges::any_of(asked_, [](const auto& each) { return each.second.answer == Answer::Open; });
   switch (phase_) {
     case Phase::Idle: return;
     case Phase::Reading:
       if (auto reading = parts_.readings->outcome()) return judge(std::move(*reading));
-      if (now > deadline_) give_up(FailureCode::Timeout, "its file is not read in time");
+      if (now <= deadline_) return;
+      late_ = true;
+      give_up(FailureCode::Timeout, "its file is not read in time");
       return;
     case Phase::Judging:
       if (!open) judged();
@@ -132,11 +114,11 @@ void Descriptors::judge(DescriptorReading reading) {
     // What its files bring along may be another all the same.
     for (descriptor::MissionSubsystem* member : flown)
       if (auto* fresh = reading.mission.value->find_subsystem(member->subsystem.id)) member->brought = fresh->brought;
-    take_texts();
+    take_texts(craft_, file_, text_, std::move(texts_));
     craft_.tell(fmt::format("{}: the text is the one in force", file_.string()), apid_);
     return finish();
   }
-  Problems problems;
+  DescriptorProblems problems;
   fresh_.clear();
   declared_.clear();
   for (const descriptor::MissionSubsystem* member : flown) {
@@ -164,35 +146,18 @@ void Descriptors::judge(DescriptorReading reading) {
 }
 
 void Descriptors::compare(const descriptor::MissionSubsystem& flown, descriptor::MissionSubsystem& fresh,
-                          Problems& problems) const {
-  const auto add = [&](descriptor::Location at, std::string message, std::string hint) {
-    Diagnostic problem{
-        .file = file_, .at = at, .code = not_in_flight, .message = std::move(message), .hint = std::move(hint)};
-    const bool known = std::ranges::any_of(
-        problems, [&](const Diagnostic& each) { return each.at == problem.at && each.message == problem.message; });
-    if (!known) problems.push_back(std::move(problem));
-  };
-  for (const auto& obstacle : descriptor::obstacles(flown.subsystem, fresh.subsystem))
-    add(obstacle.at, obstacle.what + " cannot change in flight", std::string{obstacle.why});
-  // What telecommands have set of persistent parameters goes on.
-  fresh.overrides = flown.overrides;
-  for (const descriptor::Override& kept : fresh.overrides) {
-    if (const auto* parameter = outside(fresh.subsystem, kept))
-      add(parameter->field.at, fmt::format("the stored value of {} is outside its new range", kept.parameter),
-          "set it before");
-    if (const auto applied = apply_override(fresh.subsystem, to_string(kept)); !applied)
-      add({}, fmt::format("the value of {}: {}", kept.parameter, applied.error().text),
-          "it is stored, or the mission's");
-  }
+                          DescriptorProblems& problems) const {
+  add_obstacles(problems, file_, descriptor::obstacles(flown.subsystem, fresh.subsystem));
+  carry_values(flown, fresh, problems);
   const Member* member = std::as_const(craft_).member(flown.subsystem.id);
   if (member == nullptr || !member->alive()) return;
   if (const auto* configuration = flown.subsystem.find_configuration(member->configuration()))
     for (const auto& obstacle : descriptor::obstacles_in_force(flown.subsystem, fresh.subsystem, configuration->id))
-      add(obstacle.at, fmt::format("{}: {} cannot change now", flown.subsystem.name, obstacle.what),
-          std::string{obstacle.why});
+      add_problem(problems, file_, obstacle.at,
+                  fmt::format("{}: {} cannot change now", flown.subsystem.name, obstacle.what), obstacle.why);
   if (const std::string shut = craft_.launcher.shut_out(flown, fresh); !shut.empty())
-    add({}, fmt::format("{} cannot reach {}", flown.subsystem.name, shut),
-        "its sandbox was made when its process started");
+    add_problem(problems, file_, {}, fmt::format("{} cannot reach {}", flown.subsystem.name, shut),
+                "its sandbox was made when its process started");
 }
 
 /// Everybody who runs. Who is down begins with what is in force then.
@@ -252,48 +217,17 @@ void Descriptors::taken() {
   finish();
 }
 
-/// The supervisor's own copies, in this one step: permission, modes, ledger, forms of its story, and with what processes start.
 void Descriptors::take_over() {
-  const std::uint32_t hash = crc32(std::as_bytes(std::span{*text_}));
   for (descriptor::MissionSubsystem* member : flying(file_)) {
     auto fresh = fresh_.extract(member->subsystem.id);
     parts_.stored.redeclared(declared_.at(member->subsystem.id));
-    descriptor::take_over(member->subsystem, std::move(fresh.mapped().subsystem));
-    member->brought = std::move(fresh.mapped().brought);
-    craft_.tell(fmt::format("{} flies by {} as it is now, CRC-32 {:08x}", member->subsystem.name, file_.string(), hash),
-                member->subsystem.id);
-    parts_.own.announce("DESCRIPTOR_TAKEN", {static_cast<double>(member->subsystem.id), static_cast<double>(hash)});
+    put_in_force(craft_, parts_.own, *member, std::move(fresh.mapped()), *text_);
   }
-  take_texts();
+  take_texts(craft_, file_, text_, std::move(texts_));
 }
 
-/// Its own and those of the files that bring others along; all others are the same.
-void Descriptors::take_texts() {
-  for (auto& [file, text] : texts_) craft_.mission.texts[file] = std::move(text);
-  craft_.mission.texts[file_] = text_;
-  texts_.clear();
-}
-
-/// Each problem reaches whoever asked; the story has all of them.
-void Descriptors::refuse(const Problems& problems) {
-  const std::string name = craft_.name_of(apid_);
-  std::vector<std::byte> data;
-  for (std::size_t i = 0; i < problems.size(); ++i) {
-    const Diagnostic& problem = problems[i];
-    craft_.tell(name + " keeps its descriptor: " + line_of(problem), apid_);
-    if (i == most_problems_told) break;
-    data = pus::st129::write_descriptor_problem({.apid = apid_,
-                                                 .count = static_cast<std::uint16_t>(problems.size()),
-                                                 .file = problem.file.string(),
-                                                 .line = static_cast<std::uint32_t>(problem.at.line),
-                                                 .column = static_cast<std::uint32_t>(problem.at.column),
-                                                 .code = problem.code,
-                                                 .what = problem.message,
-                                                 .hint = problem.hint});
-    parts_.own.telemetry().report(pus::st129::service_type, pus::st129::descriptor_problem,
-                                  call_ ? call_->request.source : std::uint16_t{0}, data);
-  }
-  parts_.own.announce("DESCRIPTOR_REFUSED", {static_cast<double>(apid_), static_cast<double>(problems.size())});
+void Descriptors::refuse(const DescriptorProblems& problems) {
+  tell_problems(craft_, parts_.own, apid_, call_ ? call_->request.source : std::uint16_t{0}, problems);
   give_up(FailureCode::ValueNotAcceptable,
           "problems, each in a TM[129,10]:", static_cast<std::int64_t>(problems.size()));
 }

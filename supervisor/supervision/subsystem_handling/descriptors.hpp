@@ -15,6 +15,7 @@
 #include "supervisor/supervision/command_desk.hpp"
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/subsystem_handling/fresh_descriptor.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
@@ -37,8 +38,6 @@ class Descriptors final : public Watch {
   };
   /// What a file may take to be read.
   static constexpr Duration longest_reading = 60s;
-  /// Each has a report of its own.
-  static constexpr std::size_t most_problems_told = 64;
 
   explicit Descriptors(const Parts& parts) : parts_{parts}, craft_{parts.craft} {}
 
@@ -55,20 +54,18 @@ class Descriptors final : public Watch {
     std::string why;
     std::uint32_t process{0};  ///< which was asked: another one has begun with the text before
   };
-  using Problems = std::vector<descriptor::Diagnostic>;
 
   [[nodiscard]] std::optional<Outcome> against(const Member* subject) const;
   [[nodiscard]] std::vector<descriptor::MissionSubsystem*> flying(const std::filesystem::path& file);
   void judge(DescriptorReading reading);
   /// What of `fresh` does not fit who flies it now.
   void compare(const descriptor::MissionSubsystem& flown, descriptor::MissionSubsystem& fresh,
-               Problems& problems) const;
+               DescriptorProblems& problems) const;
   void ask(std::uint8_t subtype, Octets data, const MemoryHandle& text);
   void judged();
   void taken();
   void take_over();
-  void take_texts();
-  void refuse(const Problems& problems);
+  void refuse(const DescriptorProblems& problems);
   void finish();
   void give_up(pus::FailureCode code, const char* words, std::int64_t number = 0);
   void hold(bool held);
@@ -80,9 +77,10 @@ class Descriptors final : public Watch {
   std::filesystem::path file_;
   std::optional<Call> call_;
   TimePoint deadline_{};
+  bool late_{false};  ///< a reading that was given up has not ended
   std::uint32_t round_{0};  ///< answers to an earlier one count for nothing
   std::shared_ptr<const std::string> text_;
-  std::map<std::filesystem::path, std::shared_ptr<const std::string>> texts_;  ///< all that the newest reading read
+  MissionTexts texts_;  ///< all that the newest reading read
   std::map<std::uint16_t, descriptor::SubsystemDescriptor> declared_;  ///< the same before anything was set
   std::map<std::uint16_t, descriptor::MissionSubsystem> fresh_;  ///< by APID: who flies the file
   std::map<std::uint16_t, Asked> asked_;  ///< of them those whose process runs

@@ -7,6 +7,7 @@
 #include "supervisor/platform/storage/testing/test_databases.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 #include "supervisor/supervision/testing/played_desk.hpp"
+#include "supervisor/supervision/testing/played_readings.hpp"
 
 /// Descriptors that are read again: all who fly a file, and the supervisor with them, or nobody.
 namespace hirosco::supervisor {
@@ -18,16 +19,6 @@ using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
 using enum descriptor::State;
 using Came = Outcome::Kind;
-
-struct PlayedReadings final : DescriptorReadings {
-  Result<> begin(const descriptor::Mission&, const std::filesystem::path& file) override {
-    asked.push_back(file.string());
-    return ok();
-  }
-  std::optional<DescriptorReading> outcome() override { return std::exchange(next, std::nullopt); }
-  std::vector<std::string> asked;
-  std::optional<DescriptorReading> next;
-};
 
 /// ARM and HAND fly one file, CAMERA another.
 struct DescriptorsTest : PartsTest {
@@ -211,6 +202,15 @@ TEST_F(DescriptorsTest, WhatCannotChangeInFlightIsNamedOnceForAllWhoFlyIt) {
   EXPECT_TRUE(was_told("function BRAKE is gone cannot change in flight"));
   EXPECT_EQ(std::ranges::count_if(story, [](const auto& line) { return line.find("GAIN") != line.npos; }), 1);
   EXPECT_EQ(craft.mission.subsystems[0].subsystem.parameters[0].field.type, Type::Double);
+}
+
+TEST_F(DescriptorsTest, WhatAProgramHasToHaveIsToldWithTheWayToIt) {
+  is_read(another([](descriptor::SubsystemDescriptor& subsystem) {
+    subsystem.functions.push_back(function("SPIN", in_states({Operational})));
+  }));
+  EXPECT_TRUE(was_told("function SPIN is new: not by REREAD (a program has to have it: REPLACE starts one that does"));
+  EXPECT_THAT(desk.sent, IsEmpty());
+  EXPECT_EQ(craft.mission.find_subsystem(arm)->subsystem.find_function("SPIN"), nullptr);
 }
 
 TEST_F(DescriptorsTest, AStoredValueStaysAndKeepsItsRangeFromLeavingIt) {

@@ -205,6 +205,7 @@ void Processes::let_go(Member& subject) {
   craft_.guard.forget(apid);
   subject.died();
   parts_.telecommands.outcome_unknown(apid);
+  parts_.restoration.exchanged(apid);
   parts_.links.forget(apid);
   parts_.desk.fail_all_to(apid, "process ended");
 }

@@ -4,14 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <span>
 #include <utility>
 
 #include "hirosco/descriptor/read/read.hpp"
 #include "supervisor/supervision/event_handling/reactions.hpp"
 #include "supervisor/supervision/modes/under_way.hpp"
 #include "supervisor/supervision/subsystem_handling/processes.hpp"
+#include "supervisor/supervision/subsystem_handling/version_texts.hpp"
 
 namespace hirosco::supervisor {
 
@@ -44,6 +43,7 @@ std::optional<Outcome> Replacement::against(const Member* subject) const {
     return refused(FailureCode::NotPermittedNow, "it carries the ground link: nobody could confirm it");
   if (craft_.shutting_down) return refused(FailureCode::NotPermittedNow, "the craft shuts down");
   if (parts_.under_way.running()) return refused(FailureCode::Busy, "the craft is commissioned or changes its mode");
+  if (subject->descriptor_changes) return refused(FailureCode::Busy, "its descriptor is being read again");
   if (subject->alive() && (subject->state() != State::Offline || subject->recovery.running()))
     return refused(FailureCode::WrongStatus, "it is not Offline");
   return std::nullopt;
@@ -69,11 +69,11 @@ Outcome Replacement::confirm(std::uint16_t apid) {
   const auto found = changes_.find(apid);
   if (found == changes_.end() || found->second.phase != Phase::OnTrial)
     return refused(FailureCode::WrongStatus, "no version of it is on trial");
-  const Member& subject = *craft_.member(apid);
+  Member& subject = *craft_.member(apid);
   const std::string dropped = std::exchange(earlier_[apid], found->second.before);
   in_force_[apid] = found->second.wanted;
   changes_.erase(found);
-  drop_unless_needed(subject, dropped);
+  settle(subject, dropped);
   craft_.tell(subject.descriptor().name + " stays " + words_of(in_force_[apid]) + ": confirmed", apid);
   return ok();
 }
@@ -91,7 +91,8 @@ Outcome Replacement::take_back(std::uint16_t apid, const Call& call) {
     found->second.wanted = in_force_[apid];
     found->second.before = std::exchange(earlier_[apid], in_force_[apid]);
   }
-  go_back(found->second);
+  found->second.go_back();
+  subject->brings_text = parts_.texts.has(apid, found->second.wanted);
   found->second.call = call;
   end_process(*subject, found->second);
   return running;
@@ -105,52 +106,33 @@ void Replacement::died(std::uint16_t apid) {
   craft_.tell(fmt::format("{} died as {}, which was not confirmed: {} is next", subject.descriptor().name,
                           words_of(found->second.wanted), words_of(found->second.before)),
               apid);
-  go_back(found->second);
+  found->second.go_back();
   end_process(subject, found->second);
   craft_.launcher.use(subject.described(), found->second.wanted);
 }
 
 void Replacement::note(OctetWriter& writer) const {
-  const auto put = [&](const std::string& text) {
-    writer.put(static_cast<std::uint8_t>(text.size())).put(std::as_bytes(std::span{text}));
-  };
-  for (const auto* versions : {&in_force_, &earlier_}) {
-    writer.put(static_cast<std::uint16_t>(versions->size()));
-    for (const auto& [apid, version] : *versions) {
-      writer.put(apid);
-      put(version);
-    }
+  VersionNotes notes{.in_force = in_force_, .earlier = earlier_, .on_trial = {}};
+  for (const auto& [apid, change] : changes_) {
+    if (change.phase == Phase::Reading || (change.phase == Phase::Ending && change.trial)) continue;
+    // Who is on the way back goes it from its begin again.
+    notes.on_trial.push_back(
+        {apid, change.trial ? change.wanted : change.before, change.trial ? change.before : change.wanted});
   }
-  const auto is_new = [](const auto& entry) {
-    return entry.second.phase == Phase::OnTrial || entry.second.phase == Phase::GoingDown;
-  };
-  writer.put(static_cast<std::uint16_t>(std::ranges::count_if(changes_, is_new)));
-  for (const auto& entry : changes_) {
-    if (!is_new(entry)) continue;
-    writer.put(entry.first);
-    put(entry.second.wanted);
-    put(entry.second.before);
-  }
+  write(writer, notes);
 }
 
 void Replacement::recall(OctetReader& reader) {
-  const auto get = [&] {
-    const Octets text = reader.get(reader.get<std::uint8_t>());
-    return std::string{reinterpret_cast<const char*>(text.data()), text.size()};
-  };
-  for (auto* versions : {&in_force_, &earlier_})
-    for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
-      const auto apid = reader.get<std::uint16_t>();
-      (*versions)[apid] = get();
-    }
-  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
-    const auto apid = reader.get<std::uint16_t>();
-    Change change;
-    change.phase = Phase::OnTrial;
-    change.wanted = get();
-    change.before = get();
-    change.deadline = craft_.now;
-    if (craft_.member(apid) != nullptr) changes_.emplace(apid, std::move(change));
+  VersionNotes notes = read_version_notes(reader);
+  in_force_ = std::move(notes.in_force);
+  earlier_ = std::move(notes.earlier);
+  for (const auto& [apid, version] : earlier_)
+    if (const Member* member = craft_.member(apid)) static_cast<void>(parts_.texts.recall(*member, version));
+  for (const auto& [apid, wanted, before] : notes.on_trial) {
+    Member* member = craft_.member(apid);
+    if (member == nullptr) continue;
+    member->brings_text = parts_.texts.recall(*member, before);
+    changes_[apid] = {.phase = Phase::OnTrial, .wanted = wanted, .before = before, .deadline = craft_.now};
   }
   for (const Member& member : craft_.members) {
     const auto change = changes_.find(member.apid());
@@ -161,6 +143,7 @@ void Replacement::recall(OctetReader& reader) {
 }
 
 void Replacement::watch(TimePoint now) {
+  parts_.texts.watch();
   for (auto entry = changes_.begin(); entry != changes_.end();) {
     const bool over = step(*craft_.member(entry->first), entry->second, now);
     entry = over ? changes_.erase(entry) : std::next(entry);
@@ -180,7 +163,8 @@ bool Replacement::step(Member& subject, Change& change, TimePoint now) {
         return false;
       }
       change.process = 0;
-      return start(subject, change, now);
+      return exchange(subject, change, now);
+    case Phase::Starting: return start(subject, change, now);
     case Phase::OnTrial:
       if (now < change.deadline) return false;
       craft_.tell(
@@ -201,15 +185,26 @@ bool Replacement::read(Member& subject, Change& change, TimePoint now) {
   if (!ready) {
     craft_.tell(fmt::format("{} stays {}: {}", subject.descriptor().name, words_of(change.before), ready.error().words),
                 subject.apid());
+    parts_.texts.let_go(subject);
     give_up(change, FailureCode::ExecutionError, ready.error().why.text);
     return true;
   }
-  if (!*ready && now < change.deadline) return false;
-  if (!*ready) {
+  using enum VersionTexts::Found;
+  const std::uint16_t asked_by = change.call ? change.call->request.source : std::uint16_t{0};
+  const auto found = *ready ? parts_.texts.look(subject, asked_by) : NotYet;
+  if (found == NotYet && now < change.deadline) return false;
+  if (found == NotYet) {
+    parts_.texts.let_go(subject);
     give_up(change, FailureCode::Timeout, "its file is not read in time");
     return true;
   }
+  if (found == Refused) {
+    give_up(change, FailureCode::ValueNotAcceptable,
+            "problems, each in a TM[129,10]:", static_cast<std::int64_t>(parts_.texts.problems()));
+    return true;
+  }
   if (against(&subject)) {
+    parts_.texts.let_go(subject);
     give_up(change, FailureCode::Aborted, "it is not Offline any more");
     return true;
   }
@@ -228,6 +223,16 @@ void Replacement::end_process(Member& subject, Change& change) {
   parts_.processes.let_go(subject);
 }
 
+/// Nobody runs: a text that comes with the version, or goes with it, changes now. What is in force is noted at the end of this step.
+bool Replacement::exchange(Member& subject, Change& change, TimePoint now) {
+  const bool back = !change.trial && parts_.texts.has(subject.apid(), change.wanted);
+  if (change.trial ? !subject.brings_text : !back) return start(subject, change, now);
+  if (back) parts_.texts.go_back(subject, change.before, change.wanted);
+  else parts_.texts.take(subject, change.before);
+  change.phase = Phase::Starting;
+  return false;
+}
+
 bool Replacement::start(Member& subject, Change& change, TimePoint now) {
   const std::uint16_t apid = subject.apid();
   const std::string& name = subject.descriptor().name;
@@ -238,14 +243,16 @@ bool Replacement::start(Member& subject, Change& change, TimePoint now) {
     in_force_[apid] = change.wanted;
     if (started) craft_.tell(name + " runs " + words_of(change.wanted) + " again", apid);
     parts_.own.announce("VERSION_BACK", {static_cast<double>(apid)});
-    drop_unless_needed(subject, change.before);
+    settle(subject, change.before);
     if (started) finish(change);
     else give_up(change, FailureCode::ExecutionError, "its process could not be started");
     return true;
   }
   if (!started) {
     give_up(change, FailureCode::ExecutionError, "its process could not be started");
-    go_back(change);
+    change.go_back();
+    change.phase = Phase::Ending;
+    subject.exchanged = true;
     return false;
   }
   craft_.tell(
@@ -259,7 +266,7 @@ bool Replacement::start(Member& subject, Change& change, TimePoint now) {
 
 bool Replacement::bring_down(Member& subject, Change& change, TimePoint now) {
   if (!subject.alive() || subject.state() == State::Offline) {
-    go_back(change);
+    change.go_back();
     end_process(subject, change);
   } else if (now > change.deadline) {
     craft_.launcher.kill(subject.process());  // died() goes on
@@ -267,27 +274,21 @@ bool Replacement::bring_down(Member& subject, Change& change, TimePoint now) {
   return false;
 }
 
-void Replacement::go_back(Change& change) {
-  std::swap(change.wanted, change.before);
-  change.trial = false;
-}
-
 void Replacement::finish(Change& change) {
-  if (change.call) parts_.own.finish(*change.call);
-  change.call.reset();
+  if (const auto call = std::exchange(change.call, std::nullopt)) parts_.own.finish(*call);
 }
 
-void Replacement::give_up(Change& change, FailureCode code, const char* words) {
-  if (change.call) parts_.own.abort(*change.call, code, words);
-  change.call.reset();
+void Replacement::give_up(Change& change, FailureCode code, const char* words, std::int64_t number) {
+  if (const auto call = std::exchange(change.call, std::nullopt)) parts_.own.abort(*call, code, words, number);
 }
 
-void Replacement::drop_unless_needed(const Member& subject, const std::string& version) {
-  const std::uint16_t apid = subject.apid();
-  const auto earlier = earlier_.find(apid);
-  if (version.empty() || version == in_force_[apid] || (earlier != earlier_.end() && version == earlier->second))
-    return;
-  craft_.launcher.drop(subject.described(), version);
+void Replacement::settle(Member& subject, const std::string& left) {
+  const auto earlier = earlier_.find(subject.apid());
+  const std::string* const kept = earlier != earlier_.end() ? &earlier->second : nullptr;
+  const bool needed = left.empty() || left == in_force_[subject.apid()] || (kept != nullptr && left == *kept);
+  if (!needed) craft_.launcher.drop(subject.described(), left);
+  parts_.texts.keep_only(subject, kept);
+  subject.brings_text = false;
 }
 
 }  // namespace hirosco::supervisor

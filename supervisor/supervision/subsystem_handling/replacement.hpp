@@ -10,6 +10,7 @@
 
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
+#include "supervisor/supervision/subsystem_handling/version_notes.hpp"
 #include "supervisor/supervision/succession/journal.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
@@ -18,9 +19,11 @@ namespace hirosco::supervisor {
 class Processes;
 class Reactions;
 class UnderWay;
+class VersionTexts;
 
 /// Puts another version of a subsystem's executable in its place while the others cycle (docs/adr/0089): in Offline, on trial, and
-/// back to the one before by itself unless it is confirmed in time.  Thread: the supervisor's.
+/// back to the one before by itself unless it is confirmed in time. Where its descriptor says more by then, that text comes with it and
+/// goes with it (docs/adr/0214).  Thread: the supervisor's.
 class Replacement final : public Watch, public Remembered {
  public:
   struct Parts {
@@ -29,6 +32,7 @@ class Replacement final : public Watch, public Remembered {
     Processes& processes;
     Reactions& reactions;
     const UnderWay& under_way;
+    VersionTexts& texts;
   };
   /// What a process in Offline may take to end, and what a version that was not confirmed may take to get there: then it is ended.
   static constexpr Duration longest_end = 1s;
@@ -52,8 +56,9 @@ class Replacement final : public Watch, public Remembered {
 
  private:
   enum class Phase : std::uint8_t {
-    Reading,  ///< the file, by another thread
+    Reading,  ///< program and descriptor, by another thread
     Ending,  ///< the process of the version before
+    Starting,  ///< its text is in force, and noted before a process flies by it
     OnTrial,  ///< it runs and is not confirmed
     GoingDown,  ///< it was not: on its way to Offline
   };
@@ -65,26 +70,31 @@ class Replacement final : public Watch, public Remembered {
     Duration within{};
     TimePoint deadline{};
     std::uint32_t process{0};  ///< that is to end
-    std::optional<Call> call;  ///< that waits for it
+    std::optional<Call> call{};  ///< that waits for it
+    void go_back() noexcept {
+      wanted.swap(before);
+      trial = false;
+    }
   };
   /// Nothing: it may be exchanged now.
   [[nodiscard]] std::optional<Outcome> against(const Member* subject) const;
   /// True: it is over.
   [[nodiscard]] bool step(Member& subject, Change& change, TimePoint now);
   [[nodiscard]] bool read(Member& subject, Change& change, TimePoint now);
+  [[nodiscard]] bool exchange(Member& subject, Change& change, TimePoint now);
   [[nodiscard]] bool start(Member& subject, Change& change, TimePoint now);
   [[nodiscard]] bool bring_down(Member& subject, Change& change, TimePoint now);
   void end_process(Member& subject, Change& change);
-  void go_back(Change& change);
   void finish(Change& change);
-  void give_up(Change& change, pus::FailureCode code, const char* words);
-  void drop_unless_needed(const Member& subject, const std::string& version);
+  void give_up(Change& change, pus::FailureCode code, const char* words, std::int64_t number = 0);
+  /// A change is over: the version `left` is dropped unless it may be gone back to, and so is each text.
+  void settle(Member& subject, const std::string& left);
 
   Parts parts_;
   Craft& craft_;
   std::map<std::uint16_t, Change> changes_;
-  std::map<std::uint16_t, std::string> in_force_;  ///< where it is not the mission's own
-  std::map<std::uint16_t, std::string> earlier_;  ///< confirmed away
+  Versions in_force_;  ///< where it is not the mission's own
+  Versions earlier_;  ///< confirmed away
 };
 
 }  // namespace hirosco::supervisor

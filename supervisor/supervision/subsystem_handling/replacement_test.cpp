@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/subsystem_handling/replacement.hpp"
 
+#include <array>
 #include <string>
 #include <vector>
 
+#include "hirosco/pus/st05_event/event_service.hpp"
 #include "supervisor/platform/storage/testing/test_databases.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
@@ -76,6 +78,23 @@ TEST_F(ReplacementTest, AnotherOneIsStartedInOfflineOnTrialWhileTheOthersGoOn) {
   EXPECT_FALSE(was_told("died"));
   EXPECT_THAT(texts(hand), IsEmpty());
   EXPECT_EQ(craft.guard.fences(hand), fences);
+}
+
+TEST_F(ReplacementTest, WhatWasSetOfTheProcessBeforeIsNotThatOfTheOneInItsPlace) {
+  descriptor::Plan plan;
+  plan.name = "back";
+  plan.event = "PROCESS_DIED";
+  plan.steps = {{"restart", {3, 60, 0, static_cast<std::int64_t>(Operational)}}};
+  craft.mission.plans.push_back(plan);
+  const std::array event_7{std::byte{1}, std::byte{0}, std::byte{7}};
+  const auto packet =
+      telecommand(arm, pus::EventService::service_type, pus::EventService::disable_reports, Octets{event_7});
+  const auto silences = *pus::TelecommandView::parse(packet);
+  parts.commanded.forwarded(arm, silences, Origin::ground(0));
+  verify(arm, silences.request_id(), 7, {}, silences.source());
+  ASSERT_THAT(parts.commanded.of(arm).silent_events(), ElementsAre(7));
+  on_trial();
+  EXPECT_THAT(parts.commanded.of(arm).silent_events(), IsEmpty());
 }
 
 TEST_F(ReplacementTest, OneThatIsDownIsStartedInAnotherVersion) {

@@ -37,6 +37,8 @@ class Restoration final : public Watch, public Undertaking {
   void recovered(std::uint16_t apid) { losses_.erase(apid); }
   /// Its plan has answered its death.
   void answered(std::uint16_t apid);
+  /// Its process gives way to another one in Offline: what was set of it is not brought back to that, whose ids may mean something else.
+  void exchanged(std::uint16_t apid) { means_.commanded.ended(apid); }
   /// Nobody comes back by itself any more.
   Cancelled cancel(std::string_view why) override;
   void all_stopped(std::string_view why) override;

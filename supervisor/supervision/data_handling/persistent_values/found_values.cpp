@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/data_handling/persistent_values/found_values.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <utility>
 
@@ -15,6 +17,8 @@ void FoundValues::taken(std::uint16_t apid, std::size_t values, OnboardTime sinc
 }
 
 void FoundValues::refused(std::uint16_t apid, std::size_t copy, CopyFault fault) {
+  craft_.tell(fmt::format("copy {} of {}'s stored values is not used: {}", copy, craft_.name_of(apid), to_text(fault)),
+              apid);
   news_.push_back(
       {"VALUES_REFUSED", {static_cast<double>(apid), static_cast<double>(copy), static_cast<double>(fault)}});
 }

@@ -26,7 +26,7 @@ class FoundValues {
   void begin(TimePoint now) noexcept { begun_ = now; }
   /// A subsystem begins with so many, of that time.
   void taken(std::uint16_t apid, std::size_t values, OnboardTime since);
-  /// The first or second copy of its values is not used.
+  /// The first or second copy of its values is not used: the story has it at once.
   void refused(std::uint16_t apid, std::size_t copy, CopyFault fault);
   void tell(TimePoint now);
 

@@ -3,6 +3,7 @@
 #include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
@@ -61,7 +62,7 @@ void StoredValues::begin(std::uint16_t apid, Subject& subject) {
   bool heal = false;
   for (std::size_t i = 0; i < copies.size(); ++i) {
     if (copies[i]) subject.sequence = std::max(subject.sequence, copies[i]->sequence);
-    else refuse(subject, i, copies[i].error());
+    else news_.refused(apid, i + 1, copies[i].error());
     heal = heal || !copies[i];
   }
   std::array<std::size_t, 2> order{0, 1};
@@ -69,7 +70,7 @@ void StoredValues::begin(std::uint16_t apid, Subject& subject) {
   for (const std::size_t i : order) {
     if (!copies[i]) continue;
     if (const auto taken = subject.values.take(*copies[i]); !taken) {
-      refuse(subject, i, taken.error());
+      news_.refused(apid, i + 1, taken.error());
       continue;
     }
     const bool behind = !copies[1 - i] || copies[1 - i]->sequence != copies[i]->sequence;
@@ -84,13 +85,6 @@ void StoredValues::begin(std::uint16_t apid, Subject& subject) {
     return;
   }
   craft_.tell(name + " begins as its descriptor says: none of its stored values is used", apid);
-}
-
-void StoredValues::refuse(const Subject& subject, std::size_t copy, CopyFault fault) {
-  const descriptor::SubsystemDescriptor& subsystem = subject.member->subsystem;
-  craft_.tell(fmt::format("copy {} of {}'s stored values is not used: {}", copy + 1, subsystem.name, to_text(fault)),
-              subsystem.id);
-  news_.refused(subsystem.id, copy + 1, fault);
 }
 
 void StoredValues::forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand) {
@@ -191,8 +185,19 @@ void StoredValues::ask(std::uint16_t apid, Subject& subject) {
 }
 
 void StoredValues::redeclared(const descriptor::SubsystemDescriptor& subsystem) {
-  if (const auto found = subjects_.find(subsystem.id); found != subjects_.end())
-    found->second.values.redeclare(subsystem);
+  const auto found = subjects_.find(subsystem.id);
+  if (found == subjects_.end()) return;
+  // Of one that is read in flight the ranges hold what was set; of one that is gone back to they may not.
+  const auto forgotten = found->second.values.redeclare(subsystem);
+  if (forgotten.empty()) return;
+  craft_.tell(fmt::format("stored values of {} leave their ranges: {}", subsystem.name, fmt::join(forgotten, ", ")),
+              subsystem.id);
+  own_.announce("VALUES_NOT_KEPT", {static_cast<double>(subsystem.id)});
+  changed(found->second);
+}
+
+void StoredValues::undo(descriptor::SubsystemDescriptor& subsystem) const {
+  if (const auto found = subjects_.find(subsystem.id); found != subjects_.end()) found->second.values.undo(subsystem);
 }
 
 void StoredValues::ended(std::uint16_t apid) {
@@ -225,11 +230,7 @@ void StoredValues::changed(Subject& subject) {
 void StoredValues::keep(Subject& subject) {
   if (store_ == nullptr) return;
   subject.waits = true;
-  store_->keep(subject.member->subsystem.name, copy_of(subject));
-}
-
-ValueCopy StoredValues::copy_of(const Subject& subject) {
-  return {subject.values.layout(), subject.sequence, subject.since, subject.values.octets()};
+  store_->keep(subject.member->subsystem.name, subject.values.copy(subject.sequence, subject.since));
 }
 
 void StoredValues::watch(TimePoint now) {
@@ -280,7 +281,8 @@ void StoredValues::note(OctetWriter& writer) const {
   for (const auto& entry : subjects_) {
     if (!is_under_way(entry)) continue;
     const auto& [apid, subject] = entry;
-    const auto unkept = subject.waits ? std::optional{copy_of(subject)} : std::nullopt;
+    const auto unkept =
+        subject.waits ? std::optional{subject.values.copy(subject.sequence, subject.since)} : std::nullopt;
     put(apid, subject.changed, subject.asked, unkept ? &*unkept : nullptr);
   }
   awaited_.note(writer);

@@ -39,8 +39,10 @@ class StoredValues final : public Hearer, public Watch, public Remembered {
   void forwarded(std::uint16_t apid, const pus::TelecommandView& telecommand);
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
   void watch(TimePoint now) override;
-  /// Its descriptor was read again, and says this before anything was set.
+  /// Another text of its descriptor takes the place of the one in force, and says this before anything was set.
   void redeclared(const descriptor::SubsystemDescriptor& subsystem);
+  /// Of a descriptor in force: as it was declared, before anything was set.
+  void undo(descriptor::SubsystemDescriptor& subsystem) const;
   /// Its process is gone. What a function had made of a value and nobody could ask for any more is what the descriptor says again.
   void ended(std::uint16_t apid);
 
@@ -70,14 +72,12 @@ class StoredValues final : public Hearer, public Watch, public Remembered {
   void begin(std::uint16_t apid, Subject& subject);
   void go_on(Subject& subject, const Left& left);
   void hear_end(std::uint16_t from, const pus::TelemetryView& report);
-  void refuse(const Subject& subject, std::size_t copy, CopyFault fault);
   void take_write(Subject& subject, Octets data);
   void take_report(Subject& subject, Octets data);
   void ask_later(Subject& subject, const Ids& ids);
   void ask(std::uint16_t apid, Subject& subject);
   void changed(Subject& subject);
   void keep(Subject& subject);
-  [[nodiscard]] static ValueCopy copy_of(const Subject& subject);
   void take_outcomes(TimePoint now);
 
   Craft& craft_;

@@ -62,12 +62,23 @@ ValueSet::ValueSet(const descriptor::MissionSubsystem& declared) : declared_{dec
   layout_ = hash.value();
 }
 
-void ValueSet::redeclare(const descriptor::SubsystemDescriptor& declared) {
+std::vector<std::string> ValueSet::redeclare(const descriptor::SubsystemDescriptor& declared) {
+  std::vector<std::string> forgotten;
   for (const descriptor::Parameter& parameter : declared.parameters) {
     if (!parameter.persistent) continue;
     const std::uint32_t id = id_of(declared, parameter);
     parameters_.at(id) = parameter;
+    const auto value = values_.find(id);
+    if (value == values_.end() || descriptor::values_within(parameter, value->second)) continue;
+    values_.erase(value);
+    forgotten.push_back(parameter.field.name);
   }
+  return forgotten;
+}
+
+void ValueSet::undo(descriptor::SubsystemDescriptor& subsystem) const {
+  for (descriptor::Parameter& parameter : subsystem.parameters)
+    if (parameter.persistent) parameter.init = parameters_.at(id_of(subsystem, parameter)).init;
 }
 
 bool ValueSet::set(std::uint32_t id, Octets value) {

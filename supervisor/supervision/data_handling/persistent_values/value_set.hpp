@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,8 +19,10 @@ class ValueSet {
   /// As the mission has it before anything was set.
   explicit ValueSet(const descriptor::MissionSubsystem& declared);
 
-  /// Ranges and initial values are these from now on; every value that was set is within its range (docs/adr/0095).
-  void redeclare(const descriptor::SubsystemDescriptor& declared);
+  /// Ranges and initial values are these from now on (docs/adr/0095). What was set and is outside its range is forgotten: the names of those.
+  std::vector<std::string> redeclare(const descriptor::SubsystemDescriptor& declared);
+  /// Of a descriptor with what was set: as it was declared, before anything was.
+  void undo(descriptor::SubsystemDescriptor& subsystem) const;
 
   /// It has persistent parameters at all.
   [[nodiscard]] bool wanted() const noexcept { return !parameters_.empty(); }
@@ -38,6 +41,10 @@ class ValueSet {
 
   /// As they stand in a copy: how many (u8), then id and value of each, as in TC[20,3].
   [[nodiscard]] std::vector<std::byte> octets() const;
+  /// With its layout.
+  [[nodiscard]] ValueCopy copy(std::uint64_t sequence, OnboardTime since) const {
+    return {layout_, sequence, since, octets()};
+  }
   /// All of a whole copy, or nothing and why not: Layout, Range, Damaged.
   [[nodiscard]] std::expected<void, CopyFault> take(const ValueCopy& copy);
 

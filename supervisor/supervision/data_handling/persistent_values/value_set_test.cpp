@@ -85,6 +85,29 @@ TEST(ValueSet, GoesByTheRangesAndInitialValuesOfADescriptorThatIsReadAgain) {
   EXPECT_EQ(member.subsystem.parameters[1].init, (std::vector<Value>{Number{99}}));
 }
 
+TEST(ValueSet, ForgetsWhatARangeThatHoldsAgainDoesNotHold) {
+  ValueSet set{declared_arm()};
+  set.set(limit_id, two_octets(7));
+  set.set(gain_id, two_octets(99));
+  auto declared = declared_arm().subsystem;
+  EXPECT_THAT(set.redeclare(declared), ::testing::IsEmpty());
+  declared.parameters[1].field.maximum = Number{98};
+  EXPECT_THAT(set.redeclare(declared), ElementsAre("GAIN"));
+  EXPECT_EQ(set.size(), 1U);
+  EXPECT_THAT(set.redeclare(declared), ::testing::IsEmpty());
+}
+
+TEST(ValueSet, SaysHowADescriptorWasBeforeAnythingWasSet) {
+  ValueSet set{declared_arm()};
+  set.set(limit_id, two_octets(7));
+  set.set(gain_id, two_octets(99));
+  auto member = declared_arm();
+  set.begin(member);
+  set.undo(member.subsystem);
+  EXPECT_EQ(member.subsystem.parameters[0].init, (std::vector<Value>{Number{3}}));
+  EXPECT_EQ(member.subsystem.parameters[1].init, (std::vector<Value>{Number{1}}));
+}
+
 TEST(ValueSet, GoesThroughACopy) {
   ValueSet set{declared_arm()};
   set.set(limit_id, two_octets(7));
