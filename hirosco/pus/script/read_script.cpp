@@ -19,7 +19,7 @@ constexpr std::string_view forms =
     "S, "
     "limit S; @S in front of any: not before";
 
-using Words = std::span<const LineWord>;
+using LineWords = std::span<const LineWord>;
 using Is = ScriptLine::Is;
 
 [[nodiscard]] std::optional<double> number_in(std::string_view text) noexcept {
@@ -43,7 +43,7 @@ class LineReader {
     line_.number = number;
   }
 
-  [[nodiscard]] std::optional<ScriptLine> read(Words words) {
+  [[nodiscard]] std::optional<ScriptLine> read(LineWords words) {
     if (words[0].text.starts_with('@')) {
       if (!take_time(words[0])) return std::nullopt;
       words = words.subspan(1);
@@ -93,13 +93,13 @@ class LineReader {
     line_.name = name.text;
     line_.name_at = column(name);
   }
-  std::optional<ScriptLine> of_time(Words words, ScriptLine::Kind kind) {
+  std::optional<ScriptLine> of_time(LineWords words, ScriptLine::Kind kind) {
     line_.kind = kind;
     if (words.size() != 2) return wrong(words[0], "'" + words[0].text + "' takes its seconds, and nothing else", forms);
     if (!take_seconds(words[1])) return std::nullopt;
     return std::move(line_);
   }
-  std::optional<ScriptLine> until(Words words) {
+  std::optional<ScriptLine> until(LineWords words) {
     line_.kind = ScriptLine::Kind::Until;
     constexpr std::size_t count = 7;
     if (words.size() != count || words[5].text != "within") return wrong(words[0], "this 'until' is none", forms);
@@ -115,7 +115,7 @@ class LineReader {
     if (!take_seconds(words[6])) return std::nullopt;
     return std::move(line_);
   }
-  std::optional<ScriptLine> event(Words words) {
+  std::optional<ScriptLine> event(LineWords words) {
     line_.kind = ScriptLine::Kind::Event;
     constexpr std::size_t count = 5;
     if (words.size() != count || words[3].text != "within") return wrong(words[0], "this 'event' is none", forms);
@@ -123,7 +123,7 @@ class LineReader {
     if (!take_seconds(words[4])) return std::nullopt;
     return std::move(line_);
   }
-  std::optional<ScriptLine> telecommand(Words words) {
+  std::optional<ScriptLine> telecommand(LineWords words) {
     if (words.size() < 2) return wrong(words[0], "'" + words[0].text + "' is no line of a script", forms);
     take_names(words[0], words[1]);
     for (const LineWord& word : words.subspan(2)) {
@@ -138,7 +138,7 @@ class LineReader {
 };
 
 /// What a stack of ground has in front of its telecommands.
-[[nodiscard]] Words without_shell(Words words) {
+[[nodiscard]] LineWords without_shell(LineWords words) {
   if (words.size() >= 2 && words[0].text == "set" && words[1].text == "-e") return {};
   const bool called =
       words.size() >= 2 && words[1].text == "tc" && (words[0].text == "hirosco" || words[0].text.ends_with("/hirosco"));
@@ -177,7 +177,7 @@ ScriptReading read_script(std::string name, std::string_view text) {
     if (!words) wrong(number, "a quote is not closed", "");
     else if (line.size() > longest_line) wrong(number, "the line is too long", "at most 400 octets");
     if (!words || line.size() > longest_line) continue;
-    const Words telling = without_shell(*words);
+    const LineWords telling = without_shell(*words);
     if (telling.empty()) continue;
     if (auto read = LineReader{number, reading.problems}.read(telling))
       reading.script.lines.push_back(std::move(*read));
