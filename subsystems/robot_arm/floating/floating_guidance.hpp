@@ -7,15 +7,16 @@
 #include <optional>
 
 #include "hirosco/subsystem/author/handler.hpp"
-#include "subsystems/robot_arm/control/straight_way.hpp"
 #include "subsystems/robot_arm/drives.hpp"
+#include "subsystems/robot_arm/floating/floating_beforehand.hpp"
 #include "subsystems/robot_arm/floating/floating_craft.hpp"
+#include "subsystems/robot_arm/floating/floating_jog.hpp"
 #include "subsystems/robot_arm/floating/floating_parameters.hpp"
 #include "subsystems/robot_arm/floating/floating_trouble.hpp"
 #include "subsystems/robot_arm/floating/floating_way_out.hpp"
-#include "subsystems/robot_arm/floating/range_ends.hpp"
+#include "subsystems/robot_arm/floating/kept_joints.hpp"
+#include "subsystems/robot_arm/floating/kept_tool.hpp"
 #include "subsystems/robot_arm/floating/stop_ramp.hpp"
-#include "subsystems/robot_arm/floating/tool_way.hpp"
 #include "subsystems/robot_arm/obstacles.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
@@ -34,7 +35,7 @@ class FloatingGuidance {
     FloatingParameters& parameters;  ///< PROGRESS, PHASE and ERR tell how far it is
     AbortPath& abort_path;
   };
-  enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked, Stops, GoesOut };
+  enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked, Stops, GoesOut, JointsJog, ToolJogs };
   /// What a cycle has brought to the motion.
   enum class News : std::uint8_t {
     None,
@@ -45,7 +46,12 @@ class FloatingGuidance {
     Judged,  ///< nothing was to move, and nothing is in the way
   };
   explicit FloatingGuidance(const Parts& parts) noexcept
-      : parts_{parts}, out_{{parts.known, parts.drives, parts.abort_path}} {}
+      : parts_{parts},
+        before_{{parts.known, parts.drives, parts.obstacles}},
+        out_{{parts.known, parts.drives, parts.abort_path}},
+        jog_{{parts.known, parts.drives, parts.craft, parts.parameters}},
+        joints_{parts.drives},
+        kept_{{parts.craft, parts.parameters}} {}
 
   /// In configure(), when drives and craft have begun.  Realtime: allocates. Thread: the service loop.
   void begin(double cycle_s);
@@ -55,13 +61,27 @@ class FloatingGuidance {
   void stand() noexcept;
   /// A motion goes on no further: it keeps to what it came to.
   void end_motion() noexcept;
-  /// From these velocities to rest, wherever it was to go; then it stands.
-  void stop(const JointVector& rates) noexcept;
+  /// From these velocities to rest in so long, wherever it was to go; then it stands.
+  void stop(const JointVector& rates, double span_s = StopRamp::span_s) noexcept;
 
   // --- functions: refused, or running; numbers in the order of the descriptor ---------------------------------------------
   /// The way of each is walked along while it stands, in the next cycles, and judged before it goes; PROGRESS tells where somebody is in a way of joints.
   [[nodiscard]] Outcome move_joint(const FunctionValues& values) noexcept;
   [[nodiscard]] Outcome move_tool(const std::array<double, 3>& offset_m, double duration_s) noexcept;
+
+  /// With these velocities for so long, then to rest. Who jogs so goes on from the velocities that he has.
+  [[nodiscard]] Outcome jog_joints(const FunctionValues& values) noexcept;
+  [[nodiscard]] Outcome jog_tool(const std::array<double, 3>& moving_m_s, const std::array<double, 3>& turning_rad_s,
+                                 double span_s) noexcept;
+  [[nodiscard]] bool jogs_joints() const noexcept { return phase_ == Phase::JointsJog; }
+  [[nodiscard]] bool jogs_tool() const noexcept { return phase_ == Phase::ToolJogs; }
+
+  /// What is at the tip from now on, of ways that are judged. The craft has it already.
+  void carry(const robotics::Pose& tool_in_tip, const Payload& payload) noexcept {
+    before_.carry(tool_in_tip, payload);
+  }
+  /// While it holds: where the tool is, that is another one now, it is to be.
+  void take_tool() noexcept { kept_.keep(), kept_.forget_error(); }
 
   /// Out, by its joints in whatever law. Who comes to rest by stop() begins once it stands, unless end_motion() comes before.
   [[nodiscard]] Outcome leave(FloatingWayOut::By by, double number) noexcept;
@@ -79,11 +99,8 @@ class FloatingGuidance {
   [[nodiscard]] std::optional<double> end_retreat() noexcept { return out_.end_retreat(); }
   /// rad/s or m/s of each joint, none faster than it may be.
   [[nodiscard]] JointVector wanted_rates() const noexcept;
-  /// Who of them goes to an end of its range too fast to stand before it. Of a law of the tool alone: both ends of a path of joints are in range, and
-  /// so is what is between.
-  [[nodiscard]] std::optional<EndAhead> end_ahead(const JointVector& rates) const noexcept;
-  /// Who would be too near somebody, or to a volume, if joints that go like that were stopped now.
-  [[nodiscard]] std::optional<Obstacles::Nearest> near_ahead(const JointVector& rates) noexcept;
+  /// A law of the tool has them, or they come to rest: of paths of joints both ends are in range, and so is what is between.
+  [[nodiscard]] bool may_end_range() const noexcept { return keeps_tool() || stops(); }
   /// PHASE and ERR. `braked`: the brakes hold it.
   void tell(bool braked) noexcept;
   [[nodiscard]] bool holds() const noexcept { return phase_ == Phase::Holds; }
@@ -96,7 +113,7 @@ class FloatingGuidance {
   void start(Phase phase, double duration_s) noexcept;
   void come_to_hold() noexcept;
   [[nodiscard]] News go_out() noexcept;
-  [[nodiscard]] News no_way(const FloatingReason& why) noexcept;
+  [[nodiscard]] News jog_on() noexcept;
   [[nodiscard]] News judge() noexcept;
   [[nodiscard]] News arrive() noexcept;
   [[nodiscard]] bool keeps_tool() const noexcept;
@@ -105,20 +122,13 @@ class FloatingGuidance {
   double cycle_s_{0.001};
   Phase phase_{Phase::Holds};
   double moved_s_{0}, duration_s_{0}, settled_s_{0};
-  JointVector joints_from_, joints_goal_;
   StopRamp stop_;
-  enum class Judges : std::uint8_t { Nothing, JointsWay, ToolsWay };
-  Judges judges_{Judges::Nothing};  ///< while it stands
-  StraightWay straight_;  ///< of joints
-  std::optional<ToolWay> way_;
+  FloatingBeforehand before_;
   FloatingWayOut out_;
-  bool base_let_go_{false};  ///< joints went as no law of the tool has them: what AttitudeHold keeps is what is then
+  FloatingJog jog_;
+  KeptJoints joints_;
+  KeptTool kept_;
   FloatingReason why_;
-  ToolGoal tool_goal_;
-  Vector3 tool_from_{Vector3::Zero()}, tool_offset_{Vector3::Zero()};
-  robotics::Matrix3 base_kept_{robotics::Matrix3::Identity()};
-  Vector3 mean_left_m_{Vector3::Zero()};
-  double error_m_{0};  ///< of the tool, without the noise of single samples
 };
 
 }  // namespace hirosco::robot_arm

@@ -52,6 +52,13 @@ struct FloatingParameters {
     publish("DES_VELOCITY", desired_velocity);
     publish("ACTIVE", active);
   }
+  /// Likewise for each of an arm to which is said what is at its tip.
+  template <class Publish>
+  void each_of_tip(const Publish& publish) {
+    publish("TOOL_PLACE", tool_place);
+    publish("PAYLOAD", payload);
+    publish("TOOL_RADIUS", tool_radius_m);
+  }
 
   Parameter<CurrentValues> current;
   Parameter<PoseValues> tool, base;
@@ -63,6 +70,9 @@ struct FloatingParameters {
   Parameter<double> tool_speed_m_s, goal_tolerance_m;
   Parameter<double> clearance_limit_m, clearance_m;
   Parameter<KeepOut> keep_out;
+  Parameter<ToolValues> tool_place;
+  Parameter<PayloadValues> payload;
+  Parameter<double> tool_radius_m;
 };
 
 }  // namespace hirosco::robot_arm

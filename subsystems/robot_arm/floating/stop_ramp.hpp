@@ -17,24 +17,25 @@ class StopRamp {
   static constexpr double span_s = 0.5;
 
   /// In a cycle that puts these out still.
-  void begin(const JointVector& rates) noexcept {
+  void begin(const JointVector& rates, double in_s = span_s) noexcept {
     from_ = rates;
-    left_s_ = span_s;
+    left_s_ = begun_s_ = in_s;
   }
   void go_on(double cycle_s) noexcept { left_s_ = std::max(0.0, left_s_ - cycle_s); }
   [[nodiscard]] bool over() const noexcept { return left_s_ <= 0; }
   /// rad/s or m/s of each joint.
-  [[nodiscard]] JointVector rates() const noexcept { return left_s_ / span_s * from_; }
+  [[nodiscard]] JointVector rates() const noexcept { return left_s_ / begun_s_ * from_; }
 
   /// Which way joints go that begin now, in a cycle that puts `rates` out, until they rest: who is asked for a velocity has it later, and comes farther by
-  /// what he has now. No estimate: of the ramp and of the law that follows it (`followed_per_s`), within a cycle's way.
-  [[nodiscard]] static JointVector way(const JointVector& rates, const JointVector& measured, double cycle_s) noexcept {
-    return (span_s / 2 + cycle_s) * rates + measured / followed_per_s;
+  /// what he has now. No estimate: of the ramp and of the law that follows it (`per_s`), within a cycle's way.
+  [[nodiscard]] static JointVector way(const JointVector& rates, const JointVector& measured, double cycle_s,
+                                       double per_s = followed_per_s) noexcept {
+    return (span_s / 2 + cycle_s) * rates + measured / per_s;
   }
 
  private:
   JointVector from_;
-  double left_s_{0};
+  double left_s_{0}, begun_s_{span_s};
 };
 
 }  // namespace hirosco::robot_arm
