@@ -238,6 +238,26 @@ TEST(Servicer, TakesNoPayloadWithWhichItCouldNotHoldItsAttitude) {
   EXPECT_TRUE(craft.craft().command("MCS", "MOVE_TOOL", {away_m, 0.0, 0.0, within_s}, 20s).completed);
 }
 
+/// 32 N at the tool are 30 N m of the shoulder's 80, as a craft that nothing holds feels them.
+TEST(Servicer, StandsWhereItMeetsSomebodyWhileItTracks) {
+  ServicerCraft craft{{.mission = mission, .mode = "track"}};
+  craft.begin("MOVE_TOOL", {0.1, 0.0, 0.0, 10.0});
+  craft.run(3);
+  EXPECT_FALSE(craft.flight().story().has("CONTACT")) << craft.flight().story().text();
+  auto& arm = craft.flight().device<MujocoDevice>("arm");
+  ASSERT_TRUE(arm.fault("push -32 0 0"));
+  craft.run(0.2);
+  ASSERT_TRUE(arm.fault("push 0 0 0"));
+  EXPECT_TRUE(craft.flight().story().has("CONTACT")) << craft.flight().story().text();
+  craft.run(3);
+  const auto tool = craft.tool_m();
+  craft.run(3);
+  EXPECT_LT(distance(craft.tool_m(), tool), 5e-3);
+  EXPECT_EQ(craft.flight().inhibited("MCS"), 0u);
+  EXPECT_TRUE(craft.craft().command("MCS", "MOVE_TOOL", {-away_m, 0.0, 0.0, within_s}, 20s).completed)
+      << craft.flight().story().text();
+}
+
 /// By the law that keeps the tool in inertial axes, with the noise of the star tracker. Who is told of a volume on his way is stopped before it, comes no nearer
 /// however often he is to go there, and holds his tool there; who is told of it before is not let go.
 TEST(Servicer, KeepsOutOfAVolumeWhileItTracks) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <string_view>
 
+#include "subsystems/robot_arm/control/standing.hpp"
 #include "subsystems/robot_arm/floating/floating_trouble.hpp"
 
 namespace hirosco {
@@ -32,11 +33,14 @@ Result<> CommandedFloatingArm::check_lengths() noexcept {
   };
   for (const std::size_t length :
        {current.position.size(), current.velocity.size(), current.torque.size(),
-        parameters_.desired_velocity.load().size(), drives_.says().position.size(), drives_.says().velocity.size(),
-        drives_.says().torque.size(), drives_.puts_out().size(), of_joints("MOVE_JOINT"), of_joints("JOG_J")})
+        parameters_.desired_velocity.load().size(),
+        offers("SET_CONTACT") ? parameters_.external_torque.load().size() : joints, drives_.says().position.size(),
+        drives_.says().velocity.size(), drives_.says().torque.size(), drives_.puts_out().size(),
+        of_joints("MOVE_JOINT"), of_joints("JOG_J")})
     if (length != joints)
       return fail(ErrorCode::Mismatch,
-                  "an array of CUR, DES_VELOCITY, MOVE_JOINT, JOG_J or ARM is not as long as the robot has joints",
+                  "an array of CUR, DES_VELOCITY, EXTERNAL_TORQUE, MOVE_JOINT, JOG_J or ARM is not as long as the "
+                  "robot has joints",
                   static_cast<std::int64_t>(length));
   if (robot_arm::AbortPath::declared(own_descriptor()) && !abort_path_.has_length(joints))
     return fail(ErrorCode::Mismatch, "JOINTS of ABORT_PATH has another length than the robot has joints");
@@ -53,6 +57,7 @@ void CommandedFloatingArm::finish_call() noexcept {
 Outcome CommandedFloatingArm::may_move() const noexcept {
   if (craft_.base_is_held()) return refused(Trouble::base_is_held);
   if (!moving_) return refused(Trouble::actuators_inhibited);
+  if (guidance_.floats()) return refused(Trouble::led, "HOLD first");
   if (motion_ || !guidance_.holds()) return refused(pus::FailureCode::Busy);
   return running;
 }
@@ -69,6 +74,17 @@ void CommandedFloatingArm::hold() noexcept {
   end_motion(pus::FailureCode::Aborted);
   if (held) guidance_.stand();
   else guidance_.stop(rates);
+}
+
+/// From a stand alone: who moves on the way there would go on.
+Outcome CommandedFloatingArm::let_go() noexcept {
+  if (moving_ && guidance_.floats()) return ok();
+  if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
+  if (const auto joint = robot_arm::still_moves(drives_.measured().velocity, known_.bounds()))
+    return refused(pus::FailureCode::Busy, "it moves yet and would go on: wait, joint",
+                   static_cast<std::int64_t>(*joint + 1));
+  guidance_.let_go();
+  return ok();
 }
 
 /// Who comes to rest by itself is let out once it stands.
@@ -89,11 +105,15 @@ Outcome CommandedFloatingArm::check_abort(const Call& call) noexcept {
   const bool operational = parameters_.current.load().state == static_cast<std::int32_t>(State::Operational);
   if (motion_) return refused(pus::FailureCode::Busy);
   if (const Outcome may = operational ? may_move() : running; may.kind == Outcome::Kind::Refused) return may;
-  return started(guidance_.check_abort(), call);
+  const Outcome begun = guidance_.check_abort();
+  if (begun.kind != Outcome::Kind::Refused) motion_ = call;
+  return begun;
 }
 
 Outcome CommandedFloatingArm::started(const Outcome& outcome, const Call& call) noexcept {
-  if (outcome.kind != Outcome::Kind::Refused) motion_ = call;
+  if (outcome.kind == Outcome::Kind::Refused) return outcome;
+  contact_.arm(robot_arm::JointContact::Before::Stands);
+  motion_ = call;
   return outcome;
 }
 
@@ -105,6 +125,7 @@ Outcome CommandedFloatingArm::jog(bool goes_on, const Begin& begin, const Call& 
   const Outcome begun = begin();
   if (begun.kind == Outcome::Kind::Refused) return begun;
   if (on) finish(*motion_);
+  else contact_.arm(robot_arm::JointContact::Before::Stands);
   motion_ = call;
   return begun;
 }
@@ -127,6 +148,7 @@ void CommandedFloatingArm::bind_functions() {
   bind_jogs();
   bind_ways_out();
   bind_tip();
+  bind_contact();
   on_function("KEEP_OUT", [this](const robot_arm::KeepOut& numbers) { return obstacles_.keep_out(numbers); });
   on_function("BRAKE", [this]() -> Outcome {
     end_motion(pus::FailureCode::Aborted);
@@ -157,10 +179,25 @@ void CommandedFloatingArm::bind_tip() {
   parameters_.each_of_tip([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
   const auto now = [this] { return robot_arm::FloatingTip::Now{motion_.has_value(), moving_}; };
   on_function("SET_PAYLOAD", [this, now](double mass_kg, std::array<double, 3> place_m) -> Outcome {
-    return tip_.take_payload(mass_kg, place_m, now());
+    const Outcome taken = tip_.take_payload(mass_kg, place_m, now());
+    if (taken.kind != Outcome::Kind::Refused) contact_.forget();
+    return taken;
   });
   on_function("SET_TOOL", [this, now](std::array<double, 3> place_m, std::array<double, 4> wxyz) -> Outcome {
     return tip_.take_tool({place_m, wxyz}, now());
+  });
+}
+
+void CommandedFloatingArm::bind_contact() {
+  if (offers("FLOAT")) on_function("FLOAT", [this]() -> Outcome { return let_go(); });
+  if (offers("FLOAT") || offers("SET_CONTACT")) publish("FLOAT_DAMPING", parameters_.float_damping);
+  if (!offers("SET_CONTACT")) return;
+  parameters_.each_of_contact([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
+  use_event(contact_met_);
+  contact_.offer();
+  on_function("SET_CONTACT", [this](std::uint8_t reaction, double limit) -> Outcome {
+    contact_.set(reaction, limit);
+    return ok();
   });
 }
 

@@ -9,8 +9,9 @@
 #include "subsystems/robot_arm/abort_path.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/floating/floating_ahead.hpp"
+#include "subsystems/robot_arm/floating/floating_contact.hpp"
 #include "subsystems/robot_arm/floating/floating_craft.hpp"
-#include "subsystems/robot_arm/floating/floating_guidance.hpp"
+#include "subsystems/robot_arm/floating/floating_motions.hpp"
 #include "subsystems/robot_arm/floating/floating_parameters.hpp"
 #include "subsystems/robot_arm/floating/floating_tip.hpp"
 #include "subsystems/robot_arm/obstacles.hpp"
@@ -40,6 +41,8 @@ class CommandedFloatingArm : public Subsystem {
 
   robot_arm::FloatingParameters parameters_;
   Event<double> retracted_{"RETRACTED"};  ///< how far, rad or m
+  /// Joint from 1, what acts on it, the limit, and what is done about it.
+  Event<std::uint8_t, double, double, std::uint8_t> contact_met_{"CONTACT"};
 
   // Each refers to some of those before it.
   robot_arm::UrdfArm known_;
@@ -47,11 +50,12 @@ class CommandedFloatingArm : public Subsystem {
   robot_arm::FloatingCraft craft_{{known_, drives_, parameters_}};
   robot_arm::Obstacles obstacles_{{parameters_.clearance_limit_m, parameters_.clearance_m, parameters_.keep_out}};
   robot_arm::AbortPath abort_path_{{known_, obstacles_}};
-  robot_arm::FloatingGuidance guidance_{{known_, drives_, craft_, obstacles_, parameters_, abort_path_}};
+  robot_arm::FloatingMotions guidance_{{known_, drives_, craft_, obstacles_, parameters_, abort_path_}};
   robot_arm::FloatingAhead ahead_{{known_, drives_, craft_, obstacles_}};
   robot_arm::ToolAndPayload carried_{
       {obstacles_, parameters_.tool_place, parameters_.payload, parameters_.tool_radius_m}};
   robot_arm::FloatingTip tip_{{carried_, craft_, guidance_}};
+  robot_arm::FloatingContact contact_{{known_, drives_, craft_, parameters_}};
   std::optional<Call> motion_;
   bool moving_{false};  ///< what is put out reaches the joints
   bool braked_{false};  ///< by BRAKE or a finding, until the next entry into Operational
@@ -62,11 +66,13 @@ class CommandedFloatingArm : public Subsystem {
   void bind_ways_out();
   void bind_jogs();
   void bind_tip();
+  void bind_contact();
   [[nodiscard]] bool offers(const char* function) const { return own_descriptor().find_function(function) != nullptr; }
 
   void hold() noexcept;
   [[nodiscard]] Outcome may_move() const noexcept;
   [[nodiscard]] Outcome may_leave() const noexcept;
+  Outcome let_go() noexcept;
   Outcome leave(Out by, double number, const Call& call) noexcept;
   Outcome check_abort(const Call& call) noexcept;
   template <class Begin>

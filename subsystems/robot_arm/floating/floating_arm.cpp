@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/floating/floating_arm.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <string_view>
 
 #include "robotics/motion/sampled_rates.hpp"
+#include "subsystems/robot_arm/floating/float_law.hpp"
 #include "subsystems/robot_arm/floating/floating_trouble.hpp"
 
 namespace hirosco {
@@ -60,6 +62,8 @@ Result<> FloatingArm::configure(const descriptor::Configuration& configuration) 
   guidance_.begin(cycle_s);
   ahead_.begin(cycle_s);
   tip_.begin();
+  contact_.begin(cycle_s);
+  fastest_rad_s_ = robotics::fastest_rad_s(cycle_s);
   static_cast<void>(obstacles_.keep_out(parameters_.keep_out.load()));
   return ok();
 }
@@ -94,8 +98,10 @@ Result<> FloatingArm::operational(const Cycle& cycle) noexcept {
   if (cycle.first || !cycle.active) {
     if (!cycle.active) end_motion(pus::FailureCode::Aborted);  // inhibited it could never end
     guidance_.engage();
+    contact_.arm(robot_arm::JointContact::Before::Counts);
   } else {
     advance();
+    watch_contact();
   }
   control(cycle.active && !braked_);
   watch();
@@ -116,8 +122,10 @@ Result<> FloatingArm::error_operational(const Cycle& cycle) noexcept {
 void FloatingArm::measure(const Cycle& cycle) noexcept {
   drives_.measure(cycle.state);
   parameters_.active.store(0);
+  const bool driven = moving_ && cycle.state == State::Operational;
   moving_ = false;
   craft_.update();
+  contact_.update(driven);
 }
 
 void FloatingArm::control(bool moves) noexcept {
@@ -128,10 +136,18 @@ void FloatingArm::control(bool moves) noexcept {
     if (moves) stop_before(*end);
   }
   watch_clearance(rates, moves);
-  drives_.put_out(robot_arm::joints_of(robot_arm::joint_torque(craft_.model(), rates, drives_.measured().velocity,
-                                                               known_.bounds(), craft_.followed_per_s())));
+  drives_.put_out(robot_arm::joints_of(torque_of(rates)));
   parameters_.desired_velocity.store(robot_arm::joints_of(rates));
   guidance_.tell(braked_);
+}
+
+/// Whoever leads it is not held back by more than the law of velocities, which a payload makes slower, would.
+JointVector FloatingArm::torque_of(const JointVector& rates) const noexcept {
+  const double per_s = craft_.followed_per_s();
+  if (guidance_.floats())
+    return robot_arm::float_torque(craft_.model(), drives_.measured(), known_.bounds(),
+                                   std::min(parameters_.float_damping.load(), per_s), fastest_rad_s_);
+  return robot_arm::joint_torque(craft_.model(), rates, drives_.measured().velocity, known_.bounds(), per_s);
 }
 
 // --- what comes of it, told ----------------------------------------------------------------------------------------------
@@ -142,7 +158,7 @@ void FloatingArm::advance() noexcept {
   switch (news) {
     case FloatingGuidance::News::None: return;
     case FloatingGuidance::News::Reached:
-      raise(motion_done_);
+      if (motion_) raise(motion_done_);  // who backs off by himself has done nothing that was asked
       finish_call();
       return;
     case FloatingGuidance::News::NotReached: end_motion(Trouble::goal_not_reached); return;
@@ -166,7 +182,7 @@ bool FloatingArm::may_act() noexcept {
     return false;
   }
   // Whoever goes out keeps neither tool nor base; who is to keep them would begin to turn about as soon as it is let go.
-  if (guidance_.goes_out()) return true;
+  if (guidance_.keeps_nothing()) return true;
   const double conditioning = parameters_.conditioning.load();
   if (craft_.law() != ToolLaw::AttitudeHold || conditioning >= robot_arm::least_conditioning) return true;
   tell_ill_conditioned(conditioning);
@@ -193,10 +209,29 @@ void FloatingArm::watch_clearance(const JointVector& rates, bool moves) noexcept
   const auto ahead = ahead_.near(rates, guidance_.holds() ? Doing::Holds : Doing::Goes);
   if (!ahead) return;
   raise(too_near_, ahead->distance_m, PairNames{std::string_view{ahead->names}});
-  const bool held = guidance_.holds();
+  const bool held = guidance_.holds(), led = guidance_.floats();
   end_motion(Trouble::too_near, robot_arm::millimetres(ahead->distance_m), ahead->names);
   if (held) braked_ = true;
+  else if (led) guidance_.halt();  // whoever leads it pushes on meanwhile
   else guidance_.stop(rates);
+}
+
+/// Whoever asked for a motion is told that it ended. Who stood goes nowhere for it: it is not he who went there; nor does who backs off and meets somebody else.
+void FloatingArm::watch_contact() noexcept {
+  if (guidance_.floats()) return;
+  const auto met = contact_.meet();
+  if (!met) return;
+  using Reaction = robot_arm::JointContact::Reaction;
+  const Reaction by = contact_.reaction();
+  raise(contact_met_, static_cast<std::uint8_t>(met->joint + 1), met->torque, met->limit,
+        static_cast<std::uint8_t>(by));
+  const bool stood = guidance_.holds() && !motion_;
+  const bool backs_off = guidance_.retracts();
+  if (stood && by != Reaction::Float) return;
+  end_motion(Trouble::contact);
+  if (by == Reaction::Float) guidance_.let_go();
+  else if (by == Reaction::Retract && !backs_off) guidance_.retract(parameters_.retract_distance.load());
+  else guidance_.halt();
 }
 
 void FloatingArm::tell_ill_conditioned(double conditioning) noexcept {

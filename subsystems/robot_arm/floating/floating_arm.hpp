@@ -25,7 +25,9 @@ class FloatingArm final : public CommandedFloatingArm {
   void measure(const Cycle& cycle) noexcept;
   void advance() noexcept;
   void control(bool moves) noexcept;
+  [[nodiscard]] robot_arm::JointVector torque_of(const robot_arm::JointVector& rates) const noexcept;
   void watch() noexcept;
+  void watch_contact() noexcept;
   [[nodiscard]] bool may_act() noexcept;
   void stop_before(const robot_arm::EndAhead& end) noexcept;
   void watch_clearance(const robot_arm::JointVector& rates, bool moves) noexcept;
@@ -43,6 +45,7 @@ class FloatingArm final : public CommandedFloatingArm {
   Event<double, PairNames> too_near_{"TOO_NEAR"};  ///< m, and who
 
   robot_arm::Watch watch_;
+  double fastest_rad_s_{0};  ///< that the cycle leaves to what keeps joints in their ranges
 };
 
 [[nodiscard]] std::unique_ptr<Subsystem> make_floating_arm();

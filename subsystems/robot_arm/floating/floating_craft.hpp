@@ -42,6 +42,9 @@ class FloatingCraft {
   /// Somebody's actuators act on the base, and that matters.
   [[nodiscard]] bool base_is_held() const noexcept { return tracks() && pose_.valid() && pose_.value().free == 0; }
 
+  /// As of FloatingModel, with velocities as measured; of update().
+  [[nodiscard]] JointVector bias() noexcept { return model_->bias(parts_.drives.measured().velocity); }
+
   // --- of update(), inertial axes -----------------------------------------------------------------------------------------
   [[nodiscard]] const FloatingModel& model() const noexcept { return *model_; }
   [[nodiscard]] const robotics::Pose& tool() const noexcept { return model_->tool(); }

@@ -4,29 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace hirosco::robot_arm {
 namespace {
 
 /// So long a goal has to be measured before it counts as reached, and at most so long after the end of the path.
 constexpr double settled_enough_s = 0.1, patience_s = 10;
+/// As hard it is stopped where it meets somebody, of the accelerations of motions: as the arm that stands.
+constexpr double halting = 4;
 /// Share of a course's time that it may stand at its beginning while its way is judged: what a second has in 64 cycles at 1 kHz. Where cycles are longer, it ends later.
 constexpr double most_missed = 0.07;
-
-[[nodiscard]] FloatingReason reason_of(const NoWayOut& none) noexcept {
-  using Why = NoWayOut::Why;
-  const FloatingTrouble trouble = none.why == Why::OutOfRange ? FloatingTrouble::out_of_range
-                                  : none.why == Why::TooNear  ? FloatingTrouble::too_near
-                                  : none.why == Why::TooSlow  ? FloatingTrouble::too_slow
-                                                              : FloatingTrouble::no_goal;
-  return {trouble, none.text, none.number};
-}
-
-[[nodiscard]] Outcome refused_for(const NoWayOut& none) noexcept {
-  const FloatingReason why = reason_of(none);
-  return refused(why.trouble, why.text, why.number);
-}
 
 }  // namespace
 
@@ -73,6 +60,24 @@ void FloatingGuidance::stop(const JointVector& rates, double span_s) noexcept {
   stop_.begin(rates, span_s);
 }
 
+void FloatingGuidance::halt() noexcept {
+  const JointVector rates = parts_.drives.measured().velocity;
+  stop(rates, std::max(cycle_s_, StopRamp::span_of(rates, parts_.known.bounds(), halting)));
+}
+
+void FloatingGuidance::retract(double distance) noexcept {
+  end_motion();
+  if (!out_.retract(distance)) return halt();
+  start(Phase::GoesOut, 0);
+  kept_.let_base_go();
+}
+
+void FloatingGuidance::let_go() noexcept {
+  end_motion();
+  phase_ = Phase::Floats;
+  kept_.let_base_go();
+}
+
 // --- in each cycle -------------------------------------------------------------------------------------------------------
 
 FloatingGuidance::News FloatingGuidance::advance() noexcept {
@@ -93,6 +98,11 @@ FloatingGuidance::News FloatingGuidance::advance() noexcept {
     // It is to be nowhere else: ERR tells of no way that nobody goes.
     kept_.keep();
     return go_out();
+  }
+  if (floats()) {
+    stand();
+    out_.forget_way();
+    return News::None;
   }
   if (jogs_joints() || jogs_tool()) return jog_on();
   moved_s_ += cycle_s_;
@@ -193,6 +203,8 @@ JointVector FloatingGuidance::wanted_rates() const noexcept {
   JointVector rates;
   if (phase_ == Phase::Stops) {
     rates = stop_.rates();
+  } else if (floats()) {
+    rates = parts_.drives.measured().velocity;
   } else if (phase_ == Phase::GoesOut) {
     rates = joints_.rates(out_.now());
   } else if (jogs_joints()) {
@@ -211,70 +223,10 @@ void FloatingGuidance::tell(bool braked) noexcept {
   kept_.tell();
 }
 
-// --- functions -----------------------------------------------------------------------------------------------------------
-
 void FloatingGuidance::start(Phase phase, double duration_s) noexcept {
   phase_ = phase;
   duration_s_ = duration_s;
   moved_s_ = settled_s_ = 0;
-}
-
-Outcome FloatingGuidance::move_joint(const FunctionValues& values) noexcept {
-  const std::size_t joints = parts_.known.joints();
-  if (const auto why = before_.judge(vector_of(std::span{values}.first(joints)), values[joints]))
-    return refused(why->trouble, why->text, why->number);
-  start(Phase::Holds, values[joints]);
-  parts_.parameters.progress.store(0);
-  return running;
-}
-
-Outcome FloatingGuidance::move_tool(const std::array<double, 3>& offset_m, double duration_s) noexcept {
-  const Vector3 offset{offset_m[0], offset_m[1], offset_m[2]};
-  const double fastest = fastest_of_course * offset.norm() / duration_s;
-  if (!(fastest <= parts_.parameters.tool_speed_m_s.load()))
-    return refused(FloatingTrouble::too_fast, "mm/s", std::llround(1e3 * fastest));
-  start(Phase::Holds, duration_s);
-  parts_.parameters.progress.store(0);
-  // One that stood by its joints begins where it is, one that kept its tool where that is to be.
-  if (!parts_.craft.tracks()) kept_.keep();
-  kept_.begin_course(offset);
-  before_.judge({.law = parts_.craft.law(),
-                 .base = parts_.craft.base(),
-                 .base_kept = kept_.base(),
-                 .position = parts_.drives.measured().position,
-                 .tool = kept_.goal().pose,
-                 .offset_m = offset,
-                 .duration_s = duration_s});
-  return running;
-}
-
-Outcome FloatingGuidance::jog_joints(const FunctionValues& values) noexcept {
-  phase_ = Phase::JointsJog;
-  return jog_.joints(values);
-}
-
-Outcome FloatingGuidance::jog_tool(const std::array<double, 3>& moving_m_s, const std::array<double, 3>& turning_rad_s,
-                                   double span_s) noexcept {
-  const Outcome begun = jog_.tool(moving_m_s, turning_rad_s, span_s);
-  if (begun.kind == Outcome::Kind::Refused) return begun;
-  if (!jogs_tool() && !parts_.craft.tracks()) kept_.keep();
-  phase_ = Phase::ToolJogs;
-  return begun;
-}
-
-Outcome FloatingGuidance::leave(FloatingWayOut::By by, double number) noexcept {
-  if (stops()) {
-    out_.wait(by, number);
-    return running;
-  }
-  const auto none = out_.begin(by, number);
-  return none ? refused_for(*none) : running;
-}
-
-Outcome FloatingGuidance::check_abort() noexcept {
-  if (!out_.begun()) return refused(pus::FailureCode::NotPermittedNow);
-  const auto none = out_.check_abort();
-  return none ? refused_for(*none) : running;
 }
 
 }  // namespace hirosco::robot_arm

@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 
-#include "hirosco/subsystem/author/handler.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/floating/floating_beforehand.hpp"
 #include "subsystems/robot_arm/floating/floating_craft.hpp"
@@ -23,7 +21,7 @@
 namespace hirosco::robot_arm {
 
 /// Where joints and tool of a craft that floats are to be from cycle to cycle, how fast the joints go for that, and how far a motion is, one at a
-/// time. It reports nothing: it says what is to be told.
+/// time. It reports nothing: it says what is to be told. What telecommands ask of it is FloatingMotions'.
 /// Realtime: bounded, but begin(). Thread: the cycle, and the service loop while there is none.
 class FloatingGuidance {
  public:
@@ -35,7 +33,7 @@ class FloatingGuidance {
     FloatingParameters& parameters;  ///< PROGRESS, PHASE and ERR tell how far it is
     AbortPath& abort_path;
   };
-  enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked, Stops, GoesOut, JointsJog, ToolJogs };
+  enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked, Stops, GoesOut, JointsJog, ToolJogs, Floats };
   /// What a cycle has brought to the motion.
   enum class News : std::uint8_t {
     None,
@@ -50,8 +48,8 @@ class FloatingGuidance {
         before_{{parts.known, parts.drives, parts.obstacles}},
         out_{{parts.known, parts.drives, parts.abort_path}},
         jog_{{parts.known, parts.drives, parts.craft, parts.parameters}},
-        joints_{parts.drives},
-        kept_{{parts.craft, parts.parameters}} {}
+        kept_{{parts.craft, parts.parameters}},
+        joints_{parts.drives} {}
 
   /// In configure(), when drives and craft have begun.  Realtime: allocates. Thread: the service loop.
   void begin(double cycle_s);
@@ -64,15 +62,14 @@ class FloatingGuidance {
   /// From these velocities to rest in so long, wherever it was to go; then it stands.
   void stop(const JointVector& rates, double span_s = StopRamp::span_s) noexcept;
 
-  // --- functions: refused, or running; numbers in the order of the descriptor ---------------------------------------------
-  /// The way of each is walked along while it stands, in the next cycles, and judged before it goes; PROGRESS tells where somebody is in a way of joints.
-  [[nodiscard]] Outcome move_joint(const FunctionValues& values) noexcept;
-  [[nodiscard]] Outcome move_tool(const std::array<double, 3>& offset_m, double duration_s) noexcept;
+  /// As hard as it may from the velocities that are measured: what it was met with.
+  void halt() noexcept;
+  /// Backs off from there by the way it came, so far; who came by none stands.
+  void retract(double distance) noexcept;
+  /// Whoever leads it has it: it is to be where it is, and came by no way.
+  void let_go() noexcept;
+  [[nodiscard]] bool floats() const noexcept { return phase_ == Phase::Floats; }
 
-  /// With these velocities for so long, then to rest. Who jogs so goes on from the velocities that he has.
-  [[nodiscard]] Outcome jog_joints(const FunctionValues& values) noexcept;
-  [[nodiscard]] Outcome jog_tool(const std::array<double, 3>& moving_m_s, const std::array<double, 3>& turning_rad_s,
-                                 double span_s) noexcept;
   [[nodiscard]] bool jogs_joints() const noexcept { return phase_ == Phase::JointsJog; }
   [[nodiscard]] bool jogs_tool() const noexcept { return phase_ == Phase::ToolJogs; }
 
@@ -83,12 +80,8 @@ class FloatingGuidance {
   /// While it holds: where the tool is, that is another one now, it is to be.
   void take_tool() noexcept { kept_.keep(), kept_.forget_error(); }
 
-  /// Out, by its joints in whatever law. Who comes to rest by stop() begins once it stands, unless end_motion() comes before.
-  [[nodiscard]] Outcome leave(FloatingWayOut::By by, double number) noexcept;
   /// What waits begins no more; what comes to rest goes on to do so.
   void call_off() noexcept { out_.end(); }
-  /// The stored path alone is judged; nothing moves.
-  [[nodiscard]] Outcome check_abort() noexcept;
   [[nodiscard]] bool only_judges() const noexcept { return out_.only_judges(); }
 
   // --- in each cycle ------------------------------------------------------------------------------------------------------
@@ -106,11 +99,21 @@ class FloatingGuidance {
   [[nodiscard]] bool holds() const noexcept { return phase_ == Phase::Holds; }
   /// By stop(), not yet at rest.
   [[nodiscard]] bool stops() const noexcept { return phase_ == Phase::Stops; }
-  /// By its joints, so that nothing is kept of what a law of the tool keeps.
-  [[nodiscard]] bool goes_out() const noexcept { return phase_ == Phase::GoesOut; }
+  [[nodiscard]] bool retracts() const noexcept { return out_.retracts(); }
+  /// By its joints or whoever leads it, so that nothing is kept of what a law of the tool keeps.
+  [[nodiscard]] bool keeps_nothing() const noexcept { return phase_ == Phase::GoesOut || floats(); }
+
+ protected:
+  void start(Phase phase, double duration_s) noexcept;
+
+  Parts parts_;
+  Phase phase_{Phase::Holds};
+  FloatingBeforehand before_;
+  FloatingWayOut out_;
+  FloatingJog jog_;
+  KeptTool kept_;
 
  private:
-  void start(Phase phase, double duration_s) noexcept;
   void come_to_hold() noexcept;
   [[nodiscard]] News go_out() noexcept;
   [[nodiscard]] News jog_on() noexcept;
@@ -118,16 +121,10 @@ class FloatingGuidance {
   [[nodiscard]] News arrive() noexcept;
   [[nodiscard]] bool keeps_tool() const noexcept;
 
-  Parts parts_;
   double cycle_s_{0.001};
-  Phase phase_{Phase::Holds};
   double moved_s_{0}, duration_s_{0}, settled_s_{0};
   StopRamp stop_;
-  FloatingBeforehand before_;
-  FloatingWayOut out_;
-  FloatingJog jog_;
   KeptJoints joints_;
-  KeptTool kept_;
   FloatingReason why_;
 };
 

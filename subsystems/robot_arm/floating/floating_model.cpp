@@ -94,6 +94,23 @@ void FloatingModel::take_tool(const robotics::Pose& tip) noexcept {
   }
 }
 
+/// What the base takes goes over to the joints by what they do to it.
+JointVector FloatingModel::bias(const JointVector& velocity) noexcept {
+  state_.qd = velocity;
+  state_.base_twist = base_ * velocity;
+  dynamics_.update(state_);
+  state_.qd.setZero();
+  state_.base_twist.setZero();
+  const int joints = model_->joint_count();
+  robotics::Coordinates force;
+  dynamics_.bias(force);
+  Law::add_payload(payload_, tip_, Vector3::Zero(), dynamics_, robotics::Coordinates::Zero(6 + joints), force);
+  JointVector of_joints = force.tail(joints);
+  const Vector6 of_base = force.head<6>();
+  of_joints.noalias() += base_.transpose().lazyProduct(of_base);
+  return of_joints;
+}
+
 double FloatingModel::conditioning() const noexcept {
   Twists both = free_;
   both.topRows<3>() = base_counts * base_.topRows<3>();

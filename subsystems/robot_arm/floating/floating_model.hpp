@@ -38,6 +38,8 @@ class FloatingModel {
   [[nodiscard]] const Twists& base() const noexcept { return base_; }
   /// What torques make what accelerations of the joints when nothing holds the base.
   [[nodiscard]] const Square& inertia() const noexcept { return inertia_; }
+  /// What torques keep all accelerations of the joints 0, when they go like that.
+  [[nodiscard]] JointVector bias(const JointVector& velocity) noexcept;
   /// How many times as much they move with what is at the tip as without it, in whatever direction that is most; or more.
   [[nodiscard]] double heavier() const noexcept { return heavier_; }
   /// How well joints can move the tool and leave the base unturned: the smallest singular value of both together, base rates counted tenfold.

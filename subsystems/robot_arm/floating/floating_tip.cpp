@@ -34,6 +34,7 @@ Outcome FloatingTip::take_tool(const ToolValues& in_tip, const Now& now) noexcep
 Outcome FloatingTip::take(const robotics::Pose& tool, const Payload& payload, const Now& now) noexcept {
   FloatingCraft& craft = parts_.craft;
   if (!craft.begun()) return refused(pus::FailureCode::NotPermittedNow);
+  if (parts_.guidance.floats()) return refused(FloatingTrouble::led, "HOLD first");
   if (now.called || !parts_.guidance.holds()) return refused(pus::FailureCode::Busy);
   craft.carry(tool, payload);
   if (const double left = craft.model().conditioning();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "subsystems/robot_arm/floating/tool_law.hpp"
 
@@ -15,6 +16,14 @@ class StopRamp {
  public:
   /// From any velocity: what the drives' own brakes may take, stop_within_ms of ARM, whose ramp goes no farther. With the fastest joint 0.4 rad/s2.
   static constexpr double span_s = 0.5;
+
+  /// In which so many times the accelerations of motions bring them to rest.
+  [[nodiscard]] static double span_of(const JointVector& rates, Bounds bounds, double times) noexcept {
+    double span = 0;
+    for (std::size_t i = 0; i < bounds.size(); ++i)
+      span = std::max(span, std::abs(rates[static_cast<Eigen::Index>(i)]) / (times * bounds[i].motion.acceleration));
+    return span;
+  }
 
   /// In a cycle that puts these out still.
   void begin(const JointVector& rates, double in_s = span_s) noexcept {
