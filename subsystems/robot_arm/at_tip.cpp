@@ -2,21 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/at_tip.hpp"
 
-#include <cmath>
-#include <numeric>
-
 namespace hirosco::robot_arm {
 
 void AtTip::begin() noexcept {
-  place_tool(parts_.parameters.tool_place.load());
-  shape();
-}
-
-void AtTip::shape() noexcept {
-  const Payload payload = parts_.model.payload();
-  parts_.obstacles.carry(pose_of(parts_.parameters.tool_place.load()).position,
-                         payload.mass_kg > 0 ? payload.place_m : Vector3{Vector3::Zero()},
-                         parts_.parameters.tool_radius_m.load());
+  place_tool();
+  parts_.carried.shape();
 }
 
 Outcome AtTip::take_payload(double mass_kg, const std::array<double, 3>& place_m, bool called) noexcept {
@@ -27,15 +17,14 @@ Outcome AtTip::take_payload(double mass_kg, const std::array<double, 3>& place_m
   const JointVector held = parts_.model.held({mass_kg, {place_m[0], place_m[1], place_m[2]}});
   if (const Outcome may = parts_.limits.may_hold(held); may.kind == Outcome::Kind::Refused) return may;
   parts_.control.take_load(held - parts_.model.held(parts_.model.payload()));
-  parts_.parameters.payload.store({mass_kg, place_m});
-  shape();
+  parts_.carried.take_payload(mass_kg, place_m);
   parts_.model.forget_external();
   return ok();
 }
 
 /// Springs are the same along and about all axes: for them it is no matter how the tool is turned.
-void AtTip::place_tool(const ToolValues& in_tip) noexcept {
-  const robotics::Pose place = pose_of(in_tip);
+void AtTip::place_tool() noexcept {
+  const robotics::Pose place = parts_.carried.tool();
   parts_.guidance.setpoints().set_tool(place);
   parts_.control.laws().set_tool(place.position);
 }
@@ -43,13 +32,9 @@ void AtTip::place_tool(const ToolValues& in_tip) noexcept {
 Outcome AtTip::take_tool(const ToolValues& in_tip, bool called) noexcept {
   if (!parts_.guidance.begun()) return refused(pus::FailureCode::NotPermittedNow);
   if (called || !parts_.guidance.at_rest()) return refused(pus::FailureCode::Busy);
-  const double norm = std::sqrt(std::inner_product(in_tip.orientation_wxyz.begin(), in_tip.orientation_wxyz.end(),
-                                                   in_tip.orientation_wxyz.begin(), 0.0));
-  if (norm != 0 && !(norm > 0.5 && norm < 1.5)) return refused(Trouble::no_goal, "no orientation");
-  const ToolValues taken = values_of(pose_of(in_tip));
-  parts_.parameters.tool_place.store(taken);
-  place_tool(taken);
-  shape();
+  if (!ToolAndPayload::has_orientation(in_tip)) return refused(Trouble::no_goal, "no orientation");
+  parts_.carried.take_tool(in_tip);
+  place_tool();
   return ok();
 }
 

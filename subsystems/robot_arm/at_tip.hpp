@@ -7,31 +7,27 @@
 #include "hirosco/subsystem/author/handler.hpp"
 #include "subsystems/robot_arm/guidance.hpp"
 #include "subsystems/robot_arm/limit_watch.hpp"
-#include "subsystems/robot_arm/obstacles.hpp"
 #include "subsystems/robot_arm/on_board_model.hpp"
-#include "subsystems/robot_arm/parameters.hpp"
+#include "subsystems/robot_arm/tool_and_payload.hpp"
 #include "subsystems/robot_arm/torque_control.hpp"
 
 namespace hirosco::robot_arm {
 
-/// What an arm has at its tip, a tool and a payload: whoever goes by them is told, and their shapes keep clear with its links.
+/// What an arm on a base that stands has at its tip (ToolAndPayload): whoever goes by it is told.
 /// Realtime: bounded, no allocation. Thread: the cycle, and the service loop while there is none.
 class AtTip {
  public:
   struct Parts {
     const LimitWatch& limits;
     OnBoardModel& model;
-    Obstacles& obstacles;
+    ToolAndPayload& carried;
     Guidance& guidance;
     TorqueControl& control;
-    Parameters& parameters;  ///< PAYLOAD, TOOL_PLACE, TOOL_RADIUS
   };
   explicit AtTip(const Parts& parts) noexcept : parts_{parts} {}
 
   /// In configure(), behind those that go by it.
   void begin() noexcept;
-  /// By what was said of tool and payload last, and TOOL_RADIUS as it was written last.
-  void shape() noexcept;
 
   // --- functions; `called`: a motion or STOP is under way -----------------------------------------------------------------
   /// A load that is not there would lift who is led or soft; the law of positions keeps its place whatever is declared.
@@ -39,7 +35,7 @@ class AtTip {
   [[nodiscard]] Outcome take_tool(const ToolValues& in_tip, bool called) noexcept;
 
  private:
-  void place_tool(const ToolValues& in_tip) noexcept;
+  void place_tool() noexcept;
 
   Parts parts_;
 };

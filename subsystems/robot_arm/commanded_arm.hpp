@@ -19,6 +19,7 @@
 #include "subsystems/robot_arm/parameters.hpp"
 #include "subsystems/robot_arm/posture.hpp"
 #include "subsystems/robot_arm/self_check.hpp"
+#include "subsystems/robot_arm/tool_and_payload.hpp"
 #include "subsystems/robot_arm/torque_control.hpp"
 #include "subsystems/robot_arm/torque_mode.hpp"
 #include "subsystems/robot_arm/trouble.hpp"
@@ -58,7 +59,9 @@ class CommandedArm : public robotics::MovingSubsystem {
   robot_arm::MotionRules rules_{{guidance_, control_, lead_, homing_}};
   robot_arm::Yielding yielding_{{known_, drives_, model_, obstacles_, guidance_, control_, parameters_}};
   robot_arm::ContactWatch contact_watch_{{guidance_, control_, yielding_, force_sensor_}};
-  robot_arm::AtTip at_tip_{{limits_, model_, obstacles_, guidance_, control_, parameters_}};
+  robot_arm::ToolAndPayload carried_{
+      {obstacles_, parameters_.tool_place, parameters_.payload, parameters_.tool_radius_m}};
+  robot_arm::AtTip at_tip_{{limits_, model_, carried_, guidance_, control_}};
   robot_arm::TorqueMode torque_mode_{
       {known_, drives_, limits_, model_, obstacles_, guidance_, control_, yielding_, parameters_}};
   robot_arm::SelfCheck self_check_{{known_, drives_, guidance_, control_, yielding_, homing_, parameters_}};

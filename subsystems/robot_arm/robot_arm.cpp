@@ -55,7 +55,7 @@ Result<> RobotArm::safe_operational(const Cycle& cycle) noexcept {
   if (cycle.first) {
     drop_calls(limits_.tripped());
     obstacles_.take_limit();  // it may have been written since CONFIGURE
-    at_tip_.shape();
+    carried_.shape();
   }
   engage();
   control();

@@ -2,23 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/yielding.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <span>
 
+#include "subsystems/robot_arm/control/standing.hpp"
 #include "subsystems/robot_arm/trouble.hpp"
 
 namespace hirosco::robot_arm {
 namespace {
 
-/// An external torque has to last for a contact, so many cycles.
-constexpr std::uint32_t contact_after_cycles = 3;
-/// A load that stood is gone when so much of the limit is left of it.
-constexpr double gone_share = 0.5;
 /// In which it lets go of whoever it met.
 constexpr double let_go_s = 0.05;
-/// Of a joint's velocity: what is faster does not stand. Let go of, it goes on by that over FLOAT_DAMPING.
-constexpr double standing_share = 0.05;
 
 }  // namespace
 
@@ -52,52 +45,18 @@ void Yielding::stand_apart() noexcept {
 
 // --- a contact -----------------------------------------------------------------------------------------------------------
 
-/// Of a load that stands no more is borne than the limit, and never so much that the torque limit had to find what comes to it: one motion
-/// behind the other presses no harder than the first.
 void Yielding::arm(Before load) noexcept {
-  contact_cycles_ = 0;
   stands_apart_ = false;
-  borne_.resize(0);
-  if (load == Before::Counts) return;
-  const double limit = parts_.parameters.contact.load().limit;
-  const double most = std::min(limit, std::max(0.0, parts_.parameters.torque_limit.load() - limit));
-  const Bounds bounds = parts_.known.bounds();
-  borne_.setZero(static_cast<Eigen::Index>(bounds.size()));
-  for (std::size_t joint = 0; joint < bounds.size(); ++joint) {
-    const auto i = static_cast<Eigen::Index>(joint);
-    const double share = parts_.model.external()[i] / bounds[joint].effort;
-    if (std::abs(share) > limit) borne_[i] = std::clamp(share, -most, most);
-  }
-}
-
-/// Away from where a load stood nothing more is let through than without it.
-double Yielding::counts_from(Eigen::Index joint, double share, double limit) noexcept {
-  if (borne_.size() == 0) return limit;
-  double& borne = borne_[joint];
-  if (share * (borne > 0 ? 1 : -1) < gone_share * limit) borne = 0;
-  return limit + std::abs(borne);
+  felt_.arm(load, parts_.model.external(), parts_.known.bounds(),
+            {.contact = parts_.parameters.contact.load().limit, .torque = parts_.parameters.torque_limit.load()});
 }
 
 std::optional<Yielding::Contact> Yielding::meet() noexcept {
   const ContactValues values = parts_.parameters.contact.load();
   if (values.reaction == static_cast<std::uint8_t>(Reaction::None)) return std::nullopt;
-  const JointVector& external = parts_.model.external();
-  const Bounds bounds = parts_.known.bounds();
-  std::size_t worst = 0;
-  double most = 0, limit = values.limit;
-  for (std::size_t joint = 0; joint < bounds.size(); ++joint) {
-    const auto i = static_cast<Eigen::Index>(joint);
-    const double share = external[i] / bounds[joint].effort;
-    const double its = counts_from(i, share, values.limit);
-    if (std::abs(share) - its > most) most = std::abs(share) - its, worst = joint, limit = its;
-  }
-  if (most <= 0) {
-    contact_cycles_ = 0;
-    return std::nullopt;
-  }
-  if (++contact_cycles_ != contact_after_cycles || parts_.control.floats()) return std::nullopt;
-  return Contact{worst, external[static_cast<Eigen::Index>(worst)], limit * bounds[worst].effort,
-                 static_cast<std::uint8_t>(reaction())};
+  const auto met = felt_.meet(parts_.model.external(), parts_.known.bounds(), values.limit);
+  if (!met || parts_.control.floats()) return std::nullopt;
+  return Contact{*met, static_cast<std::uint8_t>(reaction())};
 }
 
 Yielding::Reaction Yielding::reaction() const noexcept {
@@ -149,20 +108,9 @@ Outcome Yielding::soften_tool(double stiffness_n_m, double turning_n_m, double d
   return soften(LawKind::ToolImpedance, impedance);
 }
 
-/// A setpoint that rests is not enough: springs may swing the arm, or somebody pushes it on.
-std::optional<std::size_t> Yielding::still_moves() const noexcept {
-  const JointVector& velocity = parts_.drives.measured().velocity;
-  const Bounds bounds = parts_.known.bounds();
-  for (std::size_t joint = 0; joint < bounds.size(); ++joint)
-    // Written so that what is no number moves.
-    if (!(std::abs(velocity[static_cast<Eigen::Index>(joint)]) <= standing_share * bounds[joint].motion.velocity))
-      return joint;
-  return std::nullopt;
-}
-
 Outcome Yielding::let_go() noexcept {
   if (parts_.control.floats()) return ok();
-  if (const auto joint = still_moves())
+  if (const auto joint = still_moves(parts_.drives.measured().velocity, parts_.known.bounds()))
     return refused(pus::FailureCode::Busy, "it moves yet and would go on: wait, joint",
                    static_cast<std::int64_t>(*joint + 1));
   take_law(LawKind::Float);

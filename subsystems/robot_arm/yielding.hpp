@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 
 #include "hirosco/subsystem/author/handler.hpp"
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/guidance.hpp"
+#include "subsystems/robot_arm/joint_contact.hpp"
 #include "subsystems/robot_arm/obstacles.hpp"
 #include "subsystems/robot_arm/on_board_model.hpp"
 #include "subsystems/robot_arm/parameters.hpp"
@@ -30,18 +30,9 @@ class Yielding {
     TorqueControl& control;
     const Parameters& parameters;
   };
-  /// Of a contact.
-  enum class Reaction : std::uint8_t {
-    None,
-    Stop,  ///< stands where it was met
-    Float,  ///< gives way from then on
-    Retract,  ///< backs off by the way it came, then stands
-  };
-  /// N m or N of the joint, from 0, that feels most of it; the limit with what stood there when its motion began.
-  struct Contact {
-    std::size_t joint{0};
-    double torque{0};
-    double limit{0};
+  using Reaction = JointContact::Reaction;
+  using Before = JointContact::Before;
+  struct Contact : JointContact::Contact {
     std::uint8_t reaction{0};
   };
   /// What the arm was about when it was met.
@@ -60,8 +51,6 @@ class Yielding {
   /// Stands before links meet: whoever leads it there has it float no more, however hard he pushes, until arm().
   void stand_apart() noexcept;
 
-  /// What acts from outside already counts from now on, too; or stands beside, where a motion begins with it, and what comes to it counts.
-  enum class Before : std::uint8_t { Counts, Stands };
   /// Whoever is met from now on is told, whatever was told before.
   void arm(Before load) noexcept;
 
@@ -82,14 +71,11 @@ class Yielding {
   void harden() noexcept;
 
  private:
-  [[nodiscard]] std::optional<std::size_t> still_moves() const noexcept;
   [[nodiscard]] Outcome soften(LawKind kind, const Impedance& impedance) noexcept;
-  [[nodiscard]] double counts_from(Eigen::Index joint, double share, double limit) noexcept;
 
   Parts parts_;
-  std::uint32_t contact_cycles_{0};
+  JointContact felt_;
   bool stands_apart_{false};
-  JointVector borne_;  ///< shares of efforts, of a load that stood when a motion began; of no length: none
 };
 
 }  // namespace hirosco::robot_arm

@@ -181,6 +181,83 @@ TEST(Servicer, GoesBackByTheWayItsJointsCameAndHoldsWhereItIsThen) {
   }
 }
 
+/// In inertial axes, while the base gives way: as far as its velocity by its time.
+TEST(Servicer, JogsItsToolInInertialAxes) {
+  for (const char* mode : {"track", "approach"}) {
+    ServicerCraft craft{{.mission = mission, .mode = mode}};
+    auto goal = craft.tool_m();
+    goal[1] += 2 * 0.02;
+    craft.begin("JOG_L", {0.0, 0.02, 0.0, 0.0, 0.0, 0.0, 1.0});
+    craft.run(0.8);
+    EXPECT_TRUE(craft.craft().command("MCS", "JOG_L", {0.0, 0.02, 0.0, 0.0, 0.0, 0.0, 1.1}, 5s).completed)
+        << mode << craft.flight().story().text();
+    craft.run(3);
+    EXPECT_LT(distance(craft.tool_m(), goal), 4e-3) << mode << ": of 40 mm, less what commands take on their way";
+    EXPECT_LT(craft.momentum_n_m_s(), 1e-6) << mode;
+    if (std::string_view{mode} == "approach") {
+      EXPECT_LT(craft.base_deg(), 0.01);
+    }
+    const auto turned = craft.craft().command("MCS", "JOG_L", {0.0, 0.0, 0.0, 0.0, 0.0, 0.02, 0.5}, 5s);
+    EXPECT_EQ(turned.completed, std::string_view{mode} == "track") << mode << ": who holds his attitude turns no tool";
+    // By its joints it would be led away from what it keeps, and no mode of these permits it.
+    EXPECT_FALSE(craft.craft().command("MCS", "JOG_J", {0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5}, 2s).completed) << mode;
+    EXPECT_EQ(craft.flight().inhibited("MCS"), 0u) << mode;
+  }
+}
+
+/// 20 kg at the tip, of which momentum takes its share: without being told of them the base would be turned by a tenth of a degree and more.
+TEST(Servicer, LeavesItsBaseUnturnedWithAPayloadThatItWasToldOf) {
+  constexpr double mass_kg = 20;
+  std::array<double, 2> turned_deg{};
+  for (const bool told : {false, true}) {
+    ServicerCraft craft{{.mission = mission, .mode = "approach", .noise = Noise::None}};
+    ASSERT_TRUE(craft.flight().device<MujocoDevice>("arm").fault("payload 20"));
+    if (told) {
+      ASSERT_TRUE(craft.craft().command("MCS", "SET_PAYLOAD", {mass_kg, 0.0, 0.0, 0.0}, 2s).completed)
+          << craft.flight().story().text();
+    }
+    craft.each_cycle([&] { turned_deg[told] = std::max(turned_deg[told], craft.base_deg()); });
+    EXPECT_TRUE(craft.craft().command("MCS", "MOVE_TOOL", {0.1, 0.0, 0.0, 10.0}, 40s).completed)
+        << craft.flight().story().text();
+    craft.each_cycle([] {});
+  }
+  std::cout << "  base turned by " << turned_deg[false] << " deg, " << turned_deg[true] << " deg by who was told\n";
+  EXPECT_GT(turned_deg[false], 0.05);
+  EXPECT_LT(turned_deg[true], 0.01);
+}
+
+/// 20 kg far before the tip are more than joints can turn the base back for, by the reckoning of the law itself.
+TEST(Servicer, TakesNoPayloadWithWhichItCouldNotHoldItsAttitude) {
+  ServicerCraft craft{{.mission = mission, .mode = "approach"}};
+  const auto refused = craft.craft().command("MCS", "SET_PAYLOAD", {20.0, 0.0, 0.0, 0.3}, 2s);
+  EXPECT_EQ(refused.failure, pus::FailureCode{0x8008}) << "ILL_CONDITIONED";
+  craft.run(1);
+  EXPECT_EQ(craft.flight().inhibited("MCS"), 0u) << "and none is in force";
+  EXPECT_TRUE(craft.craft().command("MCS", "SET_TOOL", {0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0}, 2s).completed)
+      << craft.flight().story().text();
+  EXPECT_TRUE(craft.craft().command("MCS", "MOVE_TOOL", {away_m, 0.0, 0.0, within_s}, 20s).completed);
+}
+
+/// 32 N at the tool are 30 N m of the shoulder's 80, as a craft that nothing holds feels them.
+TEST(Servicer, StandsWhereItMeetsSomebodyWhileItTracks) {
+  ServicerCraft craft{{.mission = mission, .mode = "track"}};
+  craft.begin("MOVE_TOOL", {0.1, 0.0, 0.0, 10.0});
+  craft.run(3);
+  EXPECT_FALSE(craft.flight().story().has("CONTACT")) << craft.flight().story().text();
+  auto& arm = craft.flight().device<MujocoDevice>("arm");
+  ASSERT_TRUE(arm.fault("push -32 0 0"));
+  craft.run(0.2);
+  ASSERT_TRUE(arm.fault("push 0 0 0"));
+  EXPECT_TRUE(craft.flight().story().has("CONTACT")) << craft.flight().story().text();
+  craft.run(3);
+  const auto tool = craft.tool_m();
+  craft.run(3);
+  EXPECT_LT(distance(craft.tool_m(), tool), 5e-3);
+  EXPECT_EQ(craft.flight().inhibited("MCS"), 0u);
+  EXPECT_TRUE(craft.craft().command("MCS", "MOVE_TOOL", {-away_m, 0.0, 0.0, within_s}, 20s).completed)
+      << craft.flight().story().text();
+}
+
 /// By the law that keeps the tool in inertial axes, with the noise of the star tracker. Who is told of a volume on his way is stopped before it, comes no nearer
 /// however often he is to go there, and holds his tool there; who is told of it before is not let go.
 TEST(Servicer, KeepsOutOfAVolumeWhileItTracks) {

@@ -119,7 +119,7 @@ JointVector Law::answer(const Settings& settings) const noexcept {
 }
 
 void Law::add_payload(const Payload& payload, robotics::FrameId tip, const Vector3& gravity_m_s2,
-                      const robotics::Dynamics& dynamics, const JointVector& acceleration,
+                      const robotics::Dynamics& dynamics, const robotics::Coordinates& acceleration,
                       robotics::Coordinates& torque) noexcept {
   if (payload.mass_kg <= 0) return;
   Jacobian jacobian;

@@ -54,7 +54,7 @@ class Law {
 
   /// What a payload takes when the joints accelerate so.
   static void add_payload(const Payload& payload, robotics::FrameId tip, const Vector3& gravity_m_s2,
-                          const robotics::Dynamics& dynamics, const JointVector& acceleration,
+                          const robotics::Dynamics& dynamics, const robotics::Coordinates& acceleration,
                           robotics::Coordinates& torque) noexcept;
 
  private:

@@ -19,21 +19,27 @@ void MomentumObserver::reset() noexcept {
 
 void MomentumObserver::update(const Measured& measured, robotics::Dynamics& dynamics,
                               const robotics::Coordinates& payload_torque) noexcept {
-  dynamics.mass_matrix(mass_);
+  robotics::MassMatrix mass;
+  dynamics.mass_matrix(mass);
+  robotics::Coordinates bias;
+  dynamics.bias(bias);
+  update(measured, mass, bias, payload_torque);
+}
+
+void MomentumObserver::update(const Measured& measured, const robotics::MassMatrix& mass,
+                              const robotics::Coordinates& bias, const robotics::Coordinates& payload_torque) noexcept {
   JointVector momentum;
-  momentum.noalias() = mass_.lazyProduct(measured.velocity);
+  momentum.noalias() = mass.lazyProduct(measured.velocity);
   if (!started_) {
     started_ = true;
     begun_ = momentum;
-    mass_before_ = mass_;
+    mass_before_ = mass;
     return;
   }
-  robotics::Coordinates bias;
-  dynamics.bias(bias);
   // d/dt (M qd) = dM/dt qd + M qdd, and M qdd = torque - bias + external.
   JointVector growth = measured.torque - bias - payload_torque;
-  growth.noalias() += (mass_ - mass_before_).lazyProduct(measured.velocity) / cycle_s_;
-  mass_before_ = mass_;
+  growth.noalias() += (mass - mass_before_).lazyProduct(measured.velocity) / cycle_s_;
+  mass_before_ = mass;
   known_ += (growth + external_) * cycle_s_;
   external_ = gain_per_s_ * (momentum - begun_ - known_);
 }

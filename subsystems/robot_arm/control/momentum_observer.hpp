@@ -17,6 +17,9 @@ class MomentumObserver {
   /// `dynamics` was updated with what is measured, gravity included; `payload_torque`: what the payload takes without accelerating.
   void update(const Measured& measured, robotics::Dynamics& dynamics,
               const robotics::Coordinates& payload_torque) noexcept;
+  /// Likewise by the inertia that the joints feel, and what they take without accelerating, besides a payload: of an arm whose base gives way.
+  void update(const Measured& measured, const robotics::MassMatrix& mass, const robotics::Coordinates& bias,
+              const robotics::Coordinates& payload_torque) noexcept;
   /// N m or N, in the direction in which it would accelerate the joints.
   [[nodiscard]] const JointVector& external() const noexcept { return external_; }
 
@@ -24,7 +27,7 @@ class MomentumObserver {
   double cycle_s_;
   double gain_per_s_;
   bool started_{false};
-  robotics::MassMatrix mass_, mass_before_;
+  robotics::MassMatrix mass_before_;
   JointVector begun_;  ///< momentum at reset()
   JointVector known_;  ///< what came to it since, the estimate included
   JointVector external_;

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/floating/floating_arm.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <string_view>
 
 #include "robotics/motion/sampled_rates.hpp"
+#include "subsystems/robot_arm/floating/float_law.hpp"
 #include "subsystems/robot_arm/floating/floating_trouble.hpp"
 
 namespace hirosco {
@@ -38,7 +39,7 @@ Result<Step> FloatingArm::software_init() {
                                          &hard_exceeded_, &range_end_near_, &too_near_})
     use_event(*event);
   HIROSCO_TRY_LET(const UrdfArm::Source source, known_.read(own_descriptor()));
-  HIROSCO_TRY(obstacles_.read(source, known_.model()));
+  HIROSCO_TRY(obstacles_.read(source, known_.model(), known_.tip()));
   HIROSCO_TRY(known_.take_bounds());
   bind_functions();
   return done;
@@ -59,28 +60,11 @@ Result<> FloatingArm::configure(const descriptor::Configuration& configuration) 
   drives_.forget(static_cast<std::size_t>(known_.model().joint_count()));
   moving_ = braked_ = false;
   guidance_.begin(cycle_s);
+  ahead_.begin(cycle_s);
+  tip_.begin();
+  contact_.begin(cycle_s);
+  fastest_rad_s_ = robotics::fastest_rad_s(cycle_s);
   static_cast<void>(obstacles_.keep_out(parameters_.keep_out.load()));
-  return ok();
-}
-
-/// What is a number for each joint has as many as the URDF file has joints.
-Result<> FloatingArm::check_lengths() noexcept {
-  const auto current = parameters_.current.load();
-  const descriptor::Function* move = own_descriptor().find_function("MOVE_JOINT");
-  std::size_t arguments = 0;
-  if (move != nullptr)
-    for (const auto& argument : move->arguments) arguments += argument.field.count;
-  const std::size_t joints = known_.joints();
-  for (const std::size_t length :
-       {current.position.size(), current.velocity.size(), current.torque.size(),
-        parameters_.desired_velocity.load().size(), drives_.says().position.size(), drives_.says().velocity.size(),
-        drives_.says().torque.size(), drives_.puts_out().size(), arguments == 0 ? 0 : arguments - 1})
-    if (length != joints)
-      return fail(ErrorCode::Mismatch,
-                  "an array of CUR, DES_VELOCITY, MOVE_JOINT or ARM is not as long as the robot has joints",
-                  static_cast<std::int64_t>(length));
-  if (robot_arm::AbortPath::declared(own_descriptor()) && !abort_path_.has_length(joints))
-    return fail(ErrorCode::Mismatch, "JOINTS of ABORT_PATH has another length than the robot has joints");
   return ok();
 }
 
@@ -96,6 +80,7 @@ Result<> FloatingArm::safe_operational(const Cycle& cycle) noexcept {
   if (cycle.first) {
     end_motion(pus::FailureCode::Aborted);
     obstacles_.take_limit();  // it may have been written since CONFIGURE
+    carried_.shape();
   }
   guidance_.engage();
   if (motion_) advance();  // CHECK_ABORT moves nothing
@@ -113,8 +98,10 @@ Result<> FloatingArm::operational(const Cycle& cycle) noexcept {
   if (cycle.first || !cycle.active) {
     if (!cycle.active) end_motion(pus::FailureCode::Aborted);  // inhibited it could never end
     guidance_.engage();
+    contact_.arm(robot_arm::JointContact::Before::Counts);
   } else {
     advance();
+    watch_contact();
   }
   control(cycle.active && !braked_);
   watch();
@@ -135,21 +122,32 @@ Result<> FloatingArm::error_operational(const Cycle& cycle) noexcept {
 void FloatingArm::measure(const Cycle& cycle) noexcept {
   drives_.measure(cycle.state);
   parameters_.active.store(0);
+  const bool driven = moving_ && cycle.state == State::Operational;
   moving_ = false;
   craft_.update();
+  contact_.update(driven);
 }
 
 void FloatingArm::control(bool moves) noexcept {
   JointVector rates = guidance_.wanted_rates();
-  if (const auto end = guidance_.end_ahead(rates)) {
+  const auto end = guidance_.may_end_range() ? ahead_.end(rates) : std::nullopt;
+  if (end) {
     rates.setZero();
     if (moves) stop_before(*end);
   }
   watch_clearance(rates, moves);
-  drives_.put_out(robot_arm::joints_of(
-      robot_arm::joint_torque(craft_.model(), rates, drives_.measured().velocity, known_.bounds())));
+  drives_.put_out(robot_arm::joints_of(torque_of(rates)));
   parameters_.desired_velocity.store(robot_arm::joints_of(rates));
   guidance_.tell(braked_);
+}
+
+/// Whoever leads it is not held back by more than the law of velocities, which a payload makes slower, would.
+JointVector FloatingArm::torque_of(const JointVector& rates) const noexcept {
+  const double per_s = craft_.followed_per_s();
+  if (guidance_.floats())
+    return robot_arm::float_torque(craft_.model(), drives_.measured(), known_.bounds(),
+                                   std::min(parameters_.float_damping.load(), per_s), fastest_rad_s_);
+  return robot_arm::joint_torque(craft_.model(), rates, drives_.measured().velocity, known_.bounds(), per_s);
 }
 
 // --- what comes of it, told ----------------------------------------------------------------------------------------------
@@ -160,7 +158,7 @@ void FloatingArm::advance() noexcept {
   switch (news) {
     case FloatingGuidance::News::None: return;
     case FloatingGuidance::News::Reached:
-      raise(motion_done_);
+      if (motion_) raise(motion_done_);  // who backs off by himself has done nothing that was asked
       finish_call();
       return;
     case FloatingGuidance::News::NotReached: end_motion(Trouble::goal_not_reached); return;
@@ -175,11 +173,6 @@ void FloatingArm::advance() noexcept {
   }
 }
 
-void FloatingArm::finish_call() noexcept {
-  if (motion_) finish(*motion_);
-  motion_.reset();
-}
-
 /// What else than its own sensors keeps it from moving.
 bool FloatingArm::may_act() noexcept {
   if (!craft_.tracks()) return true;
@@ -189,7 +182,7 @@ bool FloatingArm::may_act() noexcept {
     return false;
   }
   // Whoever goes out keeps neither tool nor base; who is to keep them would begin to turn about as soon as it is let go.
-  if (guidance_.goes_out()) return true;
+  if (guidance_.keeps_nothing()) return true;
   const double conditioning = parameters_.conditioning.load();
   if (craft_.law() != ToolLaw::AttitudeHold || conditioning >= robot_arm::least_conditioning) return true;
   tell_ill_conditioned(conditioning);
@@ -212,13 +205,33 @@ void FloatingArm::watch_clearance(const JointVector& rates, bool moves) noexcept
   if (!moves) return obstacles_.stand_at(here);
   obstacles_.pass(here);
   if (guidance_.stops()) return;
-  const auto ahead = guidance_.near_ahead(rates);
+  using Doing = robot_arm::FloatingAhead::Doing;
+  const auto ahead = ahead_.near(rates, guidance_.holds() ? Doing::Holds : Doing::Goes);
   if (!ahead) return;
   raise(too_near_, ahead->distance_m, PairNames{std::string_view{ahead->names}});
-  const bool held = guidance_.holds();
+  const bool held = guidance_.holds(), led = guidance_.floats();
   end_motion(Trouble::too_near, robot_arm::millimetres(ahead->distance_m), ahead->names);
   if (held) braked_ = true;
+  else if (led) guidance_.halt();  // whoever leads it pushes on meanwhile
   else guidance_.stop(rates);
+}
+
+/// Whoever asked for a motion is told that it ended. Who stood goes nowhere for it: it is not he who went there; nor does who backs off and meets somebody else.
+void FloatingArm::watch_contact() noexcept {
+  if (guidance_.floats()) return;
+  const auto met = contact_.meet();
+  if (!met) return;
+  using Reaction = robot_arm::JointContact::Reaction;
+  const Reaction by = contact_.reaction();
+  raise(contact_met_, static_cast<std::uint8_t>(met->joint + 1), met->torque, met->limit,
+        static_cast<std::uint8_t>(by));
+  const bool stood = guidance_.holds() && !motion_;
+  const bool backs_off = guidance_.retracts();
+  if (stood && by != Reaction::Float) return;
+  end_motion(Trouble::contact);
+  if (by == Reaction::Float) guidance_.let_go();
+  else if (by == Reaction::Retract && !backs_off) guidance_.retract(parameters_.retract_distance.load());
+  else guidance_.halt();
 }
 
 void FloatingArm::tell_ill_conditioned(double conditioning) noexcept {
@@ -237,98 +250,6 @@ void FloatingArm::watch() noexcept {
   end_motion(Trouble::limit_tripped, static_cast<std::int64_t>(found->joint + 1));
   raise(found->what == robot_arm::Excess::TorqueHard ? hard_exceeded_ : limit_exceeded_,
         static_cast<std::uint8_t>(found->joint + 1), found->value, found->limit);
-}
-
-template <FailureEnumeration Code>
-void FloatingArm::end_motion(Code why, std::int64_t number, const char* text) noexcept {
-  if (motion_) abort(*motion_, why, text, number);
-  motion_.reset();
-  guidance_.end_motion();
-}
-
-// --- functions -----------------------------------------------------------------------------------------------------------
-
-Outcome FloatingArm::may_move() const noexcept {
-  if (craft_.base_is_held()) return refused(Trouble::base_is_held);
-  if (!moving_) return refused(Trouble::actuators_inhibited);
-  if (motion_ || !guidance_.holds()) return refused(pus::FailureCode::Busy);
-  return running;
-}
-
-/// Whoever moves comes to rest first: to ask for no velocity at once would take more torque than limits leave.
-void FloatingArm::hold() noexcept {
-  if (guidance_.stops()) {  // what waits for that is called off
-    if (motion_) abort(*motion_, pus::FailureCode::Aborted);
-    motion_.reset();
-    return guidance_.call_off();
-  }
-  const JointVector rates = guidance_.wanted_rates();
-  const bool held = guidance_.holds();
-  end_motion(pus::FailureCode::Aborted);
-  if (held) guidance_.stand();
-  else guidance_.stop(rates);
-}
-
-/// Who comes to rest by itself is let out once it stands.
-Outcome FloatingArm::may_leave() const noexcept {
-  const bool waits = moving_ && !motion_ && !craft_.base_is_held() && guidance_.stops();
-  return waits ? running : may_move();
-}
-
-/// CHECK_ABORT, which moves nothing, keeps nobody in.
-Outcome FloatingArm::leave(Out by, double number, const Call& call) noexcept {
-  if (guidance_.only_judges()) end_motion(pus::FailureCode::Aborted);
-  if (const Outcome may = may_leave(); may.kind == Outcome::Kind::Refused) return may;
-  return started(guidance_.leave(by, number), call);
-}
-
-/// In Safe-Operational it needs no actuators; in Operational without them nothing goes on that was begun.
-Outcome FloatingArm::check_abort(const Call& call) noexcept {
-  const bool operational = parameters_.current.load().state == static_cast<std::int32_t>(State::Operational);
-  if (motion_) return refused(pus::FailureCode::Busy);
-  if (const Outcome may = operational ? may_move() : running; may.kind == Outcome::Kind::Refused) return may;
-  return started(guidance_.check_abort(), call);
-}
-
-Outcome FloatingArm::started(const Outcome& outcome, const Call& call) noexcept {
-  if (outcome.kind != Outcome::Kind::Refused) motion_ = call;
-  return outcome;
-}
-
-void FloatingArm::bind_functions() {
-  on_function("MOVE_JOINT", [this](const FunctionValues& values, Call call) -> Outcome {
-    if (craft_.tracks()) return refused(Trouble::another_law, "in the configuration JOINTS only");
-    if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
-    return started(guidance_.move_joint(values), call);
-  });
-  on_function("MOVE_TOOL", [this](std::array<double, 3> offset_m, double duration_s, Call call) -> Outcome {
-    if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
-    return started(guidance_.move_tool(offset_m, duration_s), call);
-  });
-  on_function("HOLD", [this]() -> Outcome {
-    if (!moving_) return refused(Trouble::actuators_inhibited);
-    hold();
-    return ok();
-  });
-  bind_ways_out();
-  on_function("KEEP_OUT", [this](const robot_arm::KeepOut& numbers) { return obstacles_.keep_out(numbers); });
-  on_function("BRAKE", [this]() -> Outcome {
-    end_motion(pus::FailureCode::Aborted);
-    braked_ = true;
-    return ok();
-  });
-}
-
-/// Whose descriptor does not offer them has none.
-void FloatingArm::bind_ways_out() {
-  if (offers("RETREAT")) {
-    use_event(retracted_);
-    on_function("RETREAT", [this](double distance, Call call) { return leave(Out::WayBack, distance, call); });
-  }
-  if (!robot_arm::AbortPath::declared(own_descriptor())) return;
-  abort_path_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
-  on_function("MOVE_ABORT", [this](double speed, Call call) { return leave(Out::AbortPath, speed, call); });
-  on_function("CHECK_ABORT", [this](Call call) { return check_abort(call); });
 }
 
 }  // namespace hirosco

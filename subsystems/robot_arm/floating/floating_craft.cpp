@@ -19,8 +19,17 @@ void FloatingCraft::begin(ToolLaw law, double cycle_s) {
   base_.stand_still();
 }
 
+void FloatingCraft::carry(const robotics::Pose& tool_in_tip, const Payload& payload) noexcept {
+  model_->carry(tool_in_tip, payload);
+  find();
+}
+
 void FloatingCraft::update() noexcept {
   follow_base();
+  find();
+}
+
+void FloatingCraft::find() noexcept {
   // A robot with masses always has an inertia; without one the last state stays, and the law's torques are bounded.
   static_cast<void>(model_->update(base(), parts_.drives.measured().position));
   parts_.parameters.tool.store({three_of(tool().position), four_of(robotics::Quaternion{tool().rotation})});

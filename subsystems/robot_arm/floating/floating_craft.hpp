@@ -29,6 +29,9 @@ class FloatingCraft {
   [[nodiscard]] LinkInputPort& pose_port() noexcept { return pose_; }
   /// In configure().  Realtime: allocates. Thread: the service loop.
   void begin(ToolLaw law, double cycle_s);
+  [[nodiscard]] bool begun() const noexcept { return model_.has_value(); }
+  /// What is at its tip from now on, where it stands: as of FloatingModel. Behind drives that were forgotten.
+  void carry(const robotics::Pose& tool_in_tip, const Payload& payload) noexcept;
   /// Takes joints that are measured, and pose, and tells what follows.
   void update() noexcept;
 
@@ -39,15 +42,21 @@ class FloatingCraft {
   /// Somebody's actuators act on the base, and that matters.
   [[nodiscard]] bool base_is_held() const noexcept { return tracks() && pose_.valid() && pose_.value().free == 0; }
 
+  /// As of FloatingModel, with velocities as measured; of update().
+  [[nodiscard]] JointVector bias() noexcept { return model_->bias(parts_.drives.measured().velocity); }
+
   // --- of update(), inertial axes -----------------------------------------------------------------------------------------
   [[nodiscard]] const FloatingModel& model() const noexcept { return *model_; }
   [[nodiscard]] const robotics::Pose& tool() const noexcept { return model_->tool(); }
+  /// How fast joints follow velocities, 1/s, with what is at the tip.
+  [[nodiscard]] double followed_per_s() const noexcept { return followed_with(model_->heavier(), cycle_s_); }
   /// Of the base.
   [[nodiscard]] robotics::Matrix3 attitude() const noexcept { return base_.orientation().toRotationMatrix(); }
   [[nodiscard]] robotics::Pose base() const noexcept { return {attitude(), base_.position_m()}; }
 
  private:
   void follow_base() noexcept;
+  void find() noexcept;
 
   Parts parts_;
   LinkInput<BasePose> pose_;

@@ -2,27 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 
-#include "hirosco/subsystem/author/handler.hpp"
-#include "subsystems/robot_arm/control/straight_way.hpp"
 #include "subsystems/robot_arm/drives.hpp"
+#include "subsystems/robot_arm/floating/floating_beforehand.hpp"
 #include "subsystems/robot_arm/floating/floating_craft.hpp"
+#include "subsystems/robot_arm/floating/floating_jog.hpp"
 #include "subsystems/robot_arm/floating/floating_parameters.hpp"
 #include "subsystems/robot_arm/floating/floating_trouble.hpp"
 #include "subsystems/robot_arm/floating/floating_way_out.hpp"
-#include "subsystems/robot_arm/floating/range_ends.hpp"
+#include "subsystems/robot_arm/floating/kept_joints.hpp"
+#include "subsystems/robot_arm/floating/kept_tool.hpp"
 #include "subsystems/robot_arm/floating/stop_ramp.hpp"
-#include "subsystems/robot_arm/floating/tool_way.hpp"
 #include "subsystems/robot_arm/obstacles.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
 namespace hirosco::robot_arm {
 
 /// Where joints and tool of a craft that floats are to be from cycle to cycle, how fast the joints go for that, and how far a motion is, one at a
-/// time. It reports nothing: it says what is to be told.
+/// time. It reports nothing: it says what is to be told. What telecommands ask of it is FloatingMotions'.
 /// Realtime: bounded, but begin(). Thread: the cycle, and the service loop while there is none.
 class FloatingGuidance {
  public:
@@ -34,7 +33,7 @@ class FloatingGuidance {
     FloatingParameters& parameters;  ///< PROGRESS, PHASE and ERR tell how far it is
     AbortPath& abort_path;
   };
-  enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked, Stops, GoesOut };
+  enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked, Stops, GoesOut, JointsJog, ToolJogs, Floats };
   /// What a cycle has brought to the motion.
   enum class News : std::uint8_t {
     None,
@@ -45,7 +44,12 @@ class FloatingGuidance {
     Judged,  ///< nothing was to move, and nothing is in the way
   };
   explicit FloatingGuidance(const Parts& parts) noexcept
-      : parts_{parts}, out_{{parts.known, parts.drives, parts.abort_path}} {}
+      : parts_{parts},
+        before_{{parts.known, parts.drives, parts.obstacles}},
+        out_{{parts.known, parts.drives, parts.abort_path}},
+        jog_{{parts.known, parts.drives, parts.craft, parts.parameters}},
+        kept_{{parts.craft, parts.parameters}},
+        joints_{parts.drives} {}
 
   /// In configure(), when drives and craft have begun.  Realtime: allocates. Thread: the service loop.
   void begin(double cycle_s);
@@ -55,20 +59,29 @@ class FloatingGuidance {
   void stand() noexcept;
   /// A motion goes on no further: it keeps to what it came to.
   void end_motion() noexcept;
-  /// From these velocities to rest, wherever it was to go; then it stands.
-  void stop(const JointVector& rates) noexcept;
+  /// From these velocities to rest in so long, wherever it was to go; then it stands.
+  void stop(const JointVector& rates, double span_s = StopRamp::span_s) noexcept;
 
-  // --- functions: refused, or running; numbers in the order of the descriptor ---------------------------------------------
-  /// The way of each is walked along while it stands, in the next cycles, and judged before it goes; PROGRESS tells where somebody is in a way of joints.
-  [[nodiscard]] Outcome move_joint(const FunctionValues& values) noexcept;
-  [[nodiscard]] Outcome move_tool(const std::array<double, 3>& offset_m, double duration_s) noexcept;
+  /// As hard as it may from the velocities that are measured: what it was met with.
+  void halt() noexcept;
+  /// Backs off from there by the way it came, so far; who came by none stands.
+  void retract(double distance) noexcept;
+  /// Whoever leads it has it: it is to be where it is, and came by no way.
+  void let_go() noexcept;
+  [[nodiscard]] bool floats() const noexcept { return phase_ == Phase::Floats; }
 
-  /// Out, by its joints in whatever law. Who comes to rest by stop() begins once it stands, unless end_motion() comes before.
-  [[nodiscard]] Outcome leave(FloatingWayOut::By by, double number) noexcept;
+  [[nodiscard]] bool jogs_joints() const noexcept { return phase_ == Phase::JointsJog; }
+  [[nodiscard]] bool jogs_tool() const noexcept { return phase_ == Phase::ToolJogs; }
+
+  /// What is at the tip from now on, of ways that are judged. The craft has it already.
+  void carry(const robotics::Pose& tool_in_tip, const Payload& payload) noexcept {
+    before_.carry(tool_in_tip, payload);
+  }
+  /// While it holds: where the tool is, that is another one now, it is to be.
+  void take_tool() noexcept { kept_.keep(), kept_.forget_error(); }
+
   /// What waits begins no more; what comes to rest goes on to do so.
   void call_off() noexcept { out_.end(); }
-  /// The stored path alone is judged; nothing moves.
-  [[nodiscard]] Outcome check_abort() noexcept;
   [[nodiscard]] bool only_judges() const noexcept { return out_.only_judges(); }
 
   // --- in each cycle ------------------------------------------------------------------------------------------------------
@@ -79,46 +92,40 @@ class FloatingGuidance {
   [[nodiscard]] std::optional<double> end_retreat() noexcept { return out_.end_retreat(); }
   /// rad/s or m/s of each joint, none faster than it may be.
   [[nodiscard]] JointVector wanted_rates() const noexcept;
-  /// Who of them goes to an end of its range too fast to stand before it. Of a law of the tool alone: both ends of a path of joints are in range, and
-  /// so is what is between.
-  [[nodiscard]] std::optional<EndAhead> end_ahead(const JointVector& rates) const noexcept;
-  /// Who would be too near somebody, or to a volume, if joints that go like that were stopped now.
-  [[nodiscard]] std::optional<Obstacles::Nearest> near_ahead(const JointVector& rates) noexcept;
+  /// A law of the tool has them, or they come to rest: of paths of joints both ends are in range, and so is what is between.
+  [[nodiscard]] bool may_end_range() const noexcept { return keeps_tool() || stops(); }
   /// PHASE and ERR. `braked`: the brakes hold it.
   void tell(bool braked) noexcept;
   [[nodiscard]] bool holds() const noexcept { return phase_ == Phase::Holds; }
   /// By stop(), not yet at rest.
   [[nodiscard]] bool stops() const noexcept { return phase_ == Phase::Stops; }
-  /// By its joints, so that nothing is kept of what a law of the tool keeps.
-  [[nodiscard]] bool goes_out() const noexcept { return phase_ == Phase::GoesOut; }
+  [[nodiscard]] bool retracts() const noexcept { return out_.retracts(); }
+  /// By its joints or whoever leads it, so that nothing is kept of what a law of the tool keeps.
+  [[nodiscard]] bool keeps_nothing() const noexcept { return phase_ == Phase::GoesOut || floats(); }
+
+ protected:
+  void start(Phase phase, double duration_s) noexcept;
+
+  Parts parts_;
+  Phase phase_{Phase::Holds};
+  FloatingBeforehand before_;
+  FloatingWayOut out_;
+  FloatingJog jog_;
+  KeptTool kept_;
 
  private:
-  void start(Phase phase, double duration_s) noexcept;
   void come_to_hold() noexcept;
   [[nodiscard]] News go_out() noexcept;
-  [[nodiscard]] News no_way(const FloatingReason& why) noexcept;
+  [[nodiscard]] News jog_on() noexcept;
   [[nodiscard]] News judge() noexcept;
   [[nodiscard]] News arrive() noexcept;
   [[nodiscard]] bool keeps_tool() const noexcept;
 
-  Parts parts_;
   double cycle_s_{0.001};
-  Phase phase_{Phase::Holds};
   double moved_s_{0}, duration_s_{0}, settled_s_{0};
-  JointVector joints_from_, joints_goal_;
   StopRamp stop_;
-  enum class Judges : std::uint8_t { Nothing, JointsWay, ToolsWay };
-  Judges judges_{Judges::Nothing};  ///< while it stands
-  StraightWay straight_;  ///< of joints
-  std::optional<ToolWay> way_;
-  FloatingWayOut out_;
-  bool base_let_go_{false};  ///< joints went as no law of the tool has them: what AttitudeHold keeps is what is then
+  KeptJoints joints_;
   FloatingReason why_;
-  ToolGoal tool_goal_;
-  Vector3 tool_from_{Vector3::Zero()}, tool_offset_{Vector3::Zero()};
-  robotics::Matrix3 base_kept_{robotics::Matrix3::Identity()};
-  Vector3 mean_left_m_{Vector3::Zero()};
-  double error_m_{0};  ///< of the tool, without the noise of single samples
 };
 
 }  // namespace hirosco::robot_arm

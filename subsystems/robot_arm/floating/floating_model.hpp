@@ -4,6 +4,7 @@
 
 #include "robotics/dynamics/dynamics.hpp"
 #include "subsystems/robot_arm/control/joints.hpp"
+#include "subsystems/robot_arm/control/law.hpp"
 
 namespace hirosco::robot_arm {
 
@@ -19,6 +20,11 @@ class FloatingModel {
   /// `model` must outlive this.
   FloatingModel(const robotics::Model& model, robotics::FrameId tip);
 
+  /// What is at the tip from the next update() on: where the tool is in its frame, and what the file does not have. Of that the base gives way less or more, and joints move it.
+  void carry(const robotics::Pose& tool_in_tip, const Payload& payload) noexcept {
+    in_tip_ = tool_in_tip;
+    payload_ = payload;
+  }
   /// Where the base is, and the joints. OutOfRange: the robot as a whole has no inertia against a rotation.
   [[nodiscard]] Result<> update(const robotics::Pose& base, const JointVector& position) noexcept;
 
@@ -32,12 +38,23 @@ class FloatingModel {
   [[nodiscard]] const Twists& base() const noexcept { return base_; }
   /// What torques make what accelerations of the joints when nothing holds the base.
   [[nodiscard]] const Square& inertia() const noexcept { return inertia_; }
+  /// What torques keep all accelerations of the joints 0, when they go like that.
+  [[nodiscard]] JointVector bias(const JointVector& velocity) noexcept;
+  /// How many times as much they move with what is at the tip as without it, in whatever direction that is most; or more.
+  [[nodiscard]] double heavier() const noexcept { return heavier_; }
   /// How well joints can move the tool and leave the base unturned: the smallest singular value of both together, base rates counted tenfold.
   [[nodiscard]] double conditioning() const noexcept;
 
  private:
+  [[nodiscard]] Result<> let_base_go() noexcept;
+  void add_payload(const robotics::Pose& tip) noexcept;
+  void take_tool(const robotics::Pose& tip) noexcept;
+
   const robotics::Model* model_;
   robotics::FrameId tip_;
+  robotics::Pose in_tip_{};
+  Payload payload_;
+  double heavier_{1};
   robotics::Dynamics dynamics_;
   robotics::State state_;
   robotics::MassMatrix mass_;

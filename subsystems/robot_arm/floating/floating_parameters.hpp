@@ -52,17 +52,37 @@ struct FloatingParameters {
     publish("DES_VELOCITY", desired_velocity);
     publish("ACTIVE", active);
   }
+  /// Likewise for each of an arm to which is said what is at its tip.
+  template <class Publish>
+  void each_of_tip(const Publish& publish) {
+    publish("TOOL_PLACE", tool_place);
+    publish("PAYLOAD", payload);
+    publish("TOOL_RADIUS", tool_radius_m);
+  }
+
+  /// Likewise for each of an arm that watches for contacts.
+  template <class Publish>
+  void each_of_contact(const Publish& publish) {
+    publish("EXTERNAL_TORQUE", external_torque);
+    publish("CONTACT_WATCH", contact);
+    publish("RETRACT_DISTANCE", retract_distance);
+  }
 
   Parameter<CurrentValues> current;
   Parameter<PoseValues> tool, base;
   Parameter<ErrorValues> error;
   Parameter<double> conditioning, progress;
   Parameter<std::uint8_t> phase, active;
-  Parameter<Joints> desired_velocity;
+  Parameter<Joints> desired_velocity, external_torque;
+  Parameter<ContactValues> contact;
+  Parameter<double> retract_distance, float_damping;
   Parameter<LimitShares> limits;
   Parameter<double> tool_speed_m_s, goal_tolerance_m;
   Parameter<double> clearance_limit_m, clearance_m;
   Parameter<KeepOut> keep_out;
+  Parameter<ToolValues> tool_place;
+  Parameter<PayloadValues> payload;
+  Parameter<double> tool_radius_m;
 };
 
 }  // namespace hirosco::robot_arm

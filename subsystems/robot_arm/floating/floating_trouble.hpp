@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "subsystems/robot_arm/no_way_out.hpp"
+
 namespace hirosco::robot_arm {
 
 /// Failure codes of floating_arm.xml: why a function was refused or ended without its effect.
@@ -19,6 +21,8 @@ enum class FloatingTrouble : std::uint16_t {
   too_near = 0x8009,  ///< to itself, to the base, or to a volume that it keeps out of; mm
   no_goal = 0x800A,  ///< no way out is stored, or it came by none
   too_slow = 0x800B,  ///< longer than it may take, to go there or to judge it
+  contact = 0x800C,
+  led = 0x800D,  ///< it gives way to whoever leads it: HOLD first
 };
 
 /// In words that live as long as the program, or as the shapes of whose names they are.
@@ -27,5 +31,14 @@ struct FloatingReason {
   const char* text{""};
   std::int64_t number{0};
 };
+
+[[nodiscard]] inline FloatingReason reason_of(const NoWayOut& none) noexcept {
+  using Why = NoWayOut::Why;
+  const FloatingTrouble trouble = none.why == Why::OutOfRange ? FloatingTrouble::out_of_range
+                                  : none.why == Why::TooNear  ? FloatingTrouble::too_near
+                                  : none.why == Why::TooSlow  ? FloatingTrouble::too_slow
+                                                              : FloatingTrouble::no_goal;
+  return {trouble, none.text, none.number};
+}
 
 }  // namespace hirosco::robot_arm

@@ -31,16 +31,19 @@ void FloatingWayOut::forget_way() noexcept { setpoints_->begin(parts_.drives.mea
 void FloatingWayOut::record() noexcept { setpoints_->pass(parts_.drives.measured().position); }
 
 std::optional<NoWayOut> FloatingWayOut::begin(By by, double number) noexcept {
-  return by == By::WayBack ? retreat(number) : judge(AbortWay::Judged::FromHere, number);
+  const JointVector stands = JointVector::Zero(parts_.drives.measured().position.size());
+  return by == By::WayBack ? retreat(number, stands) : judge(AbortWay::Judged::FromHere, number);
 }
+
+bool FloatingWayOut::retract(double distance) noexcept { return !retreat(distance, parts_.drives.measured().velocity); }
 
 std::optional<NoWayOut> FloatingWayOut::check_abort() noexcept {
   return judge(AbortWay::Judged::PathAlone, usual_speed_share);
 }
 
-std::optional<NoWayOut> FloatingWayOut::retreat(double distance) noexcept {
+std::optional<NoWayOut> FloatingWayOut::retreat(double distance, const JointVector& velocity) noexcept {
   const JointVector here = parts_.drives.measured().position;
-  setpoints_->retract(here, JointVector::Zero(here.size()), distance);
+  setpoints_->retract(here, velocity, distance);
   if (setpoints_->kind() != Setpoints::Kind::Retract) {
     setpoints_->rest(here);
     return NoWayOut{NoWayOut::Why::NoPath, "it came here by no way since it entered Operational"};

@@ -40,6 +40,9 @@ class FloatingWayOut {
     AbortPath,  ///< judged while the arm stands, in the next cycles, and gone with this share of the joints' velocities
   };
   [[nodiscard]] std::optional<NoWayOut> begin(By by, double number) noexcept;
+  /// Back by the way that it came, so far, from the velocities that it is measured with; false: it came by none.
+  [[nodiscard]] bool retract(double distance) noexcept;
+  [[nodiscard]] bool retracts() const noexcept { return retreats_; }
   /// Likewise in the next step(): of who does not stand yet, and is stepped once he does.
   void wait(By by, double number) noexcept { waiting_ = Waiting{by, number}; }
   [[nodiscard]] std::optional<NoWayOut> check_abort() noexcept;
@@ -70,7 +73,7 @@ class FloatingWayOut {
   [[nodiscard]] const NoWayOut& why() const noexcept { return why_; }
 
  private:
-  [[nodiscard]] std::optional<NoWayOut> retreat(double distance) noexcept;
+  [[nodiscard]] std::optional<NoWayOut> retreat(double distance, const JointVector& velocity) noexcept;
   [[nodiscard]] std::optional<NoWayOut> judge(AbortWay::Judged what, double speed_share) noexcept;
   [[nodiscard]] At no_way(const NoWayOut& why) noexcept;
   [[nodiscard]] At step_back() noexcept;

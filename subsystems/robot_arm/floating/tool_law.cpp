@@ -58,7 +58,7 @@ JointVector tool_rates(ToolLaw law, const FloatingModel& model, Bounds bounds, c
                        const robotics::Matrix3& base, const robotics::Matrix3& base_kept) noexcept {
   Vector6 wanted;
   wanted.tail<3>() = goal.velocity_m_s + error_per_s * (goal.pose.position - model.tool().position);
-  wanted.head<3>() = error_per_s * rotation_between(model.tool().rotation, goal.pose.rotation);
+  wanted.head<3>() = goal.turning_rad_s + error_per_s * rotation_between(model.tool().rotation, goal.pose.rotation);
   if (law != ToolLaw::AttitudeHold)
     return least_squares(law == ToolLaw::FixedBase ? model.tool_of_fixed() : model.tool_of_free(), wanted, tool_damping,
                          model.position(), bounds);
@@ -78,9 +78,14 @@ void slow_down(JointVector& rates, Bounds bounds) noexcept {
   else rates.setZero();
 }
 
+double followed_with(double heavier, double cycle_s) noexcept {
+  constexpr double half_of_stable = 0.32;  // of what followed_per_s is a quarter of with 4 ms
+  return std::min(followed_per_s, half_of_stable / (cycle_s * heavier));
+}
+
 JointVector joint_torque(const FloatingModel& model, const JointVector& wanted_rates, const JointVector& rates,
-                         Bounds bounds) noexcept {
-  const JointVector off = followed_per_s * (wanted_rates - rates);
+                         Bounds bounds, double per_s) noexcept {
+  const JointVector off = per_s * (wanted_rates - rates);
   JointVector torque = JointVector::Zero(off.size());
   for (Eigen::Index i = 0; i < off.size(); ++i) {
     const double value = model.inertia().row(i).dot(off);

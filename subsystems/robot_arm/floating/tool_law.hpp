@@ -20,11 +20,14 @@ inline constexpr double least_conditioning = 0.05;
 
 /// Joints follow the velocities that are asked of them with it, 1/s: of the longest cycle that is taken (docs/adr/0193) a quarter of what leaves it stable.
 inline constexpr double followed_per_s = 40;
+/// Likewise with a payload that is said to be there, 1/s: no faster than leaves it half of what is stable with that cycle where the payload is not there (docs/adr/0222).
+[[nodiscard]] double followed_with(double heavier, double cycle_s) noexcept;
 
-/// Where the tool is to be, and how fast, in inertial axes.
+/// Where the tool is to be, and how fast it is to move and to turn, in inertial axes. AttitudeHold turns no tool.
 struct ToolGoal {
   robotics::Pose pose;
   Vector3 velocity_m_s{Vector3::Zero()};
+  Vector3 turning_rad_s{Vector3::Zero()};
 };
 
 /// By which rotation, rad, `is` is behind `wanted`, in the axes in which both stand.
@@ -41,7 +44,7 @@ void slow_down(JointVector& rates, Bounds bounds) noexcept;
 
 /// What makes joints as fast as that, held to their efforts.
 [[nodiscard]] JointVector joint_torque(const FloatingModel& model, const JointVector& wanted_rates,
-                                       const JointVector& rates, Bounds bounds) noexcept;
+                                       const JointVector& rates, Bounds bounds, double per_s = followed_per_s) noexcept;
 
 /// From rest to rest in so long, without a step in acceleration: share of the way, and its rate.
 struct Course {

@@ -27,6 +27,8 @@ class ToolWay {
   /// `model` must outlive this.  Realtime: allocates.
   ToolWay(const robotics::Model& model, robotics::FrameId tip) : model_{model, tip} {}
 
+  /// As of FloatingModel; of ways that begin later.
+  void carry(const robotics::Pose& tool_in_tip, const Payload& payload) noexcept { model_.carry(tool_in_tip, payload); }
   void begin(const Plan& plan) noexcept;
   /// On by one of them. False: none is left, or whoever goes there is stopped for another reason, and nobody knows farther.
   [[nodiscard]] bool step(Bounds bounds) noexcept;

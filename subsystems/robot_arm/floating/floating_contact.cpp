@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#include "subsystems/robot_arm/floating/floating_contact.hpp"
+
+namespace hirosco::robot_arm {
+
+void FloatingContact::begin(double cycle_s) {
+  observer_.emplace(parts_.known.model().joint_count(), cycle_s, observer_gain_per_s);
+  forget();
+  arm(JointContact::Before::Counts);
+}
+
+void FloatingContact::forget() noexcept {
+  if (!observer_) return;
+  observer_->reset();
+  parts_.parameters.external_torque.store(joints_of(observer_->external()));
+}
+
+void FloatingContact::update(bool driven) noexcept {
+  if (!offered_ || !observer_) return;
+  if (!driven) return forget();
+  observer_->update(parts_.drives.measured(), parts_.craft.model().inertia(), parts_.craft.bias(),
+                    JointVector::Zero(parts_.drives.measured().velocity.size()));
+  parts_.parameters.external_torque.store(joints_of(observer_->external()));
+}
+
+void FloatingContact::arm(JointContact::Before load) noexcept {
+  if (!observer_) return;
+  felt_.arm(load, observer_->external(), parts_.known.bounds(),
+            {.contact = parts_.parameters.contact.load().limit, .torque = parts_.parameters.limits.load().torque});
+}
+
+std::optional<JointContact::Contact> FloatingContact::meet() noexcept {
+  if (!offered_ || reaction() == JointContact::Reaction::None) return std::nullopt;
+  return felt_.meet(observer_->external(), parts_.known.bounds(), parts_.parameters.contact.load().limit);
+}
+
+void FloatingContact::set(std::uint8_t reaction, double limit) noexcept {
+  parts_.parameters.contact.store({reaction, limit});
+  arm(JointContact::Before::Counts);
+}
+
+}  // namespace hirosco::robot_arm

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The HIROSCO developers
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "subsystems/robot_arm/control/momentum_observer.hpp"
+#include "subsystems/robot_arm/drives.hpp"
+#include "subsystems/robot_arm/floating/floating_craft.hpp"
+#include "subsystems/robot_arm/floating/floating_parameters.hpp"
+#include "subsystems/robot_arm/joint_contact.hpp"
+#include "subsystems/robot_arm/urdf_arm.hpp"
+
+namespace hirosco::robot_arm {
+
+/// What acts from outside on the joints of a craft that floats, and whether it is a contact (docs/adr/0222): the observer and the judgement of the arm that stands, with the inertia that joints feel
+/// while the base gives way. What acts on the base alone it does not feel.
+/// Realtime: bounded, but begin(). Thread: the cycle, and the service loop while there is none.
+class FloatingContact {
+ public:
+  /// Of the filter of what acts from outside.
+  static constexpr double observer_gain_per_s = 50;
+
+  struct Parts {
+    const UrdfArm& known;
+    const Drives& drives;
+    FloatingCraft& craft;
+    FloatingParameters& parameters;  ///< EXTERNAL_TORQUE tells what it finds
+  };
+  explicit FloatingContact(const Parts& parts) noexcept : parts_{parts} {}
+
+  /// The descriptor has SET_CONTACT: without it nothing is felt.
+  void offer() noexcept { offered_ = true; }
+  /// In configure().  Realtime: allocates. Thread: the service loop.
+  void begin(double cycle_s);
+  /// Each cycle, behind the craft's. `driven`: drives have the joints; what brakes hold is nobody's push.
+  void update(bool driven) noexcept;
+  /// Something else is at the tip: what acts from outside is felt anew.
+  void forget() noexcept;
+
+  /// Whoever is met from now on is told, whatever was told before.
+  void arm(JointContact::Before load) noexcept;
+  /// Each cycle in which the arm is driven: what it met, once for each time; nothing mostly.
+  [[nodiscard]] std::optional<JointContact::Contact> meet() noexcept;
+  [[nodiscard]] JointContact::Reaction reaction() const noexcept {
+    return static_cast<JointContact::Reaction>(parts_.parameters.contact.load().reaction);
+  }
+  /// SET_CONTACT: counts anew.
+  void set(std::uint8_t reaction, double limit) noexcept;
+
+ private:
+  Parts parts_;
+  std::optional<MomentumObserver> observer_;
+  JointContact felt_;
+  bool offered_{false};
+};
+
+}  // namespace hirosco::robot_arm
