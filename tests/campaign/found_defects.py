@@ -137,6 +137,11 @@ DEFECTS = [
     Defect("no outcome", TELECOMMANDS, "for (const pus::Request& request : parts_.unanswered.take(apid))",
            "for (const pus::Request& request : PLANTED ? std::vector<pus::Request>{} : parts_.unanswered.take(apid))",
            "supervisor_test", "ProcessesTest.WhatTheDeadHadBegunHasAnUnknownOutcome"),
+    # What a supervisor had asked of a member that was killed after it had died itself had no end in the log.
+    Defect("a dead supervisor's own", f"{SUPERVISION}/data_handling/unanswered.cpp",
+           "return (entry.before == Before::Nothing ? Before::Left : entry.before) == kind;",
+           "return (!PLANTED || others(entry)) && (entry.before == Before::Nothing ? Before::Left : entry.before) == kind;",
+           "supervisor_test", "UnansweredBeyond.ARequestOfTheSupervisorItselfIsKnownUntilItsEndWasHeard"),
     # Who had died was never started again.
     Defect("SF15 never started again", f"{SUPERVISION}/subsystem_handling/processes.cpp",
            "if (!craft_.shutting_down && !start(*apid))", "if (!craft_.shutting_down && !PLANTED && !start(*apid))",

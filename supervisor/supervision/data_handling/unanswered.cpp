@@ -63,13 +63,14 @@ void Unanswered::reported(const pus::TelemetryView& report) {
 }
 
 void Unanswered::note(OctetWriter& writer) const {
+  // Nobody asks again for the end of the supervisor's own that has had one.
   const auto others = [](const Entry& entry) { return entry.request.source != own_source; };
   const auto put = [&](const Entry& entry) {
     writer.put(entry.apid).put(entry.request.id).put(entry.request.source).put(entry.request.ack);
   };
   for (const Before kind : noted) {
     const auto is_kind = [&](const Entry& entry) {
-      return others(entry) && (entry.before == Before::Nothing ? Before::Left : entry.before) == kind;
+      return (entry.before == Before::Nothing ? Before::Left : entry.before) == kind;
     };
     auto count = std::ranges::count_if(entries_, is_kind);
     if (kind == Before::Ended) count += std::ranges::count_if(settled_, others);

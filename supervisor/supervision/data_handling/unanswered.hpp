@@ -42,7 +42,7 @@ class Unanswered {
 
   // --- beyond this supervisor (docs/adr/0093, 0190) -----------------------------------------------------------------
   /// All that wait, those that may have left, those whose end was heard and has not left yet, and the newest count of each sender's
-  /// packets. Not the supervisor's own requests: nobody waits for them any more.
+  /// packets. The supervisor's own requests as long as they wait: nobody does it for them any more, but in the log each has one end.
   void note(OctetWriter& writer) const;
   void recall(OctetReader& reader);
   /// The supervisor before was about to send it, or had: until its addressee says anything of it nobody knows.

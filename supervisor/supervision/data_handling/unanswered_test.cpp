@@ -167,11 +167,17 @@ TEST_F(UnansweredBeyond, OneThatMayNotHaveLeftIsUnknownAfterItsTimeUnlessItsAddr
   EXPECT_EQ(unanswered.size(), words.size() - 2) << "but for those that have ended";
 }
 
-TEST_F(UnansweredBeyond, TheSupervisorsOwnRequestsAreNotKnownAnyMore) {
+TEST_F(UnansweredBeyond, ARequestOfTheSupervisorItselfIsKnownUntilItsEndWasHeard) {
   const auto packet = pus::write_telecommand(
       buffer, {.apid = arm, .sequence_count = 1, .ack = pus::ack_all, .service = 17, .subtype = 1, .source = 1}, {});
-  unanswered.forwarded(arm, pus::TelecommandView::parse(*packet).value(), TimePoint{});
-  EXPECT_EQ(next().size(), 0u);
+  const auto telecommand = pus::TelecommandView::parse(*packet).value();
+  const auto id = telecommand.request_id();
+  unanswered.forwarded(arm, telecommand, TimePoint{});
+  const auto taken = next().take(arm);
+  ASSERT_EQ(taken.size(), 1u) << "its addressee was killed before it could answer, and the log has no end of it";
+  EXPECT_EQ(taken[0].id, id);
+  report(arm, 7, id, 1);
+  EXPECT_EQ(next().size(), 0u) << "the supervisor that died has heard it";
 }
 
 }  // namespace
