@@ -142,12 +142,16 @@ void FloatingArm::control(bool moves) noexcept {
 }
 
 /// Whoever leads it is not held back by more than the law of velocities, which a payload makes slower, would.
-JointVector FloatingArm::torque_of(const JointVector& rates) const noexcept {
+JointVector FloatingArm::torque_of(const JointVector& rates) noexcept {
   const double per_s = craft_.followed_per_s();
-  if (guidance_.floats())
-    return robot_arm::float_torque(craft_.model(), drives_.measured(), known_.bounds(),
-                                   std::min(parameters_.float_damping.load(), per_s), fastest_rad_s_);
-  return robot_arm::joint_torque(craft_.model(), rates, drives_.measured().velocity, known_.bounds(), per_s);
+  const robot_arm::Measured& measured = drives_.measured();
+  if (!guidance_.floats()) {
+    float_aims_.let_go();  // who floats next begins where it is then
+    return robot_arm::joint_torque(craft_.model(), rates, measured.velocity, known_.bounds(), per_s);
+  }
+  float_aims_.remember(measured.position);
+  return robot_arm::float_torque(craft_.model(), measured, float_aims_, known_.bounds(),
+                                 std::min(parameters_.float_damping.load(), per_s), fastest_rad_s_);
 }
 
 // --- what comes of it, told ----------------------------------------------------------------------------------------------

@@ -56,11 +56,56 @@ TEST_F(FloatingObserver, FeelsNothingOfDrivesAndVelocities) {
   EXPECT_LT(observer.external().cwiseAbs().maxCoeff(), 0.02 * drive.cwiseAbs().maxCoeff());
 }
 
+/// Cycles in the law of an arm that floats, of whose joints some are pushed besides.
+struct FloatingLaw : FloatingObserver {
+  std::vector<robot_arm::JointBounds> bounds = robot_arm::testing::bounds_of(model);
+  robot_arm::FloatAims aims;
+  double farthest{-HUGE_VAL};  ///< that the fore roll has been
+
+  void begin(const JointVector& posture) {
+    plant.place(posture);
+    ASSERT_TRUE(known.update(plant.base(), posture));
+    aims.let_go();
+    farthest = -HUGE_VAL;
+  }
+  void led(int cycles, const JointVector& push) {
+    for (int i = 0; i < cycles; ++i) {
+      aims.remember(plant.measured().position);
+      const JointVector drive = robot_arm::float_torque(known, plant.measured(), aims, bounds, 5, 80) + push;
+      ASSERT_NO_FATAL_FAILURE(observe(1, drive));
+      farthest = std::max(farthest, plant.measured().position[4]);
+    }
+  }
+  [[nodiscard]] static JointVector at_fore_roll(double value) {
+    JointVector numbers = JointVector::Zero(7);
+    numbers[4] = value;
+    return numbers;
+  }
+};
+
+TEST_F(FloatingLaw, StandsBeforeTheEndOfARangeHoweverLongItIsPushedThere) {
+  const double highest = bounds[4].highest;
+  JointVector posture = ready_posture;
+  posture[4] = highest - 0.4;
+  ASSERT_NO_FATAL_FAILURE(begin(posture));
+  ASSERT_NO_FATAL_FAILURE(led(8000, at_fore_roll(2)));
+  EXPECT_LT(farthest, highest - 0.01);
+  EXPECT_GT(farthest, highest - 0.4 + 0.01) << "it was led there";
+  EXPECT_LT(plant.measured().velocity.cwiseAbs().maxCoeff(), 1e-2);
+}
+
+TEST_F(FloatingLaw, IsNotThrownWhereItIsLetGoNearTheEndOfARange) {
+  JointVector posture = ready_posture;
+  posture[4] = bounds[4].highest - 0.02;
+  ASSERT_NO_FATAL_FAILURE(begin(posture));
+  ASSERT_NO_FATAL_FAILURE(led(1000, JointVector::Zero(7)));
+  EXPECT_LT((plant.measured().position - posture).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 /// Nothing of it drives: energy goes, whatever was led.
-TEST_F(FloatingObserver, ThatFloatsTakesEnergyOnly) {
-  plant.place(ready_posture);
+TEST_F(FloatingLaw, TakesEnergyOnly) {
+  ASSERT_NO_FATAL_FAILURE(begin(ready_posture));
   ASSERT_NO_FATAL_FAILURE(observe(300, vector_of(std::array{0.5, -2.0, 1.0, 1.0, 0.3, -0.3, 0.01})));
-  const auto bounds = robot_arm::testing::bounds_of(model);
   const auto energy = [&] {
     const JointVector& rates = plant.measured().velocity;
     return 0.5 * rates.dot(known.inertia() * rates);
@@ -68,7 +113,7 @@ TEST_F(FloatingObserver, ThatFloatsTakesEnergyOnly) {
   double before = energy();
   EXPECT_GT(before, 1e-3);
   for (int i = 0; i < 3000; ++i) {
-    ASSERT_NO_FATAL_FAILURE(observe(1, robot_arm::float_torque(known, plant.measured(), bounds, 5, 80)));
+    ASSERT_NO_FATAL_FAILURE(led(1, JointVector::Zero(7)));
     EXPECT_LT(energy(), before * (1 + 1e-6) + 1e-9) << i;
     before = energy();
   }
