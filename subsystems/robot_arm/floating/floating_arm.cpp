@@ -216,7 +216,7 @@ void FloatingArm::watch_clearance(const JointVector& rates, bool moves) noexcept
   const bool held = guidance_.holds(), led = guidance_.floats();
   end_motion(Trouble::too_near, robot_arm::millimetres(ahead->distance_m), ahead->names);
   if (held) braked_ = true;
-  else if (led) guidance_.halt();  // whoever leads it pushes on meanwhile
+  else if (led) guidance_.halt(), contact_.stand_apart();  // whoever leads it pushes on meanwhile
   else guidance_.stop(rates);
 }
 

@@ -16,6 +16,7 @@ using robot_arm::JointVector;
 using robot_arm::MomentumObserver;
 using robot_arm::vector_of;
 using robot_arm::testing::FreePlant;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 const std::string servicers_file = HIROSCO_SOURCE_DIR "/subsystems/robot_arm/floating/floating_arm.urdf";
@@ -232,7 +233,19 @@ TEST_F(FloatingArmMeets, SomebodyAndGivesWayUntilHold) {
   EXPECT_EQ(flown.rig.inhibited(), 0u);
 }
 
-struct FloatingArmFloats : FloatingArmMeets {};
+struct FloatingArmFloats : FloatingArmMeets {
+  /// A ball is where this push leads the tool in four seconds, most of it by the fore roll.
+  void lead_before_a_volume() {
+    const JointVector led = ready_posture + vector_of(std::array{0.025, 0.011, 0.018, 0.004, 0.5, -0.21, 0.063});
+    robotics::Dynamics dynamics{flown.model, robotics::Base::Fixed};
+    dynamics.update({.q = led, .qd = JointVector::Zero(7)});
+    robot_arm::testing::keep_out_ball(flown, dynamics.frame_pose(flown.model.find_frame("tool").value()).position);
+    EXPECT_EQ(flown.rig.outcome(ask("FLOAT")), done);
+    flown.plant.push_n = {0, 1.5, 0};
+    for (int i = 0; i < 12'000 && flown.rig.events(too_near_event) == 0; ++i) flown.cycle();
+    ASSERT_EQ(flown.rig.events(too_near_event), 1);
+  }
+};
 
 TEST_F(FloatingArmFloats, WhereverItIsLedAndStandsWhereItIsLeft) {
   begin();
@@ -266,20 +279,38 @@ TEST_F(FloatingArmFloats, FromAStandAlone) {
   EXPECT_EQ(flown.rig.outcome(motion), done);
 }
 
-/// The ball is where this push leads the tool in four seconds, most of it by the fore roll.
 TEST_F(FloatingArmFloats, AndStandsBeforeAVolumeWhoeverLeadsItThere) {
   begin();
-  const JointVector led = ready_posture + vector_of(std::array{0.025, 0.011, 0.018, 0.004, 0.5, -0.21, 0.063});
-  robotics::Dynamics dynamics{flown.model, robotics::Base::Fixed};
-  dynamics.update({.q = led, .qd = JointVector::Zero(7)});
-  robot_arm::testing::keep_out_ball(flown, dynamics.frame_pose(flown.model.find_frame("tool").value()).position);
-  EXPECT_EQ(flown.rig.outcome(ask("FLOAT")), done);
-  flown.plant.push_n = {0, 1.5, 0};
-  for (int i = 0; i < 12'000 && flown.rig.events(too_near_event) == 0; ++i) flown.cycle();
-  EXPECT_EQ(flown.rig.events(too_near_event), 1);
+  ASSERT_NO_FATAL_FAILURE(lead_before_a_volume());
   flown.cycle(3000);
   EXPECT_LT(speed(), 1e-2);
   EXPECT_GT(flown.told_number("CLEARANCE"), 0.01);
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+}
+
+TEST_F(FloatingArmFloats, NoMoreWhereItStandsBeforeAVolumeThoughWhoMeetsItHasItFloat) {
+  begin();
+  ASSERT_EQ(react_by(2, 0.05), done);
+  ASSERT_NO_FATAL_FAILURE(lead_before_a_volume());
+  push(0);
+  flown.cycle(1000);
+  ASSERT_EQ(flown.rig.events(contact_event), 0);
+  push(-12);
+  for (int i = 0; i < 100 && flown.rig.events(contact_event) == 0; ++i) flown.cycle();
+  EXPECT_EQ(flown.rig.events(contact_event), 1);
+  EXPECT_THAT(flown.rig.outcome(ask("MOVE_TOOL", {0, -0.02, 0, 3})), Not(StartsWith("1 4:800d"))) << "it is not led";
+}
+
+TEST_F(FloatingArmFloats, AndTellsAnewOfWhoPushesOnWhenItIsToHold) {
+  begin();
+  ASSERT_EQ(react_by(2, 0.05), done);
+  push(-6);
+  for (int i = 0; i < 200 && flown.rig.events(contact_event) == 0; ++i) flown.cycle();
+  flown.cycle(100);
+  ASSERT_EQ(flown.rig.events(contact_event), 1);
+  EXPECT_EQ(flown.rig.outcome(ask("HOLD")), done);
+  flown.cycle(200);
+  EXPECT_EQ(flown.rig.events(contact_event), 2);
   EXPECT_EQ(flown.rig.inhibited(), 0u);
 }
 
