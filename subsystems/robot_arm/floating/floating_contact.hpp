@@ -15,7 +15,7 @@
 namespace hirosco::robot_arm {
 
 /// What acts from outside on the joints of a craft that floats, and whether it is a contact (docs/adr/0222): the observer and the judgement of the arm that stands, with the inertia that joints feel
-/// while the base gives way. What acts on the base alone it does not feel.
+/// while the base gives way. What acts on the base alone it feels as little as joints move the base.
 /// Realtime: bounded, but begin(). Thread: the cycle, and the service loop while there is none.
 class FloatingContact {
  public:
