@@ -63,6 +63,7 @@ Result<> FloatingArm::configure(const descriptor::Configuration& configuration) 
   ahead_.begin(cycle_s);
   tip_.begin();
   contact_.begin(cycle_s);
+  law_change_.begin(known_.model().joint_count(), cycle_s);
   fastest_rad_s_ = robotics::fastest_rad_s(cycle_s);
   static_cast<void>(obstacles_.keep_out(parameters_.keep_out.load()));
   return ok();
@@ -145,13 +146,18 @@ void FloatingArm::control(bool moves) noexcept {
 JointVector FloatingArm::torque_of(const JointVector& rates) noexcept {
   const double per_s = craft_.followed_per_s();
   const robot_arm::Measured& measured = drives_.measured();
-  if (!guidance_.floats()) {
+  const robot_arm::Bounds bounds = known_.bounds();
+  const bool floats = guidance_.floats();
+  JointVector torque;
+  if (floats) {
+    float_aims_.remember(measured.position);
+    torque = robot_arm::float_torque(craft_.model(), measured, float_aims_, bounds,
+                                     std::min(parameters_.float_damping.load(), per_s), fastest_rad_s_);
+  } else {
     float_aims_.let_go();  // who floats next begins where it is then
-    return robot_arm::joint_torque(craft_.model(), rates, measured.velocity, known_.bounds(), per_s);
+    torque = robot_arm::joint_torque(craft_.model(), rates, measured.velocity, bounds, per_s);
   }
-  float_aims_.remember(measured.position);
-  return robot_arm::float_torque(craft_.model(), measured, float_aims_, known_.bounds(),
-                                 std::min(parameters_.float_damping.load(), per_s), fastest_rad_s_);
+  return law_change_.without_a_step(torque, floats, bounds);
 }
 
 // --- what comes of it, told ----------------------------------------------------------------------------------------------

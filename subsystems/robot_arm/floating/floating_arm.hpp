@@ -8,6 +8,7 @@
 #include "subsystems/robot_arm/control/walls.hpp"
 #include "subsystems/robot_arm/control/watch.hpp"
 #include "subsystems/robot_arm/floating/commanded_floating_arm.hpp"
+#include "subsystems/robot_arm/floating/law_change.hpp"
 
 namespace hirosco {
 
@@ -47,6 +48,7 @@ class FloatingArm final : public CommandedFloatingArm {
 
   robot_arm::Watch watch_;
   robot_arm::FloatAims float_aims_;
+  robot_arm::LawChange law_change_;
   double fastest_rad_s_{0};  ///< that the cycle leaves to what keeps joints in their ranges
 };
 

@@ -270,6 +270,30 @@ TEST_F(FloatingArmFloats, WhereverItIsLedAndStandsWhereItIsLeft) {
   EXPECT_EQ(flown.rig.inhibited(), 0u);
 }
 
+/// Of 9 N m that hold it against a push; what comes behind that the push itself makes, and dampers.
+TEST_F(FloatingArmFloats, FromThenOnAndNoMoreWithoutAStepInTorqueWhoeverPushes) {
+  begin();
+  push(-10);
+  flown.cycle(1000);
+  for (const char* function : {"FLOAT", "HOLD"}) {
+    JointVector last = flown.plant.measured().torque;
+    if (function == std::string_view{"FLOAT"}) {
+      EXPECT_GT(last.cwiseAbs().maxCoeff(), 8) << "it holds it";
+    }
+    const auto request = flown.rig.call(function);
+    double steepest = 0;
+    for (int i = 0; i < 100; ++i) {
+      flown.cycle();
+      const JointVector& now = flown.plant.measured().torque;
+      steepest = std::max(steepest, (now - last).cwiseAbs().maxCoeff());
+      last = now;
+    }
+    EXPECT_EQ(flown.rig.outcome(request), done) << function;
+    EXPECT_LT(steepest, 1) << function;
+  }
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+}
+
 TEST_F(FloatingArmFloats, FromAStandAlone) {
   begin();
   const auto motion = ask("MOVE_TOOL", {0.05, 0, 0, 4});
