@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "subsystems/robot_arm/control/walls.hpp"
-
 namespace hirosco::robot_arm {
 namespace {
 
@@ -22,7 +20,7 @@ constexpr double heaviest = 1e3;
 Compliance::Compliance(const robotics::Model& model, robotics::FrameId tip)
     : model_{&model}, tip_{tip}, still_{model, robotics::Base::Fixed}, goal_{model, robotics::Base::Fixed} {
   impedance_.joint_n_m_rad.setZero(model.joint_count());
-  state_.q = state_.qd = carrying_ = above_lowest_ = below_highest_ = impedance_.joint_n_m_rad;
+  state_.q = state_.qd = carrying_ = impedance_.joint_n_m_rad;
   driven_ = {carrying_, carrying_};
 }
 
@@ -54,17 +52,6 @@ Vector6 Compliance::tool_inertia(const Jacobian& jacobian) noexcept {
     inertia[axis] = 1 / std::max(row.dot(moved), 1 / heaviest);
   }
   return inertia;
-}
-
-/// Its setpoint is wherever it is, also at an end: a spring that began behind that would never begin.
-void Compliance::remember(const JointVector& position) noexcept {
-  if (let_go_) above_lowest_ = below_highest_ = position;
-  let_go_ = false;
-  // Whoever has come away from an end has its spring begin there.
-  for (Eigen::Index i = 0; i < position.size(); ++i) {
-    above_lowest_[i] = std::max(above_lowest_[i], position[i]);
-    below_highest_[i] = std::min(below_highest_[i], position[i]);
-  }
 }
 
 /// A spring to the place, and one to the orientation whose potential is k (1 - cos angle): it has no step anywhere.
@@ -103,7 +90,7 @@ JointVector Compliance::torque(const Setpoint& wanted, const Measured& measured,
   still_.inverse(wanted.acceleration, force);
   Law::add_payload(payload, tip_, settings.gravity_m_s2, still_, wanted.acceleration, force);
   weigh(dynamics, settings.rotor);
-  if (settings.kind == LawKind::Float) remember(measured.position);
+  if (settings.kind == LawKind::Float) float_aims_.remember(measured.position);
   JointVector torque = force;
   const auto joints = model_->joints();
   for (Eigen::Index i = 0; i < torque.size(); ++i) {
@@ -136,8 +123,8 @@ JointVector Compliance::torque(const Setpoint& wanted, const Measured& measured,
         carrying_[i] += driven_.brake[i];
         break;
     }
-    const Aim aim = settings.kind == LawKind::Float ? Aim{above_lowest_[i], below_highest_[i]}
-                                                    : Aim{wanted.position[i], wanted.position[i]};
+    const Aim aim =
+        settings.kind == LawKind::Float ? float_aims_.of(i) : Aim{wanted.position[i], wanted.position[i]};
     const double kept_by_walls = walls(aim, wanted.velocity[i], measured, i, moved, its, settings.fastest_rad_s);
     torque[i] += kept_by_walls;
     carrying_[i] += kept_by_walls;

@@ -7,6 +7,7 @@
 #include "robotics/motion/sampled_rates.hpp"
 #include "subsystems/robot_arm/control/law.hpp"
 #include "subsystems/robot_arm/control/torque_drive.hpp"
+#include "subsystems/robot_arm/control/walls.hpp"
 
 namespace hirosco::robot_arm {
 
@@ -47,8 +48,8 @@ class Compliance {
   void set_tool(const Vector3& place_m) noexcept { tool_m_ = place_m; }
   void set(const Impedance& impedance) noexcept { impedance_ = impedance; }
   [[nodiscard]] const Impedance& impedance() const noexcept { return impedance_; }
-  /// The law is Float from now on: it begins wherever it is then, and nearer to an end than its spring is no spring pushes it.
-  void let_go() noexcept { let_go_ = true; }
+  /// The law is Float from now on: as of FloatAims.
+  void let_go() noexcept { float_aims_.let_go(); }
   /// From now on, while the law is Torque.
   void drive(const Driven& driven) noexcept { driven_ = driven; }
 
@@ -66,7 +67,6 @@ class Compliance {
                                                      double rad_s) noexcept;
 
  private:
-  void remember(const JointVector& position) noexcept;
   void weigh(robotics::Dynamics& dynamics, std::span<const double> rotor) noexcept;
   [[nodiscard]] Jacobian tool_jacobian(const robotics::Dynamics& dynamics) const noexcept;
   [[nodiscard]] Vector6 tool_inertia(const Jacobian& jacobian) noexcept;
@@ -79,9 +79,7 @@ class Compliance {
   Impedance impedance_;
   Driven driven_;
   JointVector carrying_;
-  JointVector above_lowest_,
-      below_highest_;  ///< of Float, since let_go(): the farthest that each joint has been from either end
-  bool let_go_{true};
+  FloatAims float_aims_;
   robotics::Dynamics still_;  ///< as measured, at rest: gravity alone
   robotics::Dynamics goal_;  ///< as wanted
   robotics::State state_;

@@ -28,6 +28,15 @@ double damper(double spring, double moved, double ratio, double fastest_rad_s) n
   return std::min(2 * ratio * std::sqrt(spring * moved), strongest_damper(moved, fastest_rad_s));
 }
 
+void FloatAims::remember(const JointVector& position) noexcept {
+  if (let_go_) above_lowest_ = below_highest_ = position;
+  let_go_ = false;
+  for (Eigen::Index i = 0; i < position.size(); ++i) {
+    above_lowest_[i] = std::max(above_lowest_[i], position[i]);
+    below_highest_[i] = std::min(below_highest_[i], position[i]);
+  }
+}
+
 double walls(const Aim& aim, double wanted_speed, const Measured& measured, Eigen::Index joint, double moved,
              const JointBounds& bounds, double fastest_rad_s) noexcept {
   const double position = measured.position[joint], speed = measured.velocity[joint];

@@ -20,6 +20,23 @@ struct Aim {
   double highest;
 };
 
+/// Aims of an arm that floats, which has no setpoint but where it is, also at an end: springs that began behind that would never begin. Let go of nearer to an end than its spring, it is not
+/// thrown away from there; where it has come away from an end, its spring begins.
+/// Realtime: wait-free, no allocation. Thread: the cycle.
+class FloatAims {
+ public:
+  /// It is let go of wherever it is when it is remembered next.
+  void let_go() noexcept { let_go_ = true; }
+  /// Each cycle in which it floats, before of().
+  void remember(const JointVector& position) noexcept;
+  [[nodiscard]] Aim of(Eigen::Index joint) const noexcept { return {above_lowest_[joint], below_highest_[joint]}; }
+
+ private:
+  /// Since it was let go: the farthest that each joint has been from either end.
+  JointVector above_lowest_, below_highest_;
+  bool let_go_{true};
+};
+
 /// A spring and a damper of a joint that begin before its range ends, or behind its aim where that is nearer to the end; and a
 /// damper before its velocity, or what is wanted of it.
 [[nodiscard]] double walls(const Aim& aim, double wanted_speed, const Measured& measured, Eigen::Index joint,

@@ -71,6 +71,7 @@ void CommandedFloatingArm::hold() noexcept {
   }
   const JointVector rates = guidance_.wanted_rates();
   const bool held = guidance_.holds();
+  if (guidance_.floats()) contact_.arm(robot_arm::JointContact::Before::Counts);  // whoever led it, too
   end_motion(pus::FailureCode::Aborted);
   if (held) guidance_.stand();
   else guidance_.stop(rates);

@@ -34,7 +34,7 @@ class FloatingAhead {
   void begin(double cycle_s) noexcept { cycle_s_ = cycle_s; }
   /// Who of joints that go like that goes to an end of its range too fast to stand before it.
   [[nodiscard]] std::optional<EndAhead> end(const JointVector& rates) const noexcept {
-    return end_ahead(parts_.drives.measured().position, rates, parts_.known.bounds());
+    return end_ahead(parts_.drives.measured().position, rates, parts_.known.bounds(), parts_.craft.followed_per_s());
   }
   enum class Doing : std::uint8_t { Goes, Holds };
   /// Who would be too near somebody, or to a volume.

@@ -63,6 +63,7 @@ Result<> FloatingArm::configure(const descriptor::Configuration& configuration) 
   ahead_.begin(cycle_s);
   tip_.begin();
   contact_.begin(cycle_s);
+  law_change_.begin(known_.model().joint_count(), cycle_s);
   fastest_rad_s_ = robotics::fastest_rad_s(cycle_s);
   static_cast<void>(obstacles_.keep_out(parameters_.keep_out.load()));
   return ok();
@@ -142,12 +143,21 @@ void FloatingArm::control(bool moves) noexcept {
 }
 
 /// Whoever leads it is not held back by more than the law of velocities, which a payload makes slower, would.
-JointVector FloatingArm::torque_of(const JointVector& rates) const noexcept {
+JointVector FloatingArm::torque_of(const JointVector& rates) noexcept {
   const double per_s = craft_.followed_per_s();
-  if (guidance_.floats())
-    return robot_arm::float_torque(craft_.model(), drives_.measured(), known_.bounds(),
-                                   std::min(parameters_.float_damping.load(), per_s), fastest_rad_s_);
-  return robot_arm::joint_torque(craft_.model(), rates, drives_.measured().velocity, known_.bounds(), per_s);
+  const robot_arm::Measured& measured = drives_.measured();
+  const robot_arm::Bounds bounds = known_.bounds();
+  const bool floats = guidance_.floats();
+  JointVector torque;
+  if (floats) {
+    float_aims_.remember(measured.position);
+    torque = robot_arm::float_torque(craft_.model(), measured, float_aims_, bounds,
+                                     std::min(parameters_.float_damping.load(), per_s), fastest_rad_s_);
+  } else {
+    float_aims_.let_go();  // who floats next begins where it is then
+    torque = robot_arm::joint_torque(craft_.model(), rates, measured.velocity, bounds, per_s);
+  }
+  return law_change_.without_a_step(torque, floats, bounds);
 }
 
 // --- what comes of it, told ----------------------------------------------------------------------------------------------
@@ -212,7 +222,7 @@ void FloatingArm::watch_clearance(const JointVector& rates, bool moves) noexcept
   const bool held = guidance_.holds(), led = guidance_.floats();
   end_motion(Trouble::too_near, robot_arm::millimetres(ahead->distance_m), ahead->names);
   if (held) braked_ = true;
-  else if (led) guidance_.halt();  // whoever leads it pushes on meanwhile
+  else if (led) guidance_.halt(), contact_.stand_apart();  // whoever leads it pushes on meanwhile
   else guidance_.stop(rates);
 }
 

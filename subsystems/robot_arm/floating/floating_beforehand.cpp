@@ -33,7 +33,9 @@ std::optional<FloatingReason> FloatingBeforehand::judge(const JointVector& goal,
 }
 
 void FloatingBeforehand::judge(const ToolWay::Plan& plan) noexcept {
-  tool_->begin(plan);
+  ToolWay::Plan its = plan;
+  its.cycle_s = cycle_s_;
+  tool_->begin(its);
   of_ = Of::Tool;
 }
 

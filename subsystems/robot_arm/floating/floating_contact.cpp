@@ -25,14 +25,26 @@ void FloatingContact::update(bool driven) noexcept {
 }
 
 void FloatingContact::arm(JointContact::Before load) noexcept {
+  stands_apart_ = false;
   if (!observer_) return;
   felt_.arm(load, observer_->external(), parts_.known.bounds(),
             {.contact = parts_.parameters.contact.load().limit, .torque = parts_.parameters.limits.load().torque});
 }
 
+void FloatingContact::stand_apart() noexcept {
+  arm(JointContact::Before::Counts);
+  stands_apart_ = true;
+}
+
 std::optional<JointContact::Contact> FloatingContact::meet() noexcept {
-  if (!offered_ || reaction() == JointContact::Reaction::None) return std::nullopt;
-  return felt_.meet(observer_->external(), parts_.known.bounds(), parts_.parameters.contact.load().limit);
+  const ContactValues values = parts_.parameters.contact.load();
+  if (!offered_ || values.reaction == static_cast<std::uint8_t>(JointContact::Reaction::None)) return std::nullopt;
+  return felt_.meet(observer_->external(), parts_.known.bounds(), values.limit);
+}
+
+JointContact::Reaction FloatingContact::reaction() const noexcept {
+  if (stands_apart_) return JointContact::Reaction::Stop;
+  return static_cast<JointContact::Reaction>(parts_.parameters.contact.load().reaction);
 }
 
 void FloatingContact::set(std::uint8_t reaction, double limit) noexcept {

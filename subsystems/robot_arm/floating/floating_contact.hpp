@@ -15,7 +15,7 @@
 namespace hirosco::robot_arm {
 
 /// What acts from outside on the joints of a craft that floats, and whether it is a contact (docs/adr/0222): the observer and the judgement of the arm that stands, with the inertia that joints feel
-/// while the base gives way. What acts on the base alone it does not feel.
+/// while the base gives way. What acts on the base alone it feels as little as joints move the base.
 /// Realtime: bounded, but begin(). Thread: the cycle, and the service loop while there is none.
 class FloatingContact {
  public:
@@ -41,11 +41,12 @@ class FloatingContact {
 
   /// Whoever is met from now on is told, whatever was told before.
   void arm(JointContact::Before load) noexcept;
+  /// It was led to where links would meet, and stands: however hard he pushes, it floats no more for that, until arm().
+  void stand_apart() noexcept;
   /// Each cycle in which the arm is driven: what it met, once for each time; nothing mostly.
   [[nodiscard]] std::optional<JointContact::Contact> meet() noexcept;
-  [[nodiscard]] JointContact::Reaction reaction() const noexcept {
-    return static_cast<JointContact::Reaction>(parts_.parameters.contact.load().reaction);
-  }
+  /// To whatever is met now.
+  [[nodiscard]] JointContact::Reaction reaction() const noexcept;
   /// SET_CONTACT: counts anew.
   void set(std::uint8_t reaction, double limit) noexcept;
 
@@ -54,6 +55,7 @@ class FloatingContact {
   std::optional<MomentumObserver> observer_;
   JointContact felt_;
   bool offered_{false};
+  bool stands_apart_{false};
 };
 
 }  // namespace hirosco::robot_arm

@@ -16,6 +16,7 @@ using robot_arm::JointVector;
 using robot_arm::MomentumObserver;
 using robot_arm::vector_of;
 using robot_arm::testing::FreePlant;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 const std::string servicers_file = HIROSCO_SOURCE_DIR "/subsystems/robot_arm/floating/floating_arm.urdf";
@@ -56,11 +57,56 @@ TEST_F(FloatingObserver, FeelsNothingOfDrivesAndVelocities) {
   EXPECT_LT(observer.external().cwiseAbs().maxCoeff(), 0.02 * drive.cwiseAbs().maxCoeff());
 }
 
+/// Cycles in the law of an arm that floats, of whose joints some are pushed besides.
+struct FloatingLaw : FloatingObserver {
+  std::vector<robot_arm::JointBounds> bounds = robot_arm::testing::bounds_of(model);
+  robot_arm::FloatAims aims;
+  double farthest{-HUGE_VAL};  ///< that the fore roll has been
+
+  void begin(const JointVector& posture) {
+    plant.place(posture);
+    ASSERT_TRUE(known.update(plant.base(), posture));
+    aims.let_go();
+    farthest = -HUGE_VAL;
+  }
+  void led(int cycles, const JointVector& push) {
+    for (int i = 0; i < cycles; ++i) {
+      aims.remember(plant.measured().position);
+      const JointVector drive = robot_arm::float_torque(known, plant.measured(), aims, bounds, 5, 80) + push;
+      ASSERT_NO_FATAL_FAILURE(observe(1, drive));
+      farthest = std::max(farthest, plant.measured().position[4]);
+    }
+  }
+  [[nodiscard]] static JointVector at_fore_roll(double value) {
+    JointVector numbers = JointVector::Zero(7);
+    numbers[4] = value;
+    return numbers;
+  }
+};
+
+TEST_F(FloatingLaw, StandsBeforeTheEndOfARangeHoweverLongItIsPushedThere) {
+  const double highest = bounds[4].highest;
+  JointVector posture = ready_posture;
+  posture[4] = highest - 0.4;
+  ASSERT_NO_FATAL_FAILURE(begin(posture));
+  ASSERT_NO_FATAL_FAILURE(led(8000, at_fore_roll(2)));
+  EXPECT_LT(farthest, highest - 0.01);
+  EXPECT_GT(farthest, highest - 0.4 + 0.01) << "it was led there";
+  EXPECT_LT(plant.measured().velocity.cwiseAbs().maxCoeff(), 1e-2);
+}
+
+TEST_F(FloatingLaw, IsNotThrownWhereItIsLetGoNearTheEndOfARange) {
+  JointVector posture = ready_posture;
+  posture[4] = bounds[4].highest - 0.02;
+  ASSERT_NO_FATAL_FAILURE(begin(posture));
+  ASSERT_NO_FATAL_FAILURE(led(1000, JointVector::Zero(7)));
+  EXPECT_LT((plant.measured().position - posture).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 /// Nothing of it drives: energy goes, whatever was led.
-TEST_F(FloatingObserver, ThatFloatsTakesEnergyOnly) {
-  plant.place(ready_posture);
+TEST_F(FloatingLaw, TakesEnergyOnly) {
+  ASSERT_NO_FATAL_FAILURE(begin(ready_posture));
   ASSERT_NO_FATAL_FAILURE(observe(300, vector_of(std::array{0.5, -2.0, 1.0, 1.0, 0.3, -0.3, 0.01})));
-  const auto bounds = robot_arm::testing::bounds_of(model);
   const auto energy = [&] {
     const JointVector& rates = plant.measured().velocity;
     return 0.5 * rates.dot(known.inertia() * rates);
@@ -68,7 +114,7 @@ TEST_F(FloatingObserver, ThatFloatsTakesEnergyOnly) {
   double before = energy();
   EXPECT_GT(before, 1e-3);
   for (int i = 0; i < 3000; ++i) {
-    ASSERT_NO_FATAL_FAILURE(observe(1, robot_arm::float_torque(known, plant.measured(), bounds, 5, 80)));
+    ASSERT_NO_FATAL_FAILURE(led(1, JointVector::Zero(7)));
     EXPECT_LT(energy(), before * (1 + 1e-6) + 1e-9) << i;
     before = energy();
   }
@@ -187,7 +233,19 @@ TEST_F(FloatingArmMeets, SomebodyAndGivesWayUntilHold) {
   EXPECT_EQ(flown.rig.inhibited(), 0u);
 }
 
-struct FloatingArmFloats : FloatingArmMeets {};
+struct FloatingArmFloats : FloatingArmMeets {
+  /// A ball is where this push leads the tool in four seconds, most of it by the fore roll.
+  void lead_before_a_volume() {
+    const JointVector led = ready_posture + vector_of(std::array{0.025, 0.011, 0.018, 0.004, 0.5, -0.21, 0.063});
+    robotics::Dynamics dynamics{flown.model, robotics::Base::Fixed};
+    dynamics.update({.q = led, .qd = JointVector::Zero(7)});
+    robot_arm::testing::keep_out_ball(flown, dynamics.frame_pose(flown.model.find_frame("tool").value()).position);
+    EXPECT_EQ(flown.rig.outcome(ask("FLOAT")), done);
+    flown.plant.push_n = {0, 1.5, 0};
+    for (int i = 0; i < 12'000 && flown.rig.events(too_near_event) == 0; ++i) flown.cycle();
+    ASSERT_EQ(flown.rig.events(too_near_event), 1);
+  }
+};
 
 TEST_F(FloatingArmFloats, WhereverItIsLedAndStandsWhereItIsLeft) {
   begin();
@@ -212,6 +270,30 @@ TEST_F(FloatingArmFloats, WhereverItIsLedAndStandsWhereItIsLeft) {
   EXPECT_EQ(flown.rig.inhibited(), 0u);
 }
 
+/// Of 9 N m that hold it against a push; what comes behind that the push itself makes, and dampers.
+TEST_F(FloatingArmFloats, FromThenOnAndNoMoreWithoutAStepInTorqueWhoeverPushes) {
+  begin();
+  push(-10);
+  flown.cycle(1000);
+  for (const char* function : {"FLOAT", "HOLD"}) {
+    JointVector last = flown.plant.measured().torque;
+    if (function == std::string_view{"FLOAT"}) {
+      EXPECT_GT(last.cwiseAbs().maxCoeff(), 8) << "it holds it";
+    }
+    const auto request = flown.rig.call(function);
+    double steepest = 0;
+    for (int i = 0; i < 100; ++i) {
+      flown.cycle();
+      const JointVector& now = flown.plant.measured().torque;
+      steepest = std::max(steepest, (now - last).cwiseAbs().maxCoeff());
+      last = now;
+    }
+    EXPECT_EQ(flown.rig.outcome(request), done) << function;
+    EXPECT_LT(steepest, 1) << function;
+  }
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+}
+
 TEST_F(FloatingArmFloats, FromAStandAlone) {
   begin();
   const auto motion = ask("MOVE_TOOL", {0.05, 0, 0, 4});
@@ -221,20 +303,38 @@ TEST_F(FloatingArmFloats, FromAStandAlone) {
   EXPECT_EQ(flown.rig.outcome(motion), done);
 }
 
-/// The ball is where this push leads the tool in four seconds, most of it by the fore roll.
 TEST_F(FloatingArmFloats, AndStandsBeforeAVolumeWhoeverLeadsItThere) {
   begin();
-  const JointVector led = ready_posture + vector_of(std::array{0.025, 0.011, 0.018, 0.004, 0.5, -0.21, 0.063});
-  robotics::Dynamics dynamics{flown.model, robotics::Base::Fixed};
-  dynamics.update({.q = led, .qd = JointVector::Zero(7)});
-  robot_arm::testing::keep_out_ball(flown, dynamics.frame_pose(flown.model.find_frame("tool").value()).position);
-  EXPECT_EQ(flown.rig.outcome(ask("FLOAT")), done);
-  flown.plant.push_n = {0, 1.5, 0};
-  for (int i = 0; i < 12'000 && flown.rig.events(too_near_event) == 0; ++i) flown.cycle();
-  EXPECT_EQ(flown.rig.events(too_near_event), 1);
+  ASSERT_NO_FATAL_FAILURE(lead_before_a_volume());
   flown.cycle(3000);
   EXPECT_LT(speed(), 1e-2);
   EXPECT_GT(flown.told_number("CLEARANCE"), 0.01);
+  EXPECT_EQ(flown.rig.inhibited(), 0u);
+}
+
+TEST_F(FloatingArmFloats, NoMoreWhereItStandsBeforeAVolumeThoughWhoMeetsItHasItFloat) {
+  begin();
+  ASSERT_EQ(react_by(2, 0.05), done);
+  ASSERT_NO_FATAL_FAILURE(lead_before_a_volume());
+  push(0);
+  flown.cycle(1000);
+  ASSERT_EQ(flown.rig.events(contact_event), 0);
+  push(-12);
+  for (int i = 0; i < 100 && flown.rig.events(contact_event) == 0; ++i) flown.cycle();
+  EXPECT_EQ(flown.rig.events(contact_event), 1);
+  EXPECT_THAT(flown.rig.outcome(ask("MOVE_TOOL", {0, -0.02, 0, 3})), Not(StartsWith("1 4:800d"))) << "it is not led";
+}
+
+TEST_F(FloatingArmFloats, AndTellsAnewOfWhoPushesOnWhenItIsToHold) {
+  begin();
+  ASSERT_EQ(react_by(2, 0.05), done);
+  push(-6);
+  for (int i = 0; i < 200 && flown.rig.events(contact_event) == 0; ++i) flown.cycle();
+  flown.cycle(100);
+  ASSERT_EQ(flown.rig.events(contact_event), 1);
+  EXPECT_EQ(flown.rig.outcome(ask("HOLD")), done);
+  flown.cycle(200);
+  EXPECT_EQ(flown.rig.events(contact_event), 2);
   EXPECT_EQ(flown.rig.inhibited(), 0u);
 }
 

@@ -60,6 +60,17 @@ TEST_F(FloatingLoad, IsAsInTheFileOfARobotThatHasIt) {
   EXPECT_GT((said.base() - at(model, "tool", base, ready).base()).norm(), 1e-2) << "the base gives way more";
 }
 
+/// What it takes without accelerating: else an arm that turns with a payload would feel somebody who is not there.
+TEST_F(FloatingLoad, TakesWithoutAcceleratingWhatARobotThatHasItTakes) {
+  const robotics::Model loaded = servicer_with(payload);
+  FloatingModel said = at(model, "tool", base, ready, payload), built = at(loaded, "tool", base, ready);
+  FloatingModel empty = at(model, "tool", base, ready);
+  const JointVector velocity = vector_of(std::array{0.2, -0.1, 0.15, 0.2, -0.2, 0.2, 0.1});
+  const JointVector its = built.bias(velocity);
+  EXPECT_LT((said.bias(velocity) - its).norm(), 1e-10);
+  EXPECT_GT((empty.bias(velocity) - its).norm(), 1e-2);
+}
+
 TEST_F(FloatingLoad, AToolIsMovedAsAFrameThereIs) {
   const robotics::Pose tool{Eigen::AngleAxisd{0.4, Vector3::UnitY()}.toRotationMatrix(), {0.1, 0.05, 0.3}};
   const robotics::Model other = servicer_with({}, tool);

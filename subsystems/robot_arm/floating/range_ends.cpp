@@ -20,14 +20,16 @@ double weight_near_end(const JointBounds& bounds, double position, double rate) 
   return std::clamp(left_before_end(bounds, position, rate) / avoided, 0.0, 1.0);
 }
 
-std::optional<EndAhead> end_ahead(const JointVector& position, const JointVector& rates, Bounds bounds) noexcept {
+std::optional<EndAhead> end_ahead(const JointVector& position, const JointVector& rates, Bounds bounds,
+                                  double per_s) noexcept {
+  const double stops_in_s = std::max(stopped_in_s, times_followed / per_s);
   std::optional<EndAhead> found;
   double most_beyond = 0;
   for (std::size_t joint = 0; joint < bounds.size(); ++joint) {
     const auto i = static_cast<Eigen::Index>(joint);
     if (rates[i] == 0) continue;
     const double left = left_before_end(bounds[joint], position[i], rates[i]);
-    const double beyond = std::abs(rates[i]) - std::max(0.0, left) / stopped_in_s;
+    const double beyond = std::abs(rates[i]) - std::max(0.0, left) / stops_in_s;
     if (!(beyond > most_beyond)) continue;
     most_beyond = beyond;
     found = {joint, position[i], rates[i] > 0 ? bounds[joint].highest : bounds[joint].lowest};

@@ -192,5 +192,24 @@ TEST(RangeEnds, ArePassedByNoJointUnderNoLaw) {
   EXPECT_GT(stops, 0);
 }
 
+/// With a payload joints are followed slower: whoever is told of his end only as early as without one is beyond it before he stands.
+TEST(RangeEnds, LeaveRoomToStandHoweverSlowlyAJointFollows) {
+  constexpr double cycle_s = 0.001, fastest_rad_s = 0.2;
+  for (const double side : sides)
+    for (const double per_s : {followed_per_s, 10.0, 5.0, 2.0, 1.0}) {
+      JointVector q = JointVector::Zero(7), rates = q;
+      q[0] = end_of(0, side) - side;
+      double wanted = side * fastest_rad_s, speed = wanted;
+      for (int i = 0; i < 20'000; ++i) {
+        rates[0] = wanted;
+        if (end_ahead(q, rates, ranges(), per_s)) wanted = 0;
+        speed += per_s * cycle_s * (wanted - speed);
+        q[0] += cycle_s * speed;
+      }
+      EXPECT_EQ(wanted, 0) << per_s;
+      EXPECT_GT(side * (end_of(0, side) - q[0]), kept_from_end) << per_s;
+    }
+}
+
 }  // namespace
 }  // namespace hirosco::robot_arm

@@ -29,7 +29,8 @@ bool ToolWay::go_on(Bounds bounds) noexcept {
   const double step_s = plan_.duration_s / steps;
   const JointVector its = rates(bounds, step_s);
   const JointVector way = step_s * its;
-  if (end_ahead(posture_, its, bounds) || comes_to_end(way, bounds)) return false;
+  const double per_s = followed_with(model_.heavier(), plan_.cycle_s);
+  if (end_ahead(posture_, its, bounds, per_s) || comes_to_end(way, bounds)) return false;
   if (plan_.law != ToolLaw::FixedBase) base_.go_on(model_.base() * way, 1);
   posture_ += way;
   return true;

@@ -23,6 +23,7 @@ class ToolWay {
     robotics::Pose tool{};  ///< where it is to be when it begins
     Vector3 offset_m{Vector3::Zero()};
     double duration_s{1};
+    double cycle_s{0.001};  ///< of who will go it
   };
   /// `model` must outlive this.  Realtime: allocates.
   ToolWay(const robotics::Model& model, robotics::FrameId tip) : model_{model, tip} {}
