@@ -94,7 +94,7 @@ TEST(JoystickSelfTest, KeepsAForceOfTheWrongSignAndAHandleOutsideOfItsRangeFromO
   TestedJoystick astray;
   astray.position_rad[1] = 0.6;
   for (const auto& [tested, words] :
-       {std::pair{&reversed, "it would push otherwise than against what the robot presses on, axis"},
+       {std::pair{&reversed, "it would not push against what the robot presses on, axis"},
         std::pair{&astray, "measured outside of its range, axis"}}) {
     tested->up();
     EXPECT_TRUE(says(tested->self_test(), words)) << words;

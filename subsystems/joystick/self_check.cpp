@@ -99,7 +99,7 @@ Result<> SelfCheck::check_law(double period_s, double force_scale) const noexcep
       const Axes answer = shown(input);
       const double wanted = std::clamp(-force_scale * pressed, -DisplayLaw::torque_max_n_m, DisplayLaw::torque_max_n_m);
       if (!is_within(answer[axis] - wanted, smallest_n_m))
-        return fails("it would push otherwise than against what the robot presses on, axis", axis);
+        return fails("it would not push against what the robot presses on, axis", axis);
       const std::size_t other = 1 - axis;
       if (!is_within(answer[other], smallest_n_m)) return fails("it would push by the other axis, axis", other);
     }

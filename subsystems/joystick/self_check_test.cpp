@@ -91,23 +91,23 @@ TEST(JoystickSelfCheck, FindsALawThatIsWrong) {
               for (double& each : torque) each = -each;
               return torque;
             }),
-            "it would push otherwise than against what the robot presses on, axis 1");
+            "it would not push against what the robot presses on, axis 1");
   EXPECT_EQ(said_of([](DisplayLaw& law, const DisplayLaw::Input& input, double scale) noexcept {
               Axes torque = law.torque(input, scale);
               torque[1] = -torque[1];
               return torque;
             }),
-            "it would push otherwise than against what the robot presses on, axis 2");
+            "it would not push against what the robot presses on, axis 2");
   EXPECT_EQ(said_of([](DisplayLaw& law, const DisplayLaw::Input& input, double scale) noexcept {
               return law.torque(input, 10 * scale);
             }),
-            "it would push otherwise than against what the robot presses on, axis 1");
+            "it would not push against what the robot presses on, axis 1");
   EXPECT_EQ(said_of([](DisplayLaw& law, const DisplayLaw::Input& input, double scale) noexcept {
               Axes torque = law.torque(input, scale);
               std::swap(torque[0], torque[1]);
               return torque;
             }),
-            "it would push otherwise than against what the robot presses on, axis 1");
+            "it would not push against what the robot presses on, axis 1");
   EXPECT_EQ(said_of([](DisplayLaw& law, const DisplayLaw::Input& input, double scale) noexcept {
               Axes torque = law.torque(input, scale);
               torque[1] += 0.1 * torque[0];
@@ -138,7 +138,7 @@ TEST(JoystickSelfCheck, FindsALawThatIsWrong) {
             }),
             "passivity would drive the hand on, axis 1");
   EXPECT_EQ(said_of([](DisplayLaw&, const DisplayLaw::Input&, double) noexcept { return Axes{}; }),
-            "it would push otherwise than against what the robot presses on, axis 1");
+            "it would not push against what the robot presses on, axis 1");
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ TEST(SelfTestInFlight, KeepsAHandFromAForceThatWouldDrawItIn) {
   EXPECT_FALSE(flight.commission());
   EXPECT_TRUE(
       flight.story().has("commissioning stopped: JOYSTICK self test: execution error: "
-                         "it would push otherwise than against what the robot presses on, axis 1"))
+                         "it would not push against what the robot presses on, axis 1"))
       << flight.story().text();
   EXPECT_EQ(flight.state("JOYSTICK"), State::SafeOperational);
 }

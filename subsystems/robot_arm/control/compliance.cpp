@@ -123,8 +123,7 @@ JointVector Compliance::torque(const Setpoint& wanted, const Measured& measured,
         carrying_[i] += driven_.brake[i];
         break;
     }
-    const Aim aim =
-        settings.kind == LawKind::Float ? float_aims_.of(i) : Aim{wanted.position[i], wanted.position[i]};
+    const Aim aim = settings.kind == LawKind::Float ? float_aims_.of(i) : Aim{wanted.position[i], wanted.position[i]};
     const double kept_by_walls = walls(aim, wanted.velocity[i], measured, i, moved, its, settings.fastest_rad_s);
     torque[i] += kept_by_walls;
     carrying_[i] += kept_by_walls;
