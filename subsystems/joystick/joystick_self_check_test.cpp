@@ -93,9 +93,8 @@ TEST(JoystickSelfTest, KeepsAForceOfTheWrongSignAndAHandleOutsideOfItsRangeFromO
       }};
   TestedJoystick astray;
   astray.position_rad[1] = 0.6;
-  for (const auto& [tested, words] :
-       {std::pair{&reversed, "it would not push against what the robot presses on, axis"},
-        std::pair{&astray, "measured outside of its range, axis"}}) {
+  for (const auto& [tested, words] : {std::pair{&reversed, "it would not push against what the robot presses on, axis"},
+                                      std::pair{&astray, "measured outside of its range, axis"}}) {
     tested->up();
     EXPECT_TRUE(says(tested->self_test(), words)) << words;
     const std::string refused = tested->operational();

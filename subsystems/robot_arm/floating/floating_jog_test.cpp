@@ -103,7 +103,7 @@ TEST_F(FloatingArmJogs, IsStoppedBeforeAVolumeAndMayGoAway) {
   for (int i = 0; i < 8 && met == done; ++i) met = asked("JOG_J", {0.2, 0, 0, 0, 0, 0, 0, 0.5});
   EXPECT_THAT(met, StartsWith("1 3 8:8009"));
   EXPECT_EQ(flown.rig.events(too_near_event), 1);
-  flown.cycle(700);
+  flown.cycle(1400);
   EXPECT_LT(std::abs(speed()), 1e-3);
   EXPECT_EQ(asked("JOG_J", {-0.2, 0, 0, 0, 0, 0, 0, 0.5}), done);
   EXPECT_EQ(flown.rig.inhibited(), 0u);
