@@ -3,6 +3,7 @@
 #include "simulation/mujoco/mesh_pieces.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -84,10 +85,50 @@ void take_side(const Facet& facet, std::size_t axis, double plane_m, double side
   return piece;
 }
 
+/// Each edge of each facet is one of another facet in the other direction, so a hull fills nothing that is open.
+[[nodiscard]] bool is_closed(const std::vector<Facet>& facets) {
+  using Edge = std::pair<Corner, Corner>;
+  std::vector<Edge> there, back;
+  for (const Facet& facet : facets)
+    for (std::size_t i = 0; i < facet.size(); ++i) {
+      const Corner &from = facet[i], &to = facet[(i + 1) % facet.size()];
+      there.emplace_back(from, to);
+      back.emplace_back(to, from);
+    }
+  std::ranges::sort(there);
+  std::ranges::sort(back);
+  return there == back;
+}
+
+/// Whichever side of its facets a file has outside.
+[[nodiscard]] bool is_convex(const std::vector<Facet>& facets, const MeshPiece& farthest) {
+  return std::ranges::all_of(facets, [&](const Facet& facet) {
+    Corner along{}, across{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      along[k] = facet[1][k] - facet[0][k];
+      across[k] = facet[2][k] - facet[0][k];
+    }
+    const Corner normal{along[1] * across[2] - along[2] * across[1], along[2] * across[0] - along[0] * across[2],
+                        along[0] * across[1] - along[1] * across[0]};
+    const double length = std::hypot(normal[0], normal[1], normal[2]);
+    double front = 0, behind = 0;
+    for (const Corner& corner : farthest) {
+      double above = 0;
+      for (std::size_t k = 0; k < 3; ++k) above += normal[k] * (corner[k] - facet[0][k]);
+      front = std::max(front, above);
+      behind = std::max(behind, -above);
+    }
+    return std::min(front, behind) <= convex_within_m * length;
+  });
+}
+
 }  // namespace
 
 std::vector<MeshPiece> pieces_of(std::vector<Facet> surface) {
   if (surface.empty()) return {};
+  // What a cut of it would add are faces inside, which push those who are pressed into it out where they are not.
+  if (MeshPiece whole = farthest_of(surface); is_convex(surface, whole) && is_closed(surface))
+    return {std::move(whole)};
   std::vector<PartOfMesh> parts;
   parts.push_back(measured(std::move(surface)));
   std::size_t facets = parts.front().facets.size();

@@ -17,6 +17,8 @@ using Facet = std::array<Corner, 3>;
 using MeshPiece = std::vector<Corner>;
 
 inline constexpr std::size_t most_pieces = 8;
+/// A closed surface of which nothing lies this far in front of one of its facets is convex.
+inline constexpr double convex_within_m = 1e-3;
 /// Nothing is cut into parts shorter than this, m.
 inline constexpr double shortest_piece_m = 0.02;
 /// As many are held at most where a cut begins, three times that behind it: 220 MB. A mesh of 4 MiB that is one has a tenth.
@@ -24,7 +26,7 @@ inline constexpr std::size_t most_cut_facets = 1'000'000;
 /// Of one piece: as many as there are directions in which the farthest point is taken.
 inline constexpr std::size_t most_piece_corners = 98;
 
-/// The surface, cut in the middle again and again where it is longest along x, y or z; empty: it has no facet. A piece's hull has those of its points
+/// The surface, cut in the middle again and again where it is longest along x, y or z, unless it is closed and convex; empty: it has no facet. A piece's hull has those of its points
 /// that are farthest out: of a ball they are at most 5 % of the radius too small, of what has edges nearly nothing. Each cut makes at most three facets of one: with
 /// more than most_cut_facets nothing is cut any more, and pieces are fewer and larger.  Realtime: allocates.
 [[nodiscard]] std::vector<MeshPiece> pieces_of(std::vector<Facet> surface);

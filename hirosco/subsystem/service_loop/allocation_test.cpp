@@ -372,8 +372,8 @@ constexpr const char* patron_descriptor = R"(<Subsystem name="PATRON" id="10">
     <Report name="THIS" subtype="2"><Field name="WORDS" type="TEXT" octets="200"/><Field name="PITCHES" type="DOUBLE" count="6"/></Report>
   </CustomService>
   <CustomService name="VERSES" type="201">
-    <Request name="WHICH" subtype="1"/>
-    <Report name="THIS" subtype="2"><Field name="WORDS" type="TEXT" octets="200"/></Report>
+    <Request name="WHAT" subtype="1"/>
+    <Report name="THAT" subtype="2"><Field name="WORDS" type="TEXT" octets="200"/></Report>
   </CustomService>
   <ServiceLoop name="HALL" period_us="10000" queue="4"/>
   <Service name="VERSES" loop="HALL"/>
@@ -396,10 +396,10 @@ struct Patron final : Subsystem {
       ++counts[2];
       return songs.report("THIS", call, std::string_view{words}, pitches);
     });
-    verses.on_request("WHICH", [this](Call call) -> Result<> {
+    verses.on_request("WHAT", [this](Call call) -> Result<> {
       if (careless) kept = std::make_unique<std::string>(words);
       ++counts[2];
-      return verses.report("THIS", call, std::string_view{words});
+      return verses.report("THAT", call, std::string_view{words});
     });
     provide(songs);
     provide(verses);
