@@ -110,7 +110,7 @@ void take_side(const Facet& facet, std::size_t axis, double plane_m, double side
     }
     const Corner normal{along[1] * across[2] - along[2] * across[1], along[2] * across[0] - along[0] * across[2],
                         along[0] * across[1] - along[1] * across[0]};
-    const double length = std::hypot(normal[0], normal[1], normal[2]);
+    const double length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     double front = 0, behind = 0;
     for (const Corner& corner : farthest) {
       double above = 0;
