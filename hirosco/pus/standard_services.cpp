@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/pus/standard_services.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "hirosco/pus/st01_verification/verification.hpp"
@@ -31,10 +30,14 @@ std::span<const ServiceKind* const> standard_services() noexcept {
   return services;
 }
 
+/// Asked of every packet on each hop.
 const ServiceKind* standard_service(std::uint8_t type) noexcept {
-  const auto services = standard_services();
-  const auto found = std::ranges::find(services, type, &ServiceKind::type);
-  return found == services.end() ? nullptr : *found;
+  static const auto by_type = [] {
+    std::array<const ServiceKind*, 256> kinds{};
+    for (const ServiceKind* kind : standard_services()) kinds[kind->type] = kind;
+    return kinds;
+  }();
+  return by_type[type];
 }
 
 }  // namespace hirosco::pus

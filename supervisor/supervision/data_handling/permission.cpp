@@ -37,6 +37,12 @@ struct Asked {
   std::optional<CalledFunction> call;
   /// The function called or the request of the subsystem's own service; null: none that the descriptor declares.
   const descriptor::Function* request{nullptr};
+  const std::uint8_t service{telecommand.service()}, subtype{telecommand.subtype()};
+  /// Of a service of the framework, and its request; null: it is an author's, or there is none.
+  const pus::ServiceKind* kind{pus::standard_service(service)};
+  const pus::RequestKind* standard_request{kind != nullptr ? kind->request(subtype) : nullptr};
+  bool essential{false};  ///< is_essential()
+  bool bound{false};  ///< is_bound()
 
   [[nodiscard]] std::string_view name() const {
     if (call) return call->name;
@@ -46,7 +52,7 @@ struct Asked {
   [[nodiscard]] bool asks_for(State target) const {
     return calls("SET_STATE") && call->first_argument == static_cast<std::uint8_t>(target);
   }
-  [[nodiscard]] bool to_supervisor() const { return telecommand.apid() == supervisor_apid; }
+  [[nodiscard]] bool to_supervisor() const { return subsystem.id == supervisor_apid; }
   [[nodiscard]] bool of_subsystem_to_supervisor() const { return origin.is_subsystem() && to_supervisor(); }
 };
 
@@ -67,15 +73,15 @@ using Notice = std::optional<FailureNotice>;
 }
 
 [[nodiscard]] bool is_a_write(const Asked& asked) {
-  return asked.telecommand.service() == pus::ParameterService::service_type &&
-         asked.telecommand.subtype() == pus::ParameterService::set_values;
+  return asked.service == pus::ParameterService::service_type && asked.subtype == pus::ParameterService::set_values;
 }
 
 /// Why a parameter write may not pass (hazard SF20): each parameter must be writable in this state by its descriptor,
 /// and opened by this mode. Whether the values fit is the addressee's matter.
 [[nodiscard]] Notice write_refused(const Asked& asked) {
-  const auto& [telecommand, origin, situation, subsystem, call, request] = asked;
-  OctetReader reader{telecommand.application_data()};
+  const Situation& situation = asked.situation;
+  const descriptor::SubsystemDescriptor& subsystem = asked.subsystem;
+  OctetReader reader{asked.telecommand.application_data()};
   const auto count = reader.get<std::uint8_t>();
   for (unsigned i = 0; i < count && reader.good(); ++i) {
     const auto id = reader.get<std::uint32_t>();
@@ -121,9 +127,10 @@ using Notice = std::optional<FailureNotice>;
 /// What the supervisor does for the whole craft is bound to the mode for a subsystem; stopping it is anybody's.
 [[nodiscard]] bool stops_the_craft(const Asked& asked) { return asked.to_supervisor() && asked.calls("SAFE_ALL"); }
 
-[[nodiscard]] bool essential(const Asked& asked) {
-  const auto* kind = pus::standard_service(asked.telecommand.service());
-  const auto needs = kind != nullptr ? kind->needs_of(asked.telecommand.subtype()) : pus::Needs::Nothing;
+[[nodiscard]] bool is_essential(const Asked& asked) {
+  const auto of_service = asked.kind != nullptr ? asked.kind->needs : pus::Needs::Nothing;
+  const auto needs =
+      asked.standard_request != nullptr ? asked.standard_request->needs.value_or(of_service) : of_service;
   if (needs == pus::Needs::Essential || needs == pus::Needs::SupervisorAnswers) return true;
   // The supervisor commands Offline at the end of a recovery or of the flight: no disk may hold that up (decision 24).
   const bool goes_down = asked.origin.is_supervisor() && asked.asks_for(State::Offline);
@@ -148,14 +155,14 @@ using Notice = std::optional<FailureNotice>;
 
 /// Is there such a request? Service and subtype are the framework's, or the addressee's own.
 [[nodiscard]] Notice is_known(const Asked& asked) {
-  const std::uint8_t type = asked.telecommand.service();
-  const std::uint8_t subtype = asked.telecommand.subtype();
-  const auto* kind = pus::standard_service(type);
+  const std::uint8_t type = asked.service;
+  const std::uint8_t subtype = asked.subtype;
+  const pus::ServiceKind* const kind = asked.kind;
   const bool here = kind != nullptr ? !kind->requests.empty() &&
                                           (kind->needs != pus::Needs::SupervisorAnswers || asked.to_supervisor())
                                     : asked.subsystem.find_service(type) != nullptr;
   if (!here) return FailureNotice{FailureCode::UnknownService}.with(type);
-  const bool known = kind != nullptr ? kind->request(subtype) != nullptr : asked.request != nullptr;
+  const bool known = kind != nullptr ? asked.standard_request != nullptr : asked.request != nullptr;
   if (!known) return FailureNotice{FailureCode::UnknownSubtype}.with(type).with(subtype);
   // It may be left out, by its descriptor or by the configuration in force (docs/adr/0096).
   if (!asked.subsystem.offers(type, asked.subsystem.find_configuration(asked.situation.configuration)))
@@ -185,7 +192,7 @@ using Notice = std::optional<FailureNotice>;
   OctetReader reader{asked.telecommand.application_data()};
   const auto count = reader.get<std::uint8_t>();
   const bool of_parameters = kind == Thing::Kind::Set || kind == Thing::Kind::Read;
-  const bool has_interval = asked.telecommand.subtype() == pus::HousekeepingService::modify_interval;
+  const bool has_interval = asked.subtype == pus::HousekeepingService::modify_interval;
   for (unsigned i = 0; i < count; ++i) {
     const std::uint32_t id = of_parameters ? reader.get<std::uint32_t>() : reader.get<std::uint16_t>();
     const auto found =
@@ -202,7 +209,7 @@ using Notice = std::optional<FailureNotice>;
 [[nodiscard]] bool is_declared(const Asked& asked) {
   const auto* sender = asked.situation.mission.find_subsystem(asked.origin.apid());
   if (sender == nullptr) return false;
-  const auto kind = thing_of(asked.telecommand.service(), asked.telecommand.subtype());
+  const auto kind = thing_of(asked.service, asked.subtype);
   return std::ranges::any_of(sender->subsystem.commands, [&](const descriptor::Commands& commands) {
     if (commands.apid != asked.telecommand.apid()) return false;
     if (kind) return names_only(asked, *kind, commands.things);
@@ -211,8 +218,8 @@ using Notice = std::optional<FailureNotice>;
 }
 
 [[nodiscard]] bool is_about_subscriptions(const Asked& asked) {
-  const std::uint8_t subtype = asked.telecommand.subtype();
-  return asked.to_supervisor() && asked.telecommand.service() == pus::st129::service_type &&
+  const std::uint8_t subtype = asked.subtype;
+  return asked.to_supervisor() && asked.service == pus::st129::service_type &&
          (subtype == pus::st129::subscribe || subtype == pus::st129::unsubscribe);
 }
 
@@ -232,8 +239,7 @@ using Notice = std::optional<FailureNotice>;
 }
 
 [[nodiscard]] bool is_about_the_log(const Asked& asked) {
-  return asked.to_supervisor() && asked.telecommand.service() == pus::st129::service_type &&
-         asked.telecommand.subtype() == pus::st129::retrieve;
+  return asked.to_supervisor() && asked.service == pus::st129::service_type && asked.subtype == pus::st129::retrieve;
 }
 
 /// May this sender ask for it?
@@ -243,8 +249,7 @@ using Notice = std::optional<FailureNotice>;
   if (is_about_subscriptions(asked))
     return may_hear(asked) ? std::nullopt : Notice{FailureNotice{FailureCode::NotDeclared}};
   if (asked.origin.is_supervisor()) return std::nullopt;
-  const auto* kind = pus::standard_service(asked.telecommand.service());
-  if (kind != nullptr && kind->needs == pus::Needs::SupervisorAsks) return wrong_mode(asked);
+  if (asked.kind != nullptr && asked.kind->needs == pus::Needs::SupervisorAsks) return wrong_mode(asked);
   if (asked.to_supervisor()) {
     // Its states are what everything else stands on: SHUTDOWN and SET_MODE are the ways to change them (hazard SF1).
     if (asked.calls("SET_STATE") || asked.calls("CONFIGURE")) return wrong_mode(asked);
@@ -314,7 +319,7 @@ using Notice = std::optional<FailureNotice>;
 
 /// What is neither essential nor the supervisor's own is bound to mode and state.
 [[nodiscard]] bool is_bound(const Asked& asked) {
-  if (essential(asked) || asked.origin.is_supervisor()) return false;
+  if (asked.essential || asked.origin.is_supervisor()) return false;
   // Whether a function exists is a start-of-execution matter (decision 26): the addressee says so in TM[1,4].
   const bool unknown_function =
       asked.call && asked.request == nullptr && !asked.calls("SET_STATE") && !asked.calls("CONFIGURE");
@@ -326,14 +331,13 @@ constexpr unsigned all_states = 0x03FF;
 /// In which states it is permitted, by the addressee's descriptor or the service's own table: is_known() has found it in one of them.
 [[nodiscard]] unsigned states_of(const Asked& asked) {
   if (asked.request != nullptr) return asked.request->states;
-  return pus::standard_service(asked.telecommand.service())->request(asked.telecommand.subtype())->states;
+  return asked.standard_request->states;
 }
 
 /// What safety rests on is switched off by nobody, in whatever mode, state or language of its subsystem (docs/adr/0091).
 [[nodiscard]] Notice spares_safety(const Asked& asked) {
   using pus::EventService;
-  if (asked.telecommand.service() != EventService::service_type ||
-      asked.telecommand.subtype() != EventService::disable_reports)
+  if (asked.service != EventService::service_type || asked.subtype != EventService::disable_reports)
     return std::nullopt;
   OctetReader reader{asked.telecommand.application_data()};
   const auto count = reader.get<std::uint8_t>();
@@ -349,16 +353,16 @@ constexpr unsigned all_states = 0x03FF;
 
 /// More than a look. What a service itself permits in some states only is that, too, as a self test.
 [[nodiscard]] bool acts(const Asked& asked) {
-  const std::uint8_t service = asked.telecommand.service();
-  return service == pus::FunctionService::service_type || pus::standard_service(service) == nullptr ||
-         is_a_write(asked) || states_of(asked) != all_states;
+  const std::uint8_t service = asked.service;
+  return service == pus::FunctionService::service_type || asked.kind == nullptr || is_a_write(asked) ||
+         states_of(asked) != all_states;
 }
 
 /// What the old mode permitted and the new one may not would cross the change: until it has ended the craft is looked at, and taken
 /// towards safety, nothing else.
 [[nodiscard]] Notice crosses_no_change(const Asked& asked) {
   const Situation& situation = asked.situation;
-  if ((!situation.changing && !situation.rereading) || !is_bound(asked)) return std::nullopt;
+  if ((!situation.changing && !situation.rereading) || !asked.bound) return std::nullopt;
   if (!acts(asked)) return std::nullopt;
   FailureNotice notice{FailureCode::NotPermittedNow};
   if (situation.rereading) return notice.because({ErrorCode::NotPermitted, 0, "its descriptor is being read again"});
@@ -367,8 +371,8 @@ constexpr unsigned all_states = 0x03FF;
 
 /// Does the mode open it?
 [[nodiscard]] Notice is_in_mode(const Asked& asked) {
-  if (!is_bound(asked)) return std::nullopt;
-  const std::uint8_t service = asked.telecommand.service();
+  if (!asked.bound) return std::nullopt;
+  const std::uint8_t service = asked.service;
   const bool sets = is_a_write(asked);
   if (sets)
     if (const auto refused = write_refused(asked)) return refused;
@@ -388,7 +392,7 @@ constexpr unsigned all_states = 0x03FF;
 /// Is it permitted in the addressee's state?
 [[nodiscard]] Notice is_in_state(const Asked& asked) {
   const auto state = asked.situation.state;
-  if (!is_bound(asked) || !state || (states_of(asked) >> static_cast<int>(*state) & 1) != 0) return std::nullopt;
+  if (!asked.bound || !state || (states_of(asked) >> static_cast<int>(*state) & 1) != 0) return std::nullopt;
   return FailureNotice{FailureCode::WrongState}.with(static_cast<std::uint8_t>(*state));
 }
 
@@ -408,8 +412,10 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
   const descriptor::SubsystemDescriptor* subsystem = situation.mission.find_member(telecommand.apid());
   if (subsystem == nullptr) return std::unexpected{FailureNotice{FailureCode::UnknownApid}};
   Asked asked{telecommand, origin, situation, *subsystem, called_function(telecommand)};
-  asked.request = asked.call ? subsystem->find_function(asked.call->name)
-                             : subsystem->find_request(telecommand.service(), telecommand.subtype());
+  asked.request =
+      asked.call ? subsystem->find_function(asked.call->name) : subsystem->find_request(asked.service, asked.subtype);
+  asked.essential = is_essential(asked);
+  asked.bound = is_bound(asked);
   if (!situation.state && !starts(asked))
     return std::unexpected{situation.down ? is_down() : FailureNotice{FailureCode::UnknownApid}};
   for (const auto rule : rules)
@@ -419,9 +425,9 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
   // Until it has gone over it draws what it draws.
   const double reserves_w =
       wanted == nullptr ? demand_w(*subsystem, situation) : std::max(wanted->power_w, demand_w(*subsystem, situation));
-  return Permitted{.essential = essential(asked),
+  return Permitted{.essential = asked.essential,
                    .releases_stop = up_to_operational(asked),
-                   .acts = is_bound(asked) && acts(asked),
+                   .acts = asked.bound && acts(asked),
                    .starts = starts(asked),
                    .stops_the_craft = stops_the_craft(asked),
                    .reserves_w = reserves ? reserves_w : 0};
