@@ -274,11 +274,11 @@ using Notice = std::optional<FailureNotice>;
   return asked.subsystem.find_configuration(wanted);
 }
 
-/// Whom no shortage refuses: without the ground link nobody could give the craft more power, without who measures it nobody would know
-/// of any.
+/// Whom no shortage refuses: without the supervisor, which may have been started anew meanwhile, or the ground link nobody could give the
+/// craft more power, without who measures it nobody would know of any.
 [[nodiscard]] bool needs_no_grant(const Asked& asked) {
   const descriptor::Mission& mission = asked.situation.mission;
-  return asked.subsystem.name == mission.ground.subsystem ||
+  return asked.to_supervisor() || asked.subsystem.name == mission.ground.subsystem ||
          (mission.power_measured && mission.power_measured->apid == asked.subsystem.id);
 }
 

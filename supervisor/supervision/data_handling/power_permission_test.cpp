@@ -19,9 +19,9 @@ struct PowerPermission : ::testing::Test {
   LinkGraph links{mission};
   PowerLedger power{100};
   PowerPermission() { links.set_up(2, true); }
-  pus::FailureCode ask(State from, State to) {
-    const auto packet = testing::telecommand(arm, 8, 1, testing::call_data("SET_STATE", static_cast<int>(to)));
-    const auto decision = decide(pus::TelecommandView::parse(packet).value(), Origin::ground(),
+  pus::FailureCode ask(State from, State to, std::uint16_t apid = arm, const Origin& origin = Origin::ground()) {
+    const auto packet = testing::telecommand(apid, 8, 1, testing::call_data("SET_STATE", static_cast<int>(to)));
+    const auto decision = decide(pus::TelecommandView::parse(packet).value(), origin,
                                  {mission, mission.modes[0], links, from, 2, &power});
     return decision ? pus::FailureCode{} : decision.error().code();
   }
@@ -44,6 +44,18 @@ TEST_F(PowerPermission, WhoMeasuresThePowerComesUpWhateverIsMeasured) {
   EXPECT_EQ(ask(State::PreOperational, State::SafeOperational), pus::FailureCode::PowerShort);
   mission.power_measured->apid = arm;
   EXPECT_EQ(ask(State::PreOperational, State::SafeOperational), pus::FailureCode{});
+}
+
+/// One that goes on for another may find a budget that does not even suffice for itself; a greater one is its to take.
+TEST_F(PowerPermission, TheSupervisorComesUpWhateverTheBudgetIs) {
+  descriptor::Configuration own;
+  own.id = 2;
+  own.power_w = 12;
+  mission.supervisor.configurations = {own};
+  power.set_budget(0.001);
+  for (const auto& [from, to] : {std::pair{State::PreOperational, State::SafeOperational},
+                                 std::pair{State::SafeOperational, State::Operational}})
+    EXPECT_EQ(ask(from, to, pus::supervisor_apid, Origin::supervisor()), pus::FailureCode{});
 }
 
 }  // namespace
