@@ -4,12 +4,14 @@
 // processor, by a link that wakes and by a bare futex, in turns in the same run.
 #include <linux/futex.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
@@ -56,14 +58,20 @@ template <class Consume, class Produce>
 Figures between_processes(Shared& shared, int samples, Consume consume, Produce produce) {
   const SystemClock clock;
   shared.ready = 0;
+  shared.got = 0;
   const pid_t child = ::fork();
+  if (child < 0) std::exit(EXIT_FAILURE);
   if (child == 0) {
+    (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
     (void)pin_to_cpu(0);
     (void)set_fifo_priority(consumers_priority);
     consume();
     ::_exit(0);
   }
-  while (shared.ready.load() == 0) sleep_until(clock.now() + pace);
+  while (shared.ready.load() == 0) {
+    if (::waitpid(child, nullptr, WNOHANG) == child) std::exit(EXIT_FAILURE);
+    sleep_until(clock.now() + pace);
+  }
   TimePoint next = clock.now() + 10 * pace;
   for (int number = 0; number < samples; ++number, next += pace) {
     sleep_until(next);

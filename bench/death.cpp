@@ -67,21 +67,30 @@ struct Shared {
   for (;;) ::pause();
 }
 
-/// Who is woken by the mark of the system and does nothing else.
+/// Who is woken by the mark of the system and does nothing else. That is seen by who looks between the sleeps, as the fences of a network are below:
+/// neither watcher wakes a processor that has gone to rest.
 [[nodiscard]] std::int64_t raw(const Clock& clock, std::size_t octets) {
   auto* const shared = shared_page();
-  std::atomic<std::int64_t> seen{0};
+  std::atomic<bool> seen{false};
+  std::atomic<std::uint32_t> over{0};
   const pid_t victim = start_victim(*shared, octets);
   auto sleeper = Thread::start("sleeper", [&] {
     static_cast<void>(pin_to_cpu(0));
     static_cast<void>(set_fifo_priority(LifeWatch::priority));
     for (std::uint32_t word = shared->vital.life.load(); life_of(word) != Life::Ended; word = shared->vital.life.load())
       static_cast<void>(wait_for_change(std::array{SeenWord{&shared->vital.life, word}}, std::chrono::seconds{10}));
-    seen.store(clock.now().time_since_epoch().count());
+    seen.store(true, std::memory_order_release);
+    // It sleeps again, as a watcher does: its end would be in the figure.
+    while (over.load() == 0)
+      static_cast<void>(wait_for_change(std::array{SeenWord{&over, 0}}, std::chrono::seconds{10}));
   });
-  if (sleeper) sleeper->join();
+  if (!sleeper) std::exit(EXIT_FAILURE);
+  while (!seen.load(std::memory_order_acquire)) {}
+  const std::int64_t took = clock.now().time_since_epoch().count() - shared->killed_ns.load();
+  over.store(1);
+  wake_waiters(over);
+  sleeper->join();
   ::waitpid(victim, nullptr, 0);
-  const std::int64_t took = seen.load() - shared->killed_ns.load();
   ::munmap(shared, sizeof(Shared));
   return took;
 }
@@ -108,8 +117,6 @@ class Network {
     }
     guard_.falls_with(first_apid, all);
     const pid_t victim = start_victim(*shared, octets);
-    // A processor of its own would be one too many: it looks between the sleeps of the watcher, which is above it.
-    static_cast<void>(pin_to_cpu(0));
     while (moves()) {}
     const std::int64_t took = clock_.now().time_since_epoch().count() - shared->killed_ns.load();
     ::waitpid(victim, nullptr, 0);
@@ -152,6 +159,8 @@ class Network {
 
 int run(int repeats, int kills) {
   const SystemClock clock;
+  // Of the watchers, too, which begin here: a processor of its own would be one too many, it looks between their sleeps, as they are above it.
+  static_cast<void>(pin_to_cpu(0));
   Network network{clock};
   const auto watch = LifeWatch::start(network.guard());
   if (!watch) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether a cycle waits for those who write and read its parameters (requirement F11): from the instant it is due until it has taken 16 batches and
 // stored a structure of its own, with five writers and five readers at its dictionary, against the same cycle while the ten do as much at another one.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdio>
@@ -26,6 +27,7 @@ constexpr int priority = 80;
 constexpr std::size_t written_by_others = 5, parameters = written_by_others + 1;  ///< the last one is the cycle's own
 constexpr std::size_t batches = 16;
 constexpr std::uint64_t writers = 5, readers = 5;
+constexpr int turns = 4;  ///< of both contestants in one repeat: what the computer does meanwhile falls on both
 
 /// Parameters of a subsystem, and what waits to be written into them.
 class Values {
@@ -175,7 +177,9 @@ int run(int repeats, int cycles) {
   Series shared{"cycle, dictionary shared", {}}, own{"cycle, dictionary its own", {}};
   Series shared_work{"its work, shared", {}}, own_work{"its work, its own", {}};
   for (int repeat = 0; repeat < repeats; ++repeat) {
-    for (const bool at_ours : {false, true}) {
+    std::array<Cycles, 2> of_both;
+    for (int turn = 0; turn < 2 * turns; ++turn) {
+      const bool at_ours = turn % 4 == 1 || turn % 4 == 2;  // each first in every other turn
       Values ours, theirs;
       const Taker taker{clock, theirs};
       const Others others{at_ours ? ours : theirs};
@@ -183,7 +187,7 @@ int run(int repeats, int cycles) {
       // On a thread of its own: those of the others began without its processor and its priority.
       std::thread cycle{[&] {
         (void)pin_to_cpu(0);
-        found = run_cycles(clock, ours, cycles, realtime);
+        found = run_cycles(clock, ours, std::max(cycles / turns, 1), realtime);
       }};
       cycle.join();
       if (!found.each_had_all || !others.were_at_work() || others.torn() != 0) {
@@ -191,9 +195,14 @@ int run(int repeats, int cycles) {
                      static_cast<unsigned long long>(others.torn()));
         return EXIT_FAILURE;
       }
-      (at_ours ? shared : own).repeats.push_back(figures_of(found.until_done, 1e-3));
-      (at_ours ? shared_work : own_work).repeats.push_back(figures_of(found.work, 1e-3));
+      Cycles& all = of_both[at_ours ? 1 : 0];
+      all.until_done.insert(all.until_done.end(), found.until_done.begin(), found.until_done.end());
+      all.work.insert(all.work.end(), found.work.begin(), found.work.end());
     }
+    own.repeats.push_back(figures_of(of_both[0].until_done, 1e-3));
+    own_work.repeats.push_back(figures_of(of_both[0].work, 1e-3));
+    shared.repeats.push_back(figures_of(of_both[1].until_done, 1e-3));
+    shared_work.repeats.push_back(figures_of(of_both[1].work, 1e-3));
   }
   std::printf("A cycle that takes %zu batches, from when it is due, %d cycles, median of %d repeats, %s\n", batches,
               cycles, repeats, realtime ? "SCHED_FIFO" : "ordinary scheduling (no real-time rights)");

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples a second through a queued link between two processes, against a bare ring of the same octets in the same run.
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -62,15 +64,19 @@ std::int64_t between_processes(Shared& shared, Consume consume, Produce produce)
   const SystemClock clock;
   shared.taken = 0;
   shared.ready = 0;
+  shared.received = shared.lost = 0;
   const pid_t child = ::fork();
+  if (child < 0) std::exit(EXIT_FAILURE);
   if (child == 0) {
+    (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);  // it spins above all others
     (void)pin_to_cpu(1);
     (void)set_fifo_priority(50);
     consume();
     shared.done_ns = clock.now().time_since_epoch().count();
     ::_exit(0);
   }
-  while (shared.ready.load() == 0) {}
+  while (shared.ready.load() == 0)
+    if (::waitpid(child, nullptr, WNOHANG) == child) std::exit(EXIT_FAILURE);
   const std::int64_t begun = clock.now().time_since_epoch().count();
   produce();
   int status = 0;

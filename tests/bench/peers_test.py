@@ -148,10 +148,23 @@ class Judge(unittest.TestCase):
     def test_missed_cycles_count_together_and_those_that_no_peer_can_avoid_do_not(self):
         single, none = planted("ours, idle", missed=9), seen_of(WELL)
         single["cyclictest, idle"]["missed"] = none["cyclictest, idle"]["missed"] = none["ours, idle"]["missed"] = 0
-        self.assertEqual(self.told(single, only="missed")[0], 0)
+        code, text = self.told(single, only="missed")
+        self.assertEqual(code, 0)
+        self.assertRegex(text, r"missed cycles beside cyclictest, idle\s+inf .* no more than one of 100,000")
         self.assertEqual(self.told(none, only="missed")[0], 0)
         single["ours, idle"]["missed"] = 11
         self.assertEqual(self.told(single, only="missed")[0], 1)
+
+    def test_a_peer_that_took_nothing_is_beaten_or_not_and_in_no_case_left_out(self):
+        self.assertEqual(self.told(planted("raw free list", cost=0.0), only="pool")[0], 1)
+        precise = planted("ours, precise", p99=0.0)
+        self.assertEqual(self.told(precise, only="loop")[0], 0)
+        self.assertEqual(peers.judge([precise] * 4 + [planted("ours, precise", p99=40.0)] * 5, only="loop")[1], 1)
+
+    def test_the_table_has_what_was_missed_of_all_cycles_and_the_latest_of_all(self):
+        late = planted("ours, idle", max=5000.0)
+        line = next(line for line in peers.table([seen_of(WELL)] * 8 + [late]) if line.strip().startswith("ours, idle"))
+        self.assertRegex(line, r"cycles 9,000,000\.00  missed 900\.00  max 5,000\.00")
 
     def test_ratios_that_programs_print_themselves_are_no_contestants(self):
         self.assertFalse([name for name in seen_of(WELL) if " / " in name])
@@ -190,6 +203,11 @@ class Program(unittest.TestCase):
         done = self.ended("exit 0", "--only", "ping")
         self.assertEqual(done.returncode, 1)
         self.assertIn("there is no bench_ping", done.stdout)
+
+    def test_a_program_that_does_not_end_is_ended_with_all_that_it_began(self):
+        # What it began holds the pipe: as long as that lives, this waits.
+        self.assertIsNone(peers.ended(["sh", "-c", "sleep 1000 & wait"], 0.5))
+        self.assertEqual(peers.ended(["sh", "-c", "echo told; exit 3"], 100), (3, "told\n", ""))
 
     def test_a_word_that_it_does_not_know_is_refused(self):
         with contextlib.redirect_stderr(io.StringIO()), self.assertRaises(SystemExit) as refused:
