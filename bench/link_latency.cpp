@@ -84,8 +84,15 @@ class End {
   void send_lock(std::uint64_t value) { arena_.lock(out_).write(payload_.data(), value); }
   void await_lock(std::uint64_t value) { arena_.lock(in_).await(payload_.data(), value); }
   void send_link(TimePoint now) { writer_.write(payload_, now, LinkStatus::Valid); }
+  /// By the word that a consumer waits for, as the lock's: what a cycle asks for it has without waiting.
   void await_link() {
-    while (reader_->read(payload_).flow != Flow::New) {}
+    const std::atomic_ref arrived{*const_cast<std::uint32_t*>(reader_->arrival_word())};
+    for (;;) {
+      const std::uint32_t now = arrived.load(std::memory_order_acquire);
+      if (now == arrived_ || now % 2 != 0) continue;
+      arrived_ = now;
+      if (reader_->read(payload_).flow == Flow::New) return;
+    }
   }
 
  private:
@@ -94,6 +101,7 @@ class End {
   std::size_t in_;
   LatestWriter writer_;
   std::optional<LatestReader> reader_;
+  std::uint32_t arrived_{0};
   std::array<std::byte, payload_octets> payload_{};
 };
 

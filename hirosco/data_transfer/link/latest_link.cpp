@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "hirosco/data_transfer/link/detail/link_words.hpp"
+#include "hirosco/data_transfer/link/detail/wide_words.hpp"
 #include "hirosco/utilities/processor.hpp"
 
 // A sequence lock over words of 8 octets, for one writer and any number of readers. Invariants:
@@ -18,7 +19,8 @@
 //  2. Only the writer writes. Its sequence is odd from before the first word of a sample is stored until after the last.
 //  3. The writer stores every word of a sample with release order. A reader that loads such a word with acquire order
 //     has therefore also seen the odd sequence before it (2), and finds at its second look a sequence other than the
-//     even one it began with. Fences would do the same; thread sanitizers do not understand them.
+//     even one it began with. Fences would do the same; thread sanitizers do not understand them. Where two words are
+//     moved at once (detail/wide_words.hpp) the processor has that order by itself.
 //  4. The writer stores the even sequence with release order, a reader loads it with acquire order first: the words it
 //     then loads are those of this sample or newer ones, never older ones. With 3: equal even sequences, whole sample.
 //  5. A reader tries `attempts` times, then answers with its own last copy. It never waits for a writer, which may be
@@ -117,7 +119,8 @@ void LatestWriter::write(Octets payload, TimePoint sampled_at, LinkStatus status
   publish(link_memory::count_at, ++count_);
   publish(link_memory::stamp_at, std::bit_cast<Word>(std::int64_t{sampled_at.time_since_epoch().count()}));
   const std::size_t whole = payload_octets_ / sizeof(Word) * sizeof(Word);
-  for (std::size_t at = 0; at < whole; at += sizeof(Word)) {
+  for (std::size_t at = detail::store_wide(payload.data(), memory_ + link_memory::payload_at, whole); at < whole;
+       at += sizeof(Word)) {
     Word value;
     std::memcpy(&value, payload.data() + at, sizeof value);
     publish(link_memory::payload_at + at, value);
@@ -190,7 +193,10 @@ bool LatestReader::copy(std::uint64_t sequence, LinkSample& sample, MutableOctet
   sample.count = get(link_memory::count_at);
   sample.sampled_at = TimePoint{Duration{std::bit_cast<std::int64_t>(get(link_memory::stamp_at))}};
   const std::size_t direct = last_.count == 0 ? 0 : payload_octets_ / sizeof(Word);
-  for (std::size_t i = 0; i < direct; ++i) {
+  const std::size_t wide =
+      detail::load_wide(memory_ + link_memory::payload_at, reinterpret_cast<std::byte*>(arriving_.get()),
+                        payload.data(), direct * sizeof(Word));
+  for (std::size_t i = wide / sizeof(Word); i < direct; ++i) {
     const Word value = arriving_[i] = get(link_memory::payload_at + i * sizeof(Word));
     std::memcpy(payload.data() + i * sizeof value, &value, sizeof value);
   }
