@@ -253,7 +253,7 @@ Result<LogPage> AsciiDatabase::do_read(const LogQuery& query) {
       ++page.damaged;
       continue;
     }
-    const std::string_view line{buffer.data(), static_cast<std::size_t>(file.gcount()) - (file.eof() ? 0 : 1)};
+    const std::string_view line{buffer.data(), static_cast<std::size_t>(file.gcount()) - (file.eof() ? 0U : 1U)};
     if (line.empty()) continue;
     if (version_from_ascii(line) == ascii_version) {
       foreign = false;
