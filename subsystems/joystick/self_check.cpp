@@ -133,7 +133,7 @@ Result<> SelfCheck::check_fading(double period_s, double force_scale) const noex
 }
 
 /// Of a hand that moves: the plain law shows the same as to one at rest; the passive one nothing of what would drive the hand on,
-/// which is energy that it has not got, and all of what stands against it. Its damper has a limit far above this.
+/// which is energy that it has not got, and all of what stands against it. Its damper may take twice what that is at most.
 Result<> SelfCheck::check_damping(double period_s, double force_scale) const noexcept {
   constexpr double speed_rad_s = 1;
   constexpr const char* goes_by_hand = "it would push by how the hand moves, axis";
