@@ -16,6 +16,7 @@ import turns
 
 HERE = pathlib.Path(__file__).resolve().parent
 SUMMARY = re.compile(r"\d+% tests passed")
+NEXT = re.compile(r" *(\d+/\d+ Test +#|Start +\d+:)")  # what came before was the summary of a ctest that a test has run
 WIDEST = 200  # letters of what a slice says of itself
 
 Slice = collections.namedtuple("Slice", "whole pattern")
@@ -23,12 +24,20 @@ Run = collections.namedtuple("Run", "name seconds became said")
 
 
 def table(text):
-    """Slices by the names of their tests."""
+    """Slices by the names of their tests. ValueError: a row that cannot be one."""
     rows = re.sub(r"\n +", " ", re.sub(r"(?m)^#.*\n", "", text)).splitlines()
     found = {}
-    for row in rows:
+    for row in filter(None, rows):
+        if row.count(": ") < 2: raise ValueError(f"slices.txt: '{row}' wants a whole, tests and an expression, each behind a colon")
         whole, tests, pattern = row.split(": ", 2)
-        found.update((test, Slice(whole.replace("*", test), re.compile(f"(?m)^.*?{pattern}"))) for test in tests.split())
+        try:
+            told_by = re.compile(f"(?m)^.*?{pattern}")
+        except re.error as why:
+            raise ValueError(f"slices.txt: '{pattern}' of {tests} is no expression: {why}") from why
+        if told_by.groups != 1: raise ValueError(f"slices.txt: '{pattern}' of {tests} has {told_by.groups} groups; what is told is one")
+        for test in tests.split():
+            if test in found: raise ValueError(f"slices.txt: {test} has two rows; take one out")
+            found[test] = Slice(whole.replace("*", test), told_by)
     return found
 
 
@@ -62,6 +71,9 @@ def through(lines, before_summary, say):
     """Hands lines on; the summary of ctest, and the empty lines before it, come behind what `before_summary` gives."""
     held = []
     for line in lines:
+        if held and NEXT.match(line):
+            say("".join(held))
+            held = []
         if not line.strip() or any(map(SUMMARY.match, [*held, line])):
             held.append(line)
         else:
@@ -76,7 +88,7 @@ def results_in(folder):
         try:
             yield xml.fromstring(path.read_text(errors="replace"))
         except xml.ParseError as error:
-            print(f"{path}: {error}", file=sys.stderr)
+            print(f"{path}: {error}; the table lacks its slices", file=sys.stderr)
 
 
 def faults(slices, known):
@@ -86,7 +98,11 @@ def faults(slices, known):
         if each.whole in known:
             if "long" not in known[each.whole]: yield f"slices.txt: {each.whole}, the whole of {name}, is in every check: then {name} need not be"
         elif not (HERE.parent / each.whole).is_file(): yield f"slices.txt: {each.whole}, the whole of {name}, is neither a test nor a file"
-    for name in known:
+    for name, labels in known.items():
+        numbered = re.fullmatch(r"(.+?)_\d+\w*", name)
+        for part in known if numbered and "long" in labels else ():
+            if "long" in known[part] or not re.fullmatch(rf"{numbered[1]}(_\d+)?", part): continue
+            if part not in slices: yield f"slices.txt lacks {part}, of which {name} takes more"
         if f"{name}_whole" in known and name not in slices: yield f"slices.txt lacks {name}, of which {name}_whole takes all"
         if name.startswith("fuzz_slice_") and name not in slices: yield f"slices.txt lacks {name}"
 
@@ -116,15 +132,27 @@ def problems_of_itself(slices):
         rows = list(told(slices, results_in(folder), "arms", {"journal", "fuzz_slice_journal"}, 335))
     if [" ".join(row.split()) for row in rows[1:-2]] != WANTED: yield f"of planted results is told: {rows}"
     if rows[-2:] != ["5 slices in a check of 5 min 35 s", "of other turns: fuzz_slice_journal"]: yield f"at the end is told: {rows[-2:]}"
+    nested = "2: 100% tests passed, 0 tests failed out of 3\n100% tests passed, 0 tests failed out of 3\n\nsomething\n 2/2 Test  #7: x ..   Passed\n"
     summary = "\n\n100% tests passed, 0 tests failed out of 1\n\nTotal Test time (real) =   1.00 sec\n"
     said = []
-    through(f"1/2 Test\n\nsomething\n{summary}".splitlines(keepends=True), lambda: ["table"], said.append)
-    if "".join(said) != f"1/2 Test\n\nsomething\n\ntable\n{summary}": yield f"ctest's summary is not the end: {said}"
-    if len(list(faults(slices, {"fuzz_slice_new": [], "a": [], "a_whole": ["long"]}))) < 2: yield "what lacks in the table is not found"
+    through(f"1/2 Test\n\nsomething\n{nested}{summary}".splitlines(keepends=True), lambda: ["table"], said.append)
+    if "".join(said) != f"1/2 Test\n\nsomething\n{nested}\ntable\n{summary}": yield f"ctest's summary is not the end: {said}"
+    lacking = {f"slices.txt lacks {what}" for what in ("fuzz_slice_new", "a, of which a_whole takes all", "b_20, of which b_1000 takes more", "c, of which c_10_minutes takes more")}
+    planted = {"fuzz_slice_new": [], "a": [], "a_whole": ["long"], "b_20": [], "b_1000": ["long"], "c": [], "c_10_minutes": ["long"], "c_d": []}
+    if not lacking <= set(faults(slices, planted)) or "c_d" in "".join(faults({}, planted)): yield "what lacks in the table is not found"
+    for wrong in ("a: b", "a: b: (x", "a: b: x", "a: b: (x)(y)", "a: b b: (x)"):
+        try:
+            table(wrong)
+        except ValueError:
+            continue
+        yield f"the row '{wrong}' is taken"
 
 
 def main(what, *rest):
-    slices = table((HERE / "slices.txt").read_text())
+    try:
+        slices = table((HERE / "slices.txt").read_text())
+    except ValueError as why:
+        sys.exit(str(why))
     if what == "through" and len(rest) == 3:
         folder, turn, began = rest
         left = turns.left_out(turns.table((HERE / "turns.txt").read_text()), turn)

@@ -12,7 +12,7 @@ namespace hirosco::joystick {
 namespace {
 
 constexpr double range_rad = 0.4;  ///< between the stops
-constexpr double past_stop_rad = 0.05;  ///< the stops are of rubber
+constexpr double past_stop_rad = 0.15;  ///< the stops are of rubber: so far goes a hand that leans on one with 9 N m
 /// No hand is faster.
 constexpr double most_rad_s = 20;
 constexpr double most_jump_rad = 0.01;  ///< beyond that, from one cycle to the next
@@ -24,6 +24,11 @@ constexpr double smallest_n_m = 1e-9;
 
 [[nodiscard]] std::unexpected<Error> fails(const char* what, std::size_t axis) noexcept {
   return fail(ErrorCode::Internal, what, static_cast<std::int64_t>(axis + 1));
+}
+
+/// What a hand is to feel where a robot's joint is pressed on by so much.
+[[nodiscard]] double against(double pressed_n_m, double force_scale) noexcept {
+  return std::clamp(-force_scale * pressed_n_m, -DisplayLaw::torque_max_n_m, DisplayLaw::torque_max_n_m);
 }
 
 /// Written so that what is no number fails.
@@ -71,6 +76,8 @@ Result<> SelfCheck::check_laws(const Seen& seen) const noexcept {
   for (const double scale : {seen.force_scale, most_scale}) {
     HIROSCO_TRY(check_law<PositionForce>(seen.period_s, scale));
     HIROSCO_TRY(check_law<PassivePositionForce>(seen.period_s, scale));
+    HIROSCO_TRY(check_fading<PositionForce>(seen.period_s, scale));
+    HIROSCO_TRY(check_fading<PassivePositionForce>(seen.period_s, scale));
     HIROSCO_TRY(check_damping(seen.period_s, scale));
   }
   return ok();
@@ -97,8 +104,7 @@ Result<> SelfCheck::check_law(double period_s, double force_scale) const noexcep
         return fails("it would show a robot that does not act, axis", axis);
       input.peer_active = true;
       const Axes answer = shown(input);
-      const double wanted = std::clamp(-force_scale * pressed, -DisplayLaw::torque_max_n_m, DisplayLaw::torque_max_n_m);
-      if (!is_within(answer[axis] - wanted, smallest_n_m))
+      if (!is_within(answer[axis] - against(pressed, force_scale), smallest_n_m))
         return fails("it would not push against what the robot presses on, axis", axis);
       const std::size_t other = 1 - axis;
       if (!is_within(answer[other], smallest_n_m)) return fails("it would push by the other axis, axis", other);
@@ -107,19 +113,47 @@ Result<> SelfCheck::check_law(double period_s, double force_scale) const noexcep
   return ok();
 }
 
-/// A hand that is pushed on gets less by the passive law than by the plain one, whichever way it moves.
-Result<> SelfCheck::check_damping(double period_s, double force_scale) const noexcept {
-  for (std::size_t axis = 0; axis < last_rad_.size(); ++axis)
-    for (const double velocity_rad_s : {0.5, -0.5}) {
-      DisplayLaw::Input input{.peer_active = true};
-      input.velocity_rad_s[axis] = velocity_rad_s;
-      input.peer_torque_n_m[axis] = velocity_rad_s > 0 ? -presses_n_m[0] : presses_n_m[0];
-      PositionForce plain{period_s};
-      PassivePositionForce passive{period_s};
-      const double pushed = law_(plain, input, force_scale)[axis] * velocity_rad_s;
-      const double damped = law_(passive, input, force_scale)[axis] * velocity_rad_s;
-      if (!(damped <= pushed)) return fails("passivity would drive the hand on, axis", axis);
+/// Who falls silent is felt ever less, and not at all behind the last cycle of that.
+template <class Display>
+Result<> SelfCheck::check_fading(double period_s, double force_scale) const noexcept {
+  for (std::size_t axis = 0; axis < last_rad_.size(); ++axis) {
+    Display silent{period_s};
+    DisplayLaw::Input input{.peer_active = true};
+    input.peer_torque_n_m[axis] = presses_n_m[0];
+    double most_n_m = std::abs(law_(silent, input, force_scale)[axis]);
+    input.peer_active = false;
+    for (int cycle = 1; cycle <= DisplayLaw::ramp_cycles; ++cycle) {
+      const double left_n_m = law_(silent, input, force_scale)[axis];
+      if (!is_within(left_n_m, cycle < DisplayLaw::ramp_cycles ? most_n_m : smallest_n_m))
+        return fails("it would go on pushing when the robot is lost, axis", axis);
+      most_n_m = std::abs(left_n_m);
     }
+  }
+  return ok();
+}
+
+/// Of a hand that moves: the plain law shows the same as to one at rest; the passive one nothing of what would drive the hand on,
+/// which is energy that it has not got, and all of what stands against it. Its damper may take twice what that is at most.
+Result<> SelfCheck::check_damping(double period_s, double force_scale) const noexcept {
+  constexpr double speed_rad_s = 1;
+  constexpr const char* goes_by_hand = "it would push by how the hand moves, axis";
+  for (std::size_t axis = 0; axis < last_rad_.size(); ++axis)
+    for (const double velocity_rad_s : {speed_rad_s, -speed_rad_s})
+      for (const double pressed : {presses_n_m[1], presses_n_m[0]}) {
+        DisplayLaw::Input input{.peer_active = true};
+        input.velocity_rad_s[axis] = velocity_rad_s;
+        input.peer_torque_n_m[axis] = pressed;
+        PositionForce plain{period_s};
+        PassivePositionForce passive{period_s};
+        const double wanted = against(pressed, force_scale);
+        const Axes answer = law_(plain, input, force_scale);
+        if (!is_within(answer[axis] - wanted, smallest_n_m)) return fails(goes_by_hand, axis);
+        const std::size_t other = 1 - axis;
+        if (!is_within(answer[other], smallest_n_m)) return fails("it would push by the other axis, axis", other);
+        const bool drives = wanted * velocity_rad_s > 0;
+        if (is_within(law_(passive, input, force_scale)[axis] - (drives ? 0 : wanted), smallest_n_m)) continue;
+        return fails(drives ? "passivity would drive the hand on, axis" : goes_by_hand, axis);
+      }
   return ok();
 }
 

@@ -16,7 +16,8 @@ using Law = Axes (*)(DisplayLaw& law, const DisplayLaw::Input& input, double for
 }
 
 /// The joystick's self test (adr 0073): whether the handle answers and measures what a handle can, whether anything would push
-/// though the robot presses on nothing, and what both laws would show of a robot that presses a little, much, or by no number.
+/// though the robot presses on nothing, and what both laws would show of a robot that presses a little, much, or by no number,
+/// that falls silent, and to a hand that moves.
 /// A force of the wrong sign would draw the hand into what the robot touches.
 /// Realtime: bounded, no allocation. Thread: the cycle.
 class SelfCheck {
@@ -47,6 +48,8 @@ class SelfCheck {
   [[nodiscard]] Result<> check_laws(const Seen& seen) const noexcept;
   template <class Display>
   [[nodiscard]] Result<> check_law(double period_s, double force_scale) const noexcept;
+  template <class Display>
+  [[nodiscard]] Result<> check_fading(double period_s, double force_scale) const noexcept;
   [[nodiscard]] Result<> check_damping(double period_s, double force_scale) const noexcept;
 
   Law law_;

@@ -47,7 +47,12 @@ TEST(JoystickSelfCheck, PassesWithinSixCyclesAlsoWhileAHandMovesTheStickAndTheRo
               seen.shown_n_m = {0.2, -0.1};
             }),
             "passed after 6");
-  EXPECT_EQ(said([](SelfCheck::Seen& seen) { seen.force_scale = 0; }), "passed after 6");
+  EXPECT_EQ(said([](SelfCheck::Seen& seen) { seen.position_rad = {0.54, -0.54}; }), "passed after 6")
+      << "the rubber of a stop gives way to who leans on it";
+  for (const double scale : {0.0, 1e-4, 0.1})
+    EXPECT_EQ(said([scale](SelfCheck::Seen& seen) { seen.force_scale = scale; }), "passed after 6") << scale;
+  for (const double period_s : {1e-4, 0.1})
+    EXPECT_EQ(said([period_s](SelfCheck::Seen& seen) { seen.period_s = period_s; }), "passed after 6") << period_s;
 }
 
 TEST(JoystickSelfCheck, FindsAHandleThatCannotBeRight) {
@@ -57,7 +62,7 @@ TEST(JoystickSelfCheck, FindsAHandleThatCannotBeRight) {
               "measured faster than a hand is, axis 2");
     EXPECT_EQ(said([](SelfCheck::Seen& seen) { seen.velocity_rad_s[0] = no_number; }, from),
               "measured faster than a hand is, axis 1");
-    EXPECT_EQ(said([](SelfCheck::Seen& seen) { seen.position_rad[1] = 0.46; }, from),
+    EXPECT_EQ(said([](SelfCheck::Seen& seen) { seen.position_rad[1] = 0.56; }, from),
               "measured outside of its range, axis 2");
     EXPECT_EQ(said([](SelfCheck::Seen& seen) { seen.position_rad[0] = no_number; }, from),
               "measured outside of its range, axis 1");
@@ -139,6 +144,41 @@ TEST(JoystickSelfCheck, FindsALawThatIsWrong) {
             "passivity would drive the hand on, axis 1");
   EXPECT_EQ(said_of([](DisplayLaw&, const DisplayLaw::Input&, double) noexcept { return Axes{}; }),
             "it would not push against what the robot presses on, axis 1");
+}
+
+TEST(JoystickSelfCheck, FindsALawThatGoesByTheHand) {
+  EXPECT_EQ(said_of([](DisplayLaw& law, const DisplayLaw::Input& input, double scale) noexcept {
+              Axes torque = law.torque(input, scale);
+              torque[1] += 0.01 * input.velocity_rad_s[1];
+              return torque;
+            }),
+            "it would push by how the hand moves, axis 2")
+      << "damping of the wrong sign, whichever law";
+  EXPECT_EQ(said_of([](DisplayLaw& law, const DisplayLaw::Input& input, double scale) noexcept {
+              Axes torque = law.torque(input, scale);
+              torque[1] += 0.01 * input.velocity_rad_s[0];
+              return torque;
+            }),
+            "it would push by the other axis, axis 2");
+  EXPECT_EQ(said_of([](DisplayLaw& law, const DisplayLaw::Input& input, double scale) noexcept {
+              if (dynamic_cast<PassivePositionForce*>(&law) == nullptr) return law.torque(input, scale);
+              PositionForce plain{0.0005};
+              plain.take_over(law);
+              static_cast<void>(law.torque(input, scale));
+              return plain.torque(input, scale);
+            }),
+            "passivity would drive the hand on, axis 1")
+      << "it takes nothing out";
+}
+
+TEST(JoystickSelfCheck, FindsALawThatGoesOnWhenTheRobotIsLost) {
+  EXPECT_EQ(said_of([](DisplayLaw& law, const DisplayLaw::Input& input, double scale) noexcept {
+              if (input.peer_active) return law.torque(input, scale);
+              PositionForce again{0.0005};  // each time the first cycle of fading
+              again.take_over(law);
+              return again.torque(input, scale);
+            }),
+            "it would go on pushing when the robot is lost, axis 1");
 }
 
 }  // namespace

@@ -138,7 +138,9 @@ int log(const LogOptions& options) {
                                           .last = options.last},
                                          beside);
   if (!page) {
-    fmt::print(stderr, "hirosco log: {}: {}\n", path.string(), page.error().text);
+    const bool foreign = page.error().code == ErrorCode::Mismatch;
+    fmt::print(stderr, "hirosco log: {}: {}{}\n", path.string(), page.error().text,
+               foreign ? ": read it with what wrote it" : "");
     return exit_environment;
   }
   // Not among the lines that others read.
@@ -148,7 +150,9 @@ int log(const LogOptions& options) {
     if (options.json) fmt::print("{}\n", json_line(record_json(record, text_of(record), values_of(record))));
     else fmt::print("{}\n", text_of(record));
   }
-  if (page->damaged != 0) fmt::print(stderr, "hirosco log: {} damaged records left out\n", page->damaged);
+  if (page->damaged != 0)
+    fmt::print(stderr, "hirosco log: {} damaged records, or whole pieces that cannot be read, left out\n",
+               page->damaged);
   return page->damaged == 0 ? exit_ok : exit_finding;
 }
 

@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t max_line = 2 * Database::max_packet_octets + 1024;
 constexpr std::size_t checksum_letters = 10;  // " #" and eight digits
 constexpr std::string_view version_words = "HIROSCO packet log, version ";
-constexpr std::size_t max_version_line = version_words.size() + 10 + checksum_letters;
+constexpr std::size_t longest_version_line = 1024;  // of a later version, too
 constexpr std::string_view hex_digits = "0123456789abcdef";
 
 std::uint32_t checksum_of(std::string_view text) { return crc32(std::as_bytes(std::span{text})); }
@@ -109,11 +109,38 @@ Result<> sync_folder_of(const std::filesystem::path& path) {
   return ok();
 }
 
+/// Whether a line that is not one of ours says another version. Whole, with words that only a later one knows, it does as well.
+bool says_another_version(std::string_view line) {
+  return line.starts_with(version_words) && unsealed(line) && version_from_ascii(line) != ascii_version;
+}
+
 /// What a file begins with says its version, or nothing does: what is there then is judged line by line.
 Result<> check_version(std::string_view begin) {
-  const auto version = version_from_ascii(begin.substr(0, begin.find('\n')));
-  if (version && *version != ascii_version) return fail(ErrorCode::Mismatch, "log file of another version", *version);
-  return ok();
+  const std::string_view line = begin.substr(0, begin.find('\n'));
+  if (!says_another_version(line)) return ok();
+  return fail(ErrorCode::Mismatch, "log file of another version", version_from_ascii(line).value_or(0));
+}
+
+/// As much of it as says the version.
+Result<std::string> read_begin_of_log(int descriptor) {
+  std::string begin(longest_version_line, '\0');
+  const ssize_t octets = ::pread(descriptor, begin.data(), begin.size(), 0);
+  // What cannot be read at its begin, a pipe, says no version.
+  if (octets < 0 && errno != ESPIPE) return fail(code_of(errno), "reading the begin of the log file", errno);
+  begin.resize(static_cast<std::size_t>(std::max<ssize_t>(octets, 0)));
+  return begin;
+}
+
+/// What has to stand before the next record: the version of an empty file, or what a crash has cut of it, or the end of a cut line.
+std::string missing_before_next(int descriptor, std::string_view begin) {
+  const off_t octets = ::lseek(descriptor, 0, SEEK_END);
+  if (octets < 0) return {};
+  const std::string version = ascii_version_line() + '\n';
+  const auto there = static_cast<std::size_t>(octets);
+  if (there == 0) return version;
+  if (there < version.size() && version.starts_with(begin)) return version.substr(begin.size());
+  char last{'\n'};
+  return ::pread(descriptor, &last, 1, octets - 1) == 1 && last != '\n' ? "\n" : "";
 }
 
 }  // namespace
@@ -173,18 +200,19 @@ Result<LogRecord> record_from_ascii(std::string_view line) {
 Result<std::unique_ptr<Database>> AsciiDatabase::open(const std::filesystem::path& path, DatabaseAccess access) {
   if (access == DatabaseAccess::Read) {
     if (!std::filesystem::is_regular_file(path)) return fail(ErrorCode::NotFound, "no such log file");
-    std::string begin(max_version_line + 1, '\n');
-    std::ifstream{path}.read(begin.data(), std::ssize(begin));
+    std::string begin(longest_version_line, '\0');
+    std::ifstream file{path};
+    file.read(begin.data(), std::ssize(begin));
+    begin.resize(static_cast<std::size_t>(file.gcount()));
     HIROSCO_TRY(check_version(begin));
-    return std::unique_ptr<Database>(new AsciiDatabase{path, -1, End::Whole});
+    return std::unique_ptr<Database>(new AsciiDatabase{path, -1});
   }
   const int descriptor = ::open(path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0640);
   if (descriptor < 0) return fail(code_of(errno), "opening the log file", errno);
-  std::unique_ptr<Database> database{new AsciiDatabase{path, descriptor, end_of(descriptor)}};
-  std::string begin(max_version_line + 1, '\n');
-  // What cannot be read at its begin, a pipe, says no version.
-  if (::pread(descriptor, begin.data(), begin.size(), 0) < 0) begin.assign(1, '\n');
+  std::unique_ptr<AsciiDatabase> database{new AsciiDatabase{path, descriptor}};
+  HIROSCO_TRY_LET(const std::string begin, read_begin_of_log(descriptor));
   HIROSCO_TRY(check_version(begin));
+  database->missing_ = missing_before_next(descriptor, begin);
   HIROSCO_TRY(sync_folder_of(path));
   return database;
 }
@@ -193,23 +221,14 @@ AsciiDatabase::~AsciiDatabase() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-AsciiDatabase::End AsciiDatabase::end_of(int descriptor) {
-  const off_t size = ::lseek(descriptor, 0, SEEK_END);
-  if (size == 0) return End::Empty;
-  char last{'\n'};
-  return size > 0 && ::pread(descriptor, &last, 1, size - 1) == 1 && last != '\n' ? End::Torn : End::Whole;
-}
-
 /// The version goes with the first batch in one write: until then the file is an empty one.
 Result<> AsciiDatabase::do_append(std::span<const LogRecord> batch) {
   if (descriptor_ < 0) return fail(ErrorCode::NotPermitted, "this log is open for reading only");
-  text_.clear();
-  if (end_ == End::Empty) text_ += ascii_version_line() + '\n';
-  if (end_ == End::Torn) text_ += '\n';
+  text_ = missing_;
   for (const LogRecord& record : batch) text_.append(ascii_line(record)) += '\n';
   HIROSCO_TRY(write_all(descriptor_, text_));
   if (::fdatasync(descriptor_) != 0) return fail(ErrorCode::SystemFailure, "fdatasync of the log file", errno);
-  end_ = End::Whole;
+  missing_.clear();
   return ok();
 }
 
@@ -220,6 +239,7 @@ Result<LogPage> AsciiDatabase::do_read(const LogQuery& query) {
   std::deque<LogRecord> found;
   std::set<std::pair<OnboardTime, std::uint64_t>> seen;
   std::vector<char> buffer(max_line + 1);
+  bool foreign = false;  // behind the version of another one: pieces were put behind each other
   std::error_code failed;
   const std::uint64_t octets = query.tail_octets != 0 ? std::filesystem::file_size(path_, failed) : 0;
   if (!failed && octets > query.tail_octets) {
@@ -233,10 +253,15 @@ Result<LogPage> AsciiDatabase::do_read(const LogQuery& query) {
       ++page.damaged;
       continue;
     }
-    const std::string_view line{buffer.data()};
-    if (line.empty() || version_from_ascii(line) == ascii_version) continue;
+    const std::string_view line{buffer.data(), static_cast<std::size_t>(file.gcount()) - (file.eof() ? 0U : 1U)};
+    if (line.empty()) continue;
+    if (version_from_ascii(line) == ascii_version) {
+      foreign = false;
+      continue;
+    }
+    foreign = foreign || says_another_version(line);
     auto record = record_from_ascii(line);
-    if (!record) {
+    if (foreign || !record) {
       ++page.damaged;
       continue;
     }

@@ -16,21 +16,14 @@ class AsciiDatabase final : public Database {
   AsciiDatabase& operator=(const AsciiDatabase&) = delete;
 
  private:
-  enum class End : std::uint8_t {
-    Empty,  ///< nothing stands in the file, its version has to
-    Whole,
-    Torn,  ///< inside a line that a crash has cut
-  };
-  AsciiDatabase(std::filesystem::path path, int descriptor, End end)
-      : path_{std::move(path)}, descriptor_{descriptor}, end_{end} {}
-  [[nodiscard]] static End end_of(int descriptor);
+  AsciiDatabase(std::filesystem::path path, int descriptor) : path_{std::move(path)}, descriptor_{descriptor} {}
   Result<> do_append(std::span<const LogRecord> batch) override;
   Result<LogPage> do_read(const LogQuery& query) override;
   [[nodiscard]] std::string_view do_strategy() const noexcept override { return "ascii"; }
 
   std::filesystem::path path_;
   int descriptor_;  ///< -1: for reading only
-  End end_;  ///< how what is there ends
+  std::string missing_;  ///< before the next record: the version, or what ends a line that a crash has cut
   std::string text_;  ///< of the batch being written; keeps its memory
 };
 

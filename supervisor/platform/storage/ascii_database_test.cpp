@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/storage/ascii_database.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cerrno>
 #include <fstream>
+#include <iterator>
 #include <random>
 
+#include "hirosco/utilities/crc32.hpp"
 #include "supervisor/platform/storage/testing/batches.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
 
@@ -21,9 +24,8 @@ using ::testing::ElementsAre;
 class AsciiFile : public ::testing::Test {
  protected:
   [[nodiscard]] std::filesystem::path path() const { return folder_.path() / "log"; }
-  /// Of a telecommand of 13 octets.
-  [[nodiscard]] static std::string line_of(std::uint64_t number) {
-    return ascii_line(batch_of(number, number, 13).front());
+  [[nodiscard]] static std::string line_of(std::uint64_t number, std::size_t packet_octets = 13) {
+    return ascii_line(batch_of(number, number, packet_octets).front());
   }
   [[nodiscard]] static std::vector<std::uint64_t> numbers_of(const LogPage& page) {
     std::vector<std::uint64_t> all;
@@ -95,6 +97,54 @@ TEST_F(AsciiFile, OfAnotherVersionIsNeitherReadNorWritten) {
     EXPECT_STREQ(database.error().text, "log file of another version");
   }
   EXPECT_EQ(std::filesystem::file_size(path()), text.size());
+}
+
+/// Words that only a later version knows, a number beyond ours, a line that is longer: it is not of ours, however it says so.
+TEST_F(AsciiFile, OfALaterVersionThatSaysMoreIsLeftAlone) {
+  const auto sealed = [](const std::string& words) {
+    return fmt::format("{} #{:08x}", words, crc32(std::as_bytes(std::span{words})));
+  };
+  ASSERT_EQ(sealed("HIROSCO packet log, version 1"), ascii_version_line(1));
+  for (const std::string& words : {std::string{"2 compressed"}, std::string{"2.1"}, std::string{"1 packed"},
+                                   std::string{"99999999999"}, "2 " + std::string(500, 'x')}) {
+    const std::string text = sealed("HIROSCO packet log, version " + words) + '\n' + line_of(1) + '\n';
+    std::ofstream{path(), std::ios::trunc} << text;
+    for (const auto access : {DatabaseAccess::Read, DatabaseAccess::Write}) {
+      const auto database = open_database(DatabaseStrategy::Ascii, path(), access);
+      ASSERT_FALSE(database) << words;
+      EXPECT_EQ(database.error().code, ErrorCode::Mismatch) << words;
+    }
+    EXPECT_EQ(std::filesystem::file_size(path()), text.size()) << words;
+  }
+}
+
+TEST_F(AsciiFile, WhoseVersionACrashHasCutSaysItWholeWithTheNextRecord) {
+  const std::string version = ascii_version_line() + '\n';
+  for (std::size_t cut = 0; cut <= version.size(); ++cut) {
+    std::ofstream{path(), std::ios::trunc} << version.substr(0, cut);
+    ASSERT_TRUE((*open_database(DatabaseStrategy::Ascii, path()))->append(batch_of(1, 1))) << cut;
+    std::ifstream file{path()};
+    const std::string text{std::istreambuf_iterator{file}, {}};
+    EXPECT_EQ(text, version + line_of(1, 0) + '\n') << cut;
+  }
+}
+
+/// As `cat log.log log.2.log` makes it.
+TEST_F(AsciiFile, WithAPieceOfAnotherVersionBehindOneOfOursHasNothingOfThat) {
+  std::ofstream{path()} << ascii_version_line() << '\n' << line_of(1) << '\n'
+                        << ascii_version_line(2) << '\n' << line_of(2) << '\n'
+                        << ascii_version_line() << '\n' << line_of(3) << '\n';
+  const auto page = (*open_database(DatabaseStrategy::Ascii, path(), DatabaseAccess::Read))->read({});
+  EXPECT_THAT(numbers_of(*page), ElementsAre(1, 3));
+  EXPECT_EQ(page->damaged, 2U);
+}
+
+/// What a file system leaves of octets that a loss of power kept from the disk.
+TEST_F(AsciiFile, CountsALineOfZeros) {
+  std::ofstream{path()} << line_of(1) << '\n' << std::string(100, '\0') << '\n' << line_of(2) << '\n';
+  const auto page = (*open_database(DatabaseStrategy::Ascii, path(), DatabaseAccess::Read))->read({});
+  EXPECT_THAT(numbers_of(*page), ElementsAre(1, 2));
+  EXPECT_EQ(page->damaged, 1U);
 }
 
 TEST_F(AsciiFile, WhoseVersionLineIsDamagedKeepsItsRecords) {

@@ -94,12 +94,17 @@ Result<LogPage> read_log(const fs::path& log, const LogQuery& query, std::span<D
   LogPage all;
   std::optional<Error> refused;
   int sources = 0;
+  int read = 0;
   const auto take = [&](Result<LogPage> page) {
     ++sources;
-    if (page) all.damaged += page->damaged;
-    else ++all.damaged;
-    if (page) std::ranges::move(page->records, std::back_inserter(all.records));
-    else refused = page.error();
+    if (!page) {
+      ++all.damaged;
+      refused = page.error();
+      return;
+    }
+    ++read;
+    all.damaged += page->damaged;
+    std::ranges::move(page->records, std::back_inserter(all.records));
   };
   for (Database* const database : beside) take(database->read(query));
   // The piece at the asked end first: the others only have what is farther from it, and a flight may rotate them away meanwhile.
@@ -116,8 +121,8 @@ Result<LogPage> read_log(const fs::path& log, const LogQuery& query, std::span<D
     if (all.records.size() >= query.last) break;
   }
   if (sources == 0) return fail(ErrorCode::NotFound, "no such log");
-  // What cannot be read is why there is a next piece; alone it is all that is asked for.
-  if (sources == 1 && refused) return fail(*refused);
+  // What cannot be read is why there is a next piece; where nothing else is, it is all that is asked for.
+  if (read == 0 && refused) return fail(*refused);
   put_in_order(all.records);
   if (all.records.size() > query.last) {
     const auto last = static_cast<std::ptrdiff_t>(query.last);

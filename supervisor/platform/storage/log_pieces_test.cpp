@@ -186,9 +186,16 @@ TEST(AsciiPieces, OfAnotherVersionAreLeftAloneAndCountedAtReading) {
   const auto refused = read_log(log, {});
   ASSERT_FALSE(refused) << "it is all that there is";
   EXPECT_STREQ(refused.error().text, "log file of another version");
+  const fs::path next = piece_path(log, DatabaseStrategy::Ascii, 2);
+  fs::copy_file(first, next);
+  EXPECT_FALSE(read_log(log, {})) << "nor is there more where there are two";
+  fs::remove(next);
   const auto octets = fs::file_size(first);
   LogStore store{DatabaseStrategy::Ascii, log};
   EXPECT_FALSE(store.append(batch_of(1, 3)));
+  EXPECT_EQ(store.trouble().text,
+            "log log.log is left alone (log file of another version, 2): goes on in log.2.log; read the first with what "
+            "wrote it");
   ASSERT_TRUE(store.append(batch_of(1, 3)));
   EXPECT_EQ(fs::file_size(first), octets);
   const LogPage all = *read_log(log, {});

@@ -244,6 +244,10 @@ void LogStore::heal_from(const Error& error) {
     case StoreFault::Damaged: break;
   }
   leave_piece();
+  if (error.code == ErrorCode::Mismatch)
+    return note(fault, error,
+                fmt::format("log {} is left alone ({}, {}): goes on in {}; read the first with what wrote it", name,
+                            error.text, error.value, piece_.filename().string()));
   note(fault, error,
        fmt::format("log {} failed ({}, {}): goes on in {}; look at the disk", name, error.text, error.value,
                    piece_.filename().string()));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/data_handling/permission.hpp"
 
+#include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/pus/standard_services.hpp"
 #include "supervisor/supervision/event_handling/planned_reactions.hpp"
 #include "supervisor/supervision/testing/parts_rig.hpp"
@@ -45,7 +46,17 @@ struct SafetyMarks : PartsTest {
     for (int step = 0; step < 3; ++step) own_step();
     for (const std::uint16_t member : {arm, hand, camera}) static_cast<void>(received(member));
   }
-  /// Every request of every service to the supervisor and ARM, every function of the supervisor but these; how many.
+  /// A call with arguments of its descriptor's types, each of this value; nothing: it is none that a function takes.
+  [[nodiscard]] static std::optional<std::vector<std::byte>> whole_call(const descriptor::Function& function,
+                                                                        double value) {
+    std::vector<std::optional<Value>> given;
+    for (const auto& argument : function.arguments)
+      given.emplace_back(argument.field.type == Type::Text ? Value{std::string{"2"}} : Value{Number{value}});
+    const auto data = pus::encode_call(function, pus::GivenValues{given});
+    return data ? std::optional{*data} : std::nullopt;
+  }
+  /// Every request of every service to the supervisor and ARM, every function of the supervisor but these; how many. Functions that change
+  /// the mode come last, each other one in the mode that permits all.
   int ask_everything(std::initializer_list<std::string_view> but) {
     int asked = 0;
     const std::vector<std::byte> words[] = {{},
@@ -59,12 +70,20 @@ struct SafetyMarks : PartsTest {
             take(apid, service->type, request.subtype, data);
             ++asked;
           }
-    for (const descriptor::Function& function : craft.mission.supervisor.functions)
-      for (const int argument : {-1, 0, 1, 2, 255}) {
-        if (std::ranges::find(but, function.name) != but.end()) continue;
-        take(supervisor_apid, 8, 1, call_data(function.name, argument));
-        ++asked;
-      }
+    auto functions = craft.mission.supervisor.functions;
+    std::ranges::stable_partition(functions, [](const auto& each) { return !each.name.ends_with("_MODE"); });
+    for (const descriptor::Function& function : functions) {
+      if (std::ranges::find(but, function.name) != but.end()) continue;
+      int whole = 0;
+      for (const double value : {1.0, 2.0, static_cast<double>(arm), static_cast<double>(hand), 255.0})
+        if (const auto data = whole_call(function, value)) {
+          take(supervisor_apid, 8, 1, *data);
+          ++whole;
+        }
+      EXPECT_GT(whole, 0) << function.name;
+      for (const int argument : {-1, 0, 255}) take(supervisor_apid, 8, 1, call_data(function.name, argument));
+      asked += whole + 3;
+    }
     return asked;
   }
 };
@@ -78,7 +97,8 @@ TEST_F(SafetyMarks, NoRequestOfAnyServiceOrFunctionChangesWhatAnyEventWouldDo) {
   EXPECT_EQ(plans(), before);
 }
 
-/// SAFE_ALL and SHUTDOWN are stops themselves: what becomes of a plan beside them, their own tests say.
+/// SAFE_ALL and SHUTDOWN are stops themselves, and a power budget below what is reserved an event of severity high, whose plan goes before as
+/// any does: what becomes of a plan beside them, their own tests say.
 TEST_F(SafetyMarks, NoRequestEndsAPlanThatIsUnderWayOrTakesItsNextStepFromIt) {
   descriptor::Event hot;
   hot.name = "HOT";
@@ -97,7 +117,7 @@ TEST_F(SafetyMarks, NoRequestEndsAPlanThatIsUnderWayOrTakesItsNextStepFromIt) {
   const auto begun = received(arm);
   ASSERT_EQ(begun.size(), 1U);
   ASSERT_EQ(begun[0].text, to(ErrorOperational));
-  EXPECT_GT(ask_everything({"SAFE_ALL", "SHUTDOWN"}), 100);
+  EXPECT_GT(ask_everything({"SAFE_ALL", "SHUTDOWN", "SET_POWER_BUDGET"}), 100);
   for (int state = 0; state < 10; ++state) take(arm, 8, 1, call_data("SET_STATE", state));
   EXPECT_TRUE(craft.member(arm)->recovery.running());
   EXPECT_FALSE(was_told("gives way"));
