@@ -131,9 +131,12 @@ TEST_F(AsciiFile, WhoseVersionACrashHasCutSaysItWholeWithTheNextRecord) {
 
 /// As `cat log.log log.2.log` makes it.
 TEST_F(AsciiFile, WithAPieceOfAnotherVersionBehindOneOfOursHasNothingOfThat) {
-  std::ofstream{path()} << ascii_version_line() << '\n' << line_of(1) << '\n'
-                        << ascii_version_line(2) << '\n' << line_of(2) << '\n'
-                        << ascii_version_line() << '\n' << line_of(3) << '\n';
+  std::ofstream{path()} << ascii_version_line() << '\n'
+                        << line_of(1) << '\n'
+                        << ascii_version_line(2) << '\n'
+                        << line_of(2) << '\n'
+                        << ascii_version_line() << '\n'
+                        << line_of(3) << '\n';
   const auto page = (*open_database(DatabaseStrategy::Ascii, path(), DatabaseAccess::Read))->read({});
   EXPECT_THAT(numbers_of(*page), ElementsAre(1, 3));
   EXPECT_EQ(page->damaged, 2U);

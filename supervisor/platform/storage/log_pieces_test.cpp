@@ -193,9 +193,10 @@ TEST(AsciiPieces, OfAnotherVersionAreLeftAloneAndCountedAtReading) {
   const auto octets = fs::file_size(first);
   LogStore store{DatabaseStrategy::Ascii, log};
   EXPECT_FALSE(store.append(batch_of(1, 3)));
-  EXPECT_EQ(store.trouble().text,
-            "log log.log is left alone (log file of another version, 2): goes on in log.2.log; read the first with what "
-            "wrote it");
+  EXPECT_EQ(
+      store.trouble().text,
+      "log log.log is left alone (log file of another version, 2): goes on in log.2.log; read the first with what "
+      "wrote it");
   ASSERT_TRUE(store.append(batch_of(1, 3)));
   EXPECT_EQ(fs::file_size(first), octets);
   const LogPage all = *read_log(log, {});
