@@ -13,6 +13,7 @@
 namespace hirosco::robot_arm {
 
 /// Contacts as joints and wrist feel them, at different times: which of what they tell is another one.
+/// Whether it is a contact at all: `joint_contact.hpp`, `force_sensor.hpp`; what is done about it: `yielding.hpp`.
 /// Realtime: bounded, no allocation. Thread: the cycle, and the service loop while there is none.
 class ContactWatch {
  public:

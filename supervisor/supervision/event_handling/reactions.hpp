@@ -22,7 +22,8 @@ namespace hirosco::supervisor {
 /// Events are heard here and nowhere else, and answered by the recovery plans of the mission (paper 4.3 and 5): whether
 /// ST[05] reports one to ground is no matter of recovery (adr 0020). Which plan: `plan_choice.hpp`; what its steps do:
 /// `procedures/steps/`, which of two is followed: `plan_runs.hpp`; which were under way when the supervisor before this
-/// one died: `plans_before.hpp`; what a member is in the middle of by that: `members/member_recovery.hpp`. Thread: the supervisor's.
+/// one died: `plans_before.hpp`; what a member is in the middle of by that: `members/member_recovery.hpp`. Who loses a
+/// device has stopped its actuators before: `hirosco/subsystem/cycle/device_inputs.cpp`. Thread: the supervisor's.
 class Reactions final : public Remembered {
  public:
   Reactions(const Means& means, OwnSubsystem& own)

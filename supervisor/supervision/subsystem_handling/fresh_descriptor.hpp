@@ -16,6 +16,7 @@
 #include "supervisor/supervision/own_subsystem.hpp"
 
 /// What REREAD and REPLACE have in common: a text of a descriptor that takes the place of the one in force (docs/adr/0095, 0214).
+/// What may differ between the two, and what may come to it: `hirosco/descriptor/model/in_flight.hpp`.
 /// Thread: the supervisor's.
 namespace hirosco::supervisor {
 
