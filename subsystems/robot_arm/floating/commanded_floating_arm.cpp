@@ -179,14 +179,16 @@ void CommandedFloatingArm::bind_tip() {
   if (!offers("SET_TOOL") && !offers("SET_PAYLOAD")) return;
   parameters_.each_of_tip([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
   const auto now = [this] { return robot_arm::FloatingTip::Now{motion_.has_value(), moving_}; };
-  on_function("SET_PAYLOAD", [this, now](double mass_kg, std::array<double, 3> place_m) -> Outcome {
-    const Outcome taken = tip_.take_payload(mass_kg, place_m, now());
-    if (taken.kind != Outcome::Kind::Refused) contact_.forget();
-    return taken;
-  });
-  on_function("SET_TOOL", [this, now](std::array<double, 3> place_m, std::array<double, 4> wxyz) -> Outcome {
-    return tip_.take_tool({place_m, wxyz}, now());
-  });
+  if (offers("SET_PAYLOAD"))
+    on_function("SET_PAYLOAD", [this, now](double mass_kg, std::array<double, 3> place_m) -> Outcome {
+      const Outcome taken = tip_.take_payload(mass_kg, place_m, now());
+      if (taken.kind != Outcome::Kind::Refused) contact_.forget();
+      return taken;
+    });
+  if (offers("SET_TOOL"))
+    on_function("SET_TOOL", [this, now](std::array<double, 3> place_m, std::array<double, 4> wxyz) -> Outcome {
+      return tip_.take_tool({place_m, wxyz}, now());
+    });
 }
 
 void CommandedFloatingArm::bind_contact() {
@@ -203,10 +205,9 @@ void CommandedFloatingArm::bind_contact() {
 }
 
 void CommandedFloatingArm::bind_ways_out() {
-  if (offers("RETREAT")) {
-    use_event(retracted_);
+  if (offers("RETREAT") || offers("SET_CONTACT")) use_event(retracted_);  // who meets somebody may back off, too
+  if (offers("RETREAT"))
     on_function("RETREAT", [this](double distance, Call call) { return leave(Out::WayBack, distance, call); });
-  }
   if (!robot_arm::AbortPath::declared(own_descriptor())) return;
   abort_path_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
   on_function("MOVE_ABORT", [this](double speed, Call call) { return leave(Out::AbortPath, speed, call); });
