@@ -67,31 +67,41 @@ void take_side(const Facet& facet, std::size_t axis, double plane_m, double side
   return found;
 }
 
-[[nodiscard]] MeshPiece farthest_of(const std::vector<Facet>& facets) {
-  std::vector<Corner> corners;
+/// In order.
+[[nodiscard]] MeshPiece each_once(MeshPiece all) {
+  std::ranges::sort(all);
+  all.erase(std::ranges::unique(all).begin(), all.end());
+  return all;
+}
+
+[[nodiscard]] MeshPiece corners_of(const std::vector<Facet>& facets) {
+  MeshPiece corners;
   corners.reserve(3 * facets.size());
   for (const Facet& facet : facets) corners.insert(corners.end(), facet.begin(), facet.end());
-  const auto once = [](std::vector<Corner>& all) {
-    std::ranges::sort(all);
-    all.erase(std::ranges::unique(all).begin(), all.end());
-  };
-  once(corners);
+  return each_once(std::move(corners));
+}
+
+[[nodiscard]] MeshPiece farthest_of(const std::vector<Facet>& facets) {
+  const MeshPiece corners = corners_of(facets);
   MeshPiece piece;
   for (const Corner& direction : directions())
     piece.push_back(*std::ranges::max_element(corners, {}, [&](const Corner& corner) {
       return corner[0] * direction[0] + corner[1] * direction[1] + corner[2] * direction[2];
     }));
-  once(piece);
-  return piece;
+  return each_once(std::move(piece));
 }
 
 /// Each edge of each facet is one of another facet in the other direction, so a hull fills nothing that is open.
 [[nodiscard]] bool is_closed(const std::vector<Facet>& facets) {
-  using Edge = std::pair<Corner, Corner>;
+  const MeshPiece corners = corners_of(facets);
+  const auto number_of = [&](const Corner& corner) {
+    return std::ranges::lower_bound(corners, corner) - corners.begin();
+  };
+  using Edge = std::pair<std::ptrdiff_t, std::ptrdiff_t>;
   std::vector<Edge> there, back;
   for (const Facet& facet : facets)
     for (std::size_t i = 0; i < facet.size(); ++i) {
-      const Corner &from = facet[i], &to = facet[(i + 1) % facet.size()];
+      const std::ptrdiff_t from = number_of(facet[i]), to = number_of(facet[(i + 1) % facet.size()]);
       there.emplace_back(from, to);
       back.emplace_back(to, from);
     }
@@ -100,21 +110,32 @@ void take_side(const Facet& facet, std::size_t axis, double plane_m, double side
   return there == back;
 }
 
+/// Of a facet, as long as twice its area.
+[[nodiscard]] Corner normal_of(const Facet& facet) {
+  Corner along{}, across{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    along[k] = facet[1][k] - facet[0][k];
+    across[k] = facet[2][k] - facet[0][k];
+  }
+  return {along[1] * across[2] - along[2] * across[1], along[2] * across[0] - along[0] * across[2],
+          along[0] * across[1] - along[1] * across[0]};
+}
+
+/// How far `to` is from `from` along `normal`, times the length of that.
+[[nodiscard]] double along_normal(const Corner& normal, const Corner& from, const Corner& to) {
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) sum += normal[k] * (to[k] - from[k]);
+  return sum;
+}
+
 /// Whichever side of its facets a file has outside.
-[[nodiscard]] bool is_convex(const std::vector<Facet>& facets, const MeshPiece& farthest) {
+[[nodiscard]] bool is_convex(const std::vector<Facet>& facets, const MeshPiece& corners) {
   return std::ranges::all_of(facets, [&](const Facet& facet) {
-    Corner along{}, across{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      along[k] = facet[1][k] - facet[0][k];
-      across[k] = facet[2][k] - facet[0][k];
-    }
-    const Corner normal{along[1] * across[2] - along[2] * across[1], along[2] * across[0] - along[0] * across[2],
-                        along[0] * across[1] - along[1] * across[0]};
+    const Corner normal = normal_of(facet);
     const double length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     double front = 0, behind = 0;
-    for (const Corner& corner : farthest) {
-      double above = 0;
-      for (std::size_t k = 0; k < 3; ++k) above += normal[k] * (corner[k] - facet[0][k]);
+    for (const Corner& corner : corners) {
+      const double above = along_normal(normal, facet[0], corner);
       front = std::max(front, above);
       behind = std::max(behind, -above);
     }
@@ -122,13 +143,23 @@ void take_side(const Facet& facet, std::size_t axis, double plane_m, double side
   });
 }
 
-}  // namespace
+/// From the middle nearly all of it is seen from one side. Walls thinner than convex_within_m lie where their hull does, inside as well as
+/// outside, and so do sheets that have two sides: of a cup, a dish or two plates beside each other half is seen from the other side.
+[[nodiscard]] bool is_full(const std::vector<Facet>& facets, const MeshPiece& corners) {
+  constexpr double least_share = 0.9;
+  Corner middle{};
+  for (const Corner& corner : corners)
+    for (std::size_t k = 0; k < 3; ++k) middle[k] += corner[k] / static_cast<double>(corners.size());
+  double enclosed = 0, all = 0;
+  for (const Facet& facet : facets) {
+    const double above = along_normal(normal_of(facet), middle, facet[0]);
+    enclosed += above;
+    all += std::abs(above);
+  }
+  return std::abs(enclosed) >= least_share * all;
+}
 
-std::vector<MeshPiece> pieces_of(std::vector<Facet> surface) {
-  if (surface.empty()) return {};
-  // What a cut of it would add are faces inside, which push those who are pressed into it out where they are not.
-  if (MeshPiece whole = farthest_of(surface); is_convex(surface, whole) && is_closed(surface))
-    return {std::move(whole)};
+[[nodiscard]] std::vector<MeshPiece> cut(std::vector<Facet> surface) {
   std::vector<PartOfMesh> parts;
   parts.push_back(measured(std::move(surface)));
   std::size_t facets = parts.front().facets.size();
@@ -148,6 +179,26 @@ std::vector<MeshPiece> pieces_of(std::vector<Facet> surface) {
   std::vector<MeshPiece> pieces;
   for (const PartOfMesh& part : parts)
     if (!part.facets.empty()) pieces.push_back(farthest_of(part.facets));
+  return pieces;
+}
+
+[[nodiscard]] MeshPiece together(const std::vector<MeshPiece>& pieces) {
+  MeshPiece all;
+  for (const MeshPiece& piece : pieces) all.insert(all.end(), piece.begin(), piece.end());
+  return each_once(std::move(all));
+}
+
+}  // namespace
+
+std::vector<MeshPiece> pieces_of(std::vector<Facet> surface) {
+  if (surface.empty()) return {};
+  std::vector<MeshPiece> pieces;
+  MeshPiece corners = corners_of(surface);
+  // Those of its pieces: what is farthest of the whole would leave a fifth of a long link's radius out.
+  if (corners.size() > most_convex_corners) corners = together(pieces = cut(surface));
+  // What a cut of it would add are faces inside, which push those who are pressed into it out where they are not.
+  if (is_full(surface, corners) && is_convex(surface, corners) && is_closed(surface)) return {std::move(corners)};
+  if (pieces.empty()) pieces = cut(std::move(surface));
   return pieces;
 }
 

@@ -21,12 +21,15 @@ inline constexpr std::size_t most_pieces = 8;
 inline constexpr double convex_within_m = 1e-3;
 /// Nothing is cut into parts shorter than this, m.
 inline constexpr double shortest_piece_m = 0.02;
-/// As many are held at most where a cut begins, three times that behind it: 220 MB. A mesh of 4 MiB that is one has a tenth.
+/// As many are held at most where a cut begins, three times that behind it, beside the surface: 290 MB. A mesh of 4 MiB that is one has a tenth.
 inline constexpr std::size_t most_cut_facets = 1'000'000;
 /// Of one piece: as many as there are directions in which the farthest point is taken.
 inline constexpr std::size_t most_piece_corners = 98;
+/// Of one that is closed and convex: all of its own, or those of the pieces that it would be.
+inline constexpr std::size_t most_convex_corners = most_pieces * most_piece_corners;
 
-/// The surface, cut in the middle again and again where it is longest along x, y or z, unless it is closed and convex; empty: it has no facet. A piece's hull has those of its points
+/// The surface, cut in the middle again and again where it is longest along x, y or z, unless it is closed, convex and full: what has walls thinner than
+/// convex_within_m is cut, as before all that is open. Empty: it has no facet. A piece's hull has those of its points
 /// that are farthest out: of a ball they are at most 5 % of the radius too small, of what has edges nearly nothing. Each cut makes at most three facets of one: with
 /// more than most_cut_facets nothing is cut any more, and pieces are fewer and larger.  Realtime: allocates.
 [[nodiscard]] std::vector<MeshPiece> pieces_of(std::vector<Facet> surface);

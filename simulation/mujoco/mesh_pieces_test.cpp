@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ranges>
 
 namespace hirosco::simulation {
 namespace {
@@ -41,6 +42,28 @@ void add_cuboid(const Corner& low, const Corner& high, std::vector<Facet>& facet
   facets.pop_back();
   return facets;
 }
+/// Closed to the last bit, as no corner is reckoned twice.
+[[nodiscard]] std::vector<Facet> ellipsoid(int parts, const Corner& half_m) {
+  std::vector<Corner> corners{{half_m[0], 0, 0}};
+  for (int i = 1; i < parts; ++i)
+    for (int j = 0; j < parts; ++j) {
+      const double turn = 2 * std::numbers::pi * j / parts, up = std::numbers::pi * i / parts;
+      corners.push_back({half_m[0] * std::cos(up), half_m[1] * std::sin(up) * std::cos(turn),
+                         half_m[2] * std::sin(up) * std::sin(turn)});
+    }
+  corners.push_back({-half_m[0], 0, 0});
+  const auto at = [&](int i, int j) {
+    if (i == 0) return corners.front();
+    return i == parts ? corners.back() : corners[static_cast<std::size_t>(1 + (i - 1) * parts + j % parts)];
+  };
+  std::vector<Facet> facets;
+  for (int i = 0; i < parts; ++i)
+    for (int j = 0; j < parts; ++j) {
+      if (i + 1 < parts) facets.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      if (i > 0) facets.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return facets;
+}
 [[nodiscard]] std::pair<double, double> from_to(const MeshPiece& piece, std::size_t axis) {
   const auto [low, high] = std::ranges::minmax(piece, {}, [&](const Corner& corner) { return corner[axis]; });
   return {low[axis], high[axis]};
@@ -69,6 +92,44 @@ TEST(MeshPieces, OfWhatIsClosedAndConvexAreOneWhicheverSideIsOutside) {
   }
   add_cuboid({1, 0, 0}, {1.2, 0.1, 0.1}, box);
   EXPECT_EQ(pieces_of(box).size(), most_pieces) << "two boxes are not convex";
+}
+
+/// Of a thousand corners those of the pieces count.
+TEST(MeshPieces, OfALongRoundLinkThatIsOneAreNotThinnerThanItIs) {
+  const Corner half_m{0.5, 0.05, 0.05};
+  for (const int parts : {20, 40}) {
+    const auto link = ellipsoid(parts, half_m);
+    const auto pieces = pieces_of(link);
+    ASSERT_EQ(pieces.size(), 1U) << parts;
+    EXPECT_LE(pieces.front().size(), most_convex_corners);
+    for (const Facet& facet : link) {
+      // In lengths of its three axes it is a ball, and so is a direction.
+      const auto reaches = [&](const Corner& corner) {
+        double sum = 0;
+        for (std::size_t k = 0; k < 3; ++k) sum += corner[k] / half_m[k] * facet[0][k] / half_m[k];
+        return sum;
+      };
+      EXPECT_GE(std::ranges::max(pieces.front() | std::views::transform(reaches)), 0.95) << parts;
+      EXPECT_LE(std::ranges::max(pieces.front() | std::views::transform(reaches)), 1 + 1e-12) << parts;
+    }
+  }
+}
+
+/// A hull would fill them: both sides of each wall are within a millimetre of it.
+TEST(MeshPieces, OfThinWallsAndOfSheetsWithTwoSidesAreNotOne) {
+  constexpr double side_m = 0.2, wall_m = 0.0005;
+  std::vector<Facet> plates = cuboid({0, 0, 0}, {wall_m, side_m, side_m});
+  add_cuboid({side_m - wall_m, 0, 0}, {side_m, side_m, side_m}, plates);
+  EXPECT_EQ(pieces_of(plates).size(), most_pieces) << "two plates";
+  std::vector<Facet> cup = plates;
+  add_cuboid({0, 0, 0}, {side_m, wall_m, side_m}, cup);
+  add_cuboid({0, side_m - wall_m, 0}, {side_m, side_m, side_m}, cup);
+  add_cuboid({0, 0, 0}, {side_m, side_m, wall_m}, cup);
+  EXPECT_EQ(pieces_of(cup).size(), most_pieces) << "a cup";
+  auto box = cuboid({0, 0, 0}, {side_m, side_m, side_m});
+  box.resize(10);
+  for (std::size_t i = 0; i < 10; ++i) box.push_back({box[i][0], box[i][2], box[i][1]});
+  EXPECT_EQ(pieces_of(box).size(), most_pieces) << "an open box, drawn from both sides";
 }
 
 TEST(MeshPieces, LeaveWhatIsHollowFree) {

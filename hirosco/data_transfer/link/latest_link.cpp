@@ -185,7 +185,7 @@ LinkSample LatestReader::read(MutableOctets payload) noexcept {
   return last(payload);
 }
 
-// Into both places word by word: a second copy of what was stored a moment ago would wait for the store buffer. What is
+// Into both places as it comes: a second copy of what was stored a moment ago would wait for the store buffer. What is
 // torn in `payload` is put right by last(); before the first sample it could not be, so accept() fills it then.
 bool LatestReader::copy(std::uint64_t sequence, LinkSample& sample, MutableOctets payload) noexcept {
   const auto get = [this](std::size_t at) { return load(memory_, at, std::memory_order_acquire); };

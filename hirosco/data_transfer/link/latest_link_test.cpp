@@ -331,16 +331,30 @@ TEST_F(RealtimeLink, DamageOfAnyWordIsReadAsNewAtMostOnceAndIsOverWithTheNextSam
   }
 }
 
+/// From its first sample on and from the second on a reader has them by different ways, and both ends move more than a word at once where
+/// they can. Who sends and who reads has its octets where no word begins.
 TEST(RealtimeLinkPayload, MayHaveAnyLength) {
-  for (std::uint32_t octets = 1; octets <= 40; ++octets) {
+  constexpr std::byte untouched{0x5A};
+  for (std::uint32_t octets = 1; octets <= 72; ++octets) {
     LinkMemory memory{octets};
     LatestWriter writer = LatestWriter::make(memory.all(), layout_of(octets)).value();
     LatestReader reader = LatestReader::make(memory.all(), layout_of(octets)).value();
-    std::vector<std::byte> sent(octets, std::byte{0xA5});
-    std::vector<std::byte> seen(octets);
-    writer.write(sent, {}, LinkStatus::Valid);
-    EXPECT_EQ(reader.read(seen).flow, Flow::New);
-    EXPECT_EQ(sent, seen) << octets;
+    std::vector<std::byte> sent(1 + octets), seen(1 + octets + 1);
+    for (unsigned n = 1; n <= 3; ++n) {
+      for (std::uint32_t i = 0; i < octets; ++i) sent[1 + i] = static_cast<std::byte>(37 * n + 11 * i);
+      const Octets sample = Octets{sent}.subspan(1);
+      writer.write(sample, {}, LinkStatus::Valid);
+      for (const Flow flow : {Flow::New, Flow::Old}) {
+        std::ranges::fill(seen, untouched);
+        EXPECT_EQ(reader.read(MutableOctets{seen}.subspan(1, octets)).flow, flow) << octets << ' ' << n;
+        EXPECT_TRUE(std::ranges::equal(sample, Octets{seen}.subspan(1, octets))) << octets << ' ' << n;
+        EXPECT_EQ(seen.front(), untouched) << octets << ' ' << n;
+        EXPECT_EQ(seen.back(), untouched) << octets << ' ' << n;
+      }
+      const Octets stored = Octets{memory.all()}.subspan(link_memory::payload_at);
+      EXPECT_TRUE(std::ranges::equal(sample, stored.first(octets))) << octets << ' ' << n;
+      for (const std::byte filled : stored.subspan(octets)) EXPECT_EQ(filled, std::byte{0}) << octets << ' ' << n;
+    }
   }
 }
 

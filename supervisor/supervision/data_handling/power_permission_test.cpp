@@ -54,8 +54,12 @@ TEST_F(PowerPermission, TheSupervisorComesUpWhateverTheBudgetIs) {
   mission.supervisor.configurations = {own};
   power.set_budget(0.001);
   for (const auto& [from, to] : {std::pair{State::PreOperational, State::SafeOperational},
-                                 std::pair{State::SafeOperational, State::Operational}})
+                                 std::pair{State::SafeOperational, State::Operational}}) {
     EXPECT_EQ(ask(from, to, pus::supervisor_apid, Origin::supervisor()), pus::FailureCode{});
+    for (const Origin& other : {Origin::ground(), Origin::subsystem(hand)})
+      EXPECT_EQ(ask(from, to, pus::supervisor_apid, other), pus::FailureCode::WrongMode) << "it is nobody else's";
+    EXPECT_EQ(ask(from, to, arm, Origin::supervisor()), pus::FailureCode::PowerShort) << "of others it asks for power";
+  }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/resource_management/power_handling.hpp"
 
+#include <algorithm>
+
 #include "supervisor/supervision/testing/parts_rig.hpp"
 
 namespace hirosco::supervisor {
@@ -37,6 +39,27 @@ TEST_F(PowerHandlingTest, OfABudgetThatNoLongerHoldsTheLastOfTheMissionIsShedFir
   lower_to(10);
   EXPECT_TRUE(craft.member(arm)->recovery.going_down());
   EXPECT_FALSE(craft.member(camera)->recovery.going_down());
+}
+
+/// What it finds where it goes on for another one, whose ground has left it nothing.
+TEST_F(PowerHandlingTest, ForASupervisorThatDrawsMoreThanThereIsAllOthersAreShedOnceAndItStaysUp) {
+  parts.power.ledger().set_budget(1);
+  start_all(SafeOperational);
+  set(arm, SafeOperational, 2);
+  start_supervisor();
+  for (int step = 0; step < 5; ++step) {
+    parts.power.watch(clock.now());
+    own_step();
+  }
+  EXPECT_EQ(parts.power.ledger().held_mw(supervisor_apid), 12'000U);
+  EXPECT_TRUE(craft.member(arm)->recovery.going_down());
+  EXPECT_TRUE(craft.member(hand)->recovery.going_down());
+  EXPECT_FALSE(craft.member(camera)->recovery.going_down()) << "the ground link";
+  const auto tells = [](const std::string& line) { return line.find("LOAD_SHED BUDGET") != std::string::npos; };
+  EXPECT_EQ(std::ranges::count_if(story, tells), 1);
+  EXPECT_EQ(parts.own.state(), Operational);
+  EXPECT_EQ(call_own("SET_POWER_BUDGET", 500), "done") << "which is what it is up for";
+  EXPECT_FALSE(parts.power.ledger().overdrawn());
 }
 
 TEST_F(PowerHandlingTest, NothingIsShedWhileTheFlightEnds) {

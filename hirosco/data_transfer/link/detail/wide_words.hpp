@@ -6,8 +6,9 @@
 #include <cstring>
 
 /// Copies between a sample's memory, which another process reads or writes meanwhile, and one's own, 16 octets at a time. The language knows no access of more than
-/// 8 octets that two processes may have to the same place, so it is told to the processor. x86-64 is one that has loads in their order and stores in theirs,
-/// as acquire and release ask for; nobody asks that the 16 octets are of one instant, as the sequence around them says whether all of them are. Each returns how many octets
+/// 8 octets that two processes may have to the same place, so it is told to the processor. x86-64 is one that has loads from ordinary memory (written back, as all memory that
+/// links are made of) in their order and stores in theirs, as acquire and release ask for; nobody asks that the 16 octets are of one instant, as the sequence around them says whether
+/// all of them are. No sanitizer sees the accesses to the sample's memory: whoever calls has looked whether `octets` are there. Each returns how many octets
 /// it has copied: none on another processor, nor where a thread sanitizer looks on, who would not see it. What is left its caller does word by word.
 namespace hirosco::detail {
 
@@ -27,7 +28,9 @@ namespace hirosco::detail {
 #endif
 
 #if HIROSCO_WIDE_WORDS
-using WideWord = long long __attribute__((vector_size(16), aligned(1), may_alias));
+using WideWord = long long __attribute__((vector_size(16)));
+/// What the processor reads or writes of the sample's memory: octets, of which no alignment and no type is claimed.
+using WideOctets = std::byte[sizeof(WideWord)];
 
 /// Nothing that stands before it in the program is done behind it, and nothing behind it before it. The processor does so by itself.
 inline void keep_order() noexcept { asm volatile("" : : : "memory"); }
@@ -42,7 +45,7 @@ inline std::size_t store_wide([[maybe_unused]] const std::byte* from, [[maybe_un
   for (; at + sizeof(WideWord) <= octets; at += sizeof(WideWord)) {
     WideWord value;
     std::memcpy(&value, from + at, sizeof value);
-    asm volatile("movdqu %1, %0" : "=m"(*reinterpret_cast<WideWord*>(to + at)) : "x"(value));
+    asm volatile("movdqu %1, %0" : "=m"(*reinterpret_cast<WideOctets*>(to + at)) : "x"(value));
   }
   keep_order();
 #endif
@@ -57,7 +60,7 @@ inline std::size_t load_wide([[maybe_unused]] const std::byte* from, [[maybe_unu
   keep_order();
   for (; at + sizeof(WideWord) <= octets; at += sizeof(WideWord)) {
     WideWord value;
-    asm volatile("movdqu %1, %0" : "=x"(value) : "m"(*reinterpret_cast<const WideWord*>(from + at)));
+    asm volatile("movdqu %1, %0" : "=x"(value) : "m"(*reinterpret_cast<const WideOctets*>(from + at)));
     std::memcpy(one + at, &value, sizeof value);
     std::memcpy(other + at, &value, sizeof value);
   }
