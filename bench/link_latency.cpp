@@ -90,8 +90,9 @@ class End {
     for (;;) {
       const std::uint32_t now = arrived.load(std::memory_order_acquire);
       if (now == arrived_ || now % 2 != 0) continue;
+      if (reader_->read(payload_).flow != Flow::New) continue;
       arrived_ = now;
-      if (reader_->read(payload_).flow == Flow::New) return;
+      return;
     }
   }
 

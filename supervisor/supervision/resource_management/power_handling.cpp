@@ -125,7 +125,8 @@ void PowerHandling::recall(OctetReader& reader) {
   set_w_ = budget_w;
 }
 
-/// The last of the mission first, each with its network, until the rest fits; the ground link never.
+/// The last of the mission first, each with its network, until the rest fits; the ground link never, nor who measures the budget, without
+/// whom nobody would know of any power.
 void PowerHandling::shed_load() {
   // Told once: a mission may have a plan that does nothing about it.
   if (ledger_.newly_overdrawn())
@@ -137,10 +138,13 @@ void PowerHandling::shed_load() {
       if (!subject.recovery.going_down()) sum_mw += ledger_.held_mw(subject.apid());
     return sum_mw;
   };
+  const auto& measured = craft_.mission.power_measured;
+  const auto stays = [&](const Member& subject) {
+    return craft_.is_ground_link(subject) || (measured && measured->apid == subject.apid());
+  };
   for (auto subject = craft_.members.rbegin(); subject != craft_.members.rend() && stays_mw() > ledger_.declared_mw();
        ++subject) {
-    if (craft_.is_ground_link(*subject) || subject->recovery.going_down() || ledger_.held_mw(subject->apid()) == 0)
-      continue;
+    if (stays(*subject) || subject->recovery.going_down() || ledger_.held_mw(subject->apid()) == 0) continue;
     reactions_.react(*subject, "LOAD_SHED", Severity::High);
   }
 }

@@ -41,6 +41,15 @@ TEST_F(PowerHandlingTest, OfABudgetThatNoLongerHoldsTheLastOfTheMissionIsShedFir
   EXPECT_FALSE(craft.member(camera)->recovery.going_down());
 }
 
+TEST_F(PowerHandlingTest, WhoMeasuresTheBudgetIsNotShedForIt) {
+  mission.power_measured = descriptor::MeasuredPower{.name = "HAND.BUDGET", .age = {}, .apid = hand, .at = {}};
+  start_all(SafeOperational);
+  set(arm, SafeOperational, 2);
+  lower_to(10);
+  EXPECT_TRUE(craft.member(arm)->recovery.going_down());
+  EXPECT_FALSE(craft.member(hand)->recovery.going_down());
+}
+
 /// What it finds where it goes on for another one, whose ground has left it nothing.
 TEST_F(PowerHandlingTest, ForASupervisorThatDrawsMoreThanThereIsAllOthersAreShedOnceAndItStaysUp) {
   parts.power.ledger().set_budget(1);
