@@ -205,7 +205,8 @@ void CommandedFloatingArm::bind_contact() {
 }
 
 void CommandedFloatingArm::bind_ways_out() {
-  if (offers("RETREAT") || offers("SET_CONTACT")) use_event(retracted_);  // who meets somebody may back off, too
+  // Who meets somebody may back off, too, and without RETREAT tells it where there is that event.
+  if (offers("RETREAT") || own_descriptor().find_event(retracted_.name()) != nullptr) use_event(retracted_);
   if (offers("RETREAT"))
     on_function("RETREAT", [this](double distance, Call call) { return leave(Out::WayBack, distance, call); });
   if (!robot_arm::AbortPath::declared(own_descriptor())) return;

@@ -42,12 +42,18 @@ TEST_F(PowerHandlingTest, OfABudgetThatNoLongerHoldsTheLastOfTheMissionIsShedFir
 }
 
 TEST_F(PowerHandlingTest, WhoMeasuresTheBudgetIsNotShedForIt) {
-  mission.power_measured = descriptor::MeasuredPower{.name = "HAND.BUDGET", .age = {}, .apid = hand, .at = {}};
-  start_all(SafeOperational);
-  set(arm, SafeOperational, 2);
-  lower_to(10);
-  EXPECT_TRUE(craft.member(arm)->recovery.going_down());
-  EXPECT_FALSE(craft.member(hand)->recovery.going_down());
+  const auto shed = [this](bool measures) {
+    if (measures)
+      mission.power_measured = descriptor::MeasuredPower{.name = "HAND.BUDGET", .age = {}, .apid = hand, .at = {}};
+    start_all(SafeOperational);
+    set(arm, PreOperational);  // draws nothing
+    lower_to(30);
+    EXPECT_TRUE(parts.power.ledger().overdrawn());
+    return craft.member(hand)->recovery.going_down();
+  };
+  EXPECT_FALSE(shed(true));
+  mission.power_measured.reset();
+  EXPECT_TRUE(shed(false));
 }
 
 /// What it finds where it goes on for another one, whose ground has left it nothing.
