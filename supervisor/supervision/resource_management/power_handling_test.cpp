@@ -42,18 +42,16 @@ TEST_F(PowerHandlingTest, OfABudgetThatNoLongerHoldsTheLastOfTheMissionIsShedFir
 }
 
 TEST_F(PowerHandlingTest, WhoMeasuresTheBudgetIsNotShedForIt) {
-  const auto shed = [this](bool measures) {
-    if (measures)
-      mission.power_measured = descriptor::MeasuredPower{.name = "HAND.BUDGET", .age = {}, .apid = hand, .at = {}};
-    start_all(SafeOperational);
-    set(arm, PreOperational);  // draws nothing
-    lower_to(30);
-    EXPECT_TRUE(parts.power.ledger().overdrawn());
-    return craft.member(hand)->recovery.going_down();
-  };
-  EXPECT_FALSE(shed(true));
-  mission.power_measured.reset();
-  EXPECT_TRUE(shed(false));
+  start_all(SafeOperational);
+  set(arm, PreOperational);  // draws nothing
+  auto& measured = craft.mission.power_measured;
+  measured = descriptor::MeasuredPower{.name = "HAND.BUDGET", .age = {}, .apid = hand, .at = {}};
+  lower_to(30);
+  EXPECT_TRUE(parts.power.ledger().overdrawn());
+  EXPECT_FALSE(craft.member(hand)->recovery.going_down());
+  measured->apid = camera;
+  parts.power.watch(clock.now());
+  EXPECT_TRUE(craft.member(hand)->recovery.going_down()) << "who does not is";
 }
 
 /// What it finds where it goes on for another one, whose ground has left it nothing.
