@@ -170,9 +170,9 @@ void Descriptors::ask(std::uint8_t subtype, Octets data, const MemoryHandle& tex
   for (const auto& [apid, asked] : std::map{asked_})
     parts_.desk.send(
         apid, DescriptorService::service_type, subtype, data, text,
-        [this, apid = apid, round = round_](bool success, const std::string& why) {
+        [this, member = apid, round = round_](bool success, const std::string& why) {
           if (round != round_) return;
-          const auto found = asked_.find(apid);
+          const auto found = asked_.find(member);
           if (found == asked_.end()) return;
           found->second.answer = success ? Answer::Yes : why == "no answer" ? Answer::None : Answer::No;
           found->second.why = why;
