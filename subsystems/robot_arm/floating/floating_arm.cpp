@@ -221,9 +221,14 @@ void FloatingArm::watch_clearance(const JointVector& rates, bool moves) noexcept
   raise(too_near_, ahead->distance_m, PairNames{std::string_view{ahead->names}});
   const bool held = guidance_.holds(), led = guidance_.floats();
   end_motion(Trouble::too_near, robot_arm::millimetres(ahead->distance_m), ahead->names);
-  if (held) braked_ = true;
-  else if (led) guidance_.halt(), contact_.stand_apart();  // whoever leads it pushes on meanwhile
-  else guidance_.stop(rates);
+  if (held) {
+    braked_ = true;
+  } else if (led) {
+    guidance_.halt();
+    contact_.stand_apart();  // whoever leads it pushes on meanwhile
+  } else {
+    guidance_.stop(rates);
+  }
 }
 
 /// Whoever asked for a motion is told that it ended. Who stood goes nowhere for it: it is not he who went there; nor does who backs off and meets somebody else.
