@@ -327,6 +327,16 @@ def a_device_whose_time_runs_too_fast(w):
 
 
 @case(TIME_RULE)
+def a_device_that_waits_for_commands_that_come_no_more(w):
+    counted(w, device=38, until=2021 * MS)
+
+
+@case(TIME_RULE, found="robot made")
+def a_device_that_loses_more_than_it_may_wait(w):
+    counted(w, device=36, until=2021 * MS)
+
+
+@case(TIME_RULE)
 def one_cycle_more_or_less(w):
     counted(w, robot=41, until=2021 * MS)
 

@@ -260,7 +260,7 @@ TEST_F(PlanStepKinds, ShutDownNetworkLeavesTheGroundLinkThoughALinkJoinsIt) {
 struct Recalling : PlanStepKinds {
   PlayedDesk desk;
   std::string end;
-  void recall(State in) {
+  void recall_in(State in) {
     const ProcedureStep made = step("recall", arm, {static_cast<std::int64_t>(in)});
     made.kind->run(made, means_with(desk),
                    [this](bool success, const std::string& why) { end = success ? "done" : why; });
@@ -276,7 +276,7 @@ struct Recalling : PlanStepKinds {
 
 TEST_F(Recalling, SendsWhatIsWantedOneAfterTheOther) {
   want_two_settings();
-  recall(PreOperational);
+  recall_in(PreOperational);
   EXPECT_THAT(desk.sent, ElementsAre("10 TC[5,6] 0 ms"));
   desk.answer(true);
   EXPECT_EQ(desk.sent.size(), 2U);
@@ -287,17 +287,17 @@ TEST_F(Recalling, SendsWhatIsWantedOneAfterTheOther) {
 
 TEST_F(Recalling, EndsWithTheFirstThatIsRefused) {
   want_two_settings();
-  recall(PreOperational);
+  recall_in(PreOperational);
   desk.answer(false, "wrong state");
   EXPECT_EQ(end, "wrong state");
   EXPECT_EQ(desk.sent.size(), 1U);
 }
 
 TEST_F(Recalling, IsDoneAtOnceWhereThereIsNothingToSend) {
-  recall(PreOperational);
+  recall_in(PreOperational);
   EXPECT_EQ(std::exchange(end, {}), "done") << "nothing is wanted of it";
   want_two_settings();
-  recall(SafeOperational);
+  recall_in(SafeOperational);
   EXPECT_EQ(end, "done") << "nothing in that state";
   EXPECT_THAT(desk.sent, IsEmpty());
 }
