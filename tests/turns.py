@@ -7,10 +7,11 @@
     turns.py tell TURN                one line for people
     turns.py left TURN                a regular expression for ctest -E: all tests that this turn leaves out
     turns.py targets BUILD [ctest options]   what ninja has to build before those tests
-    turns.py kept BUILD...            every name of the table is a test of one of these build folders, once, and not `long`
+    turns.py kept BUILD...            every name of the table is a test of one of these build folders, once, and not `long`; what is `long`
+                                      stands in the README, by its name or in a row whose command takes it
 
 TURN is a name of the table, or `whole`, which leaves out nothing."""
-import json, pathlib, re, subprocess, sys, time
+import json, pathlib, re, shlex, subprocess, sys, time
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -58,6 +59,29 @@ def faults(turns, known):
     return told
 
 
+def commands(readme):
+    """What each `ctest` of the README chooses by: [{option: pattern}]. One that takes whatever is `long` names nobody."""
+    found = []
+    for span in re.findall(r"`ctest ([^`]+)`", readme):
+        words = shlex.split(span)
+        chosen = {option: pattern for option, pattern in zip(words, words[1:]) if option in ("-R", "-L", "-LE")}
+        if chosen.keys() - {"-LE"} and chosen != {"-L": "long"}:
+            found.append(chosen)
+    return found
+
+
+def takes(chosen, test, its_labels):
+    of = lambda pattern: any(re.search(pattern, label) for label in its_labels)
+    return (re.search(chosen.get("-R", ""), test) is not None and ("-L" not in chosen or of(chosen["-L"]))
+            and not ("-LE" in chosen and of(chosen["-LE"])))
+
+
+def unnamed(known, readme):
+    rows, words = commands(readme), set(re.findall(r"`(\w+)`", readme))
+    return [f"{test} is `long`, and no row of README.md names or takes it" for test, its_labels in sorted(known.items())
+            if "long" in its_labels and test not in words and not any(takes(row, test, its_labels) for row in rows)]
+
+
 def labels(test):
     return next((p["value"] for p in test.get("properties", ()) if p["name"] == "LABELS"), [])
 
@@ -77,11 +101,13 @@ def main(what, *rest):
         folder = pathlib.Path(rest[0])
         print(*targets_of(tests_of(folder, rest[1:]), folder))
     elif what == "kept":
-        told = faults(turns, {test["name"]: labels(test) for folder in rest for test in tests_of(folder)})
-        planted = faults({"a": ["x", "y"], "b": ["x", "z"]}, {"x": [], "y": ["long"]})
+        known = {test["name"]: labels(test) for folder in rest for test in tests_of(folder)}
+        told = faults(turns, known) + unnamed(known, (HERE.parent / "README.md").read_text())
+        planted = (faults({"a": ["x", "y"], "b": ["x", "z"]}, {"x": [], "y": ["long"]}) +
+                   unnamed({"x": ["long"], "y": ["long"], "short": []}, "`ctest -L long` `ctest -L long -R '^y$'`"))
         print(*told, sep="\n", end="\n" if told else "")
-        print(f"{sum(map(len, turns.values()))} tests in {len(turns)} turns; of four planted names {len(planted)} faults found")
-        sys.exit(1 if told or len(planted) != 3 else 0)
+        print(f"{sum(map(len, turns.values()))} tests in {len(turns)} turns; of four planted faults {len(planted)} found")
+        sys.exit(1 if told or len(planted) != 4 else 0)
     else:
         sys.exit(__doc__)
 
