@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/figures.hpp"
-#include "hirosco/pus/service/service.hpp"
+#include "hirosco/pus/service/service_table.hpp"
 #include "hirosco/utilities/crc16.hpp"
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/os/thread.hpp"
@@ -52,8 +52,8 @@ int run(int repeats, int rounds) {
   const LinkGraph links{mission};
   const auto packet = supervisor::testing::telecommand(supervisor::testing::arm, 17, 1, {});
   std::array<Counting, 6> services{Counting{3}, Counting{5}, Counting{8}, Counting{20}, Counting{128}, Counting{17}};
-  std::array<pus::Service*, 6> list{};
-  for (std::size_t i = 0; i < list.size(); ++i) list[i] = &services[i];
+  pus::ServiceTable table;
+  for (Counting& service : services) table.add(service);
   Series checksum{"checksum of a ping", {}}, whole{"ping to its service", {}};
   std::uint64_t kept = 0, refused = 0;
   for (int repeat = 0; repeat < repeats; ++repeat) {
@@ -71,9 +71,9 @@ int run(int repeats, int rounds) {
           *telecommand, Origin::ground(),
           {.mission = mission, .mode = mission.modes[0], .links = links, .state = descriptor::State::Operational});
       if (!decision) return void(++refused);
-      const auto found = std::ranges::find(list, telecommand->service(), &pus::Service::type);
-      if (found == list.end()) return void(++refused);
-      (*found)->handle(*telecommand, pus::request_of(*telecommand));
+      pus::Service* const service = table.find(telecommand->service());
+      if (service == nullptr) return void(++refused);
+      service->handle(*telecommand, pus::request_of(*telecommand));
     }));
   }
   if (refused != 0 || services[5].seen == 0 || kept == 1) return EXIT_FAILURE;

@@ -10,8 +10,7 @@ namespace {
 
 constexpr std::uint8_t pus_version = 2;
 constexpr std::uint8_t unsegmented = 3;
-constexpr std::size_t error_control_octets = 2;
-constexpr std::size_t telecommand_data_at = telecommand_overhead_octets - error_control_octets;
+constexpr std::uint16_t secondary_header_flag = 0x0800;
 constexpr std::size_t telemetry_data_at = telemetry_overhead_octets - error_control_octets;
 constexpr std::size_t telemetry_time_at = 13;
 
@@ -23,11 +22,17 @@ constexpr std::size_t telemetry_time_at = 13;
 }
 [[nodiscard]] std::uint16_t apid_of(Octets packet) noexcept { return u16_at(packet, 0) & 0x07FF; }
 [[nodiscard]] std::uint16_t count_of(Octets packet) noexcept { return u16_at(packet, 2) & 0x3FFF; }
+[[nodiscard]] std::uint8_t sequence_flags_of(Octets packet) noexcept { return u8_at(packet, 2) >> 6; }
+
+/// Another version, telemetry or idle, by the first two octets.
+[[nodiscard]] bool is_no_telecommand(std::uint16_t identification) noexcept {
+  return identification >> 12 != 1 || (identification & 0x07FF) == idle_apid;
+}
 
 void put_primary_header(OctetWriter& writer, bool telecommand, std::uint16_t apid, std::uint16_t count,
                         std::size_t total) noexcept {
   const unsigned type = telecommand ? 0x1000 : 0;
-  writer.put(static_cast<std::uint16_t>(type | 0x0800U | apid));
+  writer.put(static_cast<std::uint16_t>(type | secondary_header_flag | apid));
   writer.put(static_cast<std::uint16_t>(unsegmented << 14 | (count & 0x3FFFU)));
   writer.put(static_cast<std::uint16_t>(total - primary_header_octets - 1));
 }
@@ -58,9 +63,9 @@ Result<PrimaryHeader> read_primary_header(Octets packet) noexcept {
   const std::uint16_t identification = u16_at(packet, 0);
   header.version = static_cast<std::uint8_t>(identification >> 13);
   header.telecommand = (identification & 0x1000) != 0;
-  header.secondary_header = (identification & 0x0800) != 0;
+  header.secondary_header = (identification & secondary_header_flag) != 0;
   header.apid = identification & 0x07FF;
-  header.sequence_flags = static_cast<std::uint8_t>(u16_at(packet, 2) >> 14);
+  header.sequence_flags = sequence_flags_of(packet);
   header.sequence_count = count_of(packet);
   header.data_length = u16_at(packet, 4);
   header.request_id = static_cast<std::uint32_t>(identification) << 16 | u16_at(packet, 2);
@@ -68,36 +73,21 @@ Result<PrimaryHeader> read_primary_header(Octets packet) noexcept {
 }
 
 bool to_be_discarded(Octets packet) noexcept {
-  const auto header = read_primary_header(packet);
-  return !header || header->version != 0 || !header->telecommand || header->apid == idle_apid;
+  return packet.size() < primary_header_octets || is_no_telecommand(u16_at(packet, 0));
 }
 
 std::expected<TelecommandView, FailureNotice> TelecommandView::parse(Octets packet) noexcept {
   using enum FailureCode;
   const auto refuse = [](FailureCode code) { return std::unexpected{FailureNotice{code}}; };
   if (to_be_discarded(packet)) return refuse(IllegalPrimaryHeader);
-  const PrimaryHeader header = *read_primary_header(packet);
   if (packet.size() < telecommand_overhead_octets || packet.size() > max_telecommand_octets ||
       announced_octets(packet) != packet.size())
-    return std::unexpected{FailureNotice{IllegalLength}.with(header.data_length)};
-  if (!header.secondary_header) return refuse(IllegalPrimaryHeader);
-  if (header.sequence_flags != unsegmented) return refuse(IllegalSequenceFlags);
+    return std::unexpected{FailureNotice{IllegalLength}.with(u16_at(packet, 4))};
+  if ((u16_at(packet, 0) & secondary_header_flag) == 0) return refuse(IllegalPrimaryHeader);
+  if (sequence_flags_of(packet) != unsegmented) return refuse(IllegalSequenceFlags);
   if (crc16(packet) != 0) return refuse(ErrorControl);
   if (u8_at(packet, 6) >> 4 != pus_version) return refuse(IllegalPusVersion);
   return TelecommandView{packet};
-}
-
-std::uint16_t TelecommandView::apid() const noexcept { return apid_of(packet_); }
-std::uint16_t TelecommandView::sequence_count() const noexcept { return count_of(packet_); }
-std::uint32_t TelecommandView::request_id() const noexcept {
-  return static_cast<std::uint32_t>(u16_at(packet_, 0)) << 16 | u16_at(packet_, 2);
-}
-std::uint8_t TelecommandView::ack() const noexcept { return u8_at(packet_, 6) & 0x0F; }
-std::uint8_t TelecommandView::service() const noexcept { return u8_at(packet_, 7); }
-std::uint8_t TelecommandView::subtype() const noexcept { return u8_at(packet_, 8); }
-std::uint16_t TelecommandView::source() const noexcept { return u16_at(packet_, 9); }
-Octets TelecommandView::application_data() const noexcept {
-  return packet_.subspan(telecommand_data_at, packet_.size() - telecommand_overhead_octets);
 }
 
 Result<TelemetryView> TelemetryView::parse(Octets packet) noexcept {

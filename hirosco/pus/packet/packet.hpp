@@ -19,6 +19,7 @@ namespace hirosco::pus {
 using descriptor::supervisor_apid;
 
 inline constexpr std::size_t primary_header_octets = 6;
+inline constexpr std::size_t error_control_octets = 2;
 inline constexpr std::size_t telecommand_overhead_octets = 13;  ///< headers and error control
 inline constexpr std::size_t telemetry_overhead_octets = 22;  ///< headers, time and error control
 inline constexpr std::size_t max_telecommand_octets = 4096;
@@ -57,18 +58,25 @@ class TelecommandView {
   /// What of acceptance the packet itself shows, in the order of docs/interfaces/packets.md: the notice is what TM[1,2] must say.
   [[nodiscard]] static std::expected<TelecommandView, FailureNotice> parse(Octets packet) noexcept;
 
-  [[nodiscard]] std::uint16_t apid() const noexcept;
-  [[nodiscard]] std::uint16_t sequence_count() const noexcept;
-  [[nodiscard]] std::uint32_t request_id() const noexcept;
-  [[nodiscard]] std::uint8_t ack() const noexcept;
-  [[nodiscard]] std::uint8_t service() const noexcept;
-  [[nodiscard]] std::uint8_t subtype() const noexcept;
-  [[nodiscard]] std::uint16_t source() const noexcept;
-  [[nodiscard]] Octets application_data() const noexcept;
+  [[nodiscard]] std::uint16_t apid() const noexcept { return u16(0) & 0x07FF; }
+  [[nodiscard]] std::uint16_t sequence_count() const noexcept { return u16(2) & 0x3FFF; }
+  [[nodiscard]] std::uint32_t request_id() const noexcept { return std::uint32_t{u16(0)} << 16 | u16(2); }
+  [[nodiscard]] std::uint8_t ack() const noexcept { return u8(6) & 0x0F; }
+  [[nodiscard]] std::uint8_t service() const noexcept { return u8(7); }
+  [[nodiscard]] std::uint8_t subtype() const noexcept { return u8(8); }
+  [[nodiscard]] std::uint16_t source() const noexcept { return u16(9); }
+  [[nodiscard]] Octets application_data() const noexcept {
+    return packet_.subspan(telecommand_data_at, packet_.size() - telecommand_overhead_octets);
+  }
   [[nodiscard]] Octets packet() const noexcept { return packet_; }
 
  private:
+  static constexpr std::size_t telecommand_data_at = telecommand_overhead_octets - error_control_octets;
   explicit TelecommandView(Octets packet) noexcept : packet_{packet} {}
+  [[nodiscard]] std::uint8_t u8(std::size_t at) const noexcept { return std::to_integer<std::uint8_t>(packet_[at]); }
+  [[nodiscard]] std::uint16_t u16(std::size_t at) const noexcept {
+    return static_cast<std::uint16_t>(u8(at) << 8 | u8(at + 1));
+  }
   Octets packet_;
 };
 

@@ -99,7 +99,7 @@ std::optional<Failure> Configurations::apply(const descriptor::Configuration& co
   {
     const LoopsAtRest at_rest{parts_.loops.all()};
     parts_.loops.follow(&configuration);
-    for (pus::Service* service : parts_.services)
+    for (pus::Service* service : parts_.services.all())
       if (parts_.descriptor.offers(service->type(), &configuration))
         if (const auto set_up = service->configure(configuration); !set_up) return failure_of("", set_up.error());
   }
@@ -164,7 +164,7 @@ void Configurations::release() {
   {
     const LoopsAtRest at_rest{parts_.loops.all()};
     parts_.loops.follow(nullptr);
-    for (pus::Service* service : parts_.services) service->release();
+    for (pus::Service* service : parts_.services.all()) service->release();
   }
   parts_.at.configuration = nullptr;
   parts_.vital.configuration.store(0, std::memory_order_relaxed);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "hirosco/pus/service/service_table.hpp"
 #include "hirosco/subsystem/service_loop/bumpless.hpp"
 #include "hirosco/subsystem/service_loop/introduced_ports.hpp"
 #include "hirosco/subsystem/service_loop/link_ends.hpp"
@@ -32,7 +33,7 @@ class Configurations {
     IntroducedPorts& ports;
     LinkEnds& links;
     OwnLoops& loops;
-    const std::vector<pus::Service*>& services;
+    const pus::ServiceTable& services;
     pus::ConfiguredHousekeeping& housekeeping;
     SelfTests& self_tests;
     OpenCalls& calls;

@@ -76,10 +76,10 @@ GenericSubsystem::GenericSubsystem(Subsystem& author, descriptor::SubsystemDescr
   for (const pus::ServiceKind* kind : pus::standard_services()) {
     if (kind->make == nullptr) continue;
     made_services_.push_back(kind->make(loops_.home_of(kind->type)));
-    services_.push_back(made_services_.back().get());
+    services_.add(*made_services_.back());
   }
   descriptor_changes_.tell();
-  for (pus::Service* service : services_)
+  for (pus::Service* service : services_.all())
     if (OwnLoop* const loop = loops_.of(service->type())) loop->host(*service);
   author_.framework_ = this;
   cycle_.functions().resize(descriptor_.functions.size());
@@ -146,7 +146,7 @@ TimePoint GenericSubsystem::step_services(TimePoint now) {
   if (reports_.empty()) subscriber_.step(now);
   foreign_.step(now, at_.state == State::SafeOperational || at_.state == State::Operational);
   author_.service(now);
-  for (pus::Service* service : loops_.in_none(services_)) service->step(now);
+  for (pus::Service* service : loops_.in_none(services_.all())) service->step(now);
   values_.apply_at_rest();
   reports_.flush();
   reports_.tell_losses(now, rings_, loops_.lost());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hirosco/data_transfer/channel/channel.hpp"
+#include "hirosco/pus/service/service_table.hpp"
 #include "hirosco/pus/st03_housekeeping/configured_housekeeping.hpp"
 #include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/pus/st130_descriptor/descriptor_service.hpp"
@@ -135,7 +136,7 @@ class GenericSubsystem final : private pus::FunctionExecutor, private pus::SelfT
   pus::ConfiguredHousekeeping housekeeping_service_;
   pus::DescriptorService descriptor_service_;
   std::vector<std::unique_ptr<pus::Service>> made_services_;  ///< by their kinds
-  std::vector<pus::Service*> services_;  ///< the framework's, then the author's
+  pus::ServiceTable services_;  ///< the framework's, then the author's
   Requester requester_;
   Subscriber subscriber_;
   ForeignParameters foreign_;

@@ -56,18 +56,17 @@ void Incoming::dispatch(const Message& message) {
     return parts_.reports.verification().routing_failed(request, pus::FailureNotice{pus::FailureCode::UnknownApid});
   if (message.epoch != 0 && message.epoch != parts_.permit.page().mode_epoch.load(std::memory_order_acquire))
     return parts_.reports.verification().rejected(request, pus::FailureNotice{pus::FailureCode::WrongMode});
-  const auto found = std::ranges::find(parts_.services, telecommand->service(), &pus::Service::type);
-  if (found == parts_.services.end() || !parts_.descriptor.offers(telecommand->service(), parts_.at.configuration))
+  pus::Service* const service = parts_.services.find(telecommand->service());
+  if (service == nullptr || !parts_.descriptor.offers(telecommand->service(), parts_.at.configuration))
     return parts_.reports.verification().rejected(
         request, pus::FailureNotice{pus::FailureCode::UnknownService}.with(telecommand->service()));
-  pus::Service& service = **found;
-  if (!service.in_force()) return parts_.reports.verification().rejected(request, parts_.at.wrong_state());
-  if (OwnLoop* const loop = parts_.loops.of(service.type())) {
+  if (!service->in_force()) return parts_.reports.verification().rejected(request, parts_.at.wrong_state());
+  if (OwnLoop* const loop = parts_.loops.of(service->type())) {
     if (loop->offer(message.packet, message.epoch)) return;
     return parts_.reports.verification().rejected(request, pus::FailureNotice{pus::FailureCode::QueueFull});
   }
-  service.accompany(message.memory);
-  service.handle(*telecommand, request);
+  service->accompany(message.memory);
+  service->handle(*telecommand, request);
 }
 
 }  // namespace hirosco

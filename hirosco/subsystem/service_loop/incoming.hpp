@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "hirosco/pus/service/service_table.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "hirosco/subsystem/service_loop/own_loops.hpp"
 #include "hirosco/subsystem/service_loop/parameter_values.hpp"
@@ -27,7 +28,7 @@ class Incoming {
     PermitPages& permit;
     OwnLoops& loops;
     ParameterValues& values;
-    const std::vector<pus::Service*>& services;
+    const pus::ServiceTable& services;
     Requester& requester;
     Subscriber& subscriber;
     Reports& reports;

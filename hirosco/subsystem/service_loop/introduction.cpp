@@ -105,7 +105,7 @@ void Introduction::provide(CustomService& service) {
   service.join(loop != nullptr ? static_cast<pus::ServiceHome&>(*loop) : parts_.home);
   if (loop != nullptr) loop->host(service);
   own_services_.push_back(&service);
-  parts_.services.push_back(&service);
+  parts_.services.add(service);
 }
 
 void Introduction::bind_function(std::string_view name, BoundHandler handler) {

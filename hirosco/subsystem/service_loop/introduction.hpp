@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "hirosco/pus/service/service_table.hpp"
 #include "hirosco/subsystem/author/custom_service.hpp"
 #include "hirosco/subsystem/author/subsystem.hpp"
 #include "hirosco/subsystem/cycle/cycle.hpp"
@@ -35,7 +36,7 @@ class Introduction {
     ResourceMeter& resources;
     IntroducedPorts& ports;
     OwnLoops& loops;
-    std::vector<pus::Service*>& services;  ///< the author's own come behind the framework's
+    pus::ServiceTable& services;  ///< the author's own come behind the framework's
     Requester& requester;
     Subscriber& subscriber;
     ForeignParameters& foreign;

@@ -131,7 +131,7 @@ TimePoint OwnLoop::step(TimePoint planned) {
     waiting_.fetch_sub(1, std::memory_order_acq_rel);
   }
   const TimePoint now = parts_.clock.now();
-  for (pus::Service* service : services_) service->step(now);
+  for (pus::Service* service : services_.all()) service->step(now);
   steps_.fetch_add(1, std::memory_order_acq_rel);
   in_step_.store(false, std::memory_order_release);
   const Duration period = in_force().period;
@@ -167,11 +167,11 @@ void OwnLoop::handle(Octets record) {
                            descriptor().find_configuration(static_cast<std::uint8_t>(configuration))))
     return verification_.rejected(request,
                                   pus::FailureNotice{pus::FailureCode::UnknownService}.with(telecommand->service()));
-  const auto found = std::ranges::find(services_, telecommand->service(), &pus::Service::type);
-  if (found == services_.end() || !(*found)->in_force() || !told_state())
+  pus::Service* const service = services_.find(telecommand->service());
+  if (service == nullptr || !service->in_force() || !told_state())
     return verification_.rejected(
         request, pus::FailureNotice{pus::FailureCode::WrongState}.with(static_cast<std::uint8_t>(state())));
-  (*found)->handle(*telecommand, request);
+  service->handle(*telecommand, request);
 }
 
 bool OwnLoop::mode_in_force() const noexcept {

@@ -13,7 +13,7 @@
 
 #include "hirosco/parameter/dictionary.hpp"
 #include "hirosco/parameter/write_queue.hpp"
-#include "hirosco/pus/service/service.hpp"
+#include "hirosco/pus/service/service_table.hpp"
 #include "hirosco/pus/st01_verification/verification.hpp"
 #include "hirosco/subsystem/cycle/loop_meter.hpp"
 #include "hirosco/subsystem/cycle/queue_fill.hpp"
@@ -49,7 +49,7 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   // --- the subsystem's service loop ----------------------------------------------------------------------------------
   [[nodiscard]] const descriptor::ServiceLoop& declared() const noexcept { return parts_.declared; }
   /// Before the first step.
-  void host(pus::Service& service) { services_.push_back(&service); }
+  void host(pus::Service& service) { services_.add(service); }
   /// A telecommand for one of its services, checked as far as the subsystem checks all of them. False: as many wait as may.
   [[nodiscard]] bool offer(Octets packet, std::uint32_t mode_epoch) noexcept;
   /// Period, priority and budget from now on, those of a configuration or its own; `wanted` outlives the loop. What waits in it stays.
@@ -133,7 +133,7 @@ class OwnLoop final : public pus::ServiceHome, private pus::TelemetrySink {
   std::atomic<std::int64_t> due_ns_;  ///< of the step that a change made due sooner; the greatest: none was
   Semaphore woken_;
   Mutex mutex_;
-  std::vector<pus::Service*> services_;
+  pus::ServiceTable services_;
   RecordRing in_;
   RecordRing out_;
   FillMark in_mark_, out_mark_;  ///< the service loop's

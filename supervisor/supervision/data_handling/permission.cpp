@@ -4,7 +4,6 @@
 #include "supervisor/supervision/data_handling/permission.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "hirosco/descriptor/model/supervisor_functions.hpp"
@@ -362,7 +361,7 @@ constexpr unsigned all_states = 0x03FF;
 /// towards safety, nothing else.
 [[nodiscard]] Notice crosses_no_change(const Asked& asked) {
   const Situation& situation = asked.situation;
-  if ((!situation.changing && !situation.rereading) || !asked.bound) return std::nullopt;
+  if (!situation.changing && !situation.rereading) return std::nullopt;
   if (!acts(asked)) return std::nullopt;
   FailureNotice notice{FailureCode::NotPermittedNow};
   if (situation.rereading) return notice.because({ErrorCode::NotPermitted, 0, "its descriptor is being read again"});
@@ -371,7 +370,6 @@ constexpr unsigned all_states = 0x03FF;
 
 /// Does the mode open it?
 [[nodiscard]] Notice is_in_mode(const Asked& asked) {
-  if (!asked.bound) return std::nullopt;
   const std::uint8_t service = asked.service;
   const bool sets = is_a_write(asked);
   if (sets)
@@ -392,13 +390,22 @@ constexpr unsigned all_states = 0x03FF;
 /// Is it permitted in the addressee's state?
 [[nodiscard]] Notice is_in_state(const Asked& asked) {
   const auto state = asked.situation.state;
-  if (!asked.bound || !state || (states_of(asked) >> static_cast<int>(*state) & 1) != 0) return std::nullopt;
+  if (!state || (states_of(asked) >> static_cast<int>(*state) & 1) != 0) return std::nullopt;
   return FailureNotice{FailureCode::WrongState}.with(static_cast<std::uint8_t>(*state));
 }
 
-/// In the order in which they are asked: the first that refuses says why.
-constexpr std::array rules{is_known,          is_the_senders, spares_safety, is_provided_for,
-                           crosses_no_change, is_in_mode,     is_in_state};
+/// What the first rule says that refuses. A look at what is essential has passed with three of them.
+[[nodiscard]] Notice refusal_of(const Asked& asked) {
+  if (auto refused = is_known(asked)) return refused;
+  if (auto refused = is_the_senders(asked)) return refused;
+  if (auto refused = spares_safety(asked)) return refused;
+  if (asked.call)
+    if (auto refused = is_provided_for(asked)) return refused;
+  if (!asked.bound) return std::nullopt;
+  if (auto refused = crosses_no_change(asked)) return refused;
+  if (auto refused = is_in_mode(asked)) return refused;
+  return is_in_state(asked);
+}
 
 }  // namespace
 
@@ -412,25 +419,25 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
   const descriptor::SubsystemDescriptor* subsystem = situation.mission.find_member(telecommand.apid());
   if (subsystem == nullptr) return std::unexpected{FailureNotice{FailureCode::UnknownApid}};
   Asked asked{telecommand, origin, situation, *subsystem, called_function(telecommand)};
-  asked.request =
-      asked.call ? subsystem->find_function(asked.call->name) : subsystem->find_request(asked.service, asked.subtype);
+  if (asked.call) asked.request = subsystem->find_function(asked.call->name);
+  else if (asked.kind == nullptr) asked.request = subsystem->find_request(asked.service, asked.subtype);
   asked.essential = is_essential(asked);
   asked.bound = is_bound(asked);
   if (!situation.state && !starts(asked))
     return std::unexpected{situation.down ? is_down() : FailureNotice{FailureCode::UnknownApid}};
-  for (const auto rule : rules)
-    if (const auto refused = rule(asked)) return std::unexpected{*refused};
+  if (const auto refused = refusal_of(asked)) return std::unexpected{*refused};
+  Permitted permitted{.essential = asked.essential, .acts = asked.bound && acts(asked)};
+  if (!asked.call) return permitted;
   const auto* const wanted = following(asked);
   const bool reserves = (up_to_safe(asked) || wanted != nullptr) && situation.power != nullptr;
   // Until it has gone over it draws what it draws.
   const double reserves_w =
       wanted == nullptr ? demand_w(*subsystem, situation) : std::max(wanted->power_w, demand_w(*subsystem, situation));
-  return Permitted{.essential = asked.essential,
-                   .releases_stop = up_to_operational(asked),
-                   .acts = asked.bound && acts(asked),
-                   .starts = starts(asked),
-                   .stops_the_craft = stops_the_craft(asked),
-                   .reserves_w = reserves ? reserves_w : 0};
+  permitted.releases_stop = up_to_operational(asked);
+  permitted.starts = starts(asked);
+  permitted.stops_the_craft = stops_the_craft(asked);
+  permitted.reserves_w = reserves ? reserves_w : 0;
+  return permitted;
 }
 
 }  // namespace hirosco::supervisor

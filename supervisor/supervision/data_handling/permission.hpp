@@ -18,7 +18,7 @@
 #include "supervisor/supervision/telecommand/origin.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
-/// Whether a telecommand may be executed, by sender, state, mode and what its addressee needs (paper 4.3): rules in a table, and
+/// Whether a telecommand may be executed, by sender, state, mode and what its addressee needs (paper 4.3): rules one after the other, and
 /// nothing else is looked at. `Judgement::judge()` asks them, and besides whether the sender may speak under that name and is
 /// sound, and whether a recovery or the end of the flight forbids it; it is what a question before sending and the sending
 /// itself ask alike. Floods are refused after that (`Telecommands::refuse_flood()`), what an old mode permitted by who receives it.

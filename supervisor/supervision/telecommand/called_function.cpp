@@ -14,8 +14,7 @@ constexpr std::size_t name_octets = 16;
 
 }  // namespace
 
-std::optional<CalledFunction> called_function(const pus::TelecommandView& telecommand) {
-  if (telecommand.service() != 8 || telecommand.subtype() != 1) return std::nullopt;
+std::optional<CalledFunction> function_of_call(const pus::TelecommandView& telecommand) {
   const Octets data = telecommand.application_data();
   if (data.size() < name_octets) return std::nullopt;
   const auto* letters = reinterpret_cast<const char*>(data.data());

@@ -15,6 +15,12 @@ struct CalledFunction {
   std::string_view name;  ///< views the telecommand
   std::optional<std::uint8_t> first_argument;
 };
-[[nodiscard]] std::optional<CalledFunction> called_function(const pus::TelecommandView& telecommand);
+/// Of a TC[8,1]; empty: it is too short for a name.
+[[nodiscard]] std::optional<CalledFunction> function_of_call(const pus::TelecommandView& telecommand);
+/// Empty: it is no TC[8,1] either.
+[[nodiscard]] inline std::optional<CalledFunction> called_function(const pus::TelecommandView& telecommand) {
+  const bool calls = telecommand.service() == 8 && telecommand.subtype() == 1;
+  return calls ? function_of_call(telecommand) : std::nullopt;
+}
 
 }  // namespace hirosco::supervisor
