@@ -48,6 +48,24 @@ TEST_F(EndsTest, WhoEndsIsFencedWithThoseThatFallWithIt) {
   EXPECT_THAT(kinds(arm), ::testing::ElementsAre(GuardFinding::Kind::Ended));
 }
 
+TEST_F(EndsTest, WhoFallsWithItIsFencedThoughAnotherOfThemIsNobodyOfTheMission) {
+  hold(arm);
+  let_move();
+  guard.falls_with(arm, {99, hand});
+  end(arm);
+  EXPECT_FALSE(may_move(arm));
+  EXPECT_FALSE(may_move(hand));
+}
+
+TEST_F(EndsTest, TheWordOfOneThatIsForgottenSaysNothing) {
+  hold(arm);
+  guard.forget(arm);
+  const auto fences = guard.fences(arm);
+  end(arm);
+  EXPECT_EQ(guard.fences(arm), fences);
+  EXPECT_THAT(kinds(arm), ::testing::IsEmpty()) << "the supervisor has taken note of its end itself";
+}
+
 TEST_F(EndsTest, TheNewestWordOfWhoFallsCounts) {
   hold(arm);
   let_move();
@@ -88,11 +106,14 @@ TEST_F(EndsTest, EachChangeOfAHeldWordCountsAsTheEnd) {
 }
 
 TEST_F(EndsTest, AWordThatNamesNoThreadFirstIsNoLife) {
-  let_move();
-  lives[arm].vital->life = owner_died;
-  guard.life_changed(arm);
-  EXPECT_FALSE(may_move(arm));
-  EXPECT_FALSE(watched(arm));
+  for (const std::uint32_t word : {owner_died, waiters}) {
+    start(arm);
+    let_move();
+    lives[arm].vital->life = word;
+    guard.life_changed(arm);
+    EXPECT_FALSE(may_move(arm)) << word;
+    EXPECT_FALSE(watched(arm)) << word;
+  }
 }
 
 TEST_F(EndsTest, TheEndIsFoundOnce) {

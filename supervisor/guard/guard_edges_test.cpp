@@ -33,6 +33,14 @@ TEST_F(GuardTest, WhoIsNobodyOfTheMissionIsNeitherFencedNorReleasedNorTakenOver)
   EXPECT_EQ(guard.fences(nobody), 0u);
   EXPECT_FALSE(guard.fenced(nobody));
   EXPECT_FALSE(guard.release(nobody, 0));
+  guard.stop_all();
+  EXPECT_FALSE(guard.was_stopped_since(nobody, 0));
+  run(20ms);
+  const auto before = guard.fences(arm);
+  guard.falls_with(nobody, {arm});
+  guard.ended_before(nobody);
+  guard.life_changed(nobody);
+  EXPECT_EQ(guard.fences(arm), before) << "nobody's end stops somebody";
 }
 
 TEST_F(GuardTest, PagesThatAreTooSmallAreNotTakenOver) {

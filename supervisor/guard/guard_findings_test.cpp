@@ -34,10 +34,11 @@ TEST(FindingsOfTheGuard, AreKeptWhereNobodyIsToBeWoken) {
 TEST(FindingsOfTheGuard, TellOfTheEndOfAProcessNoMoreWhenAnotherHasBegun) {
   GuardFindings findings{{}};
   for (const std::uint16_t apid : {std::uint16_t{10}, std::uint16_t{11}})
-    for (const auto kind : {Ended, Killed}) findings.find_out(kind, apid);
+    for (const auto kind : {CycleHangs, Ended, Killed}) findings.find_out(kind, apid);
   findings.forget_end_of(10);
   EXPECT_THAT(findings.take(),
-              ElementsAre(GuardFinding{Killed, 10, 0}, GuardFinding{Ended, 11, 0}, GuardFinding{Killed, 11, 0}));
+              ElementsAre(GuardFinding{CycleHangs, 10, 0}, GuardFinding{Killed, 10, 0}, GuardFinding{CycleHangs, 11, 0},
+                          GuardFinding{Ended, 11, 0}, GuardFinding{Killed, 11, 0}));
 }
 
 TEST(FindingsOfTheGuard, ThatNobodyTakesAreToldOnceEachBehindTheFirstThousand) {

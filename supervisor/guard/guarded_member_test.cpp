@@ -248,6 +248,15 @@ TEST_F(GuardedMemberTest, MayStandStillAsLongAsItsPriorityAndItsPeriodAskFor) {
   EXPECT_EQ(member.hang_limit(), 200U);
 }
 
+TEST_F(GuardedMemberTest, UsesTheDevicesOfItsConfigurationInForceAndNoOthers) {
+  mission.subsystems[0].subsystem.configurations[0].devices.resize(1);
+  mission.subsystems[0].subsystem.configurations[0].devices[0].device = 1;
+  EXPECT_TRUE(member.uses(1));
+  EXPECT_FALSE(member.uses(0));
+  vital.configuration = 0;
+  EXPECT_FALSE(member.uses(1)) << "none is in force";
+}
+
 TEST_F(GuardedMemberTest, APermissionIsForOneStayInOperational) {
   member.release(now);
   const std::uint32_t epoch = permit.epoch.load();

@@ -56,7 +56,8 @@ std::string_view GuardedProcesses::go_on(std::uint16_t apid, const AdoptedSubsys
   member->power_unknown = adopted.powered != power_off;
   const std::string_view rests = member->why_it_rests();
   member->service_moved = parts_.time.watched_at(parts_.clock.now());
-  page.stop.store(adopted.stopped ? 1 : 0, std::memory_order_release);
+  // A stop beside a permission is none that was carried out: fence() does it, under an epoch that was not permitted.
+  page.stop.store(adopted.stopped && !adopted.permitted ? 1 : 0, std::memory_order_release);
   if (!adopted.permitted) return "it was not permitted";
   if (const std::string_view why = adopted.stopped    ? "it was stopped"
                                    : !against.empty() ? against

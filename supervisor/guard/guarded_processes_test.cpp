@@ -116,6 +116,26 @@ TEST_F(GuardAdoption, WhoMayHaveLostItsRealTimeToTheGuardBeforeIsGivenItBackWith
   EXPECT_FALSE(lives[hand].process->realtime) << "once: this guard knows what it has taken itself";
 }
 
+TEST_F(GuardAdoption, WhoIsStoppedAndPermittedAtOnceIsStopped) {
+  operational(hand);
+  lives[hand].permit->stop = 1;  // nobody writes both: the page is damaged
+  const auto epoch = lives[hand].permit->epoch.load();
+  EXPECT_EQ(adopt(hand), "it was stopped");
+  EXPECT_FALSE(permits(hand));
+  EXPECT_EQ(pages[hand]->stop.load(), 1u);
+  EXPECT_GT(pages[hand]->epoch.load(), epoch);
+}
+
+TEST_F(GuardAdoption, WhoHasNoPagesOrIsNobodyOfTheMissionIsNotPermitted) {
+  AdoptedSubsystem without_pages;
+  without_pages.permitted = true;
+  without_pages.epoch = 1;
+  EXPECT_EQ(next.adopt(hand, without_pages, {}), "it has no pages") << "nobody yet";
+  ASSERT_TRUE(next.add(mission.subsystems[1], false));
+  EXPECT_EQ(next.adopt(hand, without_pages, {}), "it has no pages");
+  EXPECT_FALSE(next.release(hand, next.fences(hand)));
+}
+
 TEST_F(GuardAdoption, AStopOfTheGuardBeforeHolds) {
   operational(hand);
   guard.fence(hand);
@@ -124,12 +144,45 @@ TEST_F(GuardAdoption, AStopOfTheGuardBeforeHolds) {
   EXPECT_EQ(pages[hand]->stop.load(), 1u);
 }
 
+TEST_F(GuardAdoption, APageWithRoomBehindItIsOneAndOneThatIsTooShortIsNone) {
+  const auto pages_of = [&](std::size_t vital_octets, std::size_t permit_octets) {
+    LaunchedSubsystem launched;
+    launched.vital = memory.map(memory.create("page", vital_octets).value(), Access::ReadWrite).value();
+    launched.permit = memory.map(memory.create("page", permit_octets).value(), Access::ReadWrite).value();
+    new (launched.permit.octets.data()) PermitPage{};
+    if (vital_octets >= sizeof(VitalPage)) new (launched.vital.octets.data()) VitalPage{};
+    return launched;
+  };
+  const auto taken = [&](const LaunchedSubsystem& launched) {
+    guard.forget(hand);
+    guard.started(hand, launched);
+    return guard.release(hand, guard.fences(hand));
+  };
+  EXPECT_TRUE(taken(pages_of(sizeof(VitalPage) + 64, sizeof(PermitPage) + 64)));
+  EXPECT_FALSE(taken(pages_of(sizeof(VitalPage) - 1, sizeof(PermitPage))));
+  EXPECT_TRUE(taken(pages_of(sizeof(VitalPage), sizeof(PermitPage))));
+}
+
 TEST_F(GuardAdoption, AFenceOfItReachesWhoGoesOn) {
   operational(hand);
   ASSERT_EQ(adopt(hand), "");
   next.fence(hand);
   EXPECT_FALSE(permits(hand));
   EXPECT_TRUE(next.fenced(hand));
+}
+
+TEST_F(GuardTest, WhoIsPermittedAndWhoseDeviceSaysThatItDoesNotActHasStoppedByItself) {
+  cycling(arm);
+  EXPECT_FALSE(guard.has_stopped_by_itself(99)) << "nobody of the mission";
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  run(20ms, {arm, hand, camera}, std::nullopt);
+  EXPECT_FALSE(guard.has_stopped_by_itself(arm)) << "its device has said nothing";
+  for (const auto output : {DeviceOutput::Active, DeviceOutput::Stopping, DeviceOutput::Holding, DeviceOutput::Off}) {
+    run(20ms, {arm, hand, camera}, output);
+    EXPECT_EQ(guard.has_stopped_by_itself(arm), output != DeviceOutput::Active) << static_cast<int>(output);
+  }
+  guard.fence(arm);
+  EXPECT_FALSE(guard.has_stopped_by_itself(arm)) << "the guard stopped it";
 }
 
 /// What the guard notes for whoever would go on telling a device in its place.
@@ -162,6 +215,19 @@ TEST_F(Notes, SayWhatADeviceWasToldLast) {
   static_cast<void>(notes.step(clock.now()));
   EXPECT_TRUE(kept.inhibits[0].enabled());
   EXPECT_EQ(kept.inhibits[0].epoch.load(), lives[arm].permit->epoch.load());
+}
+
+TEST_F(Notes, OfTheGuardBeforeLetADeviceHearNoNumberAgain) {
+  kept.inhibits[0].sequence = 4711;
+  descriptor::Mission later = noted;
+  later.subsystems[0].subsystem.devices[0].enable->address = "later-enable";
+  Guard next{{.clock = clock, .flows = flows, .first_epoch = 1000, .notes = {later, kept}, .on_finding = {}}};
+  device = flows.open({Transfer::SharedMemory, "later-enable"}, FlowSide::Device).value();
+  ASSERT_TRUE(next.add(later.subsystems[0], false));
+  static_cast<void>(next.step(clock.now()));
+  std::array<std::byte, enable_frame_octets> frame;
+  ASSERT_EQ(device->receive(frame).value().flow, Flow::New);
+  EXPECT_EQ(read_enable_command(frame).value().sequence, 4712u) << "what it has heard is no command";
 }
 
 TEST_F(Notes, AreVoidWithTheFenceAndNotWithTheNextStep) {

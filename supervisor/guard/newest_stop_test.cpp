@@ -41,6 +41,21 @@ TEST_F(NewestStop, RisesWithEachStopOfEverythingAndWithNoOther) {
   EXPECT_EQ(on_page(hand), before) << "who is started knows it from the begin on";
 }
 
+TEST_F(NewestStop, OfASupervisorThatStandsStillVoidsWhatWasSaidBeforeItOfTheGroundLinkToo) {
+  run(20ms);
+  const std::uint32_t said_under = guard.newest_stop();
+  for (const std::uint16_t apid : {arm, hand, camera}) EXPECT_FALSE(guard.was_stopped_since(apid, said_under)) << apid;
+  for (int i = 0; i < 250; ++i) {
+    clock.advance(Guard::period);
+    static_cast<void>(guard.step(clock.now()));
+  }
+  ASSERT_EQ(guard.newest_stop(), said_under + 1);
+  for (const std::uint16_t apid : {arm, hand, camera}) {
+    EXPECT_TRUE(guard.was_stopped_since(apid, said_under)) << apid;
+    EXPECT_FALSE(guard.was_stopped_since(apid, guard.newest_stop())) << apid;
+  }
+}
+
 TEST_F(NewestStop, GoesOnWithTheOneThatTheGuardBeforeHadWritten) {
   for (int i = 0; i < 3; ++i) guard.stop_all();
   Guard next{{.clock = clock, .flows = flows, .first_epoch = 5000, .on_finding = {}}};

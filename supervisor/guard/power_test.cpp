@@ -103,6 +103,27 @@ TEST_F(PowerTest, AnAnswerToAnEarlierCommandIsNoWordAboutTheNewOne) {
   EXPECT_EQ(said(), power_changes);
 }
 
+TEST_F(PowerTest, ALateAnswerIsNoWordAboutTheNewCommandInWhateverDirectionItGoes) {
+  for (const bool on : {true, false}) {
+    answers = true;
+    enter(on ? State::Offline : State::HardwareInit);
+    EXPECT_EQ(told_in(20ms), !on);
+    const std::uint32_t before = sequences.back();
+    answers = false;
+    enter(on ? State::HardwareInit : State::Offline);
+    EXPECT_EQ(told_in(20ms), on);
+    const auto answered = [&](std::uint32_t sequence) {
+      std::array<std::byte, power_frame_octets> frame;
+      static_cast<void>(power->send(*write_power_status(frame, {on, sequence})));
+      static_cast<void>(told_in(Guard::period));
+      return said();
+    };
+    EXPECT_EQ(answered(before - 1), power_changes) << on;
+    EXPECT_EQ(answered(before), power_changes) << on << ": the last command before it";
+    EXPECT_EQ(answered(before + 1), on ? power_on : power_off) << on;
+  }
+}
+
 TEST_F(PowerTest, EachCommandHasASequenceOfItsOwnAsARepetitionIsNoSignOfLife) {
   EXPECT_EQ(told_in(50ms), false);
   for (std::size_t i = 1; i < sequences.size(); ++i) EXPECT_EQ(sequences[i], sequences[i - 1] + 1);
@@ -156,6 +177,43 @@ TEST_F(PowerTest, WhatHasNoPowerHasStoppedThoughItCannotSaySo) {
   ASSERT_NE(answer, outcome->end());
   EXPECT_TRUE(answer->asked_device);
   EXPECT_TRUE(answer->stopped);
+}
+
+TEST_F(PowerTest, OfAMemberThatHasAProcessNoEndBeforeKeepsItsSwitchFromBeingTold) {
+  EXPECT_EQ(told_in(20ms, std::nullopt), false);
+  guard.ended_before(arm);
+  EXPECT_EQ(told_in(20ms, std::nullopt), false);
+}
+
+TEST_F(PowerTest, ASwitchThatHasHungUpHasNotSaidThatItIsOff) {
+  enter(State::HardwareInit);
+  EXPECT_EQ(told_in(20ms), true);
+  EXPECT_EQ(said(), power_on);
+  power.reset();
+  enter(State::Offline);
+  run(1s);
+  EXPECT_EQ(said(), power_changes);
+}
+
+TEST_F(PowerTest, WhatIsNoFrameIsNoWordOfASwitchAndNoneOfAnotherVersion) {
+  enter(State::HardwareInit);
+  EXPECT_EQ(told_in(20ms), true);
+  ASSERT_EQ(said(), power_on);
+  ASSERT_TRUE(power->send(std::array<std::byte, power_frame_octets>{}));
+  run(Guard::period);
+  EXPECT_EQ(said(), power_on);
+}
+
+TEST_F(PowerTest, APageThatSaysNothingTakesNoPowerFromABrakeButTheEndOfItsMemberDoes) {
+  cycling(arm);
+  ASSERT_TRUE(guard.release(arm, guard.fences(arm)));
+  EXPECT_EQ(told_in(20ms, DeviceOutput::Active), true);
+  lives[arm].vital->state = 99;
+  EXPECT_EQ(told_in(Guard::grace - 50ms, DeviceOutput::Holding), true);
+  EXPECT_FALSE(lives[arm].process->killed);
+  static_cast<void>(told_in(100ms, DeviceOutput::Holding));
+  ASSERT_TRUE(lives[arm].process->killed);
+  EXPECT_EQ(told_in(20ms, DeviceOutput::Holding), false);
 }
 
 /// As the descriptor of ARM's motor declares it.
@@ -276,6 +334,62 @@ TEST_F(DiedBefore, ItsSwitchIsToldNothingWhileItMayComeToRestAndIsTurnedOffThen)
 TEST_F(DiedBefore, ItsSwitchIsTurnedOffWithTheWordOfItsDeviceThatItRests) {
   EXPECT_EQ(told_by_next(100ms, DeviceOutput::Stopping), 0);
   EXPECT_GE(told_by_next(50ms, DeviceOutput::Holding), 8);
+}
+
+TEST_F(DiedBefore, WhereTheMemberLivesOnItsSwitchIsTurnedOffAtOnceIfItWasSaidToBeOff) {
+  enter(State::Offline);
+  for (const auto& [powered, told] : {std::pair{power_off, true}, {power_on, false}, {power_changes, false}}) {
+    AdoptedSubsystem adopted;
+    adopted.powered = powered;
+    adopted.launched.vital = lives[arm].vital_memory;
+    adopted.launched.permit = lives[arm].permit_memory;
+    static_cast<void>(next.adopt(arm, adopted, {}));
+    EXPECT_EQ(told_by_next(100ms, DeviceOutput::Stopping) > 0, told) << powered;
+  }
+}
+
+TEST_F(DiedBefore, WhereTheMemberLivesOnInAStateThatNeedsPowerItsSwitchIsToldSoAtOnce) {
+  enter(State::Operational);
+  AdoptedSubsystem adopted;
+  adopted.powered = power_on;
+  adopted.launched.vital = lives[arm].vital_memory;
+  adopted.launched.permit = lives[arm].permit_memory;
+  static_cast<void>(next.adopt(arm, adopted, {}));
+  for (int steps = 0; steps < 4; ++steps, clock.advance(Guard::period)) {
+    static_cast<void>(next.step(clock.now()));
+    const auto command = hear();
+    ASSERT_TRUE(command) << "a switch that hears nothing goes off by itself";
+    EXPECT_TRUE(command->on);
+  }
+}
+
+/// Two switches for the devices of one member.
+struct TwoSwitches : PowerTest {
+  TwoSwitches() {
+    descriptor::Endnode endnode;
+    endnode.address = "brake-power";
+    mission.subsystems[0].subsystem.power_switches.push_back({"BRAKE", endnode, {}});
+  }
+};
+
+TEST_F(TwoSwitches, AreOnOrOffOnlyWhereEachHasSaidSo) {
+  const auto brake = flows.open({Transfer::SharedMemory, "brake-power"}, FlowSide::Device).value();
+  EXPECT_EQ(told_in(20ms), false);
+  EXPECT_EQ(said(), power_changes) << "one of them has said nothing yet";
+  std::array<std::byte, power_frame_octets> frame;
+  const auto brake_answers = [&] {
+    ASSERT_EQ(brake->receive(frame).value().flow, Flow::New);
+    const PowerCommand command = read_power_command(frame).value();
+    static_cast<void>(brake->send(*write_power_status(frame, {command.on, command.sequence})));
+    static_cast<void>(told_in(Guard::period));
+  };
+  brake_answers();
+  EXPECT_EQ(said(), power_off);
+  enter(State::HardwareInit);
+  EXPECT_EQ(told_in(20ms), true);
+  EXPECT_EQ(said(), power_changes) << "one of them is off still";
+  brake_answers();
+  EXPECT_EQ(said(), power_on);
 }
 
 TEST_F(DiedBefore, ItIsAskedInAStop) {

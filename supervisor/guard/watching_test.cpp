@@ -267,6 +267,19 @@ TEST_F(Watching, WhoHangsIsNotEndedForTimeInWhichNobodyTookItsWordAcross) {
   EXPECT_THAT(kinds(hand), ElementsAre(Found::Back));
 }
 
+TEST_F(Watching, WhoseServiceLoopHangsIsNotEndedForThatTimeEitherButWhosePageIsDamagedIs) {
+  arm_stands(Guard::service_limit + 50ms, 0);
+  EXPECT_THAT(kinds(arm), ElementsAre(Found::ServiceHangs));
+  lives[hand].vital->magic ^= 1U;
+  run(Guard::observation_period);
+  EXPECT_THAT(kinds(hand), ElementsAre(Found::PageDamaged));
+  clock.advance(Guard::grace + 1s);
+  lives[arm].vital->cycles += 2000;  // a cycle went on: the time was watched
+  step();
+  EXPECT_FALSE(lives[arm].process->killed) << "nobody could see it move meanwhile";
+  EXPECT_TRUE(lives[hand].process->killed) << "it has no way back that somebody could see";
+}
+
 TEST_F(Watching, AServiceLoopThatGetsNoProcessorIsNotBlamedButWhoHasIt) {
   lives[arm].process->loops.runnable = true;
   arm_stands(Guard::service_limit + 50ms, 0.9);
