@@ -172,6 +172,8 @@ void StateMachine::release_late() {
     at_.release_owed = false;
     parts_.cycle_reports.take();
     parts_.configurations.release();
+    // It may have entered a state late, and said so there: nobody is in that.
+    parts_.vital.state.store(static_cast<std::uint32_t>(at_.state), std::memory_order_release);
   }
   if (at_.state != State::Offline) return;
   const auto undone = parts_.introduction.undo_late();
@@ -262,9 +264,7 @@ void StateMachine::cycle_entered(State state) {
   }
 }
 
-void StateMachine::cycle_refused(State state, const Failure& why) {
-  if (awaits(state)) fail_transition(state, why);
-}
+void StateMachine::cycle_refused(State state, const Failure& why) { fail_transition(state, why); }
 
 void StateMachine::node_failed(State state, const Failure& why) {
   // While the cycle comes to rest the subsystem is on its way down already: Error-Operational has no cycle there.

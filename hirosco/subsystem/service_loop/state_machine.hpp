@@ -54,6 +54,7 @@ class StateMachine {
   [[nodiscard]] bool awaits(State state) const noexcept {
     return awaiting_cycle_ && at_.way && state == at_.way->states[way_at_];
   }
+  /// One that it awaits(): whoever says it has asked.
   void cycle_refused(State state, const Failure& why);
   void node_failed(State state, const Failure& why);
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "hirosco/data_transfer/device/flow_means.hpp"
 #include "hirosco/subsystem/testing/inside.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
 
@@ -326,6 +327,73 @@ TEST_F(Commissioning, ACycleThatEntersErrorOperationalBehindItsTimeIsBelievedAnd
   EXPECT_EQ(rig.vital.state.load(), static_cast<std::uint32_t>(State::ErrorOperational));
   EXPECT_THAT(rig.set_state_now(State::SafeOperational), StartsWith("1 4:000a"));
   EXPECT_EQ(rig.set_state_now(State::Offline), "1 3 7");
+}
+
+TEST_F(Commissioning, ACycleThatComesLateIntoAStateWhileAnotherWayIsUnderWayIsLedOnThatWay) {
+  rig.bring_to(State::Operational);
+  const auto safe = rig.set_state(State::SafeOperational);
+  rig.service();
+  rig.advance(11s);
+  rig.service();  // its time is over: down to Error-Operational
+  EXPECT_THAT(rig.outcome(safe), StartsWith("1 3 8:0202"));
+  rig.forget_telemetry();
+  rig.cycle();  // into both, one after the other
+  rig.service();
+  EXPECT_EQ(rig.state(), State::ErrorOperational);
+  EXPECT_EQ(rig.heard(descriptor::framework_event::state_changed), 1) << "it was on its way, and is nowhere else";
+}
+
+TEST_F(Commissioning, ACycleThatComesLateIntoAStateThatItHasEnteredSinceIsInItAlready) {
+  rig.bring_to(State::Operational);
+  rig.set_state(State::ErrorOperational);
+  rig.service();
+  rig.advance(11s);
+  rig.service();
+  const auto again = rig.set_state(State::ErrorOperational);
+  rig.service();
+  rig.forget_telemetry();
+  rig.cycle();  // twice, as it was told
+  rig.service();
+  EXPECT_EQ(rig.outcome(again), "7");
+  EXPECT_EQ(rig.state(), State::ErrorOperational);
+  EXPECT_EQ(rig.heard(descriptor::framework_event::state_changed), 1);
+}
+
+/// It had looked whether it is wanted, and goes through one more cycle.
+TEST_F(Commissioning, ACycleThatComesLateIntoAStateAndWasToRestMeanwhileLeadsNobodyBackThere) {
+  rig.bring_to(State::SafeOperational);
+  rig.set_state(State::ErrorOperational);
+  rig.service();
+  rig.advance(11s);
+  rig.service();
+  rig.set_state(State::Offline);
+  rig.service();
+  rig.advance(11s);
+  rig.service();
+  rig.service();
+  ASSERT_EQ(rig.state(), State::Offline);
+  rig.forget_telemetry();
+  static_cast<void>(rig.subsystem.cycle_step(rig.clock.now()));
+  rig.service();
+  rig.cycle();  // it rests
+  rig.service();
+  EXPECT_EQ(rig.state(), State::Offline);
+  EXPECT_EQ(rig.heard(descriptor::framework_event::state_changed), 0);
+  EXPECT_EQ(rig.vital.configuration.load(), 0U);
+  EXPECT_EQ(rig.vital.state.load(), static_cast<std::uint32_t>(State::Offline));
+  EXPECT_EQ(rig.set_state_now(State::PreOperational), "1 3 7");
+}
+
+/// The reader of descriptors refuses it; of one that is built in code the flows say whether there is such a thing.
+TEST_F(Commissioning, AMeansOfTransferThatIsNotBuiltInTakesNoPortOfTheComputer) {
+  ASSERT_EQ(find_flow_means(Transfer::Ethercat), nullptr) << "take another one here";
+  Probe author;
+  auto described = testing::read_descriptor(probe_descriptor);
+  for (auto& use : described.configurations[2].devices) use.endnode.transfer = Transfer::Ethercat;
+  Rig other{author, std::move(described)};
+  other.bring_to(State::PreOperational, 3);
+  EXPECT_EQ(other.vital.configuration.load(), 3U);
+  EXPECT_EQ(other.subsystem.meter().ports().used(), 0U);
 }
 
 TEST_F(Commissioning, EachCycleCountsInParametersThatNoDescriptorDeclares) {
