@@ -136,6 +136,7 @@ struct Started {
 };
 using Newest = Started<LinkInput<Tick>>;
 using Every = Started<QueueInput<Tick>>;
+using Lent = Started<LoanInput<Tick>>;
 
 TEST(BlockingLinks, AreOfferedAsWhatStartsTheCycle) {
   Newest started;
@@ -189,6 +190,22 @@ TEST(BlockingLinks, OfKindQueuedStartTheCycleForEachSample) {
     started.step();
     ASSERT_EQ(started.filter.ticks.samples().size(), 1u);
     EXPECT_EQ(started.filter.ticks.samples()[0].number, started.number);
+  }
+}
+
+TEST(BlockingLinks, OfKindLoanedStartTheCycleWhenASampleIsLent) {
+  Lent started{LinkKind::Loaned, R"( byte_order="native")"};
+  ASSERT_EQ(started.attach(started.agreement()), "1 3 7");
+  started.write();
+  started.step();
+  for (int i = 0; i < 20; ++i) {
+    started.rig.advance(3ms);
+    started.write();
+    const TimePoint now = started.rig.clock.now();
+    started.step();
+    EXPECT_EQ(started.rig.clock.now(), now) << "at once";
+    ASSERT_NE(started.filter.ticks.look(), nullptr);
+    EXPECT_EQ(started.filter.ticks.look()->number, started.number);
   }
 }
 

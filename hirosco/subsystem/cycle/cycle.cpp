@@ -89,7 +89,11 @@ void CycleLoop::take_commands(TimePoint planned) noexcept {
     switch (command->kind) {
       case CommandKind::Function: run_function(*command); break;
       case CommandKind::EnterState: enter(static_cast<State>(command->index)); break;
-      case CommandKind::AttachInput: plan_.inputs[command->index].attach(command->link); break;
+      case CommandKind::AttachInput:
+        plan_.inputs[command->index].attach(command->link);
+        // What the two agreed on may be of the configuration before.
+        plan_.inputs[command->index].follow(plan_.configuration->sampling);
+        break;
       case CommandKind::DetachInput:
         plan_.inputs[command->index].detach(command->link);
         reports_.report(ReportKind::InputDetached, command->index, {}, command->link);
@@ -196,7 +200,8 @@ void CycleLoop::account(const CyclePace::Start& start, TimePoint started) noexce
   const LinkInputSlot* const starter = inputs_.starter();
   const Duration late = started - start.planned;
   // Of a cycle that a sample started: since the instant that this is of.
-  const auto waited = start.arrived && starter != nullptr ? starter->newest_latency() : std::nullopt;
+  const bool by_sample = start.arrived && starter != nullptr;
+  const auto waited = by_sample ? starter->newest_latency() : std::nullopt;
   meter_.account({.execution = finished - started,
                   .latency = waited.value_or(late),
                   .late = late,

@@ -34,7 +34,8 @@ CyclePace::Start CyclePace::start(TimePoint planned, TimePoint started) noexcept
   const Duration since = start.planned - counted_at_;
   const bool first = !std::exchange(counted_, true);
   start.counts = first || since >= longest_;
-  if (start.counts) counted_at_ = first || since >= 2 * longest_ ? start.planned : counted_at_ + longest_;
+  const bool anew = first || since >= 2 * longest_;
+  if (start.counts) counted_at_ = anew ? start.planned : counted_at_ + longest_;
   return start;
 }
 

@@ -77,6 +77,16 @@ TEST(CyclePace, NoProducerMakesALimitShort) {
   }
 }
 
+TEST(CyclePace, LimitsOfAnotherConfigurationCountFromItsFirstCycleHoweverSoonThatComes) {
+  CyclePace pace;
+  pace.begin(by_samples(), true);
+  EXPECT_TRUE(pace.start(TimePoint{100ms}, TimePoint{100ms}).counts);
+  pace.begin(by_samples(), true);
+  EXPECT_TRUE(pace.start(TimePoint{104ms}, TimePoint{104ms}).counts);
+  EXPECT_FALSE(pace.start(TimePoint{113ms}, TimePoint{113ms}).counts);
+  EXPECT_TRUE(pace.start(TimePoint{114ms}, TimePoint{114ms}).counts);
+}
+
 TEST(CyclePace, APauseOfTheWholeComputerCountsOnce) {
   CyclePace pace;
   pace.begin(by_samples(), true);

@@ -99,7 +99,7 @@ void DeviceSlot::read(bool count_silence, bool counts) noexcept {
   count(since_good_.silent_cycles);
   if (since_good_.silent_cycles != silence_limit_ && !hangs_up) return;
   if (way_ + 1 < ways_.size()) return fall_back();
-  just_lost_ = port_->alive_ || !heard_ || awaits_;
+  just_lost_ = port_->alive_ || !heard_;  // a fall-back that is awaited has not been heard
   awaits_ = false;
   port_->alive_ = false;
 }

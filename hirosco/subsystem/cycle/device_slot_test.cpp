@@ -418,6 +418,41 @@ TEST_F(MotorSlot, WhatIsNoActuatorIsCommandedWhoeverMayMove) {
   EXPECT_EQ(numbers_of(command.payload), (std::vector{4, 3, 6, 5}));
 }
 
+TEST_F(MotorSlot, ADeviceThatHangsUpInACycleInWhichNoLimitGoesOnIsLostAtOnceToo) {
+  DeviceSlot made = slot();
+  say(1);
+  made.read(true);
+  motor.reset();
+  made.read(true, false);
+  EXPECT_TRUE(made.just_lost());
+  EXPECT_EQ(made.loss().reason, descriptor::DeviceLoss::HungUp);
+}
+
+TEST_F(MotorSlot, ThatItHasRefusedAnOlderEpochThanOursIsNoReasonNotToTakeItsFirstAnswer) {
+  DeviceSlot made = slot();
+  made.write(1, false, false);
+  say(1, device_flag::old_epoch_refused);
+  made.read(true);
+  EXPECT_TRUE(made.alive());
+}
+
+TEST_F(MotorSlot, AWatchdogThatIsYetToBeRearmedHasItsTimeInCyclesInWhichLimitsGoOnAlone) {
+  DeviceSlot made = slot();
+  std::uint32_t sequence = 0;
+  const auto cycle = [&](bool counts) {
+    say(++sequence, device_flag::watchdog_tripped);
+    made.read(true, counts);
+    made.write(1, true, false);
+  };
+  for (int i = 0; i < 20; ++i) cycle(false);
+  EXPECT_TRUE(port.fresh()) << "a flood of samples makes it no shorter";
+  for (int i = 0; i < 6; ++i) cycle(true);
+  EXPECT_TRUE(made.alive());
+  cycle(true);
+  EXPECT_TRUE(made.just_lost());
+  EXPECT_EQ(made.loss().reason, descriptor::DeviceLoss::LetGo);
+}
+
 TEST(LayoutDifference, NamesEachFieldThatDiffersInTypeOrCountAndTheNumberOfFields) {
   const DevicePort<Sensed, Driven> port;
   const auto difference = [&](Type type, std::uint16_t count) {

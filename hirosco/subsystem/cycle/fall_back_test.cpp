@@ -346,5 +346,61 @@ TEST_F(FallBack, AFrameGoesOutEverySoManyCyclesAndAtOnceWhenWhatItMayDoChanges) 
   EXPECT_EQ(sent, "x...x...xx.xx.");
 }
 
+/// Cycles that a quick producer starts (CyclePace).
+TEST_F(FallBack, TheWatchdogOfWhatWasLeftIsWaitedForInCyclesInWhichLimitsGoOnAlone) {
+  run(10, {0});
+  ASSERT_GT(until_it_goes_over(), 0);
+  const auto cycle = [&](bool counts) {
+    slot->write(1, false, false);
+    if (const auto command = heard(1)) say(1, command->sequence);
+    slot->read(true, counts);
+  };
+  for (int i = 0; i < 100; ++i) cycle(false);
+  EXPECT_TRUE(slot->alive());
+  EXPECT_TRUE(slot->holds_back()) << "no time has passed that its watchdog is known to have seen";
+  int counted = 0;
+  for (; slot->holds_back() && counted < 100; ++counted) cycle(true);
+  EXPECT_GT(counted, 1);
+  EXPECT_LE(counted, 6) << "5 ms of its watchdog and a cycle";
+}
+
+TEST_F(FallBack, WhoHangsUpInTheVeryCycleInWhichItWasToldActiveIsWaitedForAsLongAsItsWatchdogIs) {
+  run(10, {0});
+  slot->read(true, false);  // takes the last answer
+  motor[0].reset();
+  slot->read(true, false);
+  ASSERT_TRUE(slot->just_fell_back()) << "at once, in a cycle in which no limit goes on, too";
+  for (int cycle = 0; cycle < 6; ++cycle) {
+    EXPECT_TRUE(slot->holds_back()) << cycle;
+    slot->write(1, false, false);
+    if (const auto command = heard(1)) say(1, command->sequence);
+    slot->read(true);
+  }
+  EXPECT_FALSE(slot->holds_back());
+}
+
+TEST_F(FallBack, CyclesInWhichNoLimitGoesOnMakeAFrameThatGoesOutEverySoManyNoMoreFrequent) {
+  std::string sent;
+  const auto cycles = [&](int count, bool counts) {
+    for (int i = 0; i < count; ++i) {
+      slot->read(false, counts);
+      slot->write(0, false, false);
+      sent += heard(0) ? 'x' : '.';
+    }
+  };
+  use.every = 4;
+  make();
+  cycles(1, false);
+  EXPECT_EQ(sent, "x") << "the first goes out in any case";
+  cycles(8, false);
+  cycles(4, true);
+  EXPECT_EQ(sent, "x...........x");
+  use.every = 1;
+  make();
+  sent.clear();
+  cycles(4, false);
+  EXPECT_EQ(sent, "xxxx") << "who takes each frame gets one in each cycle";
+}
+
 }  // namespace
 }  // namespace hirosco

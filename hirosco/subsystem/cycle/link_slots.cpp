@@ -178,7 +178,7 @@ void LinkInputSlot::take(const LinkSample& sample, MutableOctets into, TimePoint
   newest_at_ = sample.sampled_at;
   // RFC 3550, 6.4.1: both ends have one clock, so that the difference of two transits is that of two latencies.
   const Duration before = std::exchange(latency_before_, *newest_latency_);
-  if (port_->received_ > 0) {
+  if (port_->received_ > 1) {
     const auto apart = std::abs(static_cast<double>((*newest_latency_ - before).count()));
     jitter_ns_ += (apart - jitter_ns_) / 16;
   }

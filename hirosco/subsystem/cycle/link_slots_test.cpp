@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <memory>
+
+#include "hirosco/data_transfer/memory/heap_memory.hpp"
+
 namespace hirosco {
 namespace {
 
@@ -40,6 +45,125 @@ TEST(LinkSlot, AnInputTakesFieldsOfItsOwnTypeOnlyAndLetsGoOfItsOwnLinkOnly) {
   EXPECT_TRUE(slot.ended());
   slot.read(TimePoint{}, true);
   EXPECT_TRUE(slot.stale());
+}
+
+/// A hand whose producer has a period of 10 ms; a sample may be three of those old.
+struct SlotOfAHand : ::testing::Test {
+  descriptor::Requires terms = [] {
+    descriptor::Requires made;
+    made.fields.resize(1);
+    made.fields[0].name = "ANGLE";
+    made.fields[0].type = Type::Double;
+    made.fields[0].count = 1;
+    made.age = {3, 30};
+    return made;
+  }();
+  LinkInput<Handed> port;
+  LinkInputSlot slot{terms, &port, true};
+  HeapMemory memory;
+  AttachedLink link;
+  std::unique_ptr<LinkWriter> writer;
+  TimePoint now{1s};
+
+  void SetUp() override {
+    link.agreement = {.method = LinkMethod::SharedMemory,
+                      .byte_order = descriptor::ByteOrder::Little,
+                      .kind = LinkKind::Latest,
+                      .producer_period = 10ms,
+                      .consumer_period = 1ms,
+                      .fields = {{"ANGLE", Type::Double, 1}}};
+    const auto layout = link.agreement.layout(1);
+    const auto* mechanism = find_link_mechanism(standard_link_mechanisms(), LinkMethod::SharedMemory, LinkKind::Latest);
+    const MemoryHandle shared = mechanism->establish(memory, layout).value();
+    writer = mechanism->produce(memory, shared, layout).value();
+    link.reader = mechanism->consume(memory, shared, layout).value();
+    link.payload.resize(layout.payload_octets);
+    link.count_in(1ms);
+    ASSERT_TRUE(slot.plan(link));
+    slot.attach(&link);
+  }
+  void sample(Duration latency = {}) {
+    writer->write(std::array<std::byte, sizeof(double)>{}, now - latency, LinkStatus::Valid);
+    slot.read(now, true);
+  }
+  [[nodiscard]] Duration jitter() const {
+    IncomingLink page{};
+    slot.tell(page);
+    return Duration{page.jitter_ns.load()};
+  }
+};
+
+TEST_F(SlotOfAHand, InCyclesOfAnotherPeriodASampleMayBeAsOldAsBefore) {
+  for (const auto& [period, cycles] : {std::pair{5ms, 6}, {1ms, 30}, {20ms, 3}}) {
+    slot.follow(period);
+    sample();
+    for (int old = 1; old <= cycles; ++old) {
+      slot.read(now, true);
+      EXPECT_FALSE(slot.stale()) << period.count() << ' ' << old;
+    }
+    slot.read(now, true);
+    EXPECT_TRUE(slot.stale()) << period.count();
+  }
+  slot.release();
+  slot.follow(1ms);
+  EXPECT_EQ(link.producer_cycles_per_sample, 1U) << "whom it let go of it leaves alone";
+}
+
+TEST_F(SlotOfAHand, HasItsTurnInCyclesInWhichLimitsGoOnAlone) {
+  for (int cycle = 0; cycle < 100; ++cycle) EXPECT_TRUE(slot.awaits_first(true, false)) << cycle;
+  for (int cycle = 0; cycle < 30; ++cycle) EXPECT_TRUE(slot.awaits_first(true, true)) << cycle;
+  EXPECT_FALSE(slot.awaits_first(true, true));
+}
+
+TEST_F(SlotOfAHand, OfTheNextConfigurationBeginsWithNothingOfTheOneBefore) {
+  sample();
+  ASSERT_TRUE(port.valid());
+  const LinkInputSlot next{terms, &port, true};
+  EXPECT_FALSE(port.valid());
+  EXPECT_EQ(port.status(), LinkStatus::None);
+  EXPECT_EQ(port.count(), 0U);
+}
+
+/// Of a camera that lends what it has seen.
+struct LentSight final : LoanReader {
+  std::array<std::byte, sizeof(Handed)> seen{};
+  LinkSample newest() noexcept override { return {}; }
+  Octets look() noexcept override { return seen; }
+  [[nodiscard]] bool whole() const noexcept override { return true; }
+  [[nodiscard]] const std::uint32_t* arrival_word() const noexcept override { return nullptr; }
+};
+
+TEST(LinkSlot, OfTheNextConfigurationLooksAtNothingThatWasLentToTheOneBefore) {
+  descriptor::Requires terms;
+  LoanInput<Handed> port;
+  LinkInputSlot slot{terms, &port, true};
+  AttachedLink link;
+  link.borrower = std::make_unique<LentSight>();
+  slot.attach(&link);
+  ASSERT_NE(port.look(), nullptr);
+  ASSERT_TRUE(port.whole());
+  const LinkInputSlot next{terms, &port, true};
+  EXPECT_EQ(port.look(), nullptr);
+  EXPECT_FALSE(port.whole());
+}
+
+TEST(LinkSlot, OfAQueueHasNothingBeforeItsFirstCycle) {
+  descriptor::Requires terms;
+  QueueInput<Handed> port;
+  LinkInputSlot slot{terms, &port, true};
+  AttachedLink link;
+  slot.attach(&link);
+  EXPECT_TRUE(port.samples().empty());
+}
+
+TEST_F(SlotOfAHand, HasNoJitterBeforeItsSecondSample) {
+  sample(1600us);
+  EXPECT_EQ(jitter(), 0us) << "there is no sample before it";
+  sample(800us);
+  EXPECT_EQ(jitter(), 50us) << "RFC 3550: a sixteenth of the distance";
+  slot.attach(&link);
+  sample(1600us);
+  EXPECT_EQ(jitter(), 0us) << "what an earlier link brought is not before it";
 }
 
 }  // namespace

@@ -80,5 +80,30 @@ TEST_F(OutputOfAMotor, JumpsWhereItIsFurtherFromWhatWasPutOutThanItsStep) {
   EXPECT_FALSE(made.would_jump(subsystem, terms)) << "the safe values are";
 }
 
+TEST_F(OutputOfAMotor, IsHeldToTheStepOfItsOwnDeviceAndOutputAlone) {
+  descriptor::Bumpless terms;
+  terms.steps = {{.device = 1, .output = 0, .most = 0},
+                 {.device = 0, .output = 1, .most = 0},
+                 {.device = 0, .output = 0, .most = 5}};
+  OutputPayload made = output();
+  current = {100, 100};
+  static_cast<void>(made.put_out(true));
+  current = {105, 95};
+  EXPECT_FALSE(made.would_jump(subsystem, terms)) << "others may not move at all";
+  current = {106, 100};
+  EXPECT_TRUE(made.would_jump(subsystem, terms));
+}
+
+TEST_F(OutputOfAMotor, OfWhatIsNoActuatorJumpsNowhere) {
+  subsystem.devices[0].actuator = false;
+  descriptor::Bumpless terms;
+  terms.steps = {{.device = 0, .output = 0, .most = 5}};
+  OutputPayload made = output();
+  current = {100, 100};
+  static_cast<void>(made.put_out(true));
+  current = {200, 200};
+  EXPECT_FALSE(made.would_jump(subsystem, terms));
+}
+
 }  // namespace
 }  // namespace hirosco

@@ -162,5 +162,17 @@ TEST_F(CycleTime, OfAnEarlierConfigurationIsForgottenInTheNext) {
   EXPECT_THAT(rig.reports(5, 3), ::testing::IsEmpty()) << "two and one are no three in a row";
 }
 
+TEST_F(CycleTime, WhatACycleHasSpunBeforeItBeganIsNoneOfItsWork) {
+  cycle(0us);
+  slow.takes = 0us;
+  slow.uses = 100us;
+  const Duration before = rig.clock.processor();
+  rig.clock.use_processor(180us);
+  rig.clock.set(planned);
+  planned = rig.subsystem.cycle_step(planned, before);
+  EXPECT_EQ(rig.subsystem.cycle().budget().load().longest_us, 100.0F);
+  EXPECT_EQ(rig.subsystem.cycle().budget().load().exceeded, 0U) << "both together are more than its 250 us";
+}
+
 }  // namespace
 }  // namespace hirosco

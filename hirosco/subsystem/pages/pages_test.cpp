@@ -90,6 +90,13 @@ TEST(VitalPage, HasABitOfItsOwnForEachReasonToInhibit) {
   for (std::size_t i = 0; i < reasons.size(); ++i) EXPECT_EQ(reasons[i], 1u << i) << "ground reads them as numbers";
 }
 
+TEST(Power, OfThePermitPageIsTheNumberThatOthersKnow) {
+  EXPECT_EQ(std::uint32_t{power_off}, 0u) << "as the page of one without switches says from its beginning on";
+  EXPECT_EQ(std::uint32_t{power_on}, 1u);
+  EXPECT_EQ(std::uint32_t{power_changes}, 2u);
+  EXPECT_EQ(std::uint32_t{power_unknown_version}, 3u);
+}
+
 TEST(VitalPage, IsOfTheVersionThatDecodersOfOthersKnow) {
   EXPECT_EQ(VitalPage{}.version, 8u) << "tests/endtoend/pages.py";
   EXPECT_EQ(PermitPage{}.version, 8u);

@@ -15,6 +15,16 @@ TEST(SupervisorSilence, HasALimitOfOneCycleAtLeastWhateverThePeriod) {
   EXPECT_EQ(supervisor_silence_cycles(std::chrono::hours{1}), 1u);
 }
 
+TEST(SupervisorSilence, OfAPeriodThatOnlyTheRunKnowsIsReckonedToo) {
+  const volatile Duration::rep none = 0;  // known to the compiler, a division by it could come to anything
+  EXPECT_EQ(supervisor_silence_cycles(Duration{none}), 1u);
+}
+
+TEST(SupervisorSilence, CountsWhatPassesBetweenTwoLooksAsTheyAreMadeAndOfAPauseATenthOfTheLimit) {
+  EXPECT_GT(most_silence_a_look, 10ms);
+  EXPECT_EQ(most_silence_a_look * 10, supervisor_silence_limit);
+}
+
 TEST(SupervisorSilence, HasALimitOfTwoSecondsInWholeCyclesAndNotShorter) {
   EXPECT_EQ(supervisor_silence_cycles(1ms), 2000u);
   EXPECT_EQ(supervisor_silence_cycles(500us), 4000u);

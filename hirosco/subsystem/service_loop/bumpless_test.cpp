@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
@@ -24,6 +27,7 @@ constexpr const char* joint_descriptor = R"(<Subsystem name="JOINT" id="10">
   <ParamRef name="KP" id="0" type="DOUBLE" init="1" minimum="0" maximum="100"
             writable="PreOperational SafeOperational Operational"/>
   <ParamRef name="TITLE" id="1" type="TEXT" octets="8" init="none"/>
+  <FunctionService><Function name="NUDGE" states="SafeOperational Operational"/></FunctionService>
   <Device name="MOTOR" actuator="yes">
     <Input><Field name="ANGLE" type="DOUBLE"/></Input>
     <Output><Field name="TORQUE" type="DOUBLE" safe="0"/></Output>
@@ -56,6 +60,9 @@ struct Joint final : Subsystem {
   double error{0.3}, offset{0}, torque{0};
   double jump{0};  ///< planted
   bool refuses{false};
+  bool inhibits{false};
+  bool tries{false};  ///< its self test goes on
+  int nudges{0};
   int hooks{0}, configured{0};
   Cycle seen{}, of_hook{};
   double kp_in_hook{0};
@@ -64,6 +71,10 @@ struct Joint final : Subsystem {
     publish("KP", kp);
     publish("TITLE", title);
     use_device("MOTOR", motor);
+    on_function("NUDGE", [this]() -> Result<> {
+      ++nudges;
+      return ok();
+    });
     return done;
   }
   Result<> configure(const descriptor::Configuration&) override {
@@ -84,16 +95,21 @@ struct Joint final : Subsystem {
     error = 0.3 * std::sin(0.01 * static_cast<double>(++time));
     torque = kp.load() * error + offset;
     motor.output().torque = torque;
+    if (inhibits) inhibit_actuators();
     return ok();
   }
+  Result<Step> self_test(const Cycle&) noexcept override { return tries ? again : done; }
   Result<> safe_operational(const Cycle& cycle) noexcept override { return work(cycle); }
   Result<> operational(const Cycle& cycle) noexcept override { return work(cycle); }
   std::uint64_t time{0};
 };
 
 struct BumplessChange : ::testing::Test {
+  explicit BumplessChange(descriptor::SubsystemDescriptor described = testing::read_descriptor(joint_descriptor))
+      : rig{author, std::move(described)} {}
+
   Joint author;
-  Rig rig{author, joint_descriptor};
+  Rig rig;
   std::array<std::byte, max_device_frame_octets> frame{};
   std::unique_ptr<DataFlow> motor =
       std::move(rig.flows.open({Transfer::SharedMemory, "motor"}, FlowSide::Device)).value();
@@ -125,6 +141,21 @@ struct BumplessChange : ::testing::Test {
     return get_number(reader, Type::Double);
   }
   std::uint8_t in_force() const { return static_cast<std::uint8_t>(rig.vital.configuration.load()); }
+  Sent self_test() { return rig.send(17, 128, {}); }
+  /// Outcome and configuration.
+  std::string newest_self_test() {
+    static_cast<void>(rig.send(17, 130, {}));
+    rig.settle();
+    return rig.reports(17, 129).back().substr(0, 4);
+  }
+  /// Whether one may go on to be commanded: it is switched on where it was on.
+  std::string switch_housekeeping(std::uint16_t structure) {
+    std::array<std::byte, 3> data;
+    OctetWriter{data}.put(std::uint8_t{1}).put(structure);
+    const Sent sent = rig.send(3, 5, data);
+    rig.settle();
+    return rig.outcome(sent);
+  }
   void expect_untouched() {
     EXPECT_EQ(in_force(), 1);
     EXPECT_EQ(author.kp.load(), 2.0);
@@ -245,6 +276,7 @@ TEST_F(BumplessChange, IsForConfigurationsThatAreDeclaredCompatibleInTheStatesOf
   bring_up(State::Operational);
   EXPECT_EQ(rig.configure_now(3), "1 4:000a05") << "not declared";
   EXPECT_EQ(rig.configure_now(1), "1 4:000a05") << "in force already";
+  EXPECT_EQ(rig.configure_now(9), "1 4:000a05") << "there is none of that number";
   expect_untouched();
   rig.set_state_now(State::ErrorOperational);
   EXPECT_EQ(rig.configure_now(2), "1 4:000a06");
@@ -292,7 +324,10 @@ TEST_F(BumplessChange, IsOneAtATimeAndEndsWhateverBecomesOfTheCycle) {
   const Sent first = rig.configure(2), second = rig.configure(2);
   rig.service();
   EXPECT_EQ(rig.outcome(second), "1 4:0108");
-  rig.advance(11s);
+  rig.advance(9900ms);
+  rig.service();
+  EXPECT_EQ(rig.outcome(first), "1 3") << "it has ten seconds";
+  rig.advance(200ms);
   rig.service();
   EXPECT_EQ(rig.outcome(first), "1 3 8:0203") << "the cycle stands";
   rig.cycle();
@@ -303,6 +338,117 @@ TEST_F(BumplessChange, IsOneAtATimeAndEndsWhateverBecomesOfTheCycle) {
   rig.service();
   rig.set_state_now(State::PostOperational);
   EXPECT_THAT(rig.outcome(overtaken), ::testing::AnyOf(HasSubstr("7"), HasSubstr("8:0204")));
+}
+
+TEST_F(BumplessChange, IsRefusedWhereThePermissionIsWithdrawnThoughNoStopIsSet) {
+  bring_up(State::Operational);
+  rig.permit.go.store(0);
+  ASSERT_EQ(rig.inhibited(), 0U) << "no cycle has seen it yet";
+  const Sent sent = rig.configure(2);
+  rig.service();
+  EXPECT_EQ(rig.outcome(sent), "1 4:010700");
+  EXPECT_EQ(author.hooks, 0);
+  expect_untouched();
+}
+
+TEST_F(BumplessChange, IsRefusedWhereItsAuthorHasInhibitedTheActuatorsThoughTheGuardPermits) {
+  bring_up(State::Operational);
+  author.inhibits = true;
+  cycle();
+  ASSERT_NE(rig.inhibited(), 0U);
+  EXPECT_EQ(rig.configure_now(2), "1 4:010700");
+  EXPECT_EQ(author.hooks, 0);
+  expect_untouched();
+}
+
+TEST_F(BumplessChange, WaitsForTheEndOfASelfTest) {
+  bring_up(State::SafeOperational);
+  author.tries = true;
+  const Sent test = self_test();
+  EXPECT_EQ(rig.configure_now(2), "1 4:0108");
+  EXPECT_EQ(author.hooks, 0);
+  author.tries = false;
+  rig.settle();
+  EXPECT_EQ(rig.outcome(test), "1 3 7");
+  expect_untouched();
+  EXPECT_EQ(rig.configure_now(2), "1 3 7");
+}
+
+/// Else it would be told of under the configuration before, and forgotten when the other one is known to be in force.
+TEST_F(BumplessChange, LetsNoSelfTestBeginUntilItHasEnded) {
+  bring_up(State::SafeOperational);
+  const Sent configured = rig.configure(2), early = self_test();
+  rig.service();
+  EXPECT_EQ(rig.outcome(early), "1 4:0108");
+  rig.settle();
+  EXPECT_EQ(rig.outcome(configured), "1 3 7");
+  EXPECT_EQ(newest_self_test(), "0002") << "none has run in it";
+  const Sent test = self_test();
+  rig.settle();
+  EXPECT_EQ(rig.outcome(test), "1 3 7");
+  EXPECT_EQ(newest_self_test(), "0102") << "passed, in configuration 2";
+}
+
+TEST_F(BumplessChange, ThatFindsNoRoomOnItsWayToTheCycleIsRefusedAndIsInNobodysWay) {
+  bring_up(State::Operational);
+  std::vector<Sent> before;
+  for (std::uint32_t i = 0; i < descriptor::Queues{}.commands; ++i) {
+    before.push_back(rig.call("NUDGE"));
+    rig.service();
+  }
+  const Sent refused = rig.configure(2);
+  rig.service();
+  EXPECT_EQ(rig.outcome(refused), "1 4:000b");
+  rig.settle();
+  for (const Sent& each : before) EXPECT_EQ(rig.outcome(each), "1 3 7");
+  EXPECT_EQ(author.nudges, static_cast<int>(before.size()));
+  EXPECT_EQ(author.hooks, 0);
+  expect_untouched();
+  EXPECT_EQ(switch_housekeeping(1), "1 3 7") << "it waits for no change";
+  EXPECT_EQ(rig.configure_now(2), "1 3 7");
+}
+
+/// STIFF offers no housekeeping.
+struct BumplessChangeToSilence : BumplessChange {
+  BumplessChangeToSilence() : BumplessChange{testing::read_descriptor(described())} {}
+  static std::string described() {
+    std::string text = joint_descriptor;
+    const std::string of_stiff =
+        R"(<HKService id="2" interval="4"><SampledOnce><ParamRef name="KP"/></SampledOnce></HKService>)";
+    return text.replace(text.find(of_stiff), of_stiff.size(), R"(<Service name="ST03" offered="no"/>)");
+  }
+};
+
+TEST_F(BumplessChangeToSilence, EndsTheHousekeepingThatTheOtherConfigurationDoesNotOfferAndBringsItBack) {
+  bring_up(State::Operational);
+  EXPECT_EQ(rig.configure_now(2), "1 3 7");
+  rig.forget_telemetry();
+  rig.settle();
+  EXPECT_TRUE(rig.reports(3, 25).empty());
+  EXPECT_EQ(switch_housekeeping(1), "2:000603") << "no such service";
+  EXPECT_EQ(rig.configure_now(1), "1 3 7");
+  expect_untouched();
+  EXPECT_EQ(switch_housekeeping(1), "1 3 7");
+}
+
+/// A descriptor that no reader of descriptors has looked at: STIFF reports more often than there are cycles.
+struct BumplessChangeToNonsense : BumplessChange {
+  BumplessChangeToNonsense() : BumplessChange{described()} {}
+  static descriptor::SubsystemDescriptor described() {
+    auto made = testing::read_descriptor(joint_descriptor);
+    made.configurations[1].housekeeping[0].interval_cycles = 0;
+    return made;
+  }
+};
+
+TEST_F(BumplessChangeToNonsense, IsAsNothingWhenItsHousekeepingCannotBeMade) {
+  bring_up(State::Operational);
+  EXPECT_THAT(rig.configure_now(2), HasSubstr("1 3 8:0202"));
+  EXPECT_EQ(rig.heard(descriptor::framework_event::configuration_failed), 1);
+  EXPECT_EQ(author.hooks, 0) << "the cycle never heard of it";
+  EXPECT_EQ(rig.state(), State::Operational);
+  expect_untouched();
+  EXPECT_EQ(switch_housekeeping(1), "1 3 7");
 }
 
 }  // namespace

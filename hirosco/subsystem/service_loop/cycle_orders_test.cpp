@@ -63,6 +63,7 @@ TEST_F(Ordered, EachConfigurationIsAGenerationAndAnOrderToRestIsCountedOnce) {
   orders.rest();
   EXPECT_EQ(orders.order().ticket, ordered);
   EXPECT_NE(ordered, first.ticket);
+  EXPECT_EQ(orders.order().generation, 0u) << "who is to rest has nothing to begin";
   orders.want();
   EXPECT_GT(orders.order().generation, first.generation);
 }

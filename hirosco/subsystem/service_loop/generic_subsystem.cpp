@@ -208,9 +208,10 @@ std::expected<void, pus::FailureNotice> GenericSubsystem::submit(const pus::Func
 
 std::expected<void, pus::FailureNotice> GenericSubsystem::begin_self_test(const pus::Request& request) {
   if (at_.state != State::SafeOperational || at_.way) return std::unexpected{at_.wrong_state()};
-  if (self_tests_.running()) return std::unexpected{pus::FailureNotice{pus::FailureCode::Busy}};
-  if (!rings_.command({.kind = CommandKind::SelfTest, .request = request}))
-    return std::unexpected{pus::FailureNotice{pus::FailureCode::QueueFull}};
+  const auto refuse = [](pus::FailureCode code) { return std::unexpected{pus::FailureNotice{code}}; };
+  // Of which configuration would it be told while another one is on its way to the cycle?
+  if (self_tests_.running() || bumpless_.under_way()) return refuse(pus::FailureCode::Busy);
+  if (!rings_.command({.kind = CommandKind::SelfTest, .request = request})) return refuse(pus::FailureCode::QueueFull);
   self_tests_.begun(request);
   return {};
 }

@@ -164,8 +164,13 @@ TEST(AuthorsMistakes, ADeviceOfItsOwnProtocolNeedsAPortThatSpeaksIt) {
     Rig rig{motor, raw};
     rig.set_state_now(State::PreOperational);
     EXPECT_EQ(rig.state(), speaks ? State::PreOperational : State::Offline);
-    if (speaks) EXPECT_EQ(rig.configure_now(1), "1 3 7");
-    else EXPECT_THAT(rig.explanations, ElementsAre(::testing::HasSubstr("does not speak() a protocol")));
+    if (speaks) {
+      EXPECT_EQ(rig.configure_now(1), "1 3 7");
+      const auto line = rig.flows.open({Transfer::Serial, "/dev/ttyUSB0@9600", Framing::Raw}, FlowSide::Device).value();
+      std::array<std::byte, 1024> heard{};
+      rig.cycle(3);
+      EXPECT_EQ(line->receive(heard).value().flow, Flow::None) << "what its protocol does not say nobody says";
+    } else EXPECT_THAT(rig.explanations, ElementsAre(::testing::HasSubstr("does not speak() a protocol")));
   }
   Motor forgetful;
   forgetful.names = [](Motor&) {};

@@ -117,7 +117,6 @@ Result<std::uint16_t> LinkEnds::make_consumer(const pus::st128::AttachRequest& r
     HIROSCO_TRY_LET(link.reader, mechanism.consume(parts_.platform.memory, memory, layout));
     link.payload.resize(layout.payload_octets);
   }
-  link.count_in(request.agreement.consumer_period);
   return static_cast<std::uint16_t>(slot - plan.inputs.begin());
 }
 

@@ -166,6 +166,23 @@ TEST_F(OwnLoops, LookAtStateAndModeWhenTheyDoItNotWhenItCame) {
   EXPECT_THAT(author.kept, IsEmpty());
 }
 
+TEST_F(OwnLoops, LookAtTheModeOfTheSupervisorThatGoesOnForOneThatDied) {
+  rig.bring_to(State::PreOperational);
+  rig.permit.mode_epoch = 3;
+  const Sent old = keep(1, 3);
+  rig.service();
+  const MemoryHandle memory = rig.memory.create("permit", sizeof(PermitPage)).value();
+  const Mapping mapped = rig.memory.map(memory, Access::ReadWrite).value();
+  ::new (mapped.octets.data()) PermitPage;
+  reinterpret_cast<PermitPage*>(mapped.octets.data())->mode_epoch = 4;
+  ASSERT_TRUE(rig.memory.seal_writers(memory));
+  ASSERT_TRUE(rig.channels.supervisor_end().send({.kind = MessageKind::PermitPage, .memory = memory}));
+  rig.service();
+  step_loop();
+  EXPECT_EQ(rig.outcome(old).substr(0, 6), "2:000d");
+  EXPECT_THAT(author.kept, IsEmpty());
+}
+
 TEST_F(OwnLoops, AnswerBesideAServiceThatNeverStopsTalking) {
   rig.bring_to(State::PreOperational);
   int said = 0;

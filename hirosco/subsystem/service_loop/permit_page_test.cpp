@@ -169,6 +169,20 @@ TEST_F(PagesOfSupervisors, WhileTheCycleRestsItCountsAtOnce) {
   EXPECT_EQ(rig.inhibited(), 0u);
 }
 
+TEST_F(PagesOfSupervisors, WhileTheCycleRestsTheNewestOfThoseThatComeTogetherCounts) {
+  static_cast<void>(hand_over(epoch(), true));
+  PermitPage& newest = hand_over(epoch() + 7, false);
+  step();
+  for (int each = 0; each < 2; ++each) EXPECT_TRUE(says_so()) << each;
+  newest.release();
+  rig.supervisor_silent = true;
+  rig.bring_to(State::Operational);
+  EXPECT_EQ(rig.inhibited(), 0u);
+  newest.fence();
+  rig.cycle();
+  EXPECT_EQ(rig.inhibited(), inhibited_by_stop);
+}
+
 TEST_F(PagesOfSupervisors, ASecondOneWaitsUntilTheCycleLooksAtTheFirst) {
   rig.bring_to(State::Operational);
   static_cast<void>(hand_over(epoch(), true));

@@ -257,6 +257,20 @@ TEST_F(LinkedDevices, WhileAFallBackHasNotAnsweredNoSampleGoesOutAndTheActuators
   EXPECT_EQ(craft.heard(descriptor::framework_event::device_lost(1)), 0);
 }
 
+TEST_F(LinkedDevices, FromOperationalTheWayToSafeOperationalWaitsForNoAnswerOfAFallBack) {
+  enter(State::SafeOperational);
+  enter(State::Operational);
+  lamp_speaks = false;
+  for (int cycles = 0; craft.inhibited() == 0 && cycles < 50; ++cycles) cycle();
+  ASSERT_EQ(craft.inhibited(), inhibited_while_awaited);
+  const auto down = craft.set_state(State::SafeOperational);
+  craft.service();
+  craft.cycle();
+  craft.service();
+  EXPECT_EQ(craft.outcome(down), "1 3 7") << "the cycle is there";
+  EXPECT_EQ(craft.state(), State::SafeOperational);
+}
+
 TEST_F(FallBackStates, APreferredEndnodeThatCannotBeOpenedIsPassedOverAndTold) {
   const auto other = rig.flows.open({Transfer::SharedMemory, "lamp"}, FlowSide::Subsystem);
   rig.bring_to(State::PreOperational, 3);
