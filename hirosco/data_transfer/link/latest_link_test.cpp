@@ -23,11 +23,17 @@ struct alignas(64) Line {
   std::array<std::byte, 64> octets;
 };
 
-/// Memory of a link as a provider would hand it out: zeroed, on a line.
+/// Memory of a link as a provider would hand it out: zeroed, on a line, before one that nobody may touch.
 class LinkMemory {
  public:
-  explicit LinkMemory(std::uint32_t payload) : lines_(link_memory_octets(payload) / sizeof(Line)) {}
-  MutableOctets all() { return {lines_[0].octets.data(), lines_.size() * sizeof(Line)}; }
+  static constexpr std::byte untouched{0x5A};
+  explicit LinkMemory(std::uint32_t payload) : lines_(link_memory_octets(payload) / sizeof(Line) + 1) {
+    lines_.back().octets.fill(untouched);
+  }
+  MutableOctets all() { return {lines_[0].octets.data(), (lines_.size() - 1) * sizeof(Line)}; }
+  [[nodiscard]] bool behind_is_untouched() const {
+    return std::ranges::all_of(lines_.back().octets, [](std::byte octet) { return octet == untouched; });
+  }
   std::atomic_ref<std::uint64_t> word(std::size_t at) {
     return std::atomic_ref<std::uint64_t>{*reinterpret_cast<std::uint64_t*>(all().data() + at)};
   }
@@ -354,6 +360,7 @@ TEST(RealtimeLinkPayload, MayHaveAnyLength) {
       const Octets stored = Octets{memory.all()}.subspan(link_memory::payload_at);
       EXPECT_TRUE(std::ranges::equal(sample, stored.first(octets))) << octets << ' ' << n;
       for (const std::byte filled : stored.subspan(octets)) EXPECT_EQ(filled, std::byte{0}) << octets << ' ' << n;
+      EXPECT_TRUE(memory.behind_is_untouched()) << octets << ' ' << n;
     }
   }
 }

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <vector>
 
+#include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "hirosco/utilities/testing/slice.hpp"
 
 namespace hirosco::queueing {
@@ -207,6 +208,19 @@ TEST(QueuedLinkHeader, IsRefusedInMemoryThatDoesNotFit) {
   EXPECT_FALSE(QueuedWriter::make(memory.all(), layout_of(0)).has_value());
   EXPECT_FALSE(QueuedWriter::make(memory.all(), layout_of(8, 1)).has_value());
   EXPECT_FALSE(QueuedReader::make({}, layout).has_value());
+}
+
+TEST(QueuedLinkHeader, OfAnImpossibleSizeOrDepthIsNotEvenGivenMemory) {
+  const QueuedLink link;
+  HeapMemory memory;
+  EXPECT_TRUE(link.establish(memory, layout_of(payload_octets)));
+  for (const LinkLayout& impossible : {layout_of(0), layout_of(max_link_payload_octets + 1), layout_of(8, 1)}) {
+    const auto established = link.establish(memory, impossible);
+    ASSERT_FALSE(established);
+    EXPECT_EQ(established.error().code, ErrorCode::Mismatch);
+    EXPECT_STREQ(established.error().text, "link payload size or depth");
+    EXPECT_EQ(established.error().value, impossible.payload_octets);
+  }
 }
 
 TEST(QueuedLinkHeader, MemoryThatWasUsedBeforeBeginsAnew) {

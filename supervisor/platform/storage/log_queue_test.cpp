@@ -286,6 +286,9 @@ TEST(LogQueue, OfOneThatDiedWithEverythingOnTheDiskNothingIsMissing) {
   LogQueue queue{{}, OnboardTime{50s}};
   queue.resume({.run = OnboardTime{5s}, .last = 20, .durable = 20}, OnboardTime{51s}, TimePoint{1s});
   EXPECT_TRUE(queue.empty());
+  queue.found_on_disk(20);
+  EXPECT_TRUE(queue.empty());
+  EXPECT_EQ(queue.lost(), 0U);
   EXPECT_EQ(push(queue, queued_telecommand()), 21U);
 }
 

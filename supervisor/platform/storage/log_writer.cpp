@@ -156,8 +156,8 @@ void LogWriter::resolve(const LogResumption& noted) {
     TimePoint now{};
     {
       const LockGuard lock{mutex_};
-      if (abandoned_ || stopping_ || next_database_) return;
-      now = clock_.now();
+      if (stopping_ || next_database_) return;
+      now = clock_.now();  // which lives: who is abandoned is stopping
     }
     static_cast<void>(work_.wait_until(now + locked_database_pause));
     found = options_.resolve(*database_, noted);

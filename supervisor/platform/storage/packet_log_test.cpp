@@ -128,7 +128,9 @@ TEST(ThreadedPacketLog, AFailedDatabaseIsReportedAndItsRecordsGoToTheNext) {
   progress.wait();
   ASSERT_TRUE(log.failure());
   EXPECT_EQ(log.failure()->value, EIO);
-  EXPECT_FALSE(log.flush(long_enough));
+  const auto flushed = log.flush(long_enough);
+  ASSERT_FALSE(flushed);
+  EXPECT_EQ(flushed.error().value, EIO) << "what it waits for in vain, and not that it waited";
   ASSERT_EQ(log.append(telemetry()), 3U);
   EXPECT_EQ(log.durable(), 1U);
   log.switch_to(std::make_unique<Shared>(second));

@@ -98,6 +98,34 @@ TEST_F(ResumedOverAStalledDisk, ADatabaseThatDoesNotSayYetIsAskedAgain) {
   expect_complete(all_of(*memory), 14);
 }
 
+TEST_F(ResumedOverAStalledDisk, ADatabaseThatNeverSaysKeepsNobodyFromEndingAndWhatWasNotedHolds) {
+  auto of_log = options(4);
+  of_log.resolve = [](Database&, const LogResumption&) { return std::optional<LogResumption>{}; };
+  {
+    ThreadedPacketLog log{clock, std::make_unique<Shared>(memory), std::move(of_log)};
+    EXPECT_EQ(log.append(telecommand()), 14U);
+  }
+  const auto records = all_of(*memory);
+  expect_complete(records, 14);
+  ASSERT_EQ(records.size(), 6U);
+  EXPECT_EQ(records[4].kind, LogKind::Gap);
+  EXPECT_EQ(records[4].number, 5U);
+  EXPECT_EQ(records[4].lost, 9U);
+  EXPECT_EQ(records[5].number, 14U);
+}
+
+TEST_F(ResumedOverAStalledDisk, ItsOwnerIsToldOfWhatIsOnTheDiskThoughNothingIsToBeStored) {
+  Semaphore told;
+  auto of_log = options(10);
+  of_log.on_progress = [&told] { told.post(); };
+  ThreadedPacketLog log{clock, std::make_unique<Shared>(memory), std::move(of_log)};
+  stall->reached.wait();
+  EXPECT_EQ(log.durable(), 4U);
+  stall->release.count_down();
+  told.wait();
+  EXPECT_EQ(log.durable(), 10U);
+}
+
 TEST_F(ResumedOverAStalledDisk, ADatabaseThatNeverSaysIsLeftForAnother) {
   auto of_log = options(4);
   of_log.resolve = [](Database&, const LogResumption&) { return std::optional<LogResumption>{}; };

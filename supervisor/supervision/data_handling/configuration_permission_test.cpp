@@ -47,21 +47,23 @@ struct ConfigurationPermission : ::testing::Test {
   }();
   LinkGraph links{mission};
   PowerLedger power{100.0};
+  bool has_ledger{true}, knows_others{true};
 
   auto decide_on(std::uint8_t service, std::uint8_t subtype, Octets data, State state, std::uint8_t configuration) {
     const auto packet = testing::telecommand(arm, service, subtype, data);
     const descriptor::SubsystemDescriptor &one = mission.subsystems[0].subsystem,
                                           &other = mission.subsystems[2].subsystem;
-    const Situation situation{.mission = mission,
-                              .mode = mission.modes[0],
-                              .links = links,
-                              .state = state,
-                              .configuration = configuration,
-                              .power = &power,
-                              .in_force = [&] {
-                                return std::vector<descriptor::InForce>{{&one, one.find_configuration(configuration)},
-                                                                        {&other, other.find_configuration("WATCHING")}};
-                              }};
+    const auto in_force = [&] {
+      return std::vector<descriptor::InForce>{{&one, one.find_configuration(configuration)},
+                                              {&other, other.find_configuration("WATCHING")}};
+    };
+    Situation situation{.mission = mission,
+                        .mode = mission.modes[0],
+                        .links = links,
+                        .state = state,
+                        .configuration = configuration,
+                        .power = has_ledger ? &power : nullptr};
+    if (knows_others) situation.in_force = in_force;
     return decide(*pus::TelecommandView::parse(packet), Origin::ground(), situation);
   }
   auto configure(std::uint8_t wanted, State state = State::Operational, std::uint8_t in_force = 3) {
@@ -117,6 +119,39 @@ TEST_F(ConfigurationPermission, WithoutTimeBesideLoopsOfWhoIsBroughtDownItIsRefu
   EXPECT_EQ(why->text, "may not end in time then: " + mission.subsystems[0].subsystem.name + " QUICK");
   watches.service_loops.clear();
   EXPECT_TRUE(configure(4));
+}
+
+/// Its addressee says what is missing: it follows nothing, draws nothing more and keeps nobody waiting.
+TEST_F(ConfigurationPermission, AConfigureWithoutItsConfigurationIsItsAddresseesToRefuse) {
+  for (const State state : {State::SafeOperational, State::Operational}) {
+    const auto decision = decide_on(8, 1, testing::call_data("CONFIGURE"), state, 3);
+    ASSERT_TRUE(decision);
+    EXPECT_EQ(decision->reserves_w, 0);
+    EXPECT_FALSE(decision->essential);
+  }
+}
+
+TEST_F(ConfigurationPermission, NoShortageRefusesAConfigurationOfGroundLinkOrPowerMeasurer) {
+  ASSERT_EQ(configure(5).error().code(), FailureCode::PowerShort);
+  mission.ground.subsystem = "ARM";
+  EXPECT_EQ(configure(5).value().reserves_w, 101) << "it is counted all the same";
+  mission.ground.subsystem.clear();
+  ASSERT_FALSE(configure(5));
+  mission.power_measured.emplace().apid = arm;
+  EXPECT_EQ(configure(5).value().reserves_w, 101);
+  mission.power_measured->apid = camera;
+  EXPECT_EQ(configure(5).error().code(), FailureCode::PowerShort);
+}
+
+TEST_F(ConfigurationPermission, WherePowerOrTheCyclesOfOthersAreNoMatterTheyRefuseNothing) {
+  has_ledger = false;
+  EXPECT_EQ(configure(5).value().reserves_w, 0) << "nobody keeps account of it";
+  EXPECT_FALSE(configure(6));
+  knows_others = false;
+  EXPECT_TRUE(configure(6));
+  has_ledger = true;
+  EXPECT_EQ(configure(6).value().reserves_w, 20);
+  EXPECT_EQ(configure(5).error().code(), FailureCode::PowerShort);
 }
 
 }  // namespace

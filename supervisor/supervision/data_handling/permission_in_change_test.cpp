@@ -52,5 +52,22 @@ TEST(Permission, WhileTheModeChangesTheCraftIsLookedAtAndTakenTowardsSafetyNothi
       << "a step of the change";
 }
 
+/// Who acts is held back where it was said before a stop; towards safety nobody is, nor what the addressee refuses itself.
+TEST(Permission, MoreThanALookIsWhatModeAndStateBindAndNothingElse) {
+  const auto mission = testing::small_mission();
+  const LinkGraph links{mission};
+  const auto acts = [&](const char* function, const Origin& origin = Origin::ground()) {
+    const auto packet = testing::telecommand(arm, 8, 1, call_data(function));
+    return decide(pus::TelecommandView::parse(packet).value(), origin,
+                  {mission, mission.modes.front(), links, State::Operational, 0})
+        .value()
+        .acts;
+  };
+  EXPECT_TRUE(acts("MOVE_TO"));
+  EXPECT_FALSE(acts("BRAKE")) << "it is essential";
+  EXPECT_FALSE(acts("DANCE")) << "its addressee does not know it";
+  EXPECT_FALSE(acts("MOVE_TO", Origin::supervisor())) << "a step of its own is held back by nothing";
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

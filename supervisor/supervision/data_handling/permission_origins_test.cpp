@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "hirosco/descriptor/model/supervisor_functions.hpp"
 #include "supervisor/supervision/data_handling/permission.hpp"
@@ -182,6 +183,52 @@ TEST_F(PermissionOrigins, ReportsOfTheSupervisorAreSwitchedByWhoIsNamedAndThoseO
     EXPECT_EQ(decided(by_camera, supervisor_apid, 5, 5, about(alarming)), outcome) << "on it may be switched";
     EXPECT_EQ(decided(by_camera, supervisor_apid, 5, 6, about(alarming)).substr(0, 3), "263") << named;
   }
+}
+
+/// What cannot be read to its end, or says more than its count, names something that nobody has compared.
+TEST_F(PermissionOrigins, WhatIsNamedOutsideOfWhatADescriptorDeclaresOrNotNamedInFullIsNotDeclared) {
+  constexpr std::uint16_t zero = 0;  // what a reader gives for what is not there
+  mission.subsystems[2].subsystem.commands[1].things.push_back({Thing::Kind::Event, "ZERO", zero, {}});
+  permit({.subsystem = "*", .functions = {}, .services = {5}, .parameters = {}, .at = {}, .from = {"CAMERA"}});
+  const auto switches_on = [&](std::uint8_t count, std::initializer_list<std::uint16_t> ids, std::size_t trailing = 0) {
+    std::vector<std::byte> data(1 + 2 * ids.size() + trailing);
+    OctetWriter writer{data};
+    writer.put(count);
+    for (const std::uint16_t id : ids) writer.put(id);
+    return decided(by_camera, supervisor_apid, 5, 5, data);
+  };
+  EXPECT_EQ(switches_on(2, {harmless, zero}), "ok");
+  EXPECT_EQ(switches_on(2, {harmless, structure}), not_declared) << "each of them";
+  EXPECT_EQ(switches_on(2, {harmless}), not_declared) << "the second is not there";
+  EXPECT_EQ(switches_on(2, {harmless}, 1), not_declared) << "or half of it";
+  EXPECT_EQ(switches_on(1, {harmless}, 1), not_declared) << "more than it counts";
+  EXPECT_EQ(switches_on(0, {}), not_declared) << "nothing at all";
+}
+
+TEST_F(PermissionOrigins, OfAListOfReportsThatIsCutShortWhatIsThereIsLookedAtAndNothingElse) {
+  permit({.subsystem = "*", .functions = {}, .services = {5}, .parameters = {}, .at = {}});
+  const auto switches_off = [&](std::uint8_t count, std::initializer_list<std::uint16_t> ids) {
+    std::vector<std::byte> data(1 + 2 * ids.size());
+    OctetWriter writer{data};
+    writer.put(count);
+    for (const std::uint16_t id : ids) writer.put(id);
+    return decided(by_ground, supervisor_apid, 5, 6, data).substr(0, 3);
+  };
+  descriptor::Event zero = mission.supervisor.events.back();
+  zero.name = "ZERO";
+  zero.id = 0;
+  mission.supervisor.events.push_back(zero);
+  EXPECT_EQ(switches_off(1, {0}), "263");
+  EXPECT_EQ(switches_off(3, {harmless}), "ok") << "its addressee says what is missing: it names no report of safety";
+  EXPECT_EQ(switches_off(3, {harmless, alarming}), "263");
+}
+
+TEST_F(PermissionOrigins, WhoMayNotAskHearsThatWhateverItIsAbout) {
+  permit({.subsystem = "*", .functions = {}, .services = {5}, .parameters = {}, .at = {}, .from = {"ARM", "CAMERA"}});
+  std::array<std::byte, 3> data{};
+  OctetWriter{data}.put(std::uint8_t{1}).put(alarming);
+  EXPECT_EQ(decided(by_camera, supervisor_apid, 5, 6, data).substr(0, 3), "263") << "a report of safety";
+  EXPECT_EQ(decided(by_arm, supervisor_apid, 5, 6, data), not_declared) << "what it may not name it learns nothing of";
 }
 
 }  // namespace

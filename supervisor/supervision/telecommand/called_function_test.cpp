@@ -20,8 +20,10 @@ TEST(CalledFunction, IsReadFromTheFunctionServiceOnly) {
   EXPECT_EQ(called->first_argument, 5);
   const auto other = testing::telecommand(arm, 20, 1, testing::call_data("SET_STATE", 5));
   EXPECT_FALSE(called_function(pus::TelecommandView::parse(other).value()));
-  const auto report = testing::telecommand(arm, 8, 2, testing::call_data("SET_STATE", 5));
-  EXPECT_FALSE(called_function(pus::TelecommandView::parse(report).value()));
+  for (const std::uint8_t subtype : {std::uint8_t{0}, std::uint8_t{2}}) {
+    const auto of_none = testing::telecommand(arm, 8, subtype, testing::call_data("SET_STATE", 5));
+    EXPECT_FALSE(called_function(pus::TelecommandView::parse(of_none).value())) << int{subtype};
+  }
   const auto without = testing::telecommand(arm, 8, 1, testing::call_data("HOLD"));
   EXPECT_FALSE(called_function(pus::TelecommandView::parse(without).value())->first_argument);
 }

@@ -134,6 +134,17 @@ TEST_P(LoanConformance, WhatAConsumerNeverSawIsCountedOnce) {
   EXPECT_EQ(reader_->newest().lost, 0u);
 }
 
+TEST_P(LoanConformance, WhoCopiesSeesItsWordChangeWithEachSampleAsWhoBorrowsDoes) {
+  const auto copying = GetParam()->consume(memory_, shared_, layout).value();
+  ASSERT_NE(copying->arrival_word(), nullptr);
+  for (std::uint64_t number = 1; number <= 9; ++number) {
+    const std::uint32_t before = *copying->arrival_word();
+    publish(number);
+    EXPECT_NE(*copying->arrival_word(), before) << number;
+    EXPECT_EQ(*copying->arrival_word(), *reader_->arrival_word());
+  }
+}
+
 TEST_P(LoanConformance, AChangeOfStatusIsSeenWithoutASample) {
   writer_->set_status(LinkStatus::Stopping);
   LinkSample found = reader_->newest();
