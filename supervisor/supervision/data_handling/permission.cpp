@@ -36,9 +36,11 @@ struct Asked {
   std::optional<CalledFunction> call;
   /// The function called or the request of the subsystem's own service; null: none that the descriptor declares.
   const descriptor::Function* request{nullptr};
-  const std::uint8_t service{telecommand.service()}, subtype{telecommand.subtype()};
+  const std::uint8_t service{telecommand.service()};
   /// Of a service of the framework, and its request; null: it is an author's, or there is none.
   const pus::ServiceKind* kind{pus::standard_service(service)};
+  const std::uint8_t subtype{
+      telecommand.subtype()};  // not beside the service: asked for as one word both would be waited for
   const pus::RequestKind* standard_request{kind != nullptr ? kind->request(subtype) : nullptr};
   bool essential{false};  ///< is_essential()
   bool bound{false};  ///< is_bound()
