@@ -68,6 +68,11 @@ def a_stop_without_an_answer(w):
 
 
 @case(SAFE_ALL_RULE)
+def a_stop_whose_report_nobody_asked_for_while_the_log_has_no_room(w):
+    safe_all(w, answered=None, ack=7, kind=None, stops=5 * MS)
+
+
+@case(SAFE_ALL_RULE)
 def a_stop_that_is_answered_when_the_last_was_ended(w):
     safe_all(w, answered=940 * MS)
 

@@ -230,6 +230,13 @@ def a_stopped_supervisor_that_finds_a_shutdown_when_it_goes_on_ends_the_flight(w
     ended_before_the_end(w)
 
 
+@case(AGAIN_RULE)
+def a_shutdown_at_the_last_moment_before_it_is_to_be_brought_up_ends_the_flight(w):
+    w.sent(1 * S, SUPERVISOR, 8, 1, "SHUTDOWN")
+    w.action(1003 * MS, "shutdown asked for")
+    brought_up(w, flown=False)
+
+
 @case(AGAIN_RULE, found="nothing could be brought up")
 def a_craft_that_is_not_flown_again_after_a_shutdown_that_nothing_held_up(w):
     ended_before_the_end(w)

@@ -55,13 +55,11 @@ def i4_safe_all_stops_everything(flight, victims):
                      and r.report.request_key == sent.key), None)
         if done is None:  # not in a log that had no room: ground has it all the same
             done = next((d[0] for d in flight.down if d[3] == 1 and d[4] in (7, 8) and (d[5], d[6]) == sent.key), None)
-        asked = next((r for r in flight.log if r.telecommand and r.telecommand.key == sent.key), None)
-        if asked and asked.kind != "telecommand-refused" and not asked.telecommand.ack & 8:
-            done = asked.time  # nobody asked for its report
+        refused = any(r.kind == "telecommand-refused" and r.telecommand and r.telecommand.key == sent.key for r in flight.log)
+        if not sent.ack & 8 and not refused:
+            done = sent.time  # nobody asked for its report
         if done is None or done > sent.time + SAFE_ALL_ENDS_US:
-            refused = next((r.time for r in flight.log if r.kind == "telecommand-refused" and r.telecommand
-                            and r.telecommand.key == sent.key), None)
-            yield sent.time, "SAFE_ALL was " + ("refused" if refused is not None else "not answered in its time")
+            yield sent.time, "SAFE_ALL was " + ("refused" if refused else "not answered in its time")
         at = min(done or sent.time + SAFE_ALL_US, sent.time + SAFE_ALL_US)
         for device, (member, _) in flight.mission.devices.items():
             released = released_after(flight, sent.time, member)
@@ -250,10 +248,14 @@ def muted(flight, apid):
 def i10_commandable_again(flight, victims):
     recovered, flown = flight.mark("recovered"), flight.mark("flown")
     # A supervisor that stood still finds ground's SHUTDOWN when it goes on, and one that goes on for another ends what that had begun to
-    # end: then that is how this flight ends.
-    asked_to_end = recovered is not None and any(
-        sent.function == "SHUTDOWN" and sent.time < flight.finished() < recovered and
-        (meets(victims["SUPERVISOR"], sent.time, flight.finished()) or meets(victims["SUCCESSION"], sent.time, recovered)) for sent in flight.sent)
+    # end: then that is how this flight ends. So it is where it was still about it, as ground asked for it at the last moment.
+    def is_the_end(sent):
+        ends = flight.finished()
+        at_the_last_moment = ends <= sent.time + STOP_BEGINS_US and recovered < ends + OFFLINE_US
+        held_up = meets(victims["SUPERVISOR"], sent.time, ends) or meets(victims["SUCCESSION"], sent.time, recovered)
+        return sent.function == "SHUTDOWN" and sent.time < ends < recovered and (at_the_last_moment or held_up)
+
+    asked_to_end = recovered is not None and any(is_the_end(sent) for sent in flight.sent)
     if recovered is None or asked_to_end:
         return
     answered = {d[6] for d in flight.down if d[3] == 1 and d[4] == 7 and d[5] == 0}
