@@ -2,25 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/manipulator/control/sensor_limits.hpp"
 
-#include <bit>
-
 namespace hirosco::manipulator {
-namespace {
-
-/// Shifts a sample into the last three and tells whether two of them are set.
-bool two_of_three(std::uint8_t& history, bool sample) noexcept {
-  history = static_cast<std::uint8_t>((history << 1 | (sample ? 1 : 0)) & 0b111);
-  return std::popcount(history) >= 2;
-}
-
-}  // namespace
 
 TorqueLimit::Finding TorqueLimit::update(const Joints& torque_n_m, double soft_n_m, double hard_n_m) noexcept {
   Finding worst;
   for (std::size_t i = 0; i < torque_n_m.size(); ++i) {
     const double size = std::abs(torque_n_m[i]);
-    const bool soft = two_of_three(soft_[i], !(size <= soft_n_m));
-    const bool hard = two_of_three(hard_[i], !(size <= hard_n_m));
+    const bool soft = soft_[i].add(!(size <= soft_n_m));
+    const bool hard = hard_[i].add(!(size <= hard_n_m));
     const auto verdict = hard ? TorqueVerdict::Hard : soft ? TorqueVerdict::Soft : TorqueVerdict::Fine;
     if (verdict > worst.verdict) worst = {verdict, static_cast<std::uint8_t>(i), torque_n_m[i]};
   }

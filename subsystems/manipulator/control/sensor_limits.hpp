@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "robotics/limits/two_of_three.hpp"
 #include "subsystems/manipulator/control/joints.hpp"
 
 /// What stops an arm by its own sensors.
@@ -26,8 +27,8 @@ class TorqueLimit {
   [[nodiscard]] Finding update(const Joints& torque_n_m, double soft_n_m, double hard_n_m) noexcept;
 
  private:
-  std::array<std::uint8_t, max_joints> soft_{};  // last three samples, one bit each
-  std::array<std::uint8_t, max_joints> hard_{};
+  std::array<robotics::TwoOfThree, max_joints> soft_{};
+  std::array<robotics::TwoOfThree, max_joints> hard_{};
 };
 
 /// Tells each limit once until it is armed anew; a higher one whatever a lower one did.

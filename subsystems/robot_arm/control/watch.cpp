@@ -3,21 +3,15 @@
 #include "subsystems/robot_arm/control/watch.hpp"
 
 #include <algorithm>
-#include <bit>
 
 namespace hirosco::robot_arm {
-
-bool two_of_three(std::uint8_t& history, bool sample) noexcept {
-  history = static_cast<std::uint8_t>((history << 1 | (sample ? 1 : 0)) & 0b111);
-  return std::popcount(history) >= 2;
-}
 
 std::optional<Finding> Watch::update(const Measured& measured, const JointVector* setpoint, Bounds bounds,
                                      const Limits& limits) noexcept {
   std::optional<Finding> worst;
   const auto look = [&](Excess what, std::size_t joint, double value, double limit, bool within) {
     const auto kind = static_cast<std::size_t>(what);
-    if (!two_of_three(history_[kind][joint], !within) || told_[kind]) return;
+    if (!history_[kind][joint].add(!within) || told_[kind]) return;
     // The order of the kinds is not that of their gravity: the hard torque alone goes before what was found already.
     if (!worst || what == Excess::TorqueHard) worst = {what, joint, value, limit};
   };

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "robotics/limits/two_of_three.hpp"
 #include "subsystems/robot_arm/control/joints.hpp"
 
 /// What stops an arm by its own sensors, in every state.
@@ -21,9 +22,6 @@ struct Finding {
   double value{0};
   double limit{0};
 };
-
-/// Shifts a sample into the last three and tells whether two of them are set.
-[[nodiscard]] bool two_of_three(std::uint8_t& history, bool sample) noexcept;
 
 /// Trips when two of the last three samples of a joint are beyond a limit: one disturbed sample does not stop a mission. What is no
 /// number is beyond every limit. Each kind is told once, until it is armed anew.
@@ -45,7 +43,7 @@ class Watch {
   [[nodiscard]] std::optional<Excess> tripped() const noexcept { return first_; }
 
  private:
-  std::array<std::array<std::uint8_t, max_joints>, excesses> history_{};  // last three samples, one bit each
+  std::array<std::array<robotics::TwoOfThree, max_joints>, excesses> history_{};
   std::array<bool, excesses> told_{};
   std::optional<Excess> first_{};
 };

@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/control/work_watch.hpp"
 
-#include "subsystems/robot_arm/control/watch.hpp"
-
 namespace hirosco::robot_arm {
 
 std::optional<WorkFinding> WorkWatch::update(const Is& is, const WorkLimits& limits, bool feels) noexcept {
   std::optional<WorkFinding> found;
   const auto look = [&](Work what, double value, double limit, bool known) {
     const auto kind = static_cast<std::size_t>(what);
-    const bool beyond = two_of_three(history_[kind], known && !(value <= limit));
+    const bool beyond = history_[kind].add(known && !(value <= limit));
     if (!beyond || told_[kind] || found) return;
     told_[kind] = tripped_ = true;
     found = {what, value, limit};

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "robotics/limits/two_of_three.hpp"
 #include "subsystems/robot_arm/control/work_bounds.hpp"
 
 namespace hirosco::robot_arm {
@@ -36,7 +37,7 @@ class WorkWatch {
   [[nodiscard]] bool tripped() const noexcept { return tripped_; }
 
  private:
-  std::array<std::uint8_t, works> history_{};  // last three samples, one bit each
+  std::array<robotics::TwoOfThree, works> history_{};
   std::array<bool, works> told_{};
   bool tripped_{false};
 };

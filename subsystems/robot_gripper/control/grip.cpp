@@ -3,7 +3,6 @@
 #include "subsystems/robot_gripper/control/grip.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace hirosco::robot_gripper {
@@ -21,11 +20,6 @@ constexpr double trim_per_s = 10, most_trim_share = 0.3;
 constexpr double rest_m_s = 0.001;
 constexpr double most_integral_share = 0.8;
 constexpr double friction_from_m_s = 0.001;
-
-[[nodiscard]] bool two_of_three(std::uint8_t& history, bool sample) noexcept {
-  history = static_cast<std::uint8_t>((history << 1 | (sample ? 1 : 0)) & 0b111);
-  return std::popcount(history) >= 2;
-}
 
 }  // namespace
 
@@ -47,7 +41,8 @@ void Grip::grip(double force_n, double speed_m_s) noexcept {
   if (law_ == Law::Press) return;
   law_ = Law::Reach;
   integral_n_ = reaching_m_s_ = reached_s_ = stalled_s_ = leaves_n_ = 0;
-  met_ = gone_ = 0;
+  met_.forget();
+  gone_.forget();
 }
 
 void Grip::press_on(double force_n, double speed_m_s) noexcept {
@@ -55,7 +50,7 @@ void Grip::press_on(double force_n, double speed_m_s) noexcept {
   force_n_ = pressing_n_ = force_n;
   speed_m_s_ = speed_m_s;
   trim_n_ = settled_s_ = 0;
-  gone_ = 0;
+  gone_.forget();
 }
 
 Joints Grip::torques(const Opening::Wanted& wanted, const Measured& measured) noexcept {
@@ -100,7 +95,7 @@ double Grip::reach(double speed_m_s, double force_n) noexcept {
   const double closing_n = std::clamp(2 * mass * b * slow_m_s + integral_n_, -force_n_, force_n_);
   const bool stands = reached_s_ > begun_s && closing_m_s < stalled_share * speed_m_s_;
   stalled_s_ = stands ? stalled_s_ + settings_.cycle_s : 0;
-  if (two_of_three(met_, force_n >= met_share * force_n_) || stalled_s_ >= stall_s) {
+  if (met_.add(force_n >= met_share * force_n_) || stalled_s_ >= stall_s) {
     press_on(force_n_, speed_m_s_);
     pressing_n_ = std::clamp(closing_n, 0.0, force_n_);
   }
@@ -117,11 +112,11 @@ double Grip::press(double speed_m_s, double force_n) noexcept {
   const bool there = std::abs(force_n - force_n_) <= tolerance_ * force_n_ && std::abs(closing_m_s) < rest_m_s;
   settled_s_ = there ? settled_s_ + settings_.cycle_s : 0;
   const double closing_n = pressing_n_ + trim_n_ - 2 * fingers_.moved_kg() * b * closing_m_s;
-  if (two_of_three(gone_, closing_m_s > gone_m_s && force_n < gone_share * pressing_n_)) {
+  if (gone_.add(closing_m_s > gone_m_s && force_n < gone_share * pressing_n_)) {
     law_ = Law::Reach;
     reaching_m_s_ = std::min(closing_m_s, speed_m_s_);
     integral_n_ = reached_s_ = stalled_s_ = 0;
-    met_ = 0;
+    met_.forget();
   }
   return std::clamp(closing_n, -force_n_ - most_n, force_n_ + most_n);
 }
@@ -129,13 +124,14 @@ double Grip::press(double speed_m_s, double force_n) noexcept {
 void Held::hold(double width_m) noexcept {
   held_ = true;
   width_m_ = width_m;
-  closed_ = opened_ = 0;
+  closed_.forget();
+  opened_.forget();
 }
 
 Held::Change Held::update(double width_m, double distance_m) noexcept {
   if (!held_) return Change::None;
-  const bool closed = two_of_three(closed_, !(width_m >= width_m_ - distance_m));
-  const bool opened = two_of_three(opened_, width_m > width_m_ + distance_m);
+  const bool closed = closed_.add(!(width_m >= width_m_ - distance_m));
+  const bool opened = opened_.add(width_m > width_m_ + distance_m);
   if (!closed && !opened) return Change::None;
   held_ = false;
   return closed ? Change::LostClosed : Change::LostOpened;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "robotics/limits/two_of_three.hpp"
 #include "subsystems/robot_gripper/control/fingers.hpp"
 #include "subsystems/robot_gripper/control/opening.hpp"
 
@@ -60,7 +61,7 @@ class Grip {
   double integral_n_{0};  ///< of Width and Reach
   double reaching_m_s_{0};  ///< wanted speed of closing, on its way to speed_m_s_
   double reached_s_{0}, stalled_s_{0};
-  std::uint8_t met_{0}, gone_{0};  ///< last three samples, one bit each
+  robotics::TwoOfThree met_, gone_;
   double pressing_n_{0}, trim_n_{0};
   double leaves_n_{0}, leaving_n_{0};  ///< of what it lets go: what is left of it, and what it was
   double settled_s_{0};
@@ -84,7 +85,7 @@ class Held {
  private:
   bool held_{false};
   double width_m_{0};
-  std::uint8_t closed_{0}, opened_{0};
+  robotics::TwoOfThree closed_, opened_;
 };
 
 }  // namespace hirosco::robot_gripper

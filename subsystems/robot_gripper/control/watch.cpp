@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_gripper/control/watch.hpp"
 
-#include <bit>
 #include <cmath>
 
 namespace hirosco::robot_gripper {
@@ -11,9 +10,7 @@ std::optional<Finding> Watch::update(const Measured& measured, const Fingers& fi
   std::optional<Finding> found;
   const auto look = [&](Excess what, std::size_t joint, double value, double limit, bool within) {
     const auto kind = static_cast<std::size_t>(what);
-    std::uint8_t& history = history_[kind][joint];
-    history = static_cast<std::uint8_t>((history << 1 | (within ? 0 : 1)) & 0b111);
-    if (std::popcount(history) < 2 || told_[kind]) return;
+    if (!history_[kind][joint].add(!within) || told_[kind]) return;
     // The force alone goes before what was found already.
     if (!found || what == Excess::Force) found = {what, joint, value, limit};
   };

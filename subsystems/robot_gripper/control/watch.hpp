@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "robotics/limits/two_of_three.hpp"
 #include "subsystems/robot_gripper/control/fingers.hpp"
 
 /// What stops a gripper by its own sensors, in every state.
@@ -37,7 +38,7 @@ class Watch {
   [[nodiscard]] bool tripped() const noexcept { return tripped_; }
 
  private:
-  std::array<std::array<std::uint8_t, max_fingers>, excesses> history_{};  // last three samples, one bit each
+  std::array<std::array<robotics::TwoOfThree, max_fingers>, excesses> history_{};
   std::array<bool, excesses> told_{};
   bool tripped_{false};
 };
