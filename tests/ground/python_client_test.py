@@ -31,7 +31,8 @@ class Export(unittest.TestCase):
             told = export(flight.HELLO, folder)
             self.assertIn(f"PYTHONPATH={folder}", told)
             package = pathlib.Path(folder, "hirosco_hello")
-            self.assertEqual({path.name for path in package.iterdir()}, {"__init__.py", "packets.py", "flights.py", "descriptors.py", "reports.py", "runtime.py"})
+            self.assertEqual({path.name for path in package.iterdir()}, {"__init__.py", "packets.py", "flights.py", "descriptors.py", "links.py", "reports.py", "runtime.py",
+                                                                           "shapes.py"})
             for path in package.iterdir():
                 compile(path.read_text(), path.name, "exec")
             self.assertIn("class Hello(_r.Subsystem):", (package / "__init__.py").read_text())
@@ -99,6 +100,8 @@ class OnAFlight(unittest.TestCase):
             client.manipulator.hk_4713()
             self.assertGreater(client.received, received)
             self.assertEqual(links, [False, True])
+            self.assertEqual(client.supervisor.safe_all().verifications[-1].stage, "completed")
+            self.assertEqual(client._essential._connection.getpeername()[1], 10025, "its own way, to this flight")
 
     def example(self, craft):
         plot = pathlib.Path(self.folder.name, "plot.svg")
@@ -160,6 +163,27 @@ class OnAFlight(unittest.TestCase):
             arm.hk_4713(timeout=0.3)
         arm.enable_housekeeping(4713)
         arm.hk_4713()
+        self.services_by_their_shapes(client)
+
+    def services_by_their_shapes(self, client):
+        arm = client.manipulator
+        properties, = arm.report_properties([4713]).reports
+        self.assertEqual(properties["STRUCTURES"], ({"STRUCTURE": 4713, "PERIODIC": 1, "INTERVAL": 100},))
+        arm.create_structure(60000, 100, ["POS_SCALE"], [{"REPETITIONS": 5, "PARAMETERS": ["KP"]}])
+        structure, = arm.report_structures([60000]).reports
+        self.assertEqual((structure["PARAMETERS"], structure["SETS"]), (("POS_SCALE",), ({"REPETITIONS": 5, "PARAMETERS": ("KP",)},)))
+        arm.delete_structures([60000])
+        values, = arm.report_values(["KP", "POS_SCALE"]).reports
+        self.assertEqual([one["PARAMETER"] for one in values["PARAMETERS"]], ["KP", "POS_SCALE"])
+        self.assertEqual([one["VALUE"] for one in values["PARAMETERS"]], [arm.get_kp(), 1.0])
+        arm.disable_events(["MOTION_DONE"])
+        self.assertEqual(arm.report_disabled().reports[0]["EVENTS"], ("MOTION_DONE",))
+        arm.enable_events(["MOTION_DONE"])
+        preview, = client.supervisor.preview_mode(3).reports
+        self.assertEqual((preview.name, preview["MODE"]), ("MODE_PREVIEW", 3))
+        with self.assertRaises(self.rokviss.CommandFailed) as refused:
+            arm.one_shot([60001])
+        self.assertEqual(refused.exception.parameters["identifier"], 60001)
 
     def two_at_once(self, client):
         """Two clients command at the same time; each gets its own reports and no other."""

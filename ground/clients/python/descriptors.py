@@ -9,12 +9,11 @@ import numbers
 import struct
 from typing import Any, Mapping, Optional, Sequence, Tuple, Union
 
-from .packets import ArgumentError, cuc_seconds
+from .packets import ArgumentError
 
 FORMATS = {"UINT8": "B", "INT8": "b", "UINT16": "H", "INT16": "h", "UINT32": "I", "INT32": "i", "UINT64": "Q",
            "INT64": "q", "FLOAT": "f", "DOUBLE": "d", "BOOL": "?"}
 FUNCTION_NAME_OCTETS = 16
-CUC_OCTETS = 7
 
 
 def _shown(number: float) -> str:
@@ -63,17 +62,16 @@ class Field:
 
     def take(self, data: bytes, offset: int) -> Tuple[Any, int]:
         """A value of a report that answers a request, and where the next one stands: text where the value has a name.
-        struct.error: it is cut off. TIME (on board: seconds TAI since 1958) and WORD stand in reports of standard services only."""
-        if self.type not in ("TEXT", "TIME", "WORD"):
+        struct.error: it is cut off."""
+        if self.type != "TEXT" or self.fixed:
             value = self.decode(data, offset)
-            named = self.count == 1 and self.type != "BOOL"
+            named = self.count == 1 and self.type not in ("BOOL", "TEXT")
             return self.text_of(value) or value if named else value, offset + self.octets
-        length = {"TEXT": ">H", "WORD": ">B"}.get(self.type)
-        begin = offset + (struct.calcsize(length) if length else 0)
-        end = begin + (struct.unpack_from(length, data, offset)[0] if length else CUC_OCTETS)
+        begin = offset + 2
+        end = begin + struct.unpack_from(">H", data, offset)[0]
         if end > len(data):
             raise struct.error(f"{self.name} is cut off")
-        return cuc_seconds(data[begin:end]) if self.type == "TIME" else data[begin:end].decode("utf-8", "replace"), end
+        return data[begin:end].decode("utf-8", "replace"), end
 
     def text_of(self, value: float) -> Optional[str]:
         return next((text for known, text in self.texts if known == value), None)
@@ -124,6 +122,7 @@ class Function:
     service: int = 8
     subtype: int = 1
     arguments: Tuple[Field, ...] = ()
+    alone: bool = False           # essential: goes past what waits for the link
 
     def encode(self, values: Sequence[Any]) -> bytes:
         """Application data: arguments in order, with name and ids for service 8; None stands for the declared value."""
@@ -157,6 +156,13 @@ class Parameter:
             raise ArgumentError(f"{self.name}: a dictionary with {', '.join(names)} is wanted, not {value!r}")
         return b"".join(field.encode(value[field.name]) for field in self.fields)
 
+    def decode(self, data: bytes, offset: int) -> Tuple[Any, int]:
+        """The value, of a structure a dictionary, and where it ends. struct.error: it is cut off."""
+        values = {}
+        for field in self.fields:
+            values[field.name], offset = field.decode(data, offset), offset + field.octets
+        return values if self.structure else next(iter(values.values())), offset
+
 
 @dataclasses.dataclass(frozen=True)
 class Layout:
@@ -168,11 +174,11 @@ class Layout:
 
 @dataclasses.dataclass(frozen=True)
 class ReportKind:
-    """A report of a subsystem's own service, or of a standard one that is asked by name."""
+    """A report of a subsystem's own service, or of the framework's, in which parts stand that are no fields (shapes.Part)."""
     service: int
     subtype: int
     name: str
-    fields: Tuple[Field, ...] = ()
+    fields: Tuple[Any, ...] = ()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -193,6 +199,7 @@ class SubsystemAbout:
     layouts: Tuple[Layout, ...] = ()
     events: Tuple[EventKind, ...] = ()
     reports: Tuple[ReportKind, ...] = ()
+    requests: Tuple[Any, ...] = ()    # of the framework's services by their shapes (shapes.ServiceRequest)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -204,3 +211,4 @@ class MissionAbout:
     modes: Tuple[Tuple[int, str], ...]
     links: Tuple[Tuple[int, str], ...]
     failures: Tuple[Tuple[int, str], ...]
+    telecommand_port: int = 0     # for telecommands alone; 0: it has none

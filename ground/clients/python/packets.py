@@ -11,6 +11,7 @@ from typing import List, Optional
 
 ACK_ALL = 15                      # acceptance, start, progress, completion
 LARGEST_PACKET = 4096
+CUC_OCTETS = 7
 
 
 class HiroscoError(Exception):
@@ -70,6 +71,11 @@ class Telemetry:
 
 def cuc_seconds(octets: bytes) -> float:
     return int.from_bytes(octets[:4], "big") + int.from_bytes(octets[4:7], "big") / 2**24
+
+
+def cuc_octets(seconds: float) -> bytes:
+    """OverflowError, ValueError: no time that it has."""
+    return round(seconds * 2**24).to_bytes(CUC_OCTETS, "big")
 
 
 def cut(stream: bytearray) -> List[bytes]:

@@ -102,6 +102,26 @@ TEST(PythonPackage, EverythingOfADescriptorBecomesAMethodWithItsUnitAndRange) {
   EXPECT_THAT(text, HasSubstr("_r.EventKind(77, \"GRIPPER\","));
 }
 
+TEST(PythonPackage, WhatIsEssentialLeavesByTheTelecommandPort) {
+  auto mission = mission_with("GRIPPER");
+  mission.ground.telemetry = "127.0.0.1:10015";
+  mission.ground.telecommand = "127.0.0.1:10025";
+  const std::string before = module_of(mission);
+  EXPECT_THAT(before, HasSubstr("port=10015"));
+  EXPECT_THAT(before, HasSubstr("telecommand_port=10025)"));
+  EXPECT_THAT(before, Not(HasSubstr("alone=True"))) << "a ping asks about the ordinary way";
+  mission.subsystems[0].subsystem.functions[0].essential = true;
+  EXPECT_THAT(module_of(mission), HasSubstr("maximum=1.5),), alone=True),"));
+}
+
+TEST(PythonPackage, ASubsystemIsAskedAllThatTheFrameworkOffers) {
+  const std::string text = module_of(mission_with("GRIPPER"));
+  EXPECT_THAT(text, HasSubstr("        reports=(\n            *_told,\n        ), requests=(*_st3, *_st5, *_st20, ))"));
+  EXPECT_THAT(
+      text,
+      HasSubstr("_r.ReportKind(17, 129, \"SELF_TEST_OUTCOME\", fields=(_r.Field(\"OUTCOME\", \"UINT8\", texts=(("));
+}
+
 TEST(PythonPackage, AParameterThatIsNeverWritableHasNoSetter) {
   auto mission = mission_with("GRIPPER");
   mission.subsystems[0].subsystem.parameters[0].writable_states = 0;
@@ -143,29 +163,6 @@ TEST(PythonPackage, TheSameCatalogueGivesTheSameOctets) {
 TEST(PythonPackage, APackageIsNeverNamedAsAModuleOfPython) {
   EXPECT_EQ(python_package(Catalogue{mission_with("json")}).name, "hirosco_json");
   EXPECT_EQ(python_package(Catalogue{mission_with("../../etc")}).name, "hirosco_etc");
-}
-
-TEST(PythonNames, AreValidAndUniqueWhateverTheDescriptorSays) {
-  PythonNames names{{"self", "wait"}};
-  EXPECT_EQ(names.variable("MOVE_TO"), "move_to");
-  EXPECT_EQ(names.variable("Move To"), "move_to_2");
-  EXPECT_EQ(names.variable("LAMBDA"), "lambda_2");
-  EXPECT_EQ(names.variable("SELF"), "self_2");
-  EXPECT_EQ(names.variable("__init__"), "init");
-  EXPECT_EQ(names.variable("3D"), "n3d");
-  EXPECT_EQ(names.variable("\xC3\xA9\"\n"), "n");
-  EXPECT_EQ(names.variable(""), "n_2");
-  EXPECT_EQ(names.type("END_EFFECTOR"), "EndEffector");
-  EXPECT_EQ(names.type("NONE"), "None_2");
-}
-
-TEST(PythonString, IsAsciiAndKeepsItsQuotes) {
-  EXPECT_EQ(python_string("a\"b\\c\n"), R"("a\"b\\c\x0a")");
-  EXPECT_EQ(python_string("\xC2\xB0"
-                          "C"),
-            R"("\u00b0C")");
-  EXPECT_EQ(python_string("\xF0\x9F\x9A\x80"), R"("\U0001f680")");
-  EXPECT_EQ(python_string("\xE2\x80"), R"("\ufffd\ufffd")");
 }
 
 TEST(PythonPackage, HostileNamesAreTextForPythonAndNothingElse) {

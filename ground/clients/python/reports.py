@@ -6,9 +6,14 @@ from __future__ import annotations
 import dataclasses
 import datetime
 import struct
-from typing import Any, Dict, Optional
+import time
+from typing import TYPE_CHECKING, Any, Dict, List, Optional
 
 from .descriptors import FUNCTION_NAME_OCTETS
+from .packets import HiroscoError, Telemetry
+
+if TYPE_CHECKING:
+    from .runtime import Craft
 
 EPOCH = datetime.datetime(1958, 1, 1, tzinfo=datetime.timezone.utc)
 TAI_MINUS_UTC_S = 37
@@ -42,11 +47,15 @@ class Housekeeping(Told):
 
 @dataclasses.dataclass(frozen=True)
 class Report(Told):
-    """One report of a subsystem's own service, or of a standard one: SELF_TEST_OUTCOME."""
+    """One report of a subsystem's own service, or of the framework's: SELF_TEST_OUTCOME. What nobody has a name for is called
+    "TM[3,35]" and has no values."""
     subsystem: str
     name: str
     time_s: float
     values: Dict[str, Any]
+    service: int = 0
+    subtype: int = 0
+    data: bytes = b""             # as it came
 
 
 @dataclasses.dataclass(frozen=True)
@@ -114,3 +123,57 @@ def failure_parameters(code: int, data: bytes) -> Dict[str, Any]:
     if len(data) != struct.calcsize(form):
         return {"data": data.hex()}
     return dict(zip((name for name, _ in shape), struct.unpack(form, data)))
+
+
+def code_text(code: int) -> str:
+    """As docs/failure-codes.md writes it."""
+    return str(code) if code < 0x100 else f"{code:#06x}"
+
+
+class CommandFailed(HiroscoError):
+    """The spacecraft refused a request or did not complete it. `verification` is the report that says so."""
+
+    def __init__(self, request: Request, verification: Verification) -> None:
+        super().__init__(f"{request.subsystem}.{request.name} {verification.stage}: {verification.text} "
+                         f"(code {code_text(verification.code)}){verification.detail}")
+        self.request, self.verification = request, verification
+
+    @property
+    def code(self) -> int:
+        return self.verification.code or 0
+
+    @property
+    def text(self) -> str:
+        return self.verification.text
+
+    @property
+    def parameters(self) -> Dict[str, Any]:
+        return self.verification.parameters
+
+
+class Request:
+    """A telecommand that was sent, and what became of it."""
+
+    def __init__(self, craft: Craft, subsystem: str, name: str, service: int) -> None:
+        self.subsystem, self.name, self.service = subsystem, name, service
+        self.verifications: List[Verification] = []
+        self.reports: List[Report] = []       # that answer it, while it is open
+        self.reply: Optional[Telemetry] = None
+        self._craft = craft
+        self._link = craft._link          # another link knows nothing of it
+        self._sent = time.monotonic()
+
+    def __repr__(self) -> str:
+        return f"<{self.subsystem}.{self.name}: {', '.join(v.stage for v in self.verifications) or 'sent'}>"
+
+    @property
+    def done(self) -> bool:
+        return any(v.is_last for v in self.verifications)
+
+    def result(self, timeout: float = 70.0) -> Request:
+        """Waits for the last report. CommandFailed, NoAnswer, LinkLost."""
+        self._craft._wait(lambda: self.done, timeout, f"{self.subsystem}.{self.name}: no final report", self._link)
+        for verification in self.verifications:
+            if verification.is_failure and (verification.is_last or self.verifications[-1].subtype != 7):
+                raise CommandFailed(self, verification)
+        return self

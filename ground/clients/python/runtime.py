@@ -18,73 +18,23 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 from .descriptors import EventKind, Field, Function, Layout, MissionAbout, Parameter, ReportKind, SubsystemAbout
 from .flights import find_flight, flights
+from .links import EssentialWay, link_to, place_of
 from .packets import ArgumentError, HiroscoError, LinkLost, NoAnswer, Telemetry, crc16, cuc_seconds, cut, telecommand
-from .reports import SEVERITIES, STAGES, Event, Housekeeping, Report, Verification, failure_parameters, utc_of
+from .reports import (SEVERITIES, STAGES, CommandFailed, Event, Housekeeping, Report, Request, Verification, code_text,
+                      failure_parameters, utc_of)
+from .shapes import Part, ServiceRequest, report_of
 
 __all__ = ["ArgumentError", "CommandFailed", "Craft", "Event", "EventKind", "Field", "Function", "HiroscoError", "Housekeeping",
-           "Layout", "LinkLost", "MissionAbout", "NoAnswer", "Parameter", "Report", "ReportKind", "Request", "Subsystem", "SubsystemAbout", "Telemetry",
-           "Verification", "code_text", "crc16", "cuc_seconds", "cut", "failure_parameters", "find_flight", "flights",
+           "Layout", "LinkLost", "MissionAbout", "NoAnswer", "Parameter", "Part", "Report", "ReportKind", "Request", "ServiceRequest", "Subsystem",
+           "SubsystemAbout", "Telemetry", "Verification", "code_text", "crc16", "cuc_seconds", "cut", "failure_parameters", "find_flight", "flights",
            "telecommand", "utc_of"]
 
 STATES = ("Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOperational", "Operational",
           "ErrorOperational", "PostOperational", "HardwareDeinit", "SoftwareDeinit")
 # Source ids of Python clients; reports find back to the one that asked.
 FIRST_SOURCE, LAST_SOURCE = 0x8000, 0xBFFF
+FIRST_OWN_SERVICE = 192           # of a subsystem's author; those below are the standard's and the framework's
 RECONNECT_S = 1.0                 # from one attempt to the next
-
-
-def code_text(code: int) -> str:
-    """As docs/failure-codes.md writes it."""
-    return str(code) if code < 0x100 else f"{code:#06x}"
-
-
-class CommandFailed(HiroscoError):
-    """The spacecraft refused a request or did not complete it. `verification` is the report that says so."""
-
-    def __init__(self, request: Request, verification: Verification) -> None:
-        super().__init__(f"{request.subsystem}.{request.name} {verification.stage}: {verification.text} "
-                         f"(code {code_text(verification.code)}){verification.detail}")
-        self.request, self.verification = request, verification
-
-    @property
-    def code(self) -> int:
-        return self.verification.code or 0
-
-    @property
-    def text(self) -> str:
-        return self.verification.text
-
-    @property
-    def parameters(self) -> Dict[str, Any]:
-        return self.verification.parameters
-
-
-class Request:
-    """A telecommand that was sent, and what became of it."""
-
-    def __init__(self, craft: Craft, subsystem: str, name: str) -> None:
-        self.subsystem, self.name = subsystem, name
-        self.verifications: List[Verification] = []
-        self.reports: List[Report] = []       # that answer it, while it is open
-        self.reply: Optional[Telemetry] = None
-        self._craft = craft
-        self._link = craft._link          # another link knows nothing of it
-        self._sent = time.monotonic()
-
-    def __repr__(self) -> str:
-        return f"<{self.subsystem}.{self.name}: {', '.join(v.stage for v in self.verifications) or 'sent'}>"
-
-    @property
-    def done(self) -> bool:
-        return any(v.is_last for v in self.verifications)
-
-    def result(self, timeout: float = 70.0) -> Request:
-        """Waits for the last report. CommandFailed, NoAnswer, LinkLost."""
-        self._craft._wait(lambda: self.done, timeout, f"{self.subsystem}.{self.name}: no final report", self._link)
-        for verification in self.verifications:
-            if verification.is_failure and (verification.is_last or self.verifications[-1].subtype != 7):
-                raise CommandFailed(self, verification)
-        return self
 
 
 class Subsystem:
@@ -95,6 +45,7 @@ class Subsystem:
         self._craft = craft
         self._functions = {function.name: function for function in self._about.functions}
         self._parameters = {parameter.name: parameter for parameter in self._about.parameters}
+        self._services = {request.name: request for request in self._about.requests}
         self._latest: Dict[int, Housekeeping] = {}
         self._recordings: List[Tuple[int, List[Housekeeping]]] = []
         self._changed: Tuple[float, Optional[int]] = (-math.inf, None)  # state by its newest STATE_CHANGED, and when
@@ -138,18 +89,19 @@ class Subsystem:
     # The exported methods end here.
     def _call(self, name: str, values: Sequence[Any], wait: Optional[float]) -> Request:
         function = self._functions[name]
-        return self._craft._send(self, name, function.service, function.subtype, function.encode(values), wait)
+        return self._craft._send(self, name, function.service, function.subtype, function.encode(values), wait, function.alone)
+
+    def _ask(self, name: str, values: Sequence[Any], wait: Optional[float]) -> Request:
+        """Of a service of the framework."""
+        asked = self._services[name]
+        return self._craft._send(self, name, asked.service, asked.subtype, asked.encode(values, self._about), wait, asked.alone)
 
     def _get(self, name: str, wait: float) -> Any:
         parameter = self._parameters[name]
         data = struct.pack(">BI", 1, parameter.wire)
         request = self._craft._send(self, f"get {name}", 20, 1, data, wait)
         self._craft._wait(lambda: request.reply, wait, f"{self._about.name}.{name}: no value came", request._link)
-        values, offset = {}, 5
-        for field in parameter.fields:
-            values[field.name] = field.decode(request.reply.data, offset)
-            offset += field.octets
-        return values if parameter.structure else next(iter(values.values()))
+        return parameter.decode(request.reply.data, 5)[0]
 
     def _set(self, name: str, value: Any, wait: Optional[float]) -> Request:
         parameter = self._parameters[name]
@@ -208,10 +160,11 @@ class Craft:
     kept_events = 10_000
 
     def __init__(self, host: Optional[str] = None, port: Optional[int] = None, timeout: float = 5.0,
-                 instance: Optional[str] = None, reconnect: bool = False) -> None:
+                 instance: Optional[str] = None, reconnect: bool = False, telecommand_port: Optional[int] = None) -> None:
         """Connects: to the flight of this mission on this computer, to that of this name (`hirosco run --instance`), or
         to `host` and `port`. LinkLost: nobody answers there, or it is not clear which flight is meant. With `reconnect` a link
-        that is lost later is looked for every second, wherever the mission then flies; what was asked on the old one is lost."""
+        that is lost later is looked for every second, wherever the mission then flies; what was asked on the old one is lost.
+        Essential telecommands leave by `telecommand_port`; left out: as the flight says, else as far from `port` as in the mission."""
         self.source = random.randint(FIRST_SOURCE, LAST_SOURCE)
         self.events: "collections.deque[Event]" = collections.deque(maxlen=self.kept_events)
         self.received = self.damaged = 0
@@ -224,24 +177,16 @@ class Craft:
         self._link_watchers: List[Callable[[bool], None]] = []
         self._closed = threading.Event()
         self._reconnects = reconnect
-        self._wanted = (host, port, timeout, instance)
+        self._wanted = (host, port, instance, telecommand_port)
+        self._timeout = timeout
+        self._in_turn = threading.Lock()  # of who sends by the link, which may take nothing; nobody else waits for that
+        self._essential = EssentialWay()
         self._socket = self._connect()
 
     def _connect(self) -> socket.socket:
-        host, port, timeout, instance = self._wanted
-        where = (host or self._about.host, port or self._about.port)
-        if instance is not None or (host is None and port is None):
-            flight = find_flight(self._about.name, instance)
-            if flight and flight.get("telemetry"):
-                there, _, number = flight["telemetry"].rpartition(":")
-                where = (host or there, port or int(number))
-        try:
-            connection = socket.create_connection(where, timeout)
-        except OSError as error:
-            raise LinkLost(f"{where[0]}:{where[1]}: {error}; does the mission fly?") from None
-        connection.settimeout(None)
-        # What is said leaves at once and does not wait here for the answer to what was said before.
-        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        place = place_of(self._about, *self._wanted)
+        connection = link_to(place, self._timeout)
+        self._essential.open(place)
         return connection
 
     def _start(self) -> None:
@@ -261,6 +206,7 @@ class Craft:
         with self._arrived, contextlib.suppress(OSError):
             self._closed.set()
             self._socket.shutdown(socket.SHUT_RDWR)
+        self._essential.close()
         if threading.current_thread() is not self._reader:
             self._reader.join(5.0)
         self._socket.close()
@@ -308,19 +254,41 @@ class Craft:
         return newest[1]
 
     def _send(self, subsystem: Subsystem, name: str, service: int, subtype: int, data: bytes,
-              wait: Optional[float]) -> Request:
-        with self._arrived:
-            self._count = (self._count + 1) % (1 << 14)
-            packet = telecommand(subsystem._about.apid, self._count, service, subtype, self.source, data)
-            request = Request(self, subsystem._about.name, name)
-            if self._lost is not None:
-                raise LinkLost(self._lost)
-            self._requests[int.from_bytes(packet[:4], "big")] = request
-            try:
-                self._socket.sendall(packet)
-            except OSError as error:
-                raise LinkLost(f"the link was closed: {error}") from None
+              wait: Optional[float], alone: bool = False) -> Request:
+        """`alone`: past what waits for the link, also without one; that port may take what the other does not."""
+        def ask() -> Tuple[Request, bytes]:
+            with self._arrived:
+                if self._closed.is_set() or (self._lost is not None and not alone):
+                    raise LinkLost(self._lost or "this client is closed")
+                self._count = (self._count + 1) % (1 << 14)
+                packet = telecommand(subsystem._about.apid, self._count, service, subtype, self.source, data)
+                request = Request(self, subsystem._about.name, name, service)
+                self._requests[int.from_bytes(packet[:4], "big")] = request
+                return request, packet
+
+        if alone:
+            request, packet = ask()
+            if not self._essential.send(packet):
+                with self._in_turn:
+                    self._send_by_link(packet)
+        else:
+            with self._in_turn:           # counts leave in their order
+                request, packet = ask()
+                self._send_by_link(packet)
+        if wait is not None and self._lost is not None and not self._reconnects:
+            raise LinkLost(f"{request.subsystem}.{name} was sent, but nobody hears what becomes of it: {self._lost}")
         return request if wait is None else request.result(wait)
+
+    def _send_by_link(self, packet: bytes) -> None:
+        why = self._lost
+        try:
+            if why is None:
+                return self._socket.sendall(packet)
+        except OSError as error:
+            why = f"the link was closed: {error}"
+        with self._arrived:
+            self._requests.pop(int.from_bytes(packet[:4], "big"), None)
+        raise LinkLost(why)
 
     def _wait(self, condition: Callable[[], Any], timeout: float, what: str, link: Optional[int] = None) -> None:
         """`link`: the one on which it was asked; any other brings no answer."""
@@ -363,6 +331,7 @@ class Craft:
             with self._arrived:
                 if self._closed.is_set():
                     connection.close()
+                    self._essential.close()
                     return False
                 self._socket.close()
                 self._socket, self._lost = connection, None
@@ -400,9 +369,7 @@ class Craft:
             elif packet.service == 5 and packet.subtype in SEVERITIES:
                 event = subsystem._event_of(packet)
                 self.events.append(event)
-            elif (packet.service, packet.subtype) == (20, 2):
-                self._take_values(packet)
-            elif packet.destination == self.source:
+            elif packet.destination == self.source and not self._take_values(packet):
                 self._take_report(subsystem, packet)
             self._arrived.notify_all()
         if event is not None:
@@ -412,39 +379,32 @@ class Craft:
                 self._arrived.notify_all()
 
     def _take_report(self, subsystem: Subsystem, packet: Telemetry) -> None:
-        """Names no request: it goes to the oldest open one of this service."""
-        kind = next((one for one in subsystem._about.reports
-                     if (one.service, one.subtype) == (packet.service, packet.subtype)), None)
-        if kind is None:
-            return
-        values, offset = {}, 0
-        try:
-            for field in kind.fields:
-                values[field.name], offset = field.take(packet.data, offset)
-        except struct.error:
-            return
-        if offset != len(packet.data):
-            return
-        for request in self._requests.values():
-            function = subsystem._functions.get(request.name)
-            if (request.subsystem == subsystem._about.name and function is not None and
-                    function.service == packet.service):
-                request.reports.append(Report(request.subsystem, kind.name, packet.time_s, values))
-                return
+        """Names no request: it goes to the oldest open one of this service. What the framework says besides, as what is against a mode,
+        goes to the oldest of this subsystem."""
+        report = report_of(subsystem._about, packet)
+        here = [request for request in self._requests.values() if request.subsystem == subsystem._about.name]
+        asked = [request for request in here if request.service == packet.service]
+        if not asked and packet.service < FIRST_OWN_SERVICE:
+            asked = here
+        if report is not None and asked:
+            asked[0].reports.append(report)
 
-    def _take_values(self, packet: Telemetry) -> None:
-        """TM[20,2] names no request: it goes to the oldest that asked for this parameter."""
+    def _take_values(self, packet: Telemetry) -> bool:
+        """TM[20,2] names no request: it goes to the oldest that wants this parameter alone. False: there is none."""
+        if (packet.service, packet.subtype) != (20, 2):
+            return False
         wire = int.from_bytes(packet.data[1:5], "big")
         subsystem = self._by_apid[packet.apid]
         for key, request in self._requests.items():
             parameter = subsystem._parameters.get(request.name[4:]) if request.name.startswith("get ") else None
             if (request.subsystem == subsystem._about.name and request.reply is None and parameter is not None and
-                    packet.destination == self.source and parameter.wire == wire and
+                    parameter.wire == wire and
                     len(packet.data) == 5 + sum(field.octets for field in parameter.fields)):
                 request.reply = packet
                 if request.done:
                     del self._requests[key]
-                return
+                return True
+        return False
 
     def _take_verification(self, packet: Telemetry) -> None:
         if packet.destination != self.source or packet.subtype not in STAGES or len(packet.data) < 4:
@@ -470,7 +430,7 @@ class Craft:
         names = {"state": dict(enumerate(STATES)), "mode": dict(self._about.modes), "link": dict(self._about.links)}
         subsystem = next(one for one in self._subsystems if one._about.name == request.subsystem)
         function = subsystem._functions.get(request.name)
-        if request.name.startswith(("get ", "set ")):
+        if request.service == 20:
             names["identifier"] = {parameter.wire: parameter.name for parameter in subsystem._about.parameters}
         if function is not None and code == 0x105:
             arguments = {number: field.name for number, field in enumerate(function.arguments, 1)}

@@ -19,9 +19,9 @@ import unittest.mock
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))            # the files of an exported package know each other by their package
 
-from python import runtime  # noqa: E402
+from python import links, runtime  # noqa: E402
 from python.runtime import (ArgumentError, CommandFailed, Craft, EventKind, Field, Function, Layout, LinkLost, MissionAbout,
-                            NoAnswer, Parameter, ReportKind, Subsystem, SubsystemAbout, Telemetry)
+                            NoAnswer, Parameter, Part, ReportKind, Subsystem, SubsystemAbout, Telemetry)
 
 VECTORS = json.loads((HERE.parents[2] / "hirosco/pus/testing/test_vectors.json").read_text())
 
@@ -163,8 +163,8 @@ class Arm(Subsystem):
                                                                      Field("LENT", "BOOL", count=2))),
                                      ReportKind(17, 129, "SELF_TEST_OUTCOME",
                                                 (Field("OUTCOME", "UINT8", texts=((0, "never run"), (1, "passed"), (2, "failed"))),
-                                                 Field("CONFIGURATION", "UINT8"), Field("TIME", "TIME"), Field("CODE", "UINT16"),
-                                                 Field("NUMBER", "INT64"), Field("REASON", "WORD")))),
+                                                 Field("CONFIGURATION", "UINT8"), Part("TIME", "TIME"), Field("CODE", "UINT16"),
+                                                 Field("NUMBER", "INT64"), Part("REASON", "WORD")))),
                             parameters=(Parameter("KP", 0x0A0A03, (Field("KP", "DOUBLE"),)),
                                         Parameter("LAMP", 0x0A2004, (Field("ON", "BOOL"), Field("TITLE", "TEXT", most=6, fixed=True)), structure=True),
                                         Parameter("TITLE", 0x0A2205, (Field("TITLE", "TEXT", most=6, fixed=True),))),
@@ -183,6 +183,7 @@ class Peer:
 
     def __init__(self):
         self._listener = socket.create_server(("127.0.0.1", 0))
+        self._listener.settimeout(5.0)
         self.port = self._listener.getsockname()[1]
         self._count = 0
 
@@ -254,7 +255,7 @@ class Registry(unittest.TestCase):
         flight = {"instance": "two", "telemetry": f"127.0.0.1:{peer.port}"}
         about = MissionAbout("SMALL", "127.0.0.1", 1, "ARM", (), (), ())
         small = type("Small", (Craft,), {"_about": about})
-        with unittest.mock.patch.object(runtime, "find_flight", lambda mission, instance: flight):
+        with unittest.mock.patch.object(links, "find_flight", lambda mission, instance: flight):
             craft = small(instance="two")
         self.addCleanup(craft._socket.close)
         peer.accept()                           # the other port is closed, so it was this one

@@ -12,6 +12,6 @@ struct PythonFile {
 };
 
 /// What all exported packages share, as it was when this was built. Who uses one imports the package; its files import each other.
-extern const std::array<PythonFile, 5> python_runtime;
+extern const std::array<PythonFile, 7> python_runtime;
 
 }  // namespace hirosco::ground
