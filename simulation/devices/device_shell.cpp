@@ -172,7 +172,10 @@ std::optional<int> read_options(int argc, char** argv, const char* name, Options
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {
-    return app.exit(problem);
+    if (problem.get_exit_code() == 0) return app.exit(problem);  // it was asked for help
+    // Among the lines of a flight: who it is has to stand there.
+    std::cerr << name << ": " << problem.what() << "; --help tells what there is\n";
+    return problem.get_exit_code();
   }
   return std::nullopt;
 }

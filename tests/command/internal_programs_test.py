@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""A program that other programs start refuses what it does not know, in one line: its name, what, what there is, who starts it."""
+"""A program that other programs start refuses what it does not know, in one line: its name, what, what there is, who starts it. A simulated
+device, which may be begun by hand, too, has --help for that."""
 import os
 import pathlib
 import subprocess
@@ -23,16 +24,37 @@ PROGRAMS = {
 }
 
 
+# All that this build has: those of tests, too.
+DEVICES = sorted(file.name for file in BINARIES.glob("hirosco-sim-*") if file.suffix != ".so")
+
+
 class InternalPrograms(unittest.TestCase):
-    def refused(self, program, what, there_are, *words):
+    def told_by(self, program, *words):
+        """Its exit code and what it told, of which its name is in front; it has begun nothing."""
         with tempfile.TemporaryDirectory(prefix="hirosco-internal-") as folder:
             done = subprocess.run([BINARIES / program, *words], cwd=folder, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL,
                                   env={**os.environ, "XDG_RUNTIME_DIR": folder})
             self.assertEqual(list(pathlib.Path(folder).iterdir()), [], "who is refused begins nothing")
-        self.assertEqual((done.returncode, done.stdout), (2, ""), (program, words, done.stderr))
+        self.assertEqual(done.stdout, "", (program, words))
         name, _, told = done.stderr.partition(": ")
-        self.assertEqual(pathlib.Path(name).name, program)
-        self.assertEqual(told, f"{what}; there are: {there_are}\n", (program, words))
+        self.assertEqual(pathlib.Path(name).name, program, (words, done.stderr))
+        return done.returncode, told
+
+    def refused(self, program, what, there_are, *words):
+        self.assertEqual(self.told_by(program, *words), (2, f"{what}; there are: {there_are}\n"), (program, words))
+
+    def test_no_simulated_device_begins_with_what_it_does_not_know(self):
+        self.assertTrue(DEVICES)
+        address = ("--address", "nowhere", "--transfer", "unix")
+        for device in DEVICES:
+            for words, names in (((*address, "--bogus"), "--bogus"), ((*address, "--adress", "x"), "--adress"), ((*address, "more"), "more"),
+                                 ((*address, "--control"), "--control"), ((*address, "--seed", "x"), "--seed"), ((), "--address"),
+                                 ((*address, "--beside", *address, "--bogus"), "--bogus")):
+                with self.subTest(device, words=words):
+                    code, told = self.told_by(device, *words)
+                    self.assertGreater(code, 2, told)
+                    self.assertIn(names, told)
+                    self.assertTrue(told.endswith("; --help tells what there is\n") and told.count("\n") == 1, told)
 
     def test_what_they_do_not_know_is_refused(self):
         for program, (option, value, near, meant, there_are) in PROGRAMS.items():

@@ -8,6 +8,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+import xml.etree.ElementTree as xml
 
 import flight
 
@@ -15,11 +16,26 @@ import flight
 GONE_S = 2.0 + 1.0 + 1.0 + 5.0 + 6.0
 NOT_ISOLATED = ("share their memory", "sealed against nobody", "crash of one", "cannot be ended", "sandbox", "limited for nobody",
                 "supervisor cannot be lost alone")
+# Of <Resources> of a subsystem: what the framework itself holds in every deployment. Processor time is that of the loops.
+IN_FORCE = {"ports", "files", "warning_percent", "waiting_answers", "waiting_events", "waiting_housekeeping", "cycle_commands", "cycle_answers_kB",
+            "cycle_events_kB", "cycle_housekeeping_kB", "loop_reports_kB", "channel_kB"}
 
 
 def threads_of(pid):
     """{thread: name}"""
     return {int(task.name): (task / "comm").read_text().strip() for task in pathlib.Path(f"/proc/{pid}/task").iterdir()}
+
+
+def declared_limits(mission):
+    """Names of the limits in <Resources> of its subsystems."""
+    descriptors = [mission.parent / each.get("descriptor") for each in xml.parse(mission).getroot().findall("Subsystem")]
+    return {limit for each in descriptors for resources in xml.parse(each).getroot().findall("Resources") for limit in resources.attrib}
+
+
+def run_once(mission):
+    """Its flight of a second, ended or refused."""
+    return subprocess.run([flight.BINARIES / "hirosco", "run", mission, "--threads", "--no-ground", "--for", "1s"], cwd=mission.parent,
+                          env={**os.environ, "XDG_RUNTIME_DIR": str(mission.parent)}, capture_output=True, text=True, check=False, timeout=60)
 
 
 class Threads(unittest.TestCase):
@@ -146,14 +162,27 @@ class Hangs(unittest.TestCase):
             self.assertLess(time.monotonic(), end, "the robot pushes")
 
 
+class Told(unittest.TestCase):
+    def test_each_limit_that_the_mission_declares_is_in_force_or_named_at_the_start(self):
+        with flight.MissionCopy({}) as mission:
+            text = mission.read_text()
+            mission.write_text(text.replace("  <Power budget_W", '  <Isolation users="60600-60699"/>\n  <Power budget_W'))
+            declared = declared_limits(mission)
+            done = run_once(mission)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = [line for line in done.stdout.splitlines() if "not isolated as they should be" in line]
+        words = {word.strip(",:") for line in told if "that a subsystem declares" in line for word in line.split()}
+        self.assertIn("processor_percent", declared)
+        self.assertLessEqual(declared - IN_FORCE, words, told)
+        self.assertEqual(sum("users 60600-60699 that the mission names are nobody's" in line for line in told), 1, told)
+
+
 class Refused(unittest.TestCase):
     def test_a_mission_that_wants_isolation_starts_nobody_as_a_thread(self):
         with flight.MissionCopy({}) as mission:
             text = mission.read_text()
             mission.write_text(text.replace("  <Power budget_W", '  <Isolation required="yes"/>\n  <Power budget_W'))
-            done = subprocess.run([flight.BINARIES / "hirosco", "run", mission, "--threads", "--no-ground", "--for", "1s"],
-                                  cwd=mission.parent, env={**os.environ, "XDG_RUNTIME_DIR": str(mission.parent)},
-                                  capture_output=True, text=True, check=False, timeout=60)
+            done = run_once(mission)
             self.assertEqual(done.returncode, 1, done.stderr)
             self.assertIn("cannot start MANIPULATOR: the mission wants it isolated, and threads of one process share", done.stdout)
 
@@ -162,9 +191,7 @@ class Refused(unittest.TestCase):
             text = mission.read_text()
             (mission.parent / "manifest.sha256").write_text("")
             mission.write_text(text.replace("  <Power budget_W", '  <Manifest path="manifest.sha256"/>\n  <Power budget_W'))
-            done = subprocess.run([flight.BINARIES / "hirosco", "run", mission, "--threads", "--no-ground", "--for", "1s"],
-                                  cwd=mission.parent, env={**os.environ, "XDG_RUNTIME_DIR": str(mission.parent)},
-                                  capture_output=True, text=True, check=False, timeout=60)
+            done = run_once(mission)
             self.assertEqual(done.returncode, 3, done.stderr)
             self.assertIn("lists programs, and threads are none", done.stderr)
 

@@ -21,6 +21,7 @@ using robotics::JointVector;
 using robotics::MassMatrix;
 using robotics::State;
 using Json = nlohmann::json;
+using Told = nlohmann::ordered_json;
 
 /// A quaternion that is rounded to a few digits is one all the same.
 constexpr double unit_tolerance = 1e-3;
@@ -174,18 +175,19 @@ class Table final : public robotics::Integrator::Force {
   int first_;
 };
 
-/// All digits that a double has: what reads them gets the same bits.
 template <class List>
-[[nodiscard]] std::string list(const List& values) {
-  std::string text = "[";
-  for (Eigen::Index i = 0; i < values.size(); ++i) text += fmt::format("{}{}", i == 0 ? "" : ",", values[i]);
-  return text + "]";
+[[nodiscard]] Told list(const List& values) {
+  Told::array_t numbers;
+  numbers.reserve(static_cast<std::size_t>(values.size()));
+  for (Eigen::Index i = 0; i < values.size(); ++i) numbers.emplace_back(values[i]);
+  return numbers;
 }
 template <class Matrix>
-[[nodiscard]] std::string rows(const Matrix& matrix) {
-  std::string text = "[";
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) text += (i == 0 ? "" : ",") + list(matrix.row(i).eval());
-  return text + "]";
+[[nodiscard]] Told rows(const Matrix& matrix) {
+  Told::array_t all;
+  all.reserve(static_cast<std::size_t>(matrix.rows()));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) all.push_back(list(matrix.row(i)));
+  return all;
 }
 
 /// Empty: it was told.
@@ -204,13 +206,21 @@ template <class Matrix>
                       jacobian.allFinite() && generalised.allFinite() && acceleration.allFinite() &&
                       state.base_position.allFinite() && state.q.allFinite() && state.qd.allFinite();
   if (!finite) return "a result is no number";
-  sink(fmt::format(
-      "{{\"t\":{},\"base_position_m\":{},\"base_orientation_wxyz\":{},\"base_twist\":{},\"q\":{},\"qd\":{},\"qdd\":{},"
-      "\"momentum_linear\":{},\"momentum_angular_com\":{},\"energy_j\":{},\"mass_matrix\":{},\"jacobian\":{},"
-      "\"generalised_jacobian\":{}}}",
-      t_s, list(state.base_position), list(Eigen::Vector4d{turned.w(), turned.x(), turned.y(), turned.z()}),
-      list(state.base_twist), list(state.q), list(state.qd), list(acceleration.tail(state.q.size()).eval()),
-      list(momentum.linear), list(momentum.angular), energy, rows(mass), rows(jacobian), rows(generalised)));
+  // All digits that a double has: what reads them gets the same bits.
+  sink(Told{{"t", t_s},
+            {"base_position_m", list(state.base_position)},
+            {"base_orientation_wxyz", {turned.w(), turned.x(), turned.y(), turned.z()}},
+            {"base_twist", list(state.base_twist)},
+            {"q", list(state.q)},
+            {"qd", list(state.qd)},
+            {"qdd", list(acceleration.tail(state.q.size()))},
+            {"momentum_linear", list(momentum.linear)},
+            {"momentum_angular_com", list(momentum.angular)},
+            {"energy_j", energy},
+            {"mass_matrix", rows(mass)},
+            {"jacobian", rows(jacobian)},
+            {"generalised_jacobian", rows(generalised)}}
+           .dump());
   return {};
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace hirosco::tools {
@@ -75,6 +76,25 @@ TEST(DynamicsCommand, TellsAllThatItPromisesForEachOutputTime) {
   EXPECT_EQ(first["qdd"], Json({0.0, 0.0}));
   EXPECT_NEAR(lines[1]["q"][0].get<double>(), 1.5, 1e-14);
   EXPECT_NEAR(lines[1]["q"][1].get<double>(), -0.75, 1e-14);
+}
+
+TEST(DynamicsCommand, TellsItInOneOrderWithAllDigitsThatADoubleHas) {
+  Json asked = question();
+  // Two that take 17 digits, and the smallest that there is.
+  const std::vector<double> position{0.1 + 0.2, -1.2345678901234567e100, std::numeric_limits<double>::denorm_min()};
+  asked["base_position_m"] = position;
+  asked["output_s"] = {0};
+  const auto model = sliders(0);
+  std::string line;
+  ASSERT_TRUE((Batch{model, {0}}.answer(asked.dump(), 1, [&](const std::string& text) { line = text; })));
+  EXPECT_EQ(Json::parse(line)["base_position_m"].get<std::vector<double>>(), position);
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  std::vector<std::string> keys;
+  const auto told = nlohmann::ordered_json::parse(line);
+  for (const auto& [key, value] : told.items()) keys.push_back(key);
+  EXPECT_THAT(keys, ::testing::ElementsAre("t", "base_position_m", "base_orientation_wxyz", "base_twist", "q", "qd",
+                                           "qdd", "momentum_linear", "momentum_angular_com", "energy_j", "mass_matrix",
+                                           "jacobian", "generalised_jacobian"));
 }
 
 TEST(DynamicsCommand, PutsAFreeBaseBeforeTheJoints) {

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+#include <utility>
+
 #include "ground/clients/xtce/xtce.hpp"
 #include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/utilities/utf8.hpp"
@@ -161,14 +164,9 @@ port 8090 of this computer alone. `--check` in front of the folders reads all of
 Reports to this database's own source id, {source}, verify its commands; those to other ground stations do not.
 )";
 
-[[nodiscard]] std::string json(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : printable_words(text)) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + "\"";
-}
+/// Keys stay in the order in which they were given. What words of a mission stand in it are printable.
+using Json = nlohmann::ordered_json;
+[[nodiscard]] std::string lines_of(const Json& json) { return json.dump(2) + "\n"; }
 
 struct Address {
   std::string host, port;
@@ -184,8 +182,8 @@ struct Address {
   return text;
 }
 
-[[nodiscard]] std::string events_json(const Catalogue& catalogue, const Xtce& database) {
-  std::string list;
+[[nodiscard]] Json events_of(const Catalogue& catalogue, const Xtce& database) {
+  Json events = Json::array();
   for (std::size_t i = 0; i < catalogue.subsystems().size(); ++i) {
     const auto& subsystem = *catalogue.subsystems()[i];
     for (const auto& event : subsystem.events) {
@@ -194,15 +192,15 @@ struct Address {
         for (const EventArgument& argument : arguments->second)
           text += fmt::format(" {}={{{}}}{}", template_text(argument.name), argument.path,
                               argument.unit.empty() ? "" : " " + template_text(argument.unit));
-      list += fmt::format("{}  {{\"eventId\": {}, \"template\": {}}}", list.empty() ? "" : ",\n",
-                          json(fmt::format("{}-{}", database.events.at(event.id), subsystem.id)), json(text));
+      events.push_back({{"eventId", printable_words(fmt::format("{}-{}", database.events.at(event.id), subsystem.id))},
+                        {"template", printable_words(text)}});
     }
   }
-  return "[\n" + list + "\n]\n";
+  return events;
 }
 
-[[nodiscard]] std::string command_step(const std::string& name, const std::string& arguments) {
-  return fmt::format("    {{\"type\": \"command\", \"name\": {}, \"arguments\": [{}]}}", json(name), arguments);
+[[nodiscard]] Json command_step(const std::string& name, Json arguments) {
+  return {{"type", "command"}, {"name", printable_words(name)}, {"arguments", std::move(arguments)}};
 }
 
 /// Into a mode, and whether all are alive there. Empty: the supervisor cannot be asked for it.
@@ -210,21 +208,22 @@ struct Address {
   const auto& supervisor = catalogue.mission().supervisor;
   const auto set_mode = database.commands.front().find("SET_MODE");
   if (set_mode == database.commands.front().end() || supervisor.find_parameter("MODE") == nullptr) return {};
-  std::vector<std::string> steps{
-      command_step(set_mode->second, fmt::format("{{\"name\": \"MODE\", \"value\": {}}}", json(mode.name)))};
+  constexpr int longest_ms = 80'000;
+  const Json argument{{"name", "MODE"}, {"value", printable_words(mode.name)}};
   // Of another type than its argument: a plain number.
-  steps.push_back(fmt::format(
-      "    {{\"type\": \"verify\", \"timeout\": 80000, \"condition\": [{{\"parameter\": {}, \"operator\": \"eq\", "
-      "\"value\": {}}}]}}",
-      json("/" + database.name + "/" + XtceNames{}.unique(supervisor.name) + "/MODE"), mode.id));
+  const Json condition{
+      {"parameter", printable_words("/" + database.name + "/" + XtceNames{}.unique(supervisor.name) + "/MODE")},
+      {"operator", "eq"},
+      {"value", mode.id}};
+  Json steps = Json::array();
+  steps.push_back(command_step(set_mode->second, Json::array({argument})));
+  steps.push_back({{"type", "verify"}, {"timeout", longest_ms}, {"condition", Json::array({condition})}});
   for (const CommandPaths& commands : database.commands)
     if (const auto ping = commands.find("PING"); ping != commands.end())
-      steps.push_back(command_step(ping->second, ""));
-  std::string list;
-  for (const std::string& step : steps) list += (list.empty() ? "" : ",\n") + step;
-  return "{\n  \"$schema\": \"https://yamcs.org/schema/stack.schema.json\",\n  \"advancement\": {\"acknowledgment\": "
-         "\"Verifier_Complete\", \"wait\": 0},\n  \"steps\": [\n" +
-         list + "\n  ]\n}\n";
+      steps.push_back(command_step(ping->second, Json::array()));
+  return lines_of({{"$schema", "https://yamcs.org/schema/stack.schema.json"},
+                   {"advancement", {{"acknowledgment", "Verifier_Complete"}, {"wait", 0}}},
+                   {"steps", std::move(steps)}});
 }
 
 }  // namespace
@@ -241,9 +240,10 @@ YamcsProject yamcs_project(const Catalogue& catalogue) {
   files["mdb/" + database.name + ".xml"] = database.text;
   files["pom.xml"] = pom;
   files["etc/processor.yaml"] = std::string{licence} + std::string{processor};
-  files["etc/events.json"] = events_json(catalogue, database);
-  files["etc/yamcs.yaml"] = std::string{licence} + fmt::format(server, fmt::arg("instance", name),
-                                                               fmt::arg("mission", json("HIROSCO " + mission.name)));
+  files["etc/events.json"] = lines_of(events_of(catalogue, database));
+  files["etc/yamcs.yaml"] =
+      std::string{licence} + fmt::format(server, fmt::arg("instance", name),
+                                         fmt::arg("mission", Json(printable_words("HIROSCO " + mission.name)).dump()));
   files["etc/yamcs." + name + ".yaml"] =
       std::string{licence} + fmt::format(instance, fmt::arg("event_id", database.event_id),
                                          fmt::arg("name", database.name), fmt::arg("most", pus::max_telemetry_octets),

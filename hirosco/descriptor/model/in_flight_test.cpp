@@ -33,7 +33,7 @@ const std::string flown_text = R"(<Subsystem name="PAN" id="9">
   </FunctionService>
   <CustomService name="GAZE" type="200">
     <Request name="LOOK" subtype="1" states="Operational"><Argument name="AT" type="UINT8" minimum="0" maximum="4"/></Request>
-    <Report name="SAW" subtype="2"><Field name="WHAT" type="UINT8"/></Report>
+    <Report name="SAW" subtype="2"><Field name="WHAT" type="UINT8" enumeration="SIDES"/></Report>
   </CustomService>
   <Device name="MOTOR" actuator="yes">
     <Input><Field name="ANGLE" type="DOUBLE"/></Input>
@@ -173,8 +173,8 @@ const std::initializer_list<Edit> additions = {
     {R"(<Function name="RAISE_LIMIT")", R"(<Function name="SPIN" states="Operational"/><Function name="RAISE_LIMIT")",
      "function SPIN is new"},
     {R"(<Enumeration name="SIDES">)",
-     R"(<Enumeration name="ENDS"><Text value="0">top</Text></Enumeration><Enumeration name="SIDES">)",
-     "enumeration ENDS is new"}};
+     R"(<Enumeration name="ENDS"><Text value="0">top</Text></Enumeration><ParamRef name="END" id="7" type="UINT8" enumeration="ENDS"/><Enumeration name="SIDES">)",
+     "enumeration ENDS is new\nparameter END is new"}};
 
 TEST(InFlight, WhatIsAddedNeedsAProgramThatHasIt) {
   for (const Edit& edit : additions) {

@@ -129,7 +129,7 @@ TEST(SupervisorsDescriptor, HasQueuesParametersAndReportsAsEverybody) {
   const std::string text = own_text(
       R"(<Description>D</Description><Resources warning_percent="80" waiting_answers="512" cycle_events_kB="64"/>)"
       R"(<Enumeration name="WORDS"><Text value="0">none</Text></Enumeration><Service name="ST03" offered="yes"/>)"
-      R"(<ParamRef name="Q" id="1" type="INT8" writable="PreOperational" minimum="0" maximum="9" init="1"/>)"
+      R"(<ParamRef name="Q" id="1" type="INT8" writable="PreOperational" minimum="0" maximum="9" init="1" enumeration="WORDS"/>)"
       R"(<EventService><Event name="E" id="1" severity="low" safety="yes"/></EventService><TestService/>)"
       R"(<FunctionService><Function name="F" essential="yes" confirm="yes"/></FunctionService>)"
       R"(<HKService id="9" interval="10" enabled="no"><SampledOnce><ParamRef name="Q"/></SampledOnce></HKService>)",

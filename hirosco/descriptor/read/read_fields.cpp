@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
+#include "hirosco/descriptor/model/framework_parameters.hpp"
 #include "hirosco/descriptor/read/detail/field_reader.hpp"
 #include "hirosco/parameter/text.hpp"
 
@@ -14,7 +16,24 @@ namespace {
 constexpr std::int64_t max_count = 4096;
 constexpr std::int64_t max_lent_count = max_loaned_payload_octets;
 
+void collect_named(const xml::Element& element, std::set<std::string_view>& names) {
+  if (const auto* use = element.find("enumeration"); use != nullptr) names.insert(use->value);
+  for (const xml::Element& child : element.children) collect_named(child, names);
+}
+
 }  // namespace
+
+void check_enumerations_named(const xml::Element& root, Problems& problems) {
+  std::set<std::string_view> named;
+  collect_named(root, named);
+  for (const xml::Element& element : root.children) {
+    const auto* name = element.name == "Enumeration" ? element.find("name") : nullptr;
+    // Of the built-in one it is told that it is.
+    if (name == nullptr || name->value == states_enumeration || named.contains(name->value)) continue;
+    problems.add(*name, "E0258", fmt::format("nothing has values of enumeration {}", in_quotes(name->value)),
+                 "name it in the enumeration of a parameter, argument or field, or leave it out");
+  }
+}
 
 void expect_range(const xml::Element& element, Problems& problems, std::string_view what) {
   // A switch has its two values, a text its octets.

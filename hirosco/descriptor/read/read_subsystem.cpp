@@ -76,6 +76,7 @@ SubsystemDescriptor SubsystemReader::read(const xml::Element& root) {
   functions_.check_protections();
   events_.imply_framework_events();
   fields_.check_enumerations();
+  check_enumerations_named(root, problems_);
   check_addresses(subsystem_, problems_);
   fit_queues(root, subsystem_, problems_);
   if (subsystem_.id == supervisor_apid) check_supervisor(root, problems_);

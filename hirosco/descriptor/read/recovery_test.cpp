@@ -145,6 +145,7 @@ TEST(MissionRecovery, WhatIsToldOfPlansHasTheirNames) {
       data / "mission.xml",
       overlay({{"supervisor.xml", changed("<EventService>",
                                           R"(<Enumeration name="PLANS"><Text value="0">default</Text></Enumeration>)"
+                                          R"(<ParamRef name="PLAN" id="99" type="UINT8" enumeration="PLANS"/>)"
                                           "<EventService>",
                                           supervisor)}}));
   ASSERT_TRUE(reading.value) << rendered(reading.problems, file_system());

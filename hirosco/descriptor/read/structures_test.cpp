@@ -13,10 +13,11 @@ using ::testing::ElementsAre;
 using testing::marked;
 using testing::read_text;
 
+/// With the enumeration that `body` may name.
 std::string with_structures(const std::string& body) {
-  return "<Subsystem name=\"S\" id=\"10\"><Enumeration name=\"MODES\"><Text value=\"0\">rest</Text><Text "
-         "value=\"1\">follow</Text></Enumeration>" +
-         body + "</Subsystem>";
+  const std::string modes =
+      R"(<Enumeration name="MODES"><Text value="0">rest</Text><Text value="1">follow</Text></Enumeration>)";
+  return R"(<Subsystem name="S" id="10">)" + (body.contains("MODES") ? modes : "") + body + "</Subsystem>";
 }
 
 constexpr auto nested_controller = R"(

@@ -101,12 +101,12 @@ TEST_F(TypedFunction, IsNotCalledWithWhatItsDescriptorDoesNotPermit) {
   EXPECT_FALSE(author.seen);
 }
 
-/// One function whose argument is declared as `argument` says.
+/// One function whose argument is declared as `argument` says, with the enumeration that this may name.
 std::string function_with(const std::string& argument) {
-  return R"(<Subsystem name="S" id="10">
-  <Enumeration name="COLOURS"><Text value="-1">red</Text><Text value="300">green</Text></Enumeration>
-  <FunctionService><Function name="F"><Argument name="A" )" +
-         argument +
+  const std::string colours =
+      R"(<Enumeration name="COLOURS"><Text value="-1">red</Text><Text value="300">green</Text></Enumeration>)";
+  return R"(<Subsystem name="S" id="10">)" + (argument.contains("COLOURS") ? colours : "") +
+         R"(<FunctionService><Function name="F"><Argument name="A" )" + argument +
          R"(/></Function></FunctionService><Configuration name="ONE" id="1" sampling_us="1000"/></Subsystem>)";
 }
 

@@ -22,7 +22,8 @@ namespace hirosco {
 
 /// What a subsystem has taken, as a parameter of every subsystem: RESOURCE_STATS (descriptor/model/framework_parameters.hpp).
 struct ResourceStatistics {
-  std::uint32_t memory_kb{0};  ///< 0 where nobody can tell, like the next five: in simulation
+  std::uint32_t memory_kb{
+      0};  ///< 0 where nobody can tell, like the next five: in simulation, and of threads of one process
   std::uint32_t memory_high_kb{0};  ///< most that was seen, ten times in a second
   std::uint32_t descriptors{0};
   std::uint32_t descriptors_high{0};

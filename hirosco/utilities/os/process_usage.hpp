@@ -12,7 +12,7 @@
 
 namespace hirosco {
 
-/// What a process has taken of its computer.
+/// What a process has taken of its computer; of threads of one process 0 is what cannot be told apart.
 struct ProcessUsage {
   std::uint32_t memory_kb{0};  ///< that it may write and shares with nobody, in RAM or not: what its limit counts
   std::uint32_t shared_memory_kb{0};  ///< in RAM

@@ -358,6 +358,7 @@ TEST_F(FloatingArmFloats, AndNeitherItNorContactsAreInADescriptorThatLeavesThemO
     cut(std::string{"<ParamRef name=\""} + name, "/>");
   for (const char* function : {"FLOAT", "SET_CONTACT"}) cut(std::string{"<Function name=\""} + function, "</Function>");
   cut("<Event name=\"CONTACT\"", "</Event>");
+  cut("<Enumeration name=\"REACTIONS\"", "</Enumeration>");
   robot_arm::testing::FlownFloating other{text};
   other.plant.place(ready_posture);
   other.operate();

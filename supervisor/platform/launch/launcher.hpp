@@ -130,7 +130,7 @@ class ProcessLauncher {
   [[nodiscard]] virtual std::vector<std::string> isolation_lacks() const { return {}; }
   /// What would isolate them more and the mission does not ask for, in words; empty: nothing (docs/adr/0177).
   [[nodiscard]] virtual std::string isolation_not_asked() const { return {}; }
-  /// What it has taken; empty where it has no process of its own or has ended. Allocates nothing.
+  /// What it has taken, 0 of what cannot be told of it alone; empty where nothing can, or it has ended. Allocates nothing.
   [[nodiscard]] virtual std::optional<ProcessUsage> usage(std::uint32_t /*process*/) noexcept { return std::nullopt; }
   /// Memory that a process has in RAM, 0 = the supervisor's own; 0 where it has no process of its own or has ended.
   /// Allocates nothing.

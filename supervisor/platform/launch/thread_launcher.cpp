@@ -3,6 +3,7 @@
 #include "supervisor/platform/launch/thread_launcher.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <exception>
 #include <new>
@@ -21,6 +22,21 @@ constexpr std::size_t service_stack_octets = std::size_t{2} << 20;
 /// As the end of a process that was killed, so that whoever reads a log finds one word for it.
 constexpr ProcessEnd killed{true, 9};
 constexpr ProcessEnd by_defect{false, 4};
+constexpr std::array<std::string_view, 8> not_isolated{
+    "threads of one process share their memory: who writes where it should not damages any other, the supervisor and "
+    "its guard too",
+    "the pages that gate actuators and the memory of links are sealed against nobody",
+    "a crash of one (fault, abort, exception in a cycle) is the end of all; then the devices stop by their own "
+    "watchdogs",
+    "who hangs cannot be ended: it is fenced and loses its real-time priority; if it has not let go after 2 s the "
+    "whole flight ends",
+    "nobody is in a sandbox: files, sockets and signals of one are those of all",
+    "memory_kB, shared_memory_kB, threads and descriptors that a subsystem declares stand in the books, and are "
+    "counted and limited for nobody",
+    "processor_percent that a subsystem declares is held against the time of its loops: a thread that its author "
+    "starts is counted for nobody",
+    "the supervisor cannot be lost alone: its end is the end of all",
+};
 
 /// A page in memory of its own, constructed in place.
 template <class Page>
@@ -57,6 +73,15 @@ struct ThreadLauncher::Member {
     static_cast<void>(service.take_realtime());
     for (const auto& loop : loops) static_cast<void>(loop->take_realtime());
   }
+
+  /// Of its loops. A thread that its author starts himself is known to nobody: the system does not tell who started it.
+  [[nodiscard]] Duration processor_time() noexcept {
+    Duration all = service.processor_time() + cycle.processor_time();
+    for (const auto& loop : loops) all += loop->processor_time();
+    return all;
+  }
+  /// The rest is of the whole process.
+  [[nodiscard]] ProcessUsage usage() noexcept { return {.processor = processor_time()}; }
 
   const descriptor::MissionSubsystem
       described;  ///< as it was launched; that of the mission may be read again meanwhile
@@ -113,7 +138,7 @@ void ThreadLauncher::Member::fly() {
             if (parts->explain) parts->explain(described.subsystem.name + ": " + std::string{text});
           },
       .links = parts->links,
-      .usage = {},
+      .usage = [this]() -> std::optional<ProcessUsage> { return usage(); },
       .read_again = [begun = described.subsystem, changes = descriptor::changes_of(described)](
                         std::string_view text) { return descriptor::read_again(begun, text, changes); }};
   const auto author = make();
@@ -179,11 +204,7 @@ class ThreadLauncher::Grip final : public ProcessGrip {
             .realtime = member_->service.has_realtime() ? service : Duration{0},
             .runnable = !member_->resting.load(std::memory_order_relaxed)};
   }
-  Duration processor_time() noexcept override {
-    Duration all = member_->service.processor_time() + member_->cycle.processor_time();
-    for (const auto& loop : member_->loops) all += loop->processor_time();
-    return all;
-  }
+  Duration processor_time() noexcept override { return member_->processor_time(); }
   void kill() noexcept override { member_->tell_to_let_go(clock_.now()); }
 
  private:
@@ -206,6 +227,7 @@ std::expected<std::string, std::string> ThreadLauncher::begin(const descriptor::
   for (const auto& member : mission.subsystems)
     if (!parts_.makers.contains(member.executable))
       return std::unexpected{"nobody here makes " + member.subsystem.name + " (" + member.executable + ")"};
+  users_ = mission.users;
   return std::to_string(mission.subsystems.size()) + " subsystems are threads of one process";
 }
 
@@ -292,19 +314,18 @@ std::optional<std::string> ThreadLauncher::must_end(TimePoint now) {
   return std::nullopt;
 }
 
+std::optional<ProcessUsage> ThreadLauncher::usage(std::uint32_t process) noexcept {
+  const auto found = members_.find(process);
+  if (found == members_.end() || found->second->ended.load(std::memory_order_acquire)) return std::nullopt;
+  return found->second->usage();
+}
+
 std::vector<std::string> ThreadLauncher::isolation_lacks() const {
-  return {
-      "threads of one process share their memory: who writes where it should not damages any other, the supervisor and "
-      "its guard too",
-      "the pages that gate actuators and the memory of links are sealed against nobody",
-      "a crash of one (fault, abort, exception in a cycle) is the end of all; then the devices stop by their own "
-      "watchdogs",
-      "who hangs cannot be ended: it is fenced and loses its real-time priority; if it has not let go after 2 s the "
-      "whole flight ends",
-      "nobody is in a sandbox: files, sockets and signals of one are those of all",
-      "memory and descriptors that a subsystem declares are counted and limited for nobody",
-      "the supervisor cannot be lost alone: its end is the end of all",
-  };
+  std::vector<std::string> lacks(not_isolated.begin(), not_isolated.end());
+  if (users_)
+    lacks.push_back("users " + std::to_string(users_->first) + "-" + std::to_string(users_->last) +
+                    " that the mission names are nobody's: threads of one process are all of one user");
+  return lacks;
 }
 
 }  // namespace hirosco::supervisor

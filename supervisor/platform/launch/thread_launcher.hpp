@@ -48,7 +48,10 @@ class ThreadLauncher final : public FlightLauncher {
   [[nodiscard]] Result<LaunchedSubsystem> launch(const descriptor::MissionSubsystem& subsystem) override;
   [[nodiscard]] std::optional<ProcessEnd> ended(std::uint32_t process) override;
   void kill(std::uint32_t process) override;
+  /// What a mission wants and threads cannot have, too: after begin() with it.
   [[nodiscard]] std::vector<std::string> isolation_lacks() const override;
+  /// Processor time of its loops, and nothing else: the rest cannot be told apart in one process.
+  [[nodiscard]] std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override;
   void kill_all() override;
   [[nodiscard]] bool any_running() override;
   [[nodiscard]] int wait_descriptor(std::uint32_t process) override;
@@ -62,6 +65,7 @@ class ThreadLauncher final : public FlightLauncher {
   HeapMemory memory_;
   std::map<std::uint32_t, std::shared_ptr<Member>> members_;
   std::map<std::string, Mapping, std::less<>> vital_;  ///< newest page of each subsystem, outlives its threads
+  std::optional<descriptor::UserNumbers> users_;  ///< that the mission names
   std::uint32_t next_{1};
 };
 

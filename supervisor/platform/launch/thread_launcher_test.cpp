@@ -9,7 +9,9 @@
 #include <thread>
 
 #include "hirosco/data_transfer/device/local_flows.hpp"
+#include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/read/read.hpp"
+#include "hirosco/pus/st05_event/event_message.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
 #include "hirosco/subsystem/testing/probe.hpp"
 #include "hirosco/utilities/os/clock.hpp"
@@ -24,6 +26,7 @@ struct Wish {
   std::atomic<bool> throws{false};
   std::atomic<bool> holds{false};  ///< its service loop does not come back while this is true
   std::atomic<std::uint64_t> held_turns{0};
+  std::atomic<bool> works{false};  ///< each of its steps takes some of the processor
 };
 
 class Told final : public Subsystem {
@@ -35,7 +38,9 @@ class Told final : public Subsystem {
   void service(TimePoint) override {
     if (wish_.throws) throw std::runtime_error{"its own reasons"};
     while (wish_.holds) ++wish_.held_turns;
+    for (const TimePoint until = clock_.now() + 5ms; wish_.works && clock_.now() < until;) {}
   }
+  SystemClock clock_;
   Wish& wish_;
 };
 
@@ -75,6 +80,16 @@ struct ThreadLauncherTest : ::testing::Test {
     std::optional<ProcessEnd> end;
     wait_for([&] { return (end = launcher->ended(process)).has_value(); });
     return end;
+  }
+
+  /// Waits for the next one of it.
+  static pus::EventMessage event_of(LaunchedSubsystem& launched, MessageBuffer& buffer) {
+    for (;;) {
+      const auto found = launched.port->channel().receive(buffer).value();
+      if (found.flow != Flow::None && found.message.kind == MessageKind::Event)
+        return pus::read_event_message(found.message.packet).value();
+      std::this_thread::yield();
+    }
   }
 
   SystemClock clock;
@@ -190,6 +205,31 @@ TEST_F(ThreadLauncherTest, TheGripTellsWhoHadTheProcessorAndWhoRests) {
   wait_for([&] { return !idle.grip->loop_time().runnable; });
 }
 
+TEST_F(ThreadLauncherTest, OfWhatAMemberTakesTheProcessorTimeOfItsLoopsIsKnownAndNothingElse) {
+  wish.holds = true;
+  auto busy = launcher->launch(described).value();
+  auto idle = launcher->launch(other).value();
+  wait_for([&] { return launcher->usage(busy.process)->processor > 50ms; });
+  const ProcessUsage usage = launcher->usage(busy.process).value();
+  EXPECT_EQ(usage.memory_kb + usage.shared_memory_kb + usage.threads + usage.descriptors, 0U) << "it is of all of them";
+  EXPECT_LT(launcher->usage(idle.process)->processor, usage.processor);
+  EXPECT_FALSE(launcher->usage(idle.process + 1)) << "nobody has this number";
+  wish.holds = false;
+  busy.port.reset();
+  wait_for([&] { return !launcher->usage(busy.process); });
+}
+
+TEST_F(ThreadLauncherTest, AMemberWarnsOfTheProcessorTimeThatItsDescriptorSays) {
+  described.subsystem.resources.most[static_cast<std::size_t>(descriptor::Resource::Processor)] = 2;
+  wish.works = true;
+  auto launched = launcher->launch(described).value();
+  MessageBuffer buffer;
+  pus::EventMessage event;
+  do event = event_of(launched, buffer);
+  while (event.id != descriptor::framework_event::resource_warning);
+  EXPECT_EQ(std::to_integer<int>(event.auxiliary[0]), static_cast<int>(descriptor::Resource::Processor));
+}
+
 TEST_F(ThreadLauncherTest, WhatNobodyMakesIsRefusedByName) {
   descriptor::Mission mission;
   mission.subsystems.push_back(described);
@@ -218,13 +258,26 @@ TEST_F(ThreadLauncherTest, ToldToEndAllItEndsAll) {
 }
 
 TEST_F(ThreadLauncherTest, SaysWhatIsNotIsolated) {
-  const auto lacks = launcher->isolation_lacks();
   const auto says = [&](std::string_view word) {
-    return std::ranges::any_of(lacks, [&](const std::string& line) { return line.contains(word); });
+    return std::ranges::any_of(launcher->isolation_lacks(),
+                               [&](const std::string& line) { return line.contains(word); });
   };
-  for (const auto word :
-       {"share their memory", "sealed", "crash", "cannot be ended", "sandbox", "limited", "supervisor"})
+  for (const auto word : {"share their memory", "sealed", "crash", "cannot be ended", "sandbox", "supervisor"})
     EXPECT_TRUE(says(word)) << word;
+  for (const auto limit : {"memory_kB", "shared_memory_kB", "threads and", "descriptors", "processor_percent"})
+    EXPECT_TRUE(says(limit)) << limit;
+}
+
+TEST_F(ThreadLauncherTest, SaysThatUsersOfAMissionAreNobodys) {
+  descriptor::Mission mission;
+  static_cast<void>(launcher->begin(mission).value());
+  const auto without = launcher->isolation_lacks();
+  mission.users = {.first = 60'600, .last = 60'699};
+  static_cast<void>(launcher->begin(mission).value());
+  const auto with = launcher->isolation_lacks();
+  ASSERT_EQ(with.size(), without.size() + 1);
+  EXPECT_EQ(with.back(),
+            "users 60600-60699 that the mission names are nobody's: threads of one process are all of one user");
 }
 
 }  // namespace

@@ -42,6 +42,9 @@ class FieldReader {
   std::vector<EnumerationUse> enumeration_uses_;
 };
 
+/// An enumeration of this <Subsystem> that no `enumeration` in it names would be words that nobody is ever told.
+void check_enumerations_named(const xml::Element& root, Problems& problems);
+
 /// A number that comes from outside has a range.
 void expect_range(const xml::Element& element, Problems& problems, std::string_view what);
 
