@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hirosco/descriptor/model/mission.hpp"
-#include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
+#include "hirosco/subsystem/service_loop/platform.hpp"
 #include "supervisor/guard/guard.hpp"
 #include "supervisor/platform/launch/descriptor_readings.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
@@ -24,8 +24,7 @@ namespace hirosco::supervisor {
 
 struct SupervisorParts;
 
-/// The superior subsystem (paper 4.3, figure 6). What it does is done by its parts, one folder of supervision/ each; this is
-/// their life: start, steps, end. Thread: one, and all parts are stepped in it.
+/// The superior subsystem (paper 4.3, figure 6): the life of its parts, one folder of supervision/ each. Thread: one, in which all are stepped.
 class Supervisor final {
  public:
   struct Parts {

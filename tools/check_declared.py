@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""Nothing is declared that is not in force: hirosco/descriptor/consumers.csv has one row for each element, attribute and word of
+"""Nothing is declared that is not in force: hirosco/descriptor/consumers/ has one row for each element, attribute and word of
 the schemas, and what a row names is there; so are the folders and tests of docs/paper_map.md, and the readers
 take nothing else. Prints what breaks that, and breaks it itself, to be caught.
 
+A folder for each schema, in it a file for each part of a descriptor, as an author looks for it; `words.csv` has those of the named types.
 `declared`: PARENT/ELEMENT, with @ATTRIBUTE, with =WORD; the words of a named type as TYPE=WORD, or all of them as TYPE=*; a group is a parent, too.
 `honoured_by`: STRUCT::MEMBER or ENUMERATION::WORD of the model, and `in` the file that reads it, neither of hirosco/descriptor nor one that says what there is; an error
 that hirosco/descriptor makes of it, where a refusal is all that it is for; or a name of the code that does it in any case. ENUMERATION::* is each word in its turn, `in` a file or the folder of
@@ -19,7 +20,7 @@ FOLDER = ROOT / "hirosco/descriptor"
 MODEL = [FOLDER / "model" / f"{part}.hpp" for part in ("subsystem", "parameters", "resources", "service_list", "bumpless", "mission")]
 MODEL += [ROOT / "hirosco/parameter/type.hpp", *(ROOT / "hirosco/data_transfer" / part for part in ("device/device_network.hpp", "device/data_flow.hpp", "link/link.hpp"))]
 DECLARING = {str(path.relative_to(ROOT)) for path in MODEL}
-COLUMNS = ["schema", "declared", "honoured_by", "in"]
+COLUMNS = ["declared", "honoured_by", "in"]
 XS = "{http://www.w3.org/2001/XMLSchema}"
 PLAIN = {"YesNo"}  # its words are those of every language
 NOT_BUILT_IN = {"read_only"}  # known to be refused in words
@@ -233,6 +234,7 @@ def unread_words(row, words, source):
 
 
 def problems(schemas, rows, model, source, tests, functions):
+    yield from sorted({f"consumers/{row['schema']}: there is no {row['schema']}.xsd" for row in rows if row["schema"] not in schemas})
     for name, schema in schemas.items():
         wanted = declared(schema)
         listed = []
@@ -262,6 +264,18 @@ def lost(promises):
     return [f"docs/paper_map.md: no {path}" for path in re.findall(r"`([\w./]+/[\w./]*)`", promises) if not (ROOT / path).exists()]
 
 
+def rows_of(files):
+    """[(schema/part.csv, its text)] as one table, each row with the schema of its folder. What cannot be a table is told: no row of it would count."""
+    rows, wrong_ones = [], []
+    for name, text in files:
+        table = csv.DictReader(text.splitlines())
+        found = list(table)
+        if table.fieldnames != COLUMNS or not found:
+            wrong_ones.append(f"consumers/{name}: rows of {','.join(COLUMNS)} are wanted, the first line says so")
+        rows += [dict(row, schema=name.partition("/")[0]) for row in found]
+    return rows, wrong_ones
+
+
 def main():
     def source(file):
         """Of a folder those of its files that do not say what words there are."""
@@ -271,14 +285,14 @@ def main():
         return (ROOT / file).read_text() if (ROOT / file).is_file() else None
 
     schemas = {name: whole(FOLDER / f"{name}.xsd", set()) for name in ("subsystem", "mission")}
-    with (FOLDER / "consumers.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    table = FOLDER / "consumers"
+    rows, unreadable = rows_of((file.relative_to(table).as_posix(), file.read_text()) for file in sorted(table.rglob("*.csv")))
     model = members([bare(path.read_text()) for path in MODEL])
     tests = "".join(path.read_text() for path in sorted(FOLDER.rglob("*_test.cpp")))
     promises = (ROOT / "docs/paper_map.md").read_text()
     readers = "".join(path.read_text() for path in sorted(FOLDER.rglob("*.cpp")) if not path.name.endswith("_test.cpp"))
     functions = bodies([bare(path.read_text()) for path in sorted(FOLDER.rglob("*.cpp")) if not path.name.endswith("_test.cpp")])
-    found = [*problems(schemas, rows, model, source, tests, functions), *unknown(readers, schemas), *lost(promises)]
+    found = [*unreadable, *problems(schemas, rows, model, source, tests, functions), *unknown(readers, schemas), *lost(promises)]
 
     def changed(place, **values):
         return [dict(row, **(values if row["declared"] == place else {})) for row in rows]
@@ -291,6 +305,7 @@ def main():
             '<xs:enumeration value="raw"/>', '<xs:enumeration value="raw"/><xs:enumeration value="cobs"/>'))), rows),
         ("colour is in no schema", {}, [*rows, dict(rows[0], declared="Event@colour")]),
         ("has several rows", {}, [*rows, rows[0]]),
+        ("there is no flight.xsd", {}, [*rows, dict(rows[0], schema="flight")]),
         ("says nothing", {}, changed("Subsystem/Hang", honoured_by=" ")),
         ("is no file", {}, changed("Subsystem/Hang", **{"in": "supervisor/guard/nobody.cpp"})),
         ("is no file", {}, changed("Subsystem/Hang", **{"in": "hirosco/descriptor/read/mission_test.cpp"})),
@@ -319,6 +334,9 @@ def main():
     for asked in ('attributes.integer_or<int>("colour", 1, 2, 0)', '{"Colour", read}', 'read_states(attributes, "colour", {})'):
         if not unknown(asked, schemas):
             found.append(f"planted and not seen: {asked}")
+    for text in ("declared,in,honoured_by\na,b,c\n", "declared,honoured_by,in\n", ""):
+        if not rows_of([("mission/a.csv", text)])[1]:
+            found.append(f"planted and not seen: a table that begins {text[:20]!r}")
     if not lost(promises + "`tests/nobody_test.cpp`"):
         found.append("planted and not seen: tests/nobody_test.cpp")
     return "\n".join(found) or ("no rows" if not rows else None)

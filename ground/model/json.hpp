@@ -76,7 +76,8 @@ inline constexpr std::int64_t tai_minus_utc_s = 37;
     return good;
   };
   auto request = nlohmann::json::parse(text, watch, false);
-  return good ? std::move(request) : nlohmann::json{nlohmann::json::value_t::discarded};
+  // Not in braces, which would make an array of it.
+  return good ? std::move(request) : nlohmann::json(nlohmann::json::value_t::discarded);
 }
 
 /// Octets that are no UTF-8 are replaced instead of thrown about.

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "hirosco/data_transfer/device/device_frame.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/subsystem/testing/rig.hpp"
@@ -104,6 +106,31 @@ TEST(JoystickSelfTest, KeepsAForceOfTheWrongSignAndAHandleOutsideOfItsRangeFromO
     EXPECT_THAT(tested->modes, ::testing::Each(DeviceMode::Off));
     EXPECT_THAT(tested->put_out, ::testing::Each(std::array{0.0, 0.0}));
   }
+}
+
+/// What is tried is what the descriptor lets come about, and no less.
+TEST(JoystickSelfTest, GoesByTheRangesThatTheDescriptorHas) {
+  const auto reading =
+      descriptor::read_subsystem(HIROSCO_SOURCE_DIR "/subsystems/joystick/joystick.xml", descriptor::file_system());
+  ASSERT_TRUE(reading.value);
+  const auto expect_range = [](const descriptor::Field& field, double most) {
+    EXPECT_EQ(field.minimum, Number{-most}) << field.name;
+    EXPECT_EQ(field.maximum, Number{most}) << field.name;
+  };
+  const auto* hand = reading.value->find_function("HAND");
+  const auto* display = reading.value->find_function("DISPLAY_TORQUE");
+  ASSERT_TRUE(hand != nullptr && display != nullptr);
+  for (const auto& angle : hand->arguments) expect_range(angle.field, joystick::SelfCheck::range_rad);
+  for (const auto& torque : display->arguments) expect_range(torque.field, joystick::DisplayLaw::torque_max_n_m);
+  const auto output =
+      std::ranges::find(reading.value->devices[0].output, "TORQUE", [](const auto& each) { return each.field.name; });
+  ASSERT_NE(output, reading.value->devices[0].output.end());
+  expect_range(output->field, joystick::DisplayLaw::torque_max_n_m);
+  const auto scale =
+      std::ranges::find(reading.value->parameters, "FORCE_SCALE", [](const auto& each) { return each.field.name; });
+  ASSERT_NE(scale, reading.value->parameters.end());
+  EXPECT_EQ(scale->field.minimum, Number{0.0});
+  EXPECT_EQ(scale->field.maximum, Number{joystick::SelfCheck::most_scale});
 }
 
 }  // namespace

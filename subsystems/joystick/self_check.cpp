@@ -11,13 +11,11 @@
 namespace hirosco::joystick {
 namespace {
 
-constexpr double range_rad = 0.4;  ///< between the stops
 constexpr double past_stop_rad = 0.15;  ///< the stops are of rubber: so far goes a hand that leans on one with 9 N m
 /// No hand is faster.
 constexpr double most_rad_s = 20;
 constexpr double most_jump_rad = 0.01;  ///< beyond that, from one cycle to the next
 
-constexpr double most_scale = 0.1;  ///< of FORCE_SCALE
 /// Torques of a robot's joint: something touched, and more than the handle can show.
 constexpr std::array presses_n_m{5.0, -5.0, 1000.0, -1000.0};
 constexpr double smallest_n_m = 1e-9;

@@ -24,6 +24,9 @@ class SelfCheck {
  public:
   /// Longer than a torque takes to fade.
   static constexpr int cycles = DisplayLaw::ramp_cycles + 2;
+  // As joystick.xml says, with which a test compares them.
+  static constexpr double range_rad = 0.4;  ///< of the handle between its stops, to either side: what HAND may ask for
+  static constexpr double most_scale = 0.1;  ///< maximum of FORCE_SCALE
 
   /// Of one cycle of Safe-Operational.
   struct Seen {

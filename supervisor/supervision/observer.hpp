@@ -16,9 +16,9 @@ struct Observer : Remembered {
   /// One line of the story, as the log has it too.
   virtual void told(OnboardTime when, std::string_view line) = 0;
   /// Every telemetry packet that is routed.
-  virtual void routed(const pus::TelemetryView& packet) { static_cast<void>(packet); }
-  void note(OctetWriter& writer) const override { static_cast<void>(writer); }
-  void recall(OctetReader& reader) override { static_cast<void>(reader); }
+  virtual void routed(const pus::TelemetryView& /*packet*/) {}
+  void note(OctetWriter& /*writer*/) const override {}
+  void recall(OctetReader& /*reader*/) override {}
 };
 
 }  // namespace hirosco::supervisor

@@ -5,7 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <bit>
+#include <map>
 #include <memory>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 
@@ -154,6 +159,66 @@ TEST(LinkSlot, OfAQueueHasNothingBeforeItsFirstCycle) {
   AttachedLink link;
   slot.attach(&link);
   EXPECT_TRUE(port.samples().empty());
+}
+
+/// A counter that its own consumers count up: what one of them is given tells how many were given something before it was encoded.
+struct CountedUp {
+  descriptor::SubsystemDescriptor subsystem;
+  descriptor::Provides terms;
+  Parameter<std::uint32_t> count;
+  Dictionary dictionary;
+  struct Consumer final : LinkWriter {
+    Consumer(Parameter<std::uint32_t>& counted, std::endian in_order) : count{counted}, order{in_order} {}
+    Parameter<std::uint32_t>& count;
+    std::endian order;
+    std::vector<std::uint32_t> given;
+    void write(Octets payload, TimePoint, LinkStatus) noexcept override {
+      given.push_back(OctetReader{payload, order}.get<std::uint32_t>());
+      count.store(count.load() + 1);
+    }
+    void set_status(LinkStatus) noexcept override {}
+  };
+
+  CountedUp() {
+    const ParameterId id{7, Type::Uint32, 1};
+    dictionary = *Dictionary::make(
+        std::array{ParameterSpec{.name = "COUNT", .id = id, .fields = {{.name = "COUNT", .type = Type::Uint32}}}});
+    EXPECT_TRUE(dictionary.publish("COUNT", count));
+    descriptor::Parameter declared;
+    declared.field.name = "COUNT";
+    declared.field.type = Type::Uint32;
+    declared.field.count = 1;
+    subsystem.parameters = {declared};
+    terms.parameters = {{.text = "COUNT", .parameter = 0, .member = std::nullopt, .at = {}}};
+  }
+};
+
+TEST(LinkSlot, AnOutputIsEncodedOnceForAllConsumersOfAByteOrderHoweverManyThereAre) {
+  CountedUp made;
+  LinkOutputSlot slot{made.subsystem, made.terms, made.dictionary};
+  std::array<AttachedLink, 7> links;
+  std::array<const CountedUp::Consumer*, links.size()> consumers{};
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    links[i].order = i % 3 == 0 ? std::endian::big : std::endian::little;
+    auto consumer = std::make_unique<CountedUp::Consumer>(made.count, links[i].order);
+    consumers[i] = consumer.get();
+    links[i].writer = std::move(consumer);
+    slot.attach(&links[i]);
+  }
+  for (std::size_t cycle = 0; cycle < 2; ++cycle) {
+    slot.write(TimePoint{1s}, LinkStatus::Valid);
+    std::map<std::endian, std::set<std::uint32_t>> values;
+    for (const auto* consumer : consumers) {
+      ASSERT_EQ(consumer->given.size(), cycle + 1) << "each is given one sample in a cycle";
+      values[consumer->order].insert(consumer->given.back());
+    }
+    for (const auto& [order, different] : values)
+      EXPECT_EQ(different.size(), 1u) << "big: " << (order == std::endian::big);
+    const auto fresh = static_cast<std::uint32_t>(cycle * links.size());
+    EXPECT_TRUE(values[std::endian::little].contains(fresh) || values[std::endian::big].contains(fresh))
+        << "what the cycle has made";
+  }
+  slot.release();
 }
 
 TEST_F(SlotOfAHand, HasNoJitterBeforeItsSecondSample) {

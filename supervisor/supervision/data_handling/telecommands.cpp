@@ -90,13 +90,15 @@ void Telecommands::take(const Incoming& incoming) {
   if (decision->essential || restores) {
     const auto call = called_function(*telecommand);
     const auto own = apid == supervisor_apid && call ? at_once_.find(call->name) : at_once_.end();
+    const bool here = own != at_once_.end();
+    if (here) copy_to_ground();  // before it says anything of itself
     std::optional<FailureNotice> unsent;
-    if (own != at_once_.end()) own->second(request);
+    if (here) own->second(request);
     else
       unsent = send({apid, incoming.origin, incoming.packet, incoming.memory, 0, true,
                      restores && decision->releases_stop, fences});
     if (foreign) craft_.tell(text, incoming.origin.apid());
-    copy_to_ground();
+    if (!here) copy_to_ground();
     static_cast<void>(craft_.log.append(received));
     // Behind that it came in: its end is the last that log and ground hear of it.
     if (unsent) refusals_.refuse(incoming.packet, incoming.origin, request, *unsent);

@@ -40,7 +40,8 @@ struct Incoming {
 };
 
 /// Permits or refuses, logs and forwards every telecommand (paper 4.3). One that is not essential leaves when it is on the
-/// disk and not before (decision 24). Thread: the supervisor's.
+/// disk and not before (decision 24). What a part commands while one is taken is taken within that and not later: no more than three
+/// within each other, in the order in which docs/adr/0226 has them in the log. Thread: the supervisor's.
 class Telecommands final : public Watch, public Accounts, public Remembered {
  public:
   struct Parts {

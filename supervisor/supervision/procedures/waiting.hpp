@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <list>
 #include <utility>
@@ -19,8 +20,8 @@ class Waiting final : public Watch {
   /// `done` is called once: true as soon as `holds`, now perhaps; false at the deadline, or where too many wait.
   void wait(TimePoint now, TimePoint deadline, std::function<bool()> holds, CommandDone done) {
     if (holds()) return done(true, {});
-    if (now >= deadline || waits_.size() == most)
-      return done(false, waits_.size() == most ? "too many wait" : too_late);
+    if (now >= deadline || count_ == most) return done(false, count_ == most ? "too many wait" : too_late);
+    ++count_;
     waits_.push_back({deadline, std::move(holds), std::move(done)});
   }
   void watch(TimePoint now) override {
@@ -29,9 +30,13 @@ class Waiting final : public Watch {
       std::list<Wait> one;
       one.splice(one.begin(), looked_at, looked_at.begin());
       const Wait& wait = one.front();
-      if (wait.holds()) wait.done(true, {});
-      else if (now >= wait.deadline) wait.done(false, too_late);
-      else waits_.splice(waits_.end(), one);
+      const bool holds = wait.holds();
+      if (!holds && now < wait.deadline) {
+        waits_.splice(waits_.end(), one);
+        continue;
+      }
+      --count_;
+      wait.done(holds, holds ? "" : too_late);
     }
   }
 
@@ -43,6 +48,7 @@ class Waiting final : public Watch {
     CommandDone done;
   };
   std::list<Wait> waits_;
+  std::size_t count_{0};  ///< with those that are being looked at
 };
 
 }  // namespace hirosco::supervisor

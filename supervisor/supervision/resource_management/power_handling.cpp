@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "supervisor/supervision/event_handling/reactions.hpp"
+#include "supervisor/supervision/telecommand/waiting_for_disk.hpp"
 
 namespace hirosco::supervisor {
 
@@ -39,17 +40,24 @@ void PowerHandling::tell_shortage(std::uint16_t apid, const pus::FailureNotice& 
                           requested_w, reserved_w, budget_w, ledger_.basis().empty() ? "" : ": ", ledger_.basis()),
               apid);
   own_.announce("POWER_REFUSED", {static_cast<double>(apid), budget_w, reserved_w, requested_w});
+  // A plan that asks for power may be refused itself, here within its first step: it fails by that, and begins neither itself anew nor another.
+  if (std::exchange(answering_, true)) return;
   if (Member* subject = craft_.member(apid); subject != nullptr && subject->alive())
     reactions_.react(*subject, "POWER_REFUSED", Severity::Low);
+  answering_ = false;
 }
 
 void PowerHandling::hear(std::uint16_t from, const pus::TelemetryView& report) {
   if (measured_ && measured_->hear(from, report, craft_.now)) follow_measurement();
-  const bool failed = report.subtype() % 2 == 0 && report.subtype() != 6;  // of a step: it goes on
-  if (report.service() != 1 || (!failed && report.subtype() != 7)) return;
+  if (report.service() != 1) return;
   OctetReader reader{report.source_data()};
-  const auto id = reader.get<std::uint32_t>();
-  if (reader.good()) ledger_.ended({id, report.destination(), 0});
+  const pus::Request request{reader.get<std::uint32_t>(), report.destination(), 0};
+  if (!reader.good()) return;
+  constexpr std::uint8_t completed = 7, failed_step = 6;  // after which it goes on
+  const std::uint8_t subtype = report.subtype();
+  const bool failed = subtype % 2 == 0 && subtype != failed_step;
+  if (failed || subtype == completed) ledger_.ended(from, request);
+  else ledger_.under_way(from, request, craft_.now + WaitingForDisk::limit);
 }
 
 void PowerHandling::watch(TimePoint) {

@@ -33,8 +33,11 @@ class PowerHandling final : public Watch, public Hearer, public Remembered {
   [[nodiscard]] const PowerLedger& ledger() const noexcept { return ledger_; }
   /// What everybody draws by its state and configuration.
   void observe();
+  /// A telecommand was refused for it: it is told, and answered by the plan for it. What that plan asks for at once and is refused for the
+  /// same reason is told and no more: without end it would be answered within its own answer (docs/adr/0226).
   void tell_shortage(std::uint16_t apid, const pus::FailureNotice& notice);
-  /// A failure of any stage, or completion: what was reserved for the telecommand is over. And what is measured.
+  /// A failure of any stage, or completion: what was reserved for the telecommand is over; each other stage: it is still to come. And
+  /// what is measured.
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
   void watch(TimePoint now) override;
   /// The budget, where a telecommand has set it.
@@ -55,6 +58,7 @@ class PowerHandling final : public Watch, public Hearer, public Remembered {
   std::optional<double> set_w_;
   std::optional<MeasuredBudget> measured_;
   bool known_{false};  ///< as it was told last
+  bool answering_{false};  ///< a plan for a shortage begins
 };
 
 }  // namespace hirosco::supervisor

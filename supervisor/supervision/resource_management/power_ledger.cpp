@@ -44,25 +44,31 @@ std::optional<Shortage> PowerLedger::shortage(std::uint16_t apid, double demand_
 
 void PowerLedger::reserve(std::uint16_t apid, double demand_w, const pus::Request& request, TimePoint until) {
   forget(apid);
-  book_.hold(apid, milliwatts(demand_w));
-  pending_.push_back({apid, request, until});
+  const std::uint32_t demand_mw = milliwatts(demand_w);
+  book_.hold(apid, demand_mw);
+  pending_.push_back({apid, demand_mw, request, until});
 }
 
-void PowerLedger::ended(const pus::Request& request) noexcept {
-  std::erase_if(pending_, [&](const Pending& pending) {
-    return pending.request.id == request.id && pending.request.source == request.source;
-  });
+bool PowerLedger::Pending::is_told_of(std::uint16_t from, const pus::Request& told) const noexcept {
+  return request.id == told.id && request.source == told.source && (from == apid || from == pus::supervisor_apid);
+}
+
+void PowerLedger::under_way(std::uint16_t from, const pus::Request& request, TimePoint until) noexcept {
+  for (Pending& pending : pending_)
+    if (pending.is_told_of(from, request)) pending.until = until;
+}
+
+void PowerLedger::ended(std::uint16_t from, const pus::Request& request) noexcept {
+  std::erase_if(pending_, [&](const Pending& pending) { return pending.is_told_of(from, request); });
 }
 
 void PowerLedger::observe(std::uint16_t apid, std::optional<State> state, double demand_w, TimePoint now) {
-  if (state && in_use(*state)) {
-    book_.hold(apid, milliwatts(demand_w));
-    return forget(apid);
-  }
+  const std::uint32_t drawn_mw = state && in_use(*state) ? milliwatts(demand_w) : 0;
   const auto found = std::ranges::find(pending_, apid, &Pending::apid);
   const bool on_its_way = state.has_value() && found != pending_.end() && now <= found->until;
-  if (on_its_way) return;
-  book_.hold(apid, 0);
+  // Who acts and is on its way into a configuration that draws more has not gone over yet.
+  if (on_its_way && found->demand_mw > drawn_mw) return book_.hold(apid, found->demand_mw);
+  book_.hold(apid, drawn_mw);
   forget(apid);
 }
 

@@ -30,11 +30,14 @@ class PowerLedger {
 
   /// In mW. What `apid` already holds would be replaced, so it does not count.
   [[nodiscard]] std::optional<Shortage> shortage(std::uint16_t apid, double demand_w) const noexcept;
-  /// For a permitted telecommand; held without a look at the state until it ended, or until `until` when nobody says.
+  /// For a permitted telecommand; held until it ended, or until `until` when nobody says, if that is more than its addressee draws by its state.
   void reserve(std::uint16_t apid, double demand_w, const pus::Request& request, TimePoint until);
+  // `from` says so: the word of who was asked, or of the supervisor, counts and nobody else's.
+  /// It has it, or has begun: it has this long to say how it ended.
+  void under_way(std::uint16_t from, const pus::Request& request, TimePoint until) noexcept;
   /// It was completed, refused or failed: from now on the state decides.
-  void ended(const pus::Request& request) noexcept;
-  /// The state and its configuration's demand are what counts, whatever was asked for; without state it is not running.
+  void ended(std::uint16_t from, const pus::Request& request) noexcept;
+  /// What it draws by its state and its configuration's demand; without state it is not running.
   void observe(std::uint16_t apid, std::optional<descriptor::State> state, double demand_w, TimePoint now);
 
   [[nodiscard]] bool limited() const noexcept { return book_.limited(); }
@@ -55,8 +58,10 @@ class PowerLedger {
   /// What is held for a telecommand on its way.
   struct Pending {
     std::uint16_t apid{};
+    std::uint32_t demand_mw{};
     pus::Request request;
     TimePoint until{};
+    [[nodiscard]] bool is_told_of(std::uint16_t from, const pus::Request& told) const noexcept;
   };
   void forget(std::uint16_t apid);
 

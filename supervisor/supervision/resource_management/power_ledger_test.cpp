@@ -52,13 +52,58 @@ TEST_F(PowerLedgerTest, APermissionHoldsUntilItsTelecommandEnded) {
   ledger.reserve(robot, 60, of_arm, later);
   ledger.observe(robot, State::PreOperational, 60, start);
   EXPECT_EQ(ledger.held_mw(robot), 60'000U) << "on its way";
-  ledger.ended(of_hand);
-  ledger.ended({.id = of_arm.id, .source = 8});
+  ledger.ended(handle, of_hand);
+  ledger.ended(robot, {.id = of_arm.id, .source = 8});
   ledger.observe(robot, State::PreOperational, 60, start);
   EXPECT_EQ(ledger.held_mw(robot), 60'000U) << "another telecommand ended";
-  ledger.ended(of_arm);
+  ledger.ended(robot, of_arm);
   ledger.observe(robot, State::PreOperational, 60, start);
   EXPECT_EQ(ledger.held_mw(robot), 0U) << "it failed";
+}
+
+TEST_F(PowerLedgerTest, NobodyEndsThePermissionOfAnotherButTheSupervisor) {
+  for (const auto& [from, left_mw] :
+       {std::pair{handle, 60'000U}, std::pair{robot, 0U}, std::pair{pus::supervisor_apid, 0U}}) {
+    ledger.reserve(robot, 60, of_arm, later);
+    ledger.ended(from, of_arm);
+    ledger.observe(robot, State::PreOperational, 60, start);
+    EXPECT_EQ(ledger.held_mw(robot), left_mw) << from;
+  }
+}
+
+TEST_F(PowerLedgerTest, WhatIsUnderWayHasItsTimeFromThenOn) {
+  ledger.reserve(robot, 60, of_arm, later);
+  ledger.under_way(handle, of_arm, later + 5s);
+  ledger.under_way(robot, of_hand, later + 5s);
+  ledger.observe(robot, State::PreOperational, 60, later + 1ns);
+  EXPECT_EQ(ledger.held_mw(robot), 0U) << "said by another one, or of another one";
+  ledger.reserve(robot, 60, of_arm, later);
+  ledger.under_way(robot, of_arm, later + 5s);
+  ledger.observe(robot, State::PreOperational, 60, later + 5s);
+  EXPECT_EQ(ledger.held_mw(robot), 60'000U) << "it is carried out";
+  ledger.observe(robot, State::PreOperational, 60, later + 5s + 1ns);
+  EXPECT_EQ(ledger.held_mw(robot), 0U);
+}
+
+/// Who acts and was permitted another configuration draws what it draws, and has what it may draw next.
+TEST_F(PowerLedgerTest, APermittedConfigurationThatDrawsMoreIsHeldUntilItIsThereOrEnded) {
+  uses(robot, 20);
+  ledger.reserve(robot, 50, of_arm, later);
+  uses(robot, 20);
+  EXPECT_EQ(ledger.held_mw(robot), 50'000U) << "it has not gone over yet";
+  uses(robot, 50);
+  uses(robot, 20);
+  EXPECT_EQ(ledger.held_mw(robot), 20'000U) << "it was there";
+  for (const bool failed : {true, false}) {
+    ledger.reserve(robot, 50, of_arm, later);
+    if (failed) ledger.ended(robot, of_arm);
+    ledger.observe(robot, State::Operational, 20, failed ? start : later + 1ns);
+    EXPECT_EQ(ledger.held_mw(robot), 20'000U) << failed;
+  }
+  ledger.reserve(robot, 20, of_arm, later);
+  uses(robot, 20);
+  uses(robot, 10);
+  EXPECT_EQ(ledger.held_mw(robot), 10'000U) << "one that draws less is held as what it drew until it is there";
 }
 
 TEST_F(PowerLedgerTest, APermissionThatNobodyUsedEndsInTime) {

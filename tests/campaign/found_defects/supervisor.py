@@ -26,6 +26,14 @@ DEFECTS = [
     # What stood at a client's own end was no matter of before.
     Defect("client's own end", GROUND_LINK, "const bool before = !client.settled || begins", "const bool before = (!client.settled && !PLANTED) || begins",
            "ground_link_test", "SaidBefore*"),
+    # --- what is commanded while a telecommand is taken (docs/adr/0226), found by thinking it through -------------------------
+    # Every other ground station had a stop twice, once as one that never ended.
+    Defect("a stop reported before its copy", TELECOMMANDS, "    if (here) copy_to_ground();", "    if (here && !PLANTED) copy_to_ground();",
+           "supervisor_test", "NestedTelecommandsTest.AShutdownHasToldEveryGround*"),
+    # A plan that asked again for what it answered began within itself until the supervisor had no stack.
+    Defect("a plan within its own begin", "supervisor/supervision/resource_management/power_handling.cpp",
+           "  if (std::exchange(answering_, true)) return;", "  if (std::exchange(answering_, true) && !PLANTED) return;",
+           "supervisor_test", "NestedTelecommandsTest.APlanThatAsksForWhatItAnswers*"),
     # --- what comes down again (docs/adr/0140), both found by the campaign -------------------------------------------------
     # What went with a deleted log was not missing to who asked for times after its first record.
     Defect("gap before the times", RETRIEVAL, "query.stored_from = OnboardTime::min();", "if (!PLANTED) query.stored_from = OnboardTime::min();",
@@ -151,6 +159,10 @@ DEFECTS = [
     Defect("lowered power budget", f"{SUPERVISION}/resource_management/power_handling.cpp",
            '    reactions_.react(*subject, "LOAD_SHED",', '    if (!PLANTED) reactions_.react(*subject, "LOAD_SHED",',
            "supervisor_test", "PowerHandlingTest.OfABudgetThatNoLongerHoldsTheLastOfTheMissionIsShedFirstTheGroundLinkNever"),
+    # What a configuration may draw was free again in the step after its CONFIGURE was permitted, and was granted to another.
+    Defect("power of what is to come", f"{SUPERVISION}/resource_management/power_ledger.cpp",
+           "  if (on_its_way && found->demand_mw > drawn_mw) return", "  if (on_its_way && found->demand_mw > drawn_mw && (!PLANTED || drawn_mw == 0)) return",
+           "supervisor_test", "PowerOfPlans.WhatIsToDrawMoreHasThatFromThePermissionOn"),
     # Nobody said that telecommands were held back by a log that stores nothing.
     Defect("log fails without an event", f"{SUPERVISION}/data_handling/log_watch.cpp", 'if (!news_) own_',
            'if (!news_ && !PLANTED) own_', "supervisor_test", "LogWatchTest.ALogThatFailsIsAnEventOnceThoughItsStoreKnowsOfNoTrouble"),
