@@ -171,6 +171,12 @@ TEST_F(GuardAdoption, AFenceOfItReachesWhoGoesOn) {
   EXPECT_TRUE(next.fenced(hand));
 }
 
+TEST_F(GuardTest, WhoseProcessHasEndedIsHeldByNobodyAnyMore) {
+  ASSERT_EQ(lives[hand].process.use_count(), 2);
+  guard.forget(hand);
+  EXPECT_EQ(lives[hand].process.use_count(), 1) << "its number may be another process' by now";
+}
+
 TEST_F(GuardTest, WhoIsPermittedAndWhoseDeviceSaysThatItDoesNotActHasStoppedByItself) {
   cycling(arm);
   EXPECT_FALSE(guard.has_stopped_by_itself(99)) << "nobody of the mission";

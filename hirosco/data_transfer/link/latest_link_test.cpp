@@ -211,9 +211,11 @@ TEST(RealtimeLinkHeader, IsRefusedWhereItDiffersFromWhatWasAgreed) {
   other = agreed;
   other.payload_octets = 255;
   EXPECT_STREQ(LatestReader::make(memory.all(), other).error().text, "link payload size");
-  other = agreed;
-  other.layout_hash ^= 1;
-  EXPECT_STREQ(LatestReader::make(memory.all(), other).error().text, "link layout");
+  for (const std::uint64_t hash : {agreed.layout_hash - 1, agreed.layout_hash + 1}) {
+    other = agreed;
+    other.layout_hash = hash;
+    EXPECT_STREQ(LatestReader::make(memory.all(), other).error().text, "link layout") << hash;
+  }
   memory.word(link_memory::version_epoch_at).store((link_memory::version + 1) << 32 | agreed.epoch);
   EXPECT_STREQ(LatestReader::make(memory.all(), agreed).error().text, "link version");
   EXPECT_EQ(LatestReader::make(memory.all(), agreed).error().value, std::int64_t{link_memory::version + 1});

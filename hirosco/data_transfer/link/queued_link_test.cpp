@@ -213,13 +213,17 @@ TEST(QueuedLinkHeader, IsRefusedInMemoryThatDoesNotFit) {
 TEST(QueuedLinkHeader, OfAnImpossibleSizeOrDepthIsNotEvenGivenMemory) {
   const QueuedLink link;
   HeapMemory memory;
-  EXPECT_TRUE(link.establish(memory, layout_of(payload_octets)));
+  const auto shared = link.establish(memory, layout_of(payload_octets));
+  ASSERT_TRUE(shared);
   for (const LinkLayout& impossible : {layout_of(0), layout_of(max_link_payload_octets + 1), layout_of(8, 1)}) {
     const auto established = link.establish(memory, impossible);
     ASSERT_FALSE(established);
     EXPECT_EQ(established.error().code, ErrorCode::Mismatch);
     EXPECT_STREQ(established.error().text, "link payload size or depth");
     EXPECT_EQ(established.error().value, impossible.payload_octets);
+    const auto refused = [&](const auto& end) { return end ? "" : end.error().text; };
+    EXPECT_STREQ(refused(link.produce(memory, *shared, impossible)), "link payload size or depth");
+    EXPECT_STREQ(refused(link.consume(memory, *shared, impossible)), "link payload size or depth");
   }
 }
 

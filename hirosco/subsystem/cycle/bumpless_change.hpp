@@ -27,8 +27,6 @@ class BumplessChange {
   };
   explicit BumplessChange(const Parts& parts) noexcept : parts_{parts} {}
 
-  /// None has begun. Thread: service, while the cycle rests.
-  void forget() noexcept { taken_over_ = nullptr; }
   /// In the cycle that was due at `planned`. False: it was refused, and nothing has changed. True: values, law and plan are those of `wanted`; what
   /// is counted in cycles is its caller's to begin anew.  Realtime: bounded.
   [[nodiscard]] bool begin(Reconfiguration& wanted, TimePoint planned) noexcept;

@@ -27,7 +27,6 @@ void CycleLoop::prepare(CyclePlan plan) {
   control_.begin();
   first_ = true;
   inputs_.begin();
-  bumpless_change_.forget();
   permit_.begin();
   begin_counting(*plan_.configuration);
   meter_.begin_links();
@@ -89,27 +88,35 @@ void CycleLoop::take_commands(TimePoint planned) noexcept {
     switch (command->kind) {
       case CommandKind::Function: run_function(*command); break;
       case CommandKind::EnterState: enter(static_cast<State>(command->index)); break;
-      case CommandKind::AttachInput:
-        plan_.inputs[command->index].attach(command->link);
-        // What the two agreed on may be of the configuration before.
-        plan_.inputs[command->index].follow(plan_.configuration->sampling);
-        break;
-      case CommandKind::DetachInput:
-        plan_.inputs[command->index].detach(command->link);
-        reports_.report(ReportKind::InputDetached, command->index, {}, command->link);
-        break;
+      case CommandKind::AttachInput: attach_input(*command); break;
+      case CommandKind::DetachInput: detach_input(*command); break;
       case CommandKind::AttachOutput: plan_.outputs[command->index].attach(command->link); break;
-      case CommandKind::DetachOutput:
-        plan_.outputs[command->index].detach(command->link);
-        reports_.report(ReportKind::OutputDetached, command->index, {}, command->link);
-        break;
+      case CommandKind::DetachOutput: detach_output(*command); break;
       case CommandKind::Reconfigure: reconfigure(*command->reconfiguration, planned); break;
-      case CommandKind::SelfTest:
-        self_test_.begin(command->request, plan_.configuration->self_test_within);
-        if (control_.state() != State::SafeOperational) self_test_.leave(control_.state());
-        break;
+      case CommandKind::SelfTest: begin_self_test(*command); break;
     }
   }
+}
+
+void CycleLoop::attach_input(const CycleCommand& command) noexcept {
+  plan_.inputs[command.index].attach(command.link);
+  // What the two agreed on may be of the configuration before.
+  plan_.inputs[command.index].follow(plan_.configuration->sampling);
+}
+
+void CycleLoop::detach_input(const CycleCommand& command) noexcept {
+  plan_.inputs[command.index].detach(command.link);
+  reports_.report(ReportKind::InputDetached, command.index, {}, command.link);
+}
+
+void CycleLoop::detach_output(const CycleCommand& command) noexcept {
+  plan_.outputs[command.index].detach(command.link);
+  reports_.report(ReportKind::OutputDetached, command.index, {}, command.link);
+}
+
+void CycleLoop::begin_self_test(const CycleCommand& command) noexcept {
+  self_test_.begin(command.request, plan_.configuration->self_test_within);
+  self_test_.leave(control_.state());  // it may have gone meanwhile
 }
 
 void CycleLoop::run_function(const CycleCommand& command) noexcept {

@@ -102,6 +102,10 @@ class CycleLoop final : private pus::SampleSource {
  private:
   void begin_counting(const descriptor::Configuration& configuration) noexcept;
   void take_commands(TimePoint planned) noexcept;
+  void attach_input(const CycleCommand& command) noexcept;
+  void detach_input(const CycleCommand& command) noexcept;
+  void detach_output(const CycleCommand& command) noexcept;
+  void begin_self_test(const CycleCommand& command) noexcept;
   void run_function(const CycleCommand& command) noexcept;
   void reconfigure(Reconfiguration& wanted, TimePoint planned) noexcept;
   /// Why a state is not to be entered; null: it may be.

@@ -28,5 +28,16 @@ TEST(CalledFunction, IsReadFromTheFunctionServiceOnly) {
   EXPECT_FALSE(called_function(pus::TelecommandView::parse(without).value())->first_argument);
 }
 
+TEST(CalledFunction, IsNamedBySixteenOctetsWhateverIsMissingBehindThem) {
+  const auto whole = testing::call_data("SAFE_ALL");
+  const auto bare = testing::telecommand(arm, 8, 1, Octets{whole}.first(16));
+  const auto called = called_function(pus::TelecommandView::parse(bare).value());
+  ASSERT_TRUE(called);
+  EXPECT_EQ(called->name, "SAFE_ALL");
+  EXPECT_FALSE(called->first_argument);
+  const auto cut = testing::telecommand(arm, 8, 1, Octets{whole}.first(15));
+  EXPECT_FALSE(called_function(pus::TelecommandView::parse(cut).value()));
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor
