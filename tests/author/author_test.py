@@ -71,6 +71,12 @@ class Outside(outside.Installed):
         while any(line not in (log := self.hirosco("log", "--service", service)) for line in lines):
             self.assertLess(time.monotonic(), end, f"{lines} in\n{log}")
 
+    def logged_by(self, craft, words, *which):
+        """The same of one flight."""
+        end = time.monotonic() + 10.0
+        while words not in (log := str(craft.log(*which))):
+            self.assertLess(time.monotonic(), end, f"{words} in\n{log}")
+
 
 class Built(Outside, unittest.TestCase):
     def test_its_tests_pass(self):
@@ -117,6 +123,42 @@ class Built(Outside, unittest.TestCase):
         self.assertIn("no problem", self.hirosco("check", "--fly", two))
         told = self.hirosco("simulate", two, "--for", "3s", "--at", "2 desk-lamp old 0.5", "--summary")
         self.assertIn("mode operation", told)
+
+    def test_each_configuration_and_each_instance_is_simulated_with_its_own_setting(self):
+        """A lamp begins at 0.2, or as bright as its setting has it at most: the instance's own, which is that of all its configurations."""
+        two = self.lamp / "two_lamps.xml"
+        for mode, lamp, desk_lamp in (("operation", 0.2, 0.15), ("night", 0.1, 0.15)):
+            with self.subTest(mode=mode):
+                bright = self.brightness_of_world(two, mode)
+                self.assertAlmostEqual(bright["lamp.brightness"], lamp, 3)
+                self.assertAlmostEqual(bright["desk-lamp.brightness"], desk_lamp, 3)
+        without = self.lamp / "alike.xml"
+        own = '<Setting name="BRIGHTEST" value="0.15"/>'
+        text = two.read_text()
+        self.assertIn(own, text)
+        without.write_text(re.sub(rf'(<Device name="LAMP" [^>]*)>\s*{own}\s*</Device>', r"\1/>", text))
+        self.assertAlmostEqual(self.brightness_of_world(without, "night")["desk-lamp.brightness"], 0.1, 3)
+
+    def brightness_of_world(self, mission, mode):
+        """{column: number} of the world's truth after some seconds on virtual time."""
+        trace = self.folder / "trace.csv"
+        self.hirosco("simulate", mission, "--mode", mode, "--for", "4s", "--trace", trace, "--summary")
+        _, names, *_, last = trace.read_text().splitlines()
+        return dict(zip(names.split(","), map(float, last.split(","))))
+
+    def test_a_setting_that_no_configuration_gives_or_nobody_reads_is_told_before_a_flight(self):
+        wrong = self.lamp / "unread.xml"
+        wrong.write_text((self.lamp / "two_lamps.xml").read_text().replace('"BRIGHTEST"', '"BRIGHTNESS"'))
+        told = self.hirosco("check", wrong, code=1)
+        self.assertIn("E0351", told)
+        self.assertIn("gives 'LAMP' a setting 'BRIGHTNESS'", told)
+        described = self.lamp / "dimmed.xml"
+        described.write_text((self.lamp / "lamp.xml").read_text().replace('"BRIGHTEST"', '"WARMEST"'))
+        mission = self.lamp / "misread.xml"
+        mission.write_text(self.mission.read_text().replace('"lamp.xml"', '"dimmed.xml"'))
+        told = self.hirosco("check", "--fly", mission, code=1)
+        self.assertIn("E0405", told)
+        self.assertIn("nobody reads setting 'WARMEST' of 'LAMP'", told)
 
     def test_one_subsystem_commands_another_and_hears_how_it_ended(self):
         switched = self.lamp / "switched.xml"
@@ -194,6 +236,7 @@ class Flown(Outside, unittest.TestCase):
             self.assertAlmostEqual(self.brightness(lamp, 0.45), 0.45, 2)
             values = ask("/api/status")["values"]
             self.assertIn("LAMP.CUR_VALUES.BRIGHTNESS", values)
+            self.other_configuration(lamp)
             self.assertEqual(lamp.end(), 0)
 
     def test_two_instances_of_one_subsystem_fly_side_by_side(self):
@@ -201,12 +244,20 @@ class Flown(Outside, unittest.TestCase):
         with flight.Flight(two, binaries=self.prefix / "bin", environment=self.environment, more=()) as lamps:
             lamps.wait_told("commissioned: mode operation", 20.0)
             self.assertEqual(lamps.tc("LAMP", "DIM", 0.9)[1][-1], "1,7")
-            self.assertEqual(lamps.tc("DESK_LAMP", "DIM", 0.4)[1][-1], "1,7")
+            self.assertEqual(lamps.tc("DESK_LAMP", "DIM", 0.12)[1][-1], "1,7")
             self.assertAlmostEqual(self.brightness(lamps, 0.9), 0.9, 2)
-            self.assertAlmostEqual(self.brightness(lamps, 0.4, "desk-lamp"), 0.4, 2)
+            self.assertAlmostEqual(self.brightness(lamps, 0.12, "desk-lamp"), 0.12, 2)
+            # Its own setting, in whatever configuration.
+            self.assertEqual(lamps.tc("DESK_LAMP", "DIM", 0.16)[1], ["1,1", "1,4"])
+            night = 3
+            self.assertEqual(lamps.tc("SUPERVISOR", "SET_MODE", night)[1][-1], "1,7")
+            self.assertAlmostEqual(self.brightness(lamps, 0.1), 0.1, 2)
+            self.assertEqual(lamps.tc("LAMP", "DIM", 0.14)[1], ["1,1", "1,4"])
+            self.assertEqual(lamps.tc("DESK_LAMP", "DIM", 0.14)[1][-1], "1,7")
+            self.assertAlmostEqual(self.brightness(lamps, 0.14, "desk-lamp"), 0.14, 2)
             lamps.fault("desk-lamp", "unplug")
             lamps.wait_told("plan default: network {DESK_LAMP}", 5.0)
-            self.assertAlmostEqual(self.brightness(lamps, 0.9), 0.9, 2)
+            self.assertAlmostEqual(self.brightness(lamps, 0.1), 0.1, 2)
             self.assertEqual(lamps.end(), 0)
 
     def test_one_subsystem_commands_another(self):
@@ -218,7 +269,7 @@ class Flown(Outside, unittest.TestCase):
             self.forged(craft)
             self.assertEqual(craft.tc("DESK_LAMP", "SET_STATE", 4)[1][-1], "1,7")
             self.assertEqual(craft.tc("SWITCH", "PRESS", 0.5)[1], ["1,1", "1,3", "1,8"])
-            self.assertIn("not permitted in this state", str(craft.log("--service", "1")))
+            self.logged_by(craft, "not permitted in this state", "--service", "1")
             self.assertEqual(craft.tc("DESK_LAMP", "SET_STATE", 5)[1][-1], "1,7")
             # It never gets as bright, and dies before it has ended what it had begun.
             craft.fault("lamp", "old", "0.1")
@@ -230,7 +281,7 @@ class Flown(Outside, unittest.TestCase):
             craft.kill("lamp")
             pressing.join(30.0)
             self.assertEqual(ended[0][1], ["1,1", "1,3", "1,8"])
-            self.assertIn("outcome unknown", str(craft.log("--service", "1")))
+            self.logged_by(craft, "outcome unknown", "--service", "1")
             self.assertEqual(craft.tc("SWITCH", "PING")[1][-1], "1,7", "it flies on")
             craft.end()
 
@@ -243,14 +294,14 @@ class Flown(Outside, unittest.TestCase):
             # What lets somebody move is the ground's to ask for, whatever the mode permits the switch.
             self.assertEqual(craft.tc("DESK_LAMP", "SET_STATE", 4)[1][-1], "1,7")
             self.assertEqual(craft.tc("SWITCH", "CHANGE_MODE", operation)[1], ["1,1", "1,3", "1,8"])
-            self.assertIn("it lets DESK_LAMP move, which the ground may ask for and no subsystem", str(craft.log("--text", "is impossible")))
+            self.logged_by(craft, "it lets DESK_LAMP move, which the ground may ask for and no subsystem", "--text", "is impossible")
             self.assertEqual(craft.tc("DESK_LAMP", "SET_STATE", 5)[1][-1], "1,7")
             self.assertEqual(craft.tc("SWITCH", "CHANGE_MODE", dark), (0, ["1,1", "1,3", "1,7"]))
             craft.wait_told("mode dark", 5.0)
             self.assertTrue(self.switch_knows(craft, dark))
             # No row of this mode names it: default deny.
             self.assertEqual(craft.tc("SWITCH", "CHANGE_MODE", commissioning)[1], ["1,1", "1,3", "1,8"])
-            self.assertIn("not permitted in this mode", str(craft.log("--service", "1")))
+            self.logged_by(craft, "not permitted in this mode", "--service", "1")
             self.assertEqual(craft.tc("SUPERVISOR", "SET_MODE", operation)[1][-1], "1,7", "the ground may")
             self.assertTrue(self.switch_knows(craft, operation))
             self.assertEqual(craft.end(), 0)
@@ -282,6 +333,18 @@ class Flown(Outside, unittest.TestCase):
                     break
                 craft.wait_line(lambda line: False, 0.1)
         self.assertIn("source id of somebody else, client", told)
+
+    def other_configuration(self, lamp):
+        """Into the second one and back: each has its own BRIGHTEST, by which a lamp is told what it refuses, and what it may be told."""
+        operation, night = 2, 3
+        lamp.fault("lamp", "heal")
+        self.assertEqual(lamp.tc("SUPERVISOR", "SET_MODE", night)[1][-1], "1,7")
+        self.assertAlmostEqual(self.brightness(lamp, 0.1), 0.1, 2)
+        self.assertEqual(lamp.tc("LAMP", "DIM", 0.9)[1], ["1,1", "1,4"])
+        self.logged("1", "brighter than BRIGHTEST of this configuration")
+        self.assertEqual(lamp.tc("SUPERVISOR", "SET_MODE", operation)[1][-1], "1,7")
+        self.assertEqual(lamp.tc("LAMP", "DIM", 0.9)[1][-1], "1,7")
+        self.assertAlmostEqual(self.brightness(lamp, 0.9), 0.9, 2)
 
     def own_service(self, lamp, ask):
         """What its descriptor says of its own PUS service is enough for terminal, page, Python, permission and log."""

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <cmath>
 #include <hirosco/subsystem/author/custom_service.hpp>
 #include <hirosco/subsystem/author/module.hpp>
 #include <optional>
+#include <string_view>
 
 namespace {
 
@@ -41,9 +43,9 @@ class Lamp final : public Subsystem {
   }
   Result<Step> software_init() override {
     publish("CUR_VALUES", current_);
-    use_device("LAMP", lamp_);
+    use_device("LAMP", lamp_, {"BRIGHTEST"});
     on_function("DIM", [this](double brightness) -> Result<> {
-      goal_ = brightness;
+      HIROSCO_TRY(aim_at(brightness));
       ++dimmed_;
       return ok();
     });
@@ -56,17 +58,36 @@ class Lamp final : public Subsystem {
                 });
     // As DIM, but ends when the light is there.
     on_function("FADE", [this](double brightness, Call call) -> Outcome {
+      if (const Result<> aimed = aim_at(brightness); !aimed) return aimed;
       if (fading_) abort(*fading_, {ErrorCode::NotPermitted, "another fade took over"});
       fading_ = call;
-      goal_ = brightness;
       return running;
     });
     return done;
+  }
+  /// Each configuration, and each lamp of a mission, has a BRIGHTEST of its own.
+  Result<> configure(const descriptor::Configuration&) override {
+    const std::string_view given = lamp_.setting("BRIGHTEST");
+    const char* const end = given.data() + given.size();
+    double brightest = 0;
+    const auto read = std::from_chars(given.data(), end, brightest);
+    if (read.ec != std::errc{} || read.ptr != end || !(brightest > 0 && brightest <= 1))
+      return fail(ErrorCode::InvalidArgument, "BRIGHTEST of LAMP is a number above 0, 1 at most");
+    brightest_ = brightest;
+    goal_ = std::min(goal_, brightest_);  // it was told perhaps when it might be brighter
+    return ok();
+  }
+  Result<> aim_at(double brightness) noexcept {
+    if (brightness > brightest_)
+      return fail(ErrorCode::OutOfRange, "brighter than BRIGHTEST of this configuration of this lamp");
+    goal_ = brightness;
+    return ok();
   }
 
   Result<> operational(const Cycle& cycle) noexcept override {
     const double step = fade_per_s * seconds(cycle.period);
     double& current_a = lamp_.output().current_a;
+    if (cycle.first) current_a = 0;  // it has been dark, whatever it was before
     current_a += std::clamp(goal_ - current_a, -step, step);
     current_.store({lamp_.input().brightness, current_a});
     if (fading_ && std::abs(lamp_.input().brightness - goal_) < close) {
@@ -84,6 +105,7 @@ class Lamp final : public Subsystem {
   CustomService meter_{"METERING"};
   std::atomic<std::uint32_t> dimmed_{0};  // counted in the cycle, read in the service loop
   std::optional<Call> fading_;
+  double brightest_{1};
   double goal_{0.2};
 };
 
