@@ -4,7 +4,8 @@
 """Each folder of subsystems/ says what it is for: a README.md with its purpose, what it does in which state, hazards and limits, and an
 INTERFACE.md that is what its descriptors say, no more and no less: parameters, functions, events, configurations. What a README lists of
 these beside it exists. Each folder hirosco/pus/st*/ has a README.md with one row for each message of its service in docs/services.md, which a
-test holds to the code, and a test that exists in each. Prints what lacks, and takes it away from copies itself, to be caught. `--write` makes the pages.
+test holds to the code, and a test that exists in each. The failure codes that a subsystem sends are, in docs/interfaces/packets.md, those of docs/failure-codes.md, which
+a test holds to the code. Prints what lacks, and takes it away from copies itself, to be caught. `--write` makes the pages and that table.
 
 What a parameter or event is stands in front of it in the descriptor, as a comment; what a function does, in its <Description>."""
 import pathlib
@@ -254,15 +255,15 @@ def unproven(home, services, tests):
         yield from (f"{page} has a row of {name}, which is not in docs/services.md" for name in told if name not in declared.get(number, []))
         yield from (f"{page} has several rows of {name}" for name in sorted(set(told)) if told.count(name) > 1)
         for row in rows:
-            proofs = re.findall(r"`(\w+\.\w+)`", row[3]) if len(row) == 4 else []
+            proofs = re.findall(r"`(\w+\.\w+)`", row[4]) if len(row) == 5 else []
             if not proofs:
-                yield f"{page}: {row[0]} has no proof, or not four columns"
+                yield f"{page}: {row[0]} has no proof, or not five columns"
             yield from (f"{page}: {row[0]} is proven by {name}, which is no test" for name in proofs if name not in tests)
 
 
 def clauses_self_test():
     services = "| ST[9] nine | 1 ASK | 2 TOLD | everybody |\n"
-    readme = "| TC[9,1] ASK | - | a | `Nine.Asks` |\n| TM[9,2] TOLD | - | b | `Nine.Tells` |\n"
+    readme = "| TC[9,1] ASK | - | c | a | `Nine.Asks` |\n| TM[9,2] TOLD | - | - | b | `Nine.Tells` |\n"
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name) / "st09_nine"
         folder.mkdir()
@@ -278,14 +279,56 @@ def clauses_self_test():
         assert list(unproven(folder.parent, services + services.replace("9", "8"), tests)) == ["hirosco/pus: no folder of ST[8]"]
 
 
+CODES, PACKETS = ROOT / "docs/failure-codes.md", ROOT / "docs/interfaces/packets.md"
+MARK = "<!-- numbers: failure codes -->\n"
+WHO = ("subsystem", "supervisor", "nobody yet")
+
+
+def with_codes(packets, codes):
+    """The page of packets with the codes that a subsystem sends. ValueError: a row of the codes does not say who does, or the page has no place."""
+    rows = [re.split(r" \| ", line.strip("| ")) for line in codes.splitlines() if re.match(r"\| \d", line)]
+    if unsaid := [row[0] for row in rows if len(row) != 5 or row[2] not in WHO]:
+        raise ValueError(f"docs/failure-codes.md: who says {', '.join(unsaid)} is none of {', '.join(WHO)}, or it has not five columns")
+    before, mark, behind = packets.partition(MARK)
+    if not mark:
+        raise ValueError(f"docs/interfaces/packets.md has no {MARK.strip()}")
+    after = behind[re.match(r"(?:\|[^\n]*\n)*", behind).end():]
+    return before + mark + table(("number", "name", "data"), [(row[0], row[1], row[3]) for row in rows if row[2] == WHO[0]]).rstrip("\n") + "\n" + after
+
+
+def codes_self_test():
+    codes = "| 1 | one | subsystem | none | Do. |\n| 0x0102 | two | supervisor | none | Do. |\n| 3 | three | nobody yet | none | Do. |\n"
+    packets = f"before\n{MARK}| number | name | data |\n|---|---|---|\n| 9 | old | none |\n\nbehind\n"
+    made = with_codes(packets, codes)
+    assert made.startswith("before\n") and "| 1 | one | none |\n\nbehind\n" in made and "old" not in made and "two" not in made and "three" not in made, made
+    assert with_codes(made, codes) == made and with_codes(made, codes.replace("supervisor", "subsystem")) != made
+    for wrong in ((packets, codes.replace("supervisor", "somebody")), (packets, codes.replace(" | none | Do. |\n| 0x", " | Do. |\n| 0x")), ("nothing", codes)):
+        try:
+            with_codes(*wrong)
+        except ValueError:
+            continue
+        raise AssertionError(wrong)
+
+
+def wrong_codes(write):
+    try:
+        if write:
+            PACKETS.write_text(with_codes(PACKETS.read_text(), CODES.read_text()))
+        elif with_codes(PACKETS.read_text(), CODES.read_text()) != PACKETS.read_text():
+            yield "docs/interfaces/packets.md: its failure codes are not those that docs/failure-codes.md says a subsystem sends: tools/check_interfaces.py --write"
+    except ValueError as problem:
+        yield str(problem)
+
+
 def main():
     self_test()
     clauses_self_test()
+    codes_self_test()
     if sys.argv[1:] == ["--write"]:
         for folder in sorted(path for path in HOME.iterdir() if path.is_dir()):
             (folder / "INTERFACE.md").write_text(page(folder))
     services = (ROOT / "docs/services.md").read_text()
-    found = [*problems(HOME), *unproven(ROOT / "hirosco/pus", services, set(known_tests()))]
+    found = [*problems(HOME), *unproven(ROOT / "hirosco/pus", services, set(known_tests())), *wrong_codes(write=sys.argv[1:] == ["--write"])]
     for problem in found:
         print(problem)
     sys.exit(1 if found else 0)

@@ -10,8 +10,8 @@ namespace hirosco::pus {
 
 /// The services of the framework, one row each, in the order of their types. A subsystem's own are in its
 /// descriptor, and an author writes one over `subsystem/author/custom_service.hpp`.
-/// A new one: its folder `stNN_name/` (copy `st17_test/`, which every subsystem makes by its row alone), its row in
-/// `standard_services.cpp`, its file in this library's CMakeLists.txt, its line in `docs/services.md`, and a mode's <Permit>
+/// A new one: its folder `stNN_name/` with README and test (copy `st17_test/`, which every subsystem makes by its row alone), its row in
+/// `standard_services.cpp`, its files in this library's CMakeLists.txt, its line in `docs/services.md`, and a mode's <Permit>
 /// unless it is essential. Besides, where it is so: one that a descriptor may leave out has a row in
 /// `descriptor/model/service_list.hpp`, one with an element of its own in descriptors is read in
 /// `descriptor/read/read_services.cpp`. One that needs cycle or states has no `make`: GenericSubsystem

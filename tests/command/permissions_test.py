@@ -2,8 +2,9 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """permissions_test.py HIROSCO MISSION...: `hirosco permissions --csv` against what the mission's files say, read here by rules that
-were written down apart from those on board: every sender, addressee and request, in every mode and each of the ten states."""
-import csv, pathlib, subprocess, sys, xml.etree.ElementTree as xml
+were written down apart from those on board: every sender, addressee and request, in every mode and each of the ten states. What can be asked of the framework's services, and by whom,
+says the table of clauses in the README of each (hirosco/pus/st*/), which somebody wrote by hand and nothing makes."""
+import csv, pathlib, re, subprocess, sys, typing, xml.etree.ElementTree as xml
 
 STATES = ["Offline", "SoftwareInit", "HardwareInit", "PreOperational", "SafeOperational", "Operational", "ErrorOperational",
           "PostOperational", "HardwareDeinit", "SoftwareDeinit"]
@@ -11,8 +12,32 @@ SAFE, OPERATIONAL = 4, 5
 ALWAYS, NEVER = set(range(10)), set()
 # What a subsystem may ask the supervisor for, where a permit names it; SAFE_ALL in any case.
 OF_SUPERVISOR = {"ENTER_MODE", "SAFE_ALL", "SET_MODE"}
-# Requests of the framework's services that anybody may be sent.
-SERVICES = {3: {1, 3, 5, 6, 9, 27, 29, 31, 33}, 5: {5, 6, 7}, 17: {1, 128, 130}, 20: {1}, 128: {1, 2, 3, 4, 5}, 129: {1, 4, 6, 8, 9, 11}, 130: {1, 2}}
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MODE, EVERYBODY, SUPERVISOR, GROUND, DECLARED = "whom the mode permits", "everybody, always", "the supervisor", "the ground, always", "subsystems, what they declare"
+
+
+class Asked(typing.NamedTuple):
+    by: str = MODE
+    in_states: frozenset = frozenset(ALWAYS)
+    of_supervisor: bool = False  # nobody else has the service
+
+
+def services(home=ROOT / "hirosco/pus"):
+    """{(type, subtype): by whom it is asked for} of the framework's services, as their READMEs say."""
+    found = {}
+    for folder in sorted(path for path in home.glob("st[0-9]*") if path.is_dir()):
+        page = folder / "README.md"
+        text = page.read_text()
+        assert re.search(r"^\| T[CM]\[", text, re.M), f"{page} has no table of clauses"
+        for service, subtype, words in re.findall(r"^\| TC\[(\d+),(\d+)\] \w+ \| [^|]+ \| ([^|]+) \|", text, re.M):
+            said = re.fullmatch(rf"({MODE}|{EVERYBODY}|{SUPERVISOR}|{GROUND}|{DECLARED})(?:, in ((?:\w+)(?:, \w+)*))?(; of the supervisor)?", words)
+            assert said, f"{page}: TC[{service},{subtype}] is asked for by '{words}', which is not one of the words that {pathlib.Path(__file__).name} knows"
+            states = frozenset(map(STATES.index, said[2].split(", "))) if said[2] else frozenset(ALWAYS)
+            found[int(service), int(subtype)] = Asked(said[1], states, said[3] is not None)
+    return found
+
+
+SERVICES = services()
 
 
 def words(element, name):
@@ -72,22 +97,22 @@ def read(mission, installed):
     return supervisor, members, root.find("Modes").findall("Mode")
 
 
-def expected(sender, addressee, mode, service, subtype, request, supervisor):
+def expected(sender, addressee, mode, service, subtype, request, supervisor, asked=Asked()):
     """States in which it is permitted, those in which it is forwarded past what waits, those that remain in a change of mode."""
     ground, on_board, to_supervisor = sender == "ground", sender is supervisor, addressee is supervisor
     function = request if service == 8 and " " not in request else None
     target = STATES.index(request.split()[1]) if request.startswith("SET_STATE ") else None
     plain = function or (addressee.requests.get((service, subtype), (None,))[0])
-    if service == 129 and not to_supervisor:
+    if asked.of_supervisor and not to_supervisor:
         return NEVER, NEVER, NEVER
-    if service == 129 and subtype in (8, 9):
+    if asked.by == DECLARED:
         # Only what its descriptor names is heard, and by subsystems only.
         names = {f"hear {what} of {whose}" for whose, all_ in getattr(sender, "heard", {}).items() for what in all_}
         return (ALWAYS, ALWAYS, ALWAYS) if request in names else (NEVER, NEVER, NEVER)
-    if service == 129 and subtype == 11:
+    if asked.by == GROUND:
         # What was said before goes down to ground: nobody else asks for it.
         return (ALWAYS, ALWAYS, ALWAYS) if ground else (NEVER, NEVER, NEVER)
-    if service in (128, 130) and not on_board:
+    if asked.by == SUPERVISOR and not on_board:
         return NEVER, NEVER, NEVER
     if ground and to_supervisor and (target is not None or function == "CONFIGURE"):
         return NEVER, NEVER, NEVER
@@ -102,7 +127,7 @@ def expected(sender, addressee, mode, service, subtype, request, supervisor):
     essential = NEVER
     of_subsystem = not ground and not on_board
     by_descriptor = addressee.functions.get(function, (None, False))[1] and not (of_subsystem and to_supervisor and function != "SAFE_ALL")
-    if service == 129 or (service, subtype) == (17, 1) or by_descriptor:
+    if asked.by == EVERYBODY or by_descriptor:
         essential = ALWAYS
     elif target is not None and STATES[target] in ("ErrorOperational", "PostOperational"):
         essential = ALWAYS
@@ -118,8 +143,8 @@ def expected(sender, addressee, mode, service, subtype, request, supervisor):
         states = addressee.functions[function][0]
     elif (service, subtype) in addressee.requests:
         states = addressee.requests[service, subtype][1]
-    elif (service, subtype) == (17, 128):
-        states = {SAFE}
+    else:
+        states = set(asked.in_states)
     parameter = request.removeprefix("set ") if service == 20 and subtype == 3 else None
     if parameter is not None:
         states = addressee.writable.get(parameter, NEVER)
@@ -149,19 +174,23 @@ def things_of(sender, addressee, supervisor):
     return asked
 
 
-def requests_of(addressee, seen_parameters):
+def requests_of(addressee, seen_parameters, framework):
     """Everything that can be asked of it, as (service, subtype, its name in the table or None for a framework's request)."""
-    asked = {(service, subtype, None) for service, subtypes in SERVICES.items() for subtype in subtypes}
+    asked = {(*key, None) for key in framework} - {(8, 1, None), (20, 3, None)}  # each function and each parameter by itself
     asked |= {(8, 1, f"SET_STATE {state}") for state in STATES} | {(8, 1, "CONFIGURE")}
     asked |= {(8, 1, name) for name in addressee.functions} | {(20, 3, f"set {name}") for name in seen_parameters}
     return asked | {(*key, None) for key in addressee.requests}
 
 
-def compare(hirosco, mission, installed, tampered=lambda modes: None):
-    supervisor, members, modes = read(mission, installed)
-    tampered(modes)
+def told_by(hirosco, mission):
     table = subprocess.run([hirosco, "permissions", mission, "--csv"], capture_output=True, text=True, check=True).stdout
-    rows = list(csv.DictReader(table.splitlines()))
+    return list(csv.DictReader(table.splitlines()))
+
+
+def compare(rows, mission, installed, tampered=lambda modes, framework: None):
+    supervisor, members, modes = read(mission, installed)
+    framework = dict(SERVICES)
+    tampered(modes, framework)
     everybody = {s.name: s for s in [supervisor, *members]}
     senders = {"ground", supervisor.name} | {m.name for m in members if m.commands or m.heard}
     assert {r["sender"] for r in rows} == senders and {r["mode"] for r in rows} == {m.get("name") for m in modes}
@@ -172,7 +201,7 @@ def compare(hirosco, mission, installed, tampered=lambda modes: None):
         service, subtype = int(row["service"]), int(row["subtype"])
         addressee = everybody[row["addressee"]]
         told = tuple(places(row[column]) for column in ("permitted", "essential", "in_change"))
-        want = expected(sender, addressee, mode, service, subtype, row["request"], supervisor)
+        want = expected(sender, addressee, mode, service, subtype, row["request"], supervisor, framework.get((service, subtype), Asked()))
         # Whether something goes past what waits says nothing of what is refused.
         assert told == (want[0], want[1] & want[0], want[2]), f"{mission.parent.name}: {row}: expected {want}"
         not_in = [name for name, out in addressee.left_out.items() if out.get(service)]
@@ -189,18 +218,18 @@ def compare(hirosco, mission, installed, tampered=lambda modes: None):
                 parameters = {name.removeprefix("set ") for service, subtype, name in got if (service, subtype) == (20, 3)}
                 assert parameters >= set(a.writable), (a.name, parameters)
                 things = things_of(everybody.get(s), a, supervisor)
-                assert len(got) == len(set(got)) and set(got) == requests_of(a, parameters) | things, (m.get("name"), s, a.name)
+                assert len(got) == len(set(got)) and set(got) == requests_of(a, parameters, framework) | things, (m.get("name"), s, a.name)
     assert 0 < permitted < cells
     return cells, permitted
 
 
-def permit_less(modes):
+def permit_less(modes, _):
     """Takes one word from what one mode permits."""
     permit = next(p for m in reversed(modes) for p in m.findall("Permit") if "functions" in p.attrib)
     permit.set("functions", " ".join(permit.get("functions").split()[1:]))
 
 
-def name_another(modes):
+def name_another(modes, _=None):
     """Whom one mode's permits name, another one is. False: none names anybody."""
     named = [p for m in modes for p in m.findall("Permit") if p.get("from")]
     for permit in named[:1]:
@@ -208,18 +237,32 @@ def name_another(modes):
     return bool(named)
 
 
+def without_a_service(_, framework):
+    for key in [key for key in framework if key[0] == 17]:
+        del framework[key]
+
+
+def another_subtype(_, framework):
+    framework[130, 3] = framework.pop((130, 2))
+
+
+def asked_by_more(_, framework):
+    framework[128, 1] = framework[128, 1]._replace(by=EVERYBODY)
+
+
 def main():
-    root = pathlib.Path(__file__).resolve().parents[2]
     for mission in sys.argv[2:]:
-        cells, permitted = compare(sys.argv[1], root / mission, root)
-        named = name_another(read(root / mission, root)[2])
-        for what, tampered in (("one word less", permit_less), *((("another sender", name_another),) if named else ())):
+        rows = told_by(sys.argv[1], ROOT / mission)
+        cells, permitted = compare(rows, ROOT / mission, ROOT)
+        named = name_another(read(ROOT / mission, ROOT)[2])
+        trials = [("one word less", permit_less), ("a service less", without_a_service), ("another subtype", another_subtype), ("a request that more may ask for", asked_by_more)]
+        for what, tampered in [*trials, *([("another sender", name_another)] if named else [])]:
             try:
-                compare(sys.argv[1], root / mission, root, tampered)
+                compare(rows, ROOT / mission, ROOT, tampered)
             except AssertionError:
                 print(f"{mission}: {cells} cells, {permitted} permitted, all as its files say, and {what} is seen")
             else:
-                sys.exit(f"{mission}: {what} in a mode's permits is not seen")
+                sys.exit(f"{mission}: {what} in what it is read by is not seen")
 
 
 main()

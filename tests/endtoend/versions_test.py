@@ -173,7 +173,8 @@ class Versions(unittest.TestCase):
 
 class Additions(unittest.TestCase):
     def do(self, craft, subsystem, function, *arguments):
-        self.assertEqual(craft.tc(subsystem, function, *arguments)[0], 0, (subsystem, function, arguments))
+        code, told = craft.tc(subsystem, function, *arguments)[:2]
+        self.assertEqual(code, 0, (subsystem, function, arguments, told))
 
     def up(self, craft):
         for function, argument in (("SET_STATE", 3), ("CONFIGURE", 1), ("SET_STATE", 4), ("SET_STATE", 5)):

@@ -220,14 +220,15 @@ Finding python(const System& system) {
 
 Finding world(const System& system) {
   const World& world = system.world;
-  const auto lacks = [&](std::string_view found, const char* package) {
-    return world.wanted ? missing(std::string{found}, package != nullptr ? package : world.fetcher)
+  const auto lacks = [&](std::string_view found, const std::string& mends) {
+    return world.wanted ? missing(std::string{found}, mends)
                         : ok(fmt::format("{}; the mission has nobody in it", found));
   };
+  if (world.package.empty()) return lacks("no template says which it is", "sudo apt install --reinstall hirosco");
   if (!world.program)
     return lacks("no program of it",
-                 "sudo apt install hirosco-world-mujoco  # in sources: tools/fetch_mujoco, and build again");
-  if (world.library.empty()) return lacks("no MuJoCo: it is fetched, not packaged", nullptr);
+                 fmt::format("sudo apt install {}  # in sources: {}", world.package, world.fetcher));
+  if (world.library.empty()) return lacks("its physics is not here: it is fetched, not packaged", world.fetcher);
   const std::string file = world.library.filename().string();
   if (world.fetched.empty()) return worth_knowing(file + ": nobody has written down its hash", world.fetcher);
   if (world.digest != world.fetched)

@@ -42,6 +42,7 @@ System good() {
   system.libraries = {"libsqlite3.so.0.8.6"};
   system.python = "python3.11";
   system.world = {.wanted = true,
+                  .package = "hirosco-world-tank",
                   .program = true,
                   .library = "/w/libphysics.so.4",
                   .digest = "ab",
@@ -147,7 +148,9 @@ const std::vector<Case>& cases() {
       {"libraries", [](System& system) { system.no_libraries = {"lamp.so: libz.so.1: cannot open"}; }, Verdict::Missing,
        "lamp.so: libz.so.1: cannot open", "sudo apt install --fix-broken"},
       {"world", [](System& system) { system.world.program = false; }, Verdict::Missing, "no program",
-       "sudo apt install hirosco-world-mujoco"},
+       "sudo apt install hirosco-world-tank  # in sources: fetch it"},
+      {"world", [](System& system) { system.world.package.clear(); }, Verdict::Missing, "no template says which",
+       "--reinstall hirosco"},
       {"world", [](System& system) { system.world.library.clear(); }, Verdict::Missing, "fetched, not packaged",
        "fetch it"},
       {"world", [](System& system) { system.world.digest = "cd"; }, Verdict::Missing, "is not what was fetched",

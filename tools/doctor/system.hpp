@@ -33,6 +33,7 @@ struct Port {
 /// The world of robots that have a URDF file.
 struct World {
   bool wanted{false};             ///< the mission has somebody in it
+  std::string package;            ///< that has it; empty: no template says which world it is
   bool program{false};            ///< it is here
   std::filesystem::path library;  ///< its physics, which is fetched and not packaged; empty: not here
   std::string digest;             ///< SHA-256 of that

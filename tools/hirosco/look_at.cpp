@@ -35,6 +35,7 @@
 #include "supervisor/platform/launch/own_users.hpp"
 #include "supervisor/platform/launch/sha256.hpp"
 #include "tools/hirosco/instance.hpp"
+#include "tools/new_folder/robot_world.hpp"
 
 namespace hirosco::tools::doctor {
 namespace {
@@ -45,8 +46,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t locked_octets = 32U * 1024 * 1024;
 constexpr int sleeps = 200;
 constexpr Duration cycle = 500us;
-/// Whose physics is fetched (docs/adr/0129).
-constexpr const char* world_program = "hirosco-sim-mujoco";
 constexpr const char* page_address = "127.0.0.1:8080";
 
 /// The first line; empty where there is none.
@@ -214,39 +213,43 @@ void look_at_module(System& system, const std::string& program, ModuleKind kind)
   if (std::ranges::find(where, loaded.error()) == where.end()) where.push_back(loaded.error());
 }
 
-void look_at_parts(System& system, const descriptor::Mission& mission) {
+void look_at_parts(System& system, const descriptor::Mission& mission, const RobotWorld& robots) {
   system.version = interface_version;
   system.libraries = libraries_in_use();  // before anything of the mission is loaded
   for (const auto& member : mission.subsystems) look_at_module(system, member.executable, ModuleKind::Subsystem);
   for (const auto& device : mission.devices)
-    if (device.executable != world_program) look_at_module(system, device.executable, ModuleKind::SimulatedDevice);
+    if (device.executable != robots.program) look_at_module(system, device.executable, ModuleKind::SimulatedDevice);
   std::error_code failed;
   if (const fs::path python = find_program("python3"); !python.empty())
     system.python = fs::canonical(python, failed).filename().string();
 }
 
 /// Beside the module, where a package has it fetched to, or where a build has it from.
-[[nodiscard]] fs::path world_library(const fs::path& module) {
+[[nodiscard]] fs::path world_library(const fs::path& module, const RobotWorld& robots) {
   const fs::path folder = module.parent_path();
   std::error_code failed;
-  for (const fs::path& place : {folder, folder / "mujoco/lib", folder.parent_path().parent_path() / "mujoco/lib"})
+  for (const fs::path& place :
+       {folder, folder / robots.word / "lib", folder.parent_path().parent_path() / robots.word / "lib"})
     for (const auto& file : fs::directory_iterator{place, failed})
-      if (file.path().filename().string().starts_with("libmujoco.so.")) return file.path();
+      if (file.path().filename().string().starts_with(robots.library)) return file.path();
   return {};
 }
 
-void look_at_world(World& world, const descriptor::Mission& mission) {
+/// That of robots, whose physics is fetched (docs/adr/0129).
+void look_at_world(World& world, const descriptor::Mission& mission, const RobotWorld& robots) {
+  world.package = robots.package;
+  if (robots.program.empty()) return;
   world.wanted =
-      std::ranges::any_of(mission.devices, [](const auto& each) { return each.executable == world_program; });
-  world.program = !find_program(world_program).empty();
-  const fs::path module = find_module(world_program);
-  const fs::path fetcher = module.parent_path() / "fetch_mujoco";
+      std::ranges::any_of(mission.devices, [&](const auto& each) { return each.executable == robots.program; });
+  world.program = !find_program(robots.program).empty();
+  const fs::path module = find_module(robots.program);
+  const fs::path fetcher = module.parent_path() / robots.fetcher;
   std::error_code failed;
   world.fetcher = fs::exists(fetcher, failed)
-                      ? fmt::format("sudo {} {}", fetcher.string(), (module.parent_path() / "mujoco").string())
-                      : "tools/fetch_mujoco  # and build again";
+                      ? fmt::format("sudo {} {}", fetcher.string(), (module.parent_path() / robots.word).string())
+                      : fmt::format("tools/{}  # and build again", robots.fetcher);
   if (module.empty()) return;
-  world.library = world_library(module);
+  world.library = world_library(module, robots);
   if (world.library.empty()) return;
   std::ostringstream octets;
   octets << std::ifstream{world.library, std::ios::binary}.rdbuf();
@@ -265,8 +268,9 @@ System look_at(const descriptor::Mission& mission) {
   const FlightEntry flight = plan_flight(mission, mission.name);
   const auto flights = FlightRegistry{}.flights();
   system.mission = mission.file.string();
-  look_at_parts(system, mission);
-  look_at_world(system.world, mission);
+  const RobotWorld robots = robot_world(find_shipped("templates"));
+  look_at_parts(system, mission, robots);
+  look_at_world(system.world, mission, robots);
   for (const std::string& address : {flight.telemetry, flight.telecommand})
     if (!address.empty()) system.ground_link.push_back(look_at_port(address, flights));
   system.page = look_at_port(page_address, flights);

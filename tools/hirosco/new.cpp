@@ -11,6 +11,7 @@
 #include "tools/hirosco/commands.hpp"
 #include "tools/new_folder/kinds.hpp"
 #include "tools/new_folder/robot.hpp"
+#include "tools/new_folder/robot_world.hpp"
 
 namespace hirosco::tools {
 namespace {
@@ -49,8 +50,6 @@ void say_what_is_next(const NewKind& kind, const std::string& folder, const std:
   }
   fmt::print("  hirosco simulate mission.xml --for 5s\n  hirosco run mission.xml\n");
 }
-
-constexpr const char* world_program = "hirosco-sim-mujoco";
 
 /// Where packages are whose meshes a file names: those that were said, then those of ROS, where there is any.
 [[nodiscard]] std::vector<fs::path> package_folders(const NewOptions& options) {
@@ -91,13 +90,14 @@ void say_what_is_ready(const NewName& name) {
 }
 
 /// Its world is none of the parts that everybody has.
-void say_what_is_missing() {
-  if (!find_program(world_program).empty()) return;
+void say_what_is_missing(const fs::path& templates) {
+  const RobotWorld world = robot_world(templates);
+  if (world.program.empty() || !find_program(world.program).empty()) return;
   fmt::print(
-      "\nIts world, {}, is not here: the package hirosco-world-mujoco has it. It is built with HIROSCO's sources once\n"
-      "tools/fetch_mujoco has fetched MuJoCo (10 MB, judged by hash); until then the mission can be checked, but not "
+      "\nIts world, {}, is not here: the package {} has it. It is built with HIROSCO's sources once\n"
+      "tools/{} has fetched its physics (10 MB, judged by hash); until then the mission can be checked, but not "
       "flown.\n",
-      world_program);
+      world.program, world.package, world.fetcher);
 }
 
 }  // namespace
@@ -147,7 +147,7 @@ int make_new(const NewOptions& options) {
   }
   fmt::print("{}: {}\n", target.string(), kind->makes);
   for (const fs::path& file : *made) fmt::print("  {}\n", file.lexically_relative(target).string());
-  if (kind->of_urdf) say_what_is_missing();
+  if (kind->of_urdf) say_what_is_missing(from.parent_path());
   else say_what_is_ready(*name);
   fmt::print("\nNow:\n");
   say_what_is_next(*kind, target.string(), generator() + where_installed(from.parent_path()),
