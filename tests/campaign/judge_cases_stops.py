@@ -73,6 +73,16 @@ def a_stop_whose_report_nobody_asked_for_while_the_log_has_no_room(w):
 
 
 @case(SAFE_ALL_RULE)
+def a_stop_whose_report_nobody_asked_for_has_as_long_as_any_other(w):
+    safe_all(w, answered=None, ack=6, stops=400 * MS)
+
+
+@case(SAFE_ALL_RULE, found="robot acts 500 ms after SAFE_ALL")
+def a_stop_whose_report_nobody_asked_for_that_comes_too_late(w):
+    safe_all(w, answered=None, ack=6, stops=600 * MS)
+
+
+@case(SAFE_ALL_RULE)
 def a_stop_that_is_answered_when_the_last_was_ended(w):
     safe_all(w, answered=940 * MS)
 

@@ -56,9 +56,8 @@ def i4_safe_all_stops_everything(flight, victims):
         if done is None:  # not in a log that had no room: ground has it all the same
             done = next((d[0] for d in flight.down if d[3] == 1 and d[4] in (7, 8) and (d[5], d[6]) == sent.key), None)
         refused = any(r.kind == "telecommand-refused" and r.telecommand and r.telecommand.key == sent.key for r in flight.log)
-        if not sent.ack & 8 and not refused:
-            done = sent.time  # nobody asked for its report
-        if done is None or done > sent.time + SAFE_ALL_ENDS_US:
+        wanted = sent.ack & 8 or refused  # else nobody asked for its report
+        if wanted and (done is None or done > sent.time + SAFE_ALL_ENDS_US):
             yield sent.time, "SAFE_ALL was " + ("refused" if refused else "not answered in its time")
         at = min(done or sent.time + SAFE_ALL_US, sent.time + SAFE_ALL_US)
         for device, (member, _) in flight.mission.devices.items():
