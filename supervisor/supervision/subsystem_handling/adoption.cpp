@@ -138,8 +138,9 @@ void Adoption::finish_what_was_begun() {
     return parts_.shutdown.request("the supervisor before this one");
   }
   // Of whoever was dead already and is being recovered from that the plan begins anew: nobody else knows how far it was.
+  // Whom a version that was on trial has been taken from meanwhile has been let go, and comes back by that.
   for (Member& member : craft_.members)
-    if (const Before known = before(member); !member.alive() && (known.alive || known.recovering))
+    if (const Before known = before(member); !member.alive() && !member.exchanged && (known.alive || known.recovering))
       parts_.processes.found_dead(member);
   if (commissioning_) {
     craft_.tell("commissioning stopped: the supervisor died", supervisor_apid);

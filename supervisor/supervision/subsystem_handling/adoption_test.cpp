@@ -137,6 +137,38 @@ TEST_F(AdoptionTest, TheDevicesOfWhoDiedWithTheSupervisorAreAskedInAStop) {
   EXPECT_FALSE(answer->stopped) << "it was not heard";
 }
 
+/// There are versions of all.
+struct VersionsMeanwhile : AdoptionTest {
+  [[nodiscard]] std::expected<bool, StartRefusal> prepare(const descriptor::MissionSubsystem&,
+                                                          const std::string&) override {
+    return true;
+  }
+};
+
+TEST_F(VersionsMeanwhile, WhatIsTakenBackBeforeThisOneIsOperationalHasNotDied) {
+  start_all(Offline);
+  const auto process_ends = [this](SupervisorParts& supervisor) {
+    ends[played[arm].process] = {};
+    supervisor.replacement.watch(clock.now());
+    ends.clear();
+    supervisor.replacement.watch(clock.now());
+  };
+  ASSERT_EQ(parts.replacement.replace(arm, "2", 30s, Call{}).kind, Outcome::Kind::Running);
+  parts.replacement.watch(clock.now());
+  process_ends(parts);
+  ASSERT_TRUE(was_told("ARM runs version 2: CONFIRM within 30 s keeps it"));
+  set(arm, Offline);
+  ASSERT_TRUE(notes.note());
+  SupervisorParts& next = go_on();
+  for (int step = 0; step < 2; ++step) next.replacement.watch(clock.now());
+  ASSERT_FALSE(next.craft.member(arm)->alive()) << "it has been let go";
+  begins_to_hear(next);
+  EXPECT_FALSE(was_told("ARM died: exit code 0"));
+  process_ends(next);
+  EXPECT_TRUE(was_told("ARM runs the mission's own version again"));
+  EXPECT_TRUE(next.craft.member(arm)->alive());
+}
+
 TEST_F(AdoptionTest, WhoWasEndedInsteadHasDiedOfThat) {
   start_all(SafeOperational);
   ASSERT_TRUE(notes.note());
