@@ -300,6 +300,7 @@ class Flight:
                             *self._which(), seconds=seconds)
         if done.stderr:
             print(f"hirosco tc {subsystem} {function}: {done.stderr.strip()}", file=sys.stderr)
+        self.answers = done.stdout
         return done.returncode, [json.loads(line)["report"] for line in done.stdout.splitlines() if line.startswith("{")]
 
     def fault(self, device, *words):

@@ -9,6 +9,7 @@ import os
 import pathlib
 import shutil
 import struct
+import sys
 import tempfile
 import time
 import unittest
@@ -173,12 +174,13 @@ class Versions(unittest.TestCase):
 
 class Additions(unittest.TestCase):
     def do(self, craft, subsystem, function, *arguments):
-        code, told = craft.tc(subsystem, function, *arguments)[:2]
-        self.assertEqual(code, 0, (subsystem, function, arguments, told))
+        code, _ = craft.tc(subsystem, function, *arguments)
+        self.assertEqual(code, 0, (subsystem, function, arguments, craft.answers))
 
-    def up(self, craft):
+    def up(self, craft, behind=0):
         for function, argument in (("SET_STATE", 3), ("CONFIGURE", 1), ("SET_STATE", 4), ("SET_STATE", 5)):
-            self.do(craft, "PILOT", function, argument)
+            if (function, argument) != ("SET_STATE", behind):
+                self.do(craft, "PILOT", function, argument)
 
     def down(self, craft):
         for state in (4, 7, 0):
@@ -262,7 +264,11 @@ class Additions(unittest.TestCase):
         craft.wait_told("PILOT flies by the text before", 20.0, begin)
         craft.wait_told("PILOT runs the mission's own version again", 20.0, begin)
         self.assertEqual(runs(craft), "")
-        self.up(craft)
+        # Behind a supervisor's death what is said may be refused as said before a stop: it is said again.
+        if "1,2" in craft.tc("PILOT", "SET_STATE", 3)[1]:
+            print(f"said again: {craft.answers}", file=sys.stderr)
+            self.do(craft, "PILOT", "SET_STATE", 3)
+        self.up(craft, behind=3)
         self.do(craft, "PILOT", "MOVE_TO", 0.2)
         self.down(craft)
 

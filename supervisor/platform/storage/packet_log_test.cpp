@@ -314,6 +314,7 @@ TEST(ThreadedPacketLog, EndsAWorkingDatabaseWithANoteOfTheNextThatGoesOnBehindIt
   auto second = std::make_shared<MemoryDatabase>();
   ThreadedPacketLog log{clock, std::make_unique<Shared>(first), {}};
   ASSERT_EQ(log.append(telecommand()), 1U);
+  ASSERT_TRUE(log.flush(long_enough)) << "so that nothing but the note waits";
   log.switch_to(std::make_unique<Shared>(second));
   ASSERT_EQ(log.append(telecommand()), 3U);
   ASSERT_TRUE(log.flush(long_enough));
