@@ -16,8 +16,14 @@ BEGIN, END = "<!-- flown: made by tools/check_flown.py --write -->\n", "<!-- end
 KINDS = ("missions", "tests")
 OWNERS = ("missions", "subsystems", "simulation/devices")
 SOURCES = (".py", ".cpp", ".hpp", ".mjs")
-# Who is not flown by which kind, and why. No program is flown by neither.
-NOT_FLOWN = {("missions", "hirosco-arm"): "no mission that is shipped has an arm without kinematics"}
+# A line of a subsystem's README: who is not flown by which kind, and why. No program is flown by neither.
+NOT_FLOWN = re.compile(r"^Not flown by `(missions|tests)/`: `(hirosco-[a-z0-9-]+)`: (.+?)\.?$", re.M)
+
+
+def not_flown(root):
+    """By kind and program: why."""
+    return {(kind, program): why for path in sorted((root / "subsystems").glob("*/README.md"))
+            for kind, program, why in NOT_FLOWN.findall(path.read_text())}
 
 
 def programs(folder):
@@ -124,12 +130,12 @@ def problems(root, reasons):
             if not flown[kind].get(program) and (kind, program) not in reasons:
                 yield f"subsystems/{folder.name}: no mission of {kind}/{' or of a tests/ of its own' * (kind == 'tests')} flies {program}: {mended_by[kind]}"
         if all((kind, program) in reasons for kind in KINDS):
-            yield f"tools/check_flown.py: {program} would be flown by nobody: take one of its rows out of NOT_FLOWN"
+            yield f"subsystems/: {program} would be flown by nobody: take one of its lines Not flown by out of its README"
     for kind, program in reasons:
         if program not in made:
-            yield f"tools/check_flown.py: NOT_FLOWN names {program}, which nobody makes: take its row out"
+            yield f"subsystems/: a README says Not flown by of {program}, which nobody makes: take that line out"
         elif by := cell(root, kind, flown, program, {}):
-            yield f"tools/check_flown.py: NOT_FLOWN says that {program} is in no mission of {kind}/, and {by} flies it: take its row out"
+            yield f"subsystems/: a README says Not flown by {kind}/ of {program}, and {by} flies it: take that line out"
     if written(root, flown, reasons) != (root / "subsystems/README.md").read_text():
         yield "subsystems/README.md: its table is not what flies: tools/check_flown.py --write"
 
@@ -199,8 +205,8 @@ def settle(root, reasons):
 def main():
     self_test()
     if sys.argv[1:] == ["--write"]:
-        (ROOT / "subsystems/README.md").write_text(written(ROOT, flights(ROOT), NOT_FLOWN))
-    found = list(problems(ROOT, NOT_FLOWN))
+        (ROOT / "subsystems/README.md").write_text(written(ROOT, flights(ROOT), not_flown(ROOT)))
+    found = list(problems(ROOT, not_flown(ROOT)))
     for problem in found:
         print(problem)
     sys.exit(1 if found else 0)

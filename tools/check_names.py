@@ -30,7 +30,6 @@ PART = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 TABLE = re.compile(r"^KNOWN = \(\n.*?^\)\n", re.M | re.S)
 KNOWN = (
     ("rokviss", "missions/usual", "the word by which the usual mission is chosen (adr 0054)"),
-    ("arm", "tools/check_flown.py", "has a row for it, as no mission that is shipped flies it"),
     ("robot", "simulation/devices/joystick/joystick_device.cpp", "a hand that leads the arm goes by the arm's world (simulation/README.md)"),
     ("mujoco", "tools/fetch_mujoco", "fetches the physics of that world, which no package of a distribution has"),
     ("mujoco", "tools/packages/", "packs that world by itself, as its physics is fetched when it is installed (adr 0129)"),

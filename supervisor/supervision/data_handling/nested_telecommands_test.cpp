@@ -165,13 +165,7 @@ struct NestedTelecommandsTest : PartsTest {
       own_step();
       for (const std::uint16_t apid : {arm, hand, camera}) obey(apid);
     }
-    guard.beat();
-    for (auto& [apid, member] : played) {
-      ++member.vital->cycles;
-      ++member.vital->service_steps;
-      member.vital->seen_epoch = member.permit->epoch.load();
-    }
-    static_cast<void>(guard.step(clock.now()));
+    guard_sees_all();
     parts.safe_all.follow();
   }
 };

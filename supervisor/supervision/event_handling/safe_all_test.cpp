@@ -14,15 +14,7 @@ using enum descriptor::State;
 
 struct SafeAllTest : PartsTest {
   void answered() {
-    for (const TimePoint end = clock.now() + 1s; clock.now() < end; wait(Guard::period)) {
-      guard.beat();
-      for (auto& [apid, member] : played) {
-        ++member.vital->cycles;
-        ++member.vital->service_steps;
-        member.vital->seen_epoch = member.permit->epoch.load();
-      }
-      static_cast<void>(guard.step(clock.now()));
-    }
+    for (const TimePoint end = clock.now() + 1s; clock.now() < end; wait(Guard::period)) guard_sees_all();
     parts.safe_all.follow();
   }
 };

@@ -235,6 +235,16 @@ struct PartsTest : ::testing::Test, ProcessLauncher, Observer {
         verify(apid, each.request, 7);
       }
   }
+  /// All cycle and step, look at their permits, and the guard looks at them.
+  void guard_sees_all() {
+    guard.beat();
+    for (auto& [apid, member] : played) {
+      ++member.vital->cycles;
+      ++member.vital->service_steps;
+      member.vital->seen_epoch = member.permit->epoch.load();
+    }
+    static_cast<void>(guard.step(clock.now()));
+  }
   [[nodiscard]] bool was_told(std::string_view line) const {
     return std::ranges::any_of(story, [&](const std::string& each) { return each.find(line) != std::string::npos; });
   }
