@@ -42,10 +42,8 @@ template <class T>
 class Peer {
  public:
   Peer(const char* subject, bool first)
-      : publisher_{{"Peers", iox::capro::IdString_t(iox::cxx::TruncateToCapacity, subject), first ? "there" : "back"},
-                   publish()},
-        subscriber_{{"Peers", iox::capro::IdString_t(iox::cxx::TruncateToCapacity, subject), first ? "back" : "there"},
-                    subscribe()} {
+      : publisher_{{"Peers", word(subject), word(first ? "there" : "back")}, publish()},
+        subscriber_{{"Peers", word(subject), word(first ? "back" : "there")}, subscribe()} {
     while (!publisher_.hasSubscribers() || subscriber_.getSubscriptionState() != iox::SubscribeState::SUBSCRIBED)
       ::usleep(1000);
   }
@@ -71,6 +69,7 @@ class Peer {
   }
 
  private:
+  static iox::capro::IdString_t word(const char* text) { return {iox::cxx::TruncateToCapacity, text}; }
   static iox::popo::PublisherOptions publish() {
     iox::popo::PublisherOptions options;
     options.subscriberTooSlowPolicy = iox::popo::ConsumerTooSlowPolicy::WAIT_FOR_CONSUMER;

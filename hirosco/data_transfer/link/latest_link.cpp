@@ -31,59 +31,34 @@
 namespace hirosco {
 namespace {
 
-using Word = std::uint64_t;
-static_assert(std::atomic_ref<Word>::is_always_lock_free);
+using Words = detail::LinkWords;
+using Word = Words::Word;
 
-constexpr std::size_t line = cache_line_octets;
 constexpr int attempts = 8;
-
-constexpr std::size_t words_of(std::uint32_t octets) noexcept { return (octets + sizeof(Word) - 1) / sizeof(Word); }
 
 bool plausible(const LinkLayout& layout) noexcept {
   return layout.payload_octets >= 1 && layout.payload_octets <= max_link_payload_octets;
 }
 
 bool fits(const void* start, std::size_t octets, const LinkLayout& layout) noexcept {
-  return plausible(layout) && start != nullptr && std::bit_cast<std::uintptr_t>(start) % line == 0 &&
-         octets >= link_memory_octets(layout.payload_octets);
-}
-
-std::atomic_ref<Word> word(std::byte* memory, std::size_t at) noexcept {
-  return std::atomic_ref<Word>{*reinterpret_cast<Word*>(memory + at)};
-}
-
-// The standard has no atomic_ref to const yet; a lock-free load does not write, so a read-only mapping is safe.
-Word load(const std::byte* memory, std::size_t at, std::memory_order order) noexcept {
-  return word(const_cast<std::byte*>(memory), at).load(order);
+  return plausible(layout) && Words::on_a_line(start) && octets >= link_memory_octets(layout.payload_octets);
 }
 
 Word version_epoch(const LinkLayout& layout) noexcept { return link_memory::version << 32 | layout.epoch; }
 
-constexpr Word coded(LinkStatus status) noexcept {
-  const Word number = std::to_underlying(status);
-  return (~number << 32) | number;
-}
-
-constexpr LinkStatus status_of(Word word) noexcept {
-  for (const LinkStatus status : {LinkStatus::Valid, LinkStatus::Degraded, LinkStatus::Stopping})
-    if (word == coded(status)) return status;
-  return LinkStatus::Fault;
-}
-
 }  // namespace
 
 std::size_t link_memory_octets(std::uint32_t payload_octets) noexcept {
-  const std::size_t used = link_memory::payload_at + words_of(payload_octets) * sizeof(Word);
-  return (used + line - 1) / line * line;
+  return Words::in_lines(link_memory::payload_at + Words::words_of(payload_octets) * sizeof(Word));
 }
 
 std::optional<LinkGlance> glance_at_link(Octets memory) noexcept {
-  const bool aligned = std::bit_cast<std::uintptr_t>(memory.data()) % line == 0;
-  if (!aligned || memory.size() < link_memory::payload_at) return std::nullopt;
-  if (load(memory.data(), link_memory::magic_at, std::memory_order_acquire) != link_memory::magic) return std::nullopt;
-  const auto stamp = load(memory.data(), link_memory::stamp_at, std::memory_order_relaxed);
-  return LinkGlance{load(memory.data(), link_memory::count_at, std::memory_order_relaxed),
-                    TimePoint{Duration{std::bit_cast<std::int64_t>(stamp)}}};
+  if (!Words::on_a_line(memory.data()) || memory.size() < link_memory::payload_at) return std::nullopt;
+  if (Words::load(memory.data(), link_memory::magic_at, std::memory_order_acquire) != link_memory::magic)
+    return std::nullopt;
+  const auto stamp = Words::load(memory.data(), link_memory::stamp_at, std::memory_order_relaxed);
+  return LinkGlance{Words::load(memory.data(), link_memory::count_at, std::memory_order_relaxed),
+                    Words::time_of(stamp)};
 }
 
 Result<LatestWriter> LatestWriter::make(MutableOctets memory, const LinkLayout& layout) noexcept {
@@ -92,14 +67,16 @@ Result<LatestWriter> LatestWriter::make(MutableOctets memory, const LinkLayout& 
                 layout.payload_octets);
   }
   std::byte* const start = memory.data();
-  const auto set = [start](std::size_t at, Word value) { word(start, at).store(value, std::memory_order_relaxed); };
+  const auto set = [start](std::size_t at, Word value) {
+    Words::word(start, at).store(value, std::memory_order_relaxed);
+  };
   const std::size_t all = link_memory_octets(layout.payload_octets);
   for (std::size_t at = 0; at < all; at += sizeof(Word)) set(at, 0);
   set(link_memory::version_epoch_at, version_epoch(layout));
   set(link_memory::payload_octets_at, layout.payload_octets);
   set(link_memory::layout_hash_at, layout.layout_hash);
   set(link_memory::period_at, std::bit_cast<Word>(std::int64_t{layout.period.count()}));
-  word(start, link_memory::magic_at).store(link_memory::magic, std::memory_order_release);
+  Words::word(start, link_memory::magic_at).store(link_memory::magic, std::memory_order_release);
 
   LatestWriter writer;
   writer.memory_ = start;
@@ -111,13 +88,13 @@ Result<LatestWriter> LatestWriter::make(MutableOctets memory, const LinkLayout& 
 void LatestWriter::write(Octets payload, TimePoint sampled_at, LinkStatus status) noexcept {
   assert(memory_ != nullptr && payload.size() == payload_octets_);
   const auto publish = [this](std::size_t at, Word value) {
-    word(memory_, at).store(value, std::memory_order_release);
+    Words::word(memory_, at).store(value, std::memory_order_release);
   };
   claim_lines(memory_ + link_memory::sequence_at, link_memory::payload_at - link_memory::sequence_at + payload_octets_);
-  word(memory_, link_memory::sequence_at).store(++sequence_, std::memory_order_relaxed);
-  publish(link_memory::status_at, coded(status));
+  Words::word(memory_, link_memory::sequence_at).store(++sequence_, std::memory_order_relaxed);
+  publish(link_memory::status_at, Words::coded(status));
   publish(link_memory::count_at, ++count_);
-  publish(link_memory::stamp_at, std::bit_cast<Word>(std::int64_t{sampled_at.time_since_epoch().count()}));
+  publish(link_memory::stamp_at, Words::stamp_of(sampled_at));
   const std::size_t whole = payload_octets_ / sizeof(Word) * sizeof(Word);
   for (std::size_t at = detail::store_wide(payload.data(), memory_ + link_memory::payload_at, whole); at < whole;
        at += sizeof(Word)) {
@@ -136,9 +113,9 @@ void LatestWriter::write(Octets payload, TimePoint sampled_at, LinkStatus status
 
 void LatestWriter::set_status(LinkStatus status) noexcept {
   assert(memory_ != nullptr);
-  word(memory_, link_memory::sequence_at).store(++sequence_, std::memory_order_relaxed);
-  word(memory_, link_memory::status_at).store(coded(status), std::memory_order_release);
-  word(memory_, link_memory::sequence_at).store(++sequence_, std::memory_order_release);
+  Words::word(memory_, link_memory::sequence_at).store(++sequence_, std::memory_order_relaxed);
+  Words::word(memory_, link_memory::status_at).store(Words::coded(status), std::memory_order_release);
+  Words::word(memory_, link_memory::sequence_at).store(++sequence_, std::memory_order_release);
 }
 
 Result<LatestReader> LatestReader::make(Octets memory, const LinkLayout& layout) noexcept {
@@ -147,8 +124,8 @@ Result<LatestReader> LatestReader::make(Octets memory, const LinkLayout& layout)
                 layout.payload_octets);
   }
   const std::byte* const start = memory.data();
-  const auto get = [start](std::size_t at) { return load(start, at, std::memory_order_relaxed); };
-  if (load(start, link_memory::magic_at, std::memory_order_acquire) != link_memory::magic)
+  const auto get = [start](std::size_t at) { return Words::load(start, at, std::memory_order_relaxed); };
+  if (Words::load(start, link_memory::magic_at, std::memory_order_acquire) != link_memory::magic)
     return fail(ErrorCode::Mismatch, "link memory has no header");
   if (get(link_memory::version_epoch_at) >> 32 != link_memory::version)
     return fail(ErrorCode::Mismatch, "link version",
@@ -164,21 +141,27 @@ Result<LatestReader> LatestReader::make(Octets memory, const LinkLayout& layout)
   LatestReader reader;
   reader.memory_ = start;
   reader.payload_octets_ = layout.payload_octets;
-  reader.kept_.reset(new (std::nothrow) Word[words_of(layout.payload_octets)]{});
-  reader.arriving_.reset(new (std::nothrow) Word[words_of(layout.payload_octets)]{});
+  reader.kept_.reset(new (std::nothrow) Word[Words::words_of(layout.payload_octets)]{});
+  reader.arriving_.reset(new (std::nothrow) Word[Words::words_of(layout.payload_octets)]{});
   if (!reader.kept_ || !reader.arriving_) return fail(ErrorCode::ResourceExhausted, "no memory for a link's copy");
   return reader;
 }
 
 LinkSample LatestReader::read(MutableOctets payload) noexcept {
   assert(memory_ != nullptr && payload.size() == payload_octets_);
+  const auto get = [this](std::size_t at) { return Words::load(memory_, at, std::memory_order_acquire); };
   for (int attempt = 0; attempt < attempts; ++attempt) {
-    const Word sequence = load(memory_, link_memory::sequence_at, std::memory_order_acquire);
+    const Word sequence = get(link_memory::sequence_at);
     if (sequence == last_sequence_) return last(payload);
-    LinkSample sample;
-    if (sequence % 2 == 0 && copy(sequence, sample, payload)) {
-      last_sequence_ = sequence;
-      return accept(sample, payload);
+    if (sequence % 2 == 0) {
+      const Word status = get(link_memory::status_at);
+      const Word count = get(link_memory::count_at);
+      const Word stamp = get(link_memory::stamp_at);
+      copy(payload);
+      if (Words::load(memory_, link_memory::sequence_at, std::memory_order_relaxed) == sequence) {
+        last_sequence_ = sequence;
+        return accept(status, count, stamp, payload);
+      }
     }
     relax(attempt);
   }
@@ -187,11 +170,8 @@ LinkSample LatestReader::read(MutableOctets payload) noexcept {
 
 // Into both places as it comes: a second copy of what was stored a moment ago would wait for the store buffer. What is
 // torn in `payload` is put right by last(); before the first sample it could not be, so accept() fills it then.
-bool LatestReader::copy(std::uint64_t sequence, LinkSample& sample, MutableOctets payload) noexcept {
-  const auto get = [this](std::size_t at) { return load(memory_, at, std::memory_order_acquire); };
-  sample.status = status_of(get(link_memory::status_at));
-  sample.count = get(link_memory::count_at);
-  sample.sampled_at = TimePoint{Duration{std::bit_cast<std::int64_t>(get(link_memory::stamp_at))}};
+void LatestReader::copy(MutableOctets payload) noexcept {
+  const auto get = [this](std::size_t at) { return Words::load(memory_, at, std::memory_order_acquire); };
   const std::size_t direct = last_.count == 0 ? 0 : payload_octets_ / sizeof(Word);
   const std::size_t wide =
       detail::load_wide(memory_ + link_memory::payload_at, reinterpret_cast<std::byte*>(arriving_.get()),
@@ -200,9 +180,8 @@ bool LatestReader::copy(std::uint64_t sequence, LinkSample& sample, MutableOctet
     const Word value = arriving_[i] = get(link_memory::payload_at + i * sizeof(Word));
     std::memcpy(payload.data() + i * sizeof value, &value, sizeof value);
   }
-  for (std::size_t i = direct; i < words_of(payload_octets_); ++i)
+  for (std::size_t i = direct; i < Words::words_of(payload_octets_); ++i)
     arriving_[i] = get(link_memory::payload_at + i * sizeof(Word));
-  return load(memory_, link_memory::sequence_at, std::memory_order_relaxed) == sequence;
 }
 
 const std::uint32_t* LatestReader::arrival_word() const noexcept {
@@ -216,17 +195,23 @@ LinkSample LatestReader::last(MutableOctets payload) const noexcept {
   return sample;
 }
 
-LinkSample LatestReader::accept(LinkSample sample, MutableOctets payload) noexcept {
-  const std::uint64_t before = std::exchange(last_, sample).count;
-  if (sample.count == before) return last(payload);
+// Word by word: a sample that was put together in memory and then copied as a whole would wait for the store buffer, too.
+LinkSample LatestReader::accept(Word status, Word count, Word stamp, MutableOctets payload) noexcept {
+  const std::uint64_t before = last_.count;
+  last_.status = Words::status_of(status);
+  last_.count = count;
+  last_.sampled_at = Words::time_of(stamp);
+  if (count == before) return last(payload);
   std::swap(kept_, arriving_);
   const std::size_t direct = before == 0 ? 0 : payload_octets_ / sizeof(Word) * sizeof(Word);
   if (direct != payload_octets_)
     std::memcpy(payload.data() + direct, reinterpret_cast<const std::byte*>(kept_.get()) + direct,
                 payload_octets_ - direct);
-  sample.flow = Flow::New;
-  sample.lost = before != 0 && sample.count > before ? sample.count - before - 1 : 0;
-  return sample;
+  return {.flow = Flow::New,
+          .status = last_.status,
+          .count = count,
+          .lost = before != 0 && count > before ? count - before - 1 : 0,
+          .sampled_at = last_.sampled_at};
 }
 
 // --- the mechanism ---------------------------------------------------------------------------------------------------

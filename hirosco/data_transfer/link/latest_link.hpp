@@ -72,9 +72,10 @@ class LatestReader final : public LinkReader {
 
  private:
   const std::byte* memory_{nullptr};
-  [[nodiscard]] bool copy(std::uint64_t sequence, LinkSample& sample, MutableOctets payload) noexcept;
+  void copy(MutableOctets payload) noexcept;
   [[nodiscard]] LinkSample last(MutableOctets payload) const noexcept;
-  [[nodiscard]] LinkSample accept(LinkSample sample, MutableOctets payload) noexcept;
+  [[nodiscard]] LinkSample accept(std::uint64_t status, std::uint64_t count, std::uint64_t stamp,
+                                  MutableOctets payload) noexcept;
 
   std::uint32_t payload_octets_{0};
   std::uint64_t last_sequence_{0};

@@ -60,9 +60,10 @@ struct LinkWords {
     return (~number << 32) | number;
   }
   static constexpr LinkStatus status_of(Word word) noexcept {
-    for (const LinkStatus status : {LinkStatus::Valid, LinkStatus::Degraded, LinkStatus::Stopping})
-      if (word == coded(status)) return status;
-    return LinkStatus::Fault;
+    const auto status = static_cast<LinkStatus>(word & 0xFFFF'FFFF);
+    const bool written =
+        status == LinkStatus::Valid || status == LinkStatus::Degraded || status == LinkStatus::Stopping;
+    return written && word == coded(status) ? status : LinkStatus::Fault;
   }
 };
 

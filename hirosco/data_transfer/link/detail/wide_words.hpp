@@ -34,6 +34,21 @@ using WideOctets = std::byte[sizeof(WideWord)];
 
 /// Nothing that stands before it in the program is done behind it, and nothing behind it before it. The processor does so by itself.
 inline void keep_order() noexcept { asm volatile("" : : : "memory"); }
+
+/// `move` for each whole word of `octets`, four of them a step. Returns the octets behind the last one.
+template <class Move>
+inline std::size_t by_wide_words(std::size_t octets, const Move& move) noexcept {
+  constexpr std::size_t word = sizeof(WideWord);
+  std::size_t at = 0;
+  for (; at + 4 * word <= octets; at += 4 * word) {
+    move(at);
+    move(at + word);
+    move(at + 2 * word);
+    move(at + 3 * word);
+  }
+  for (; at + word <= octets; at += word) move(at);
+  return at;
+}
 #endif
 
 /// Realtime: bounded.
@@ -42,11 +57,11 @@ inline std::size_t store_wide([[maybe_unused]] const std::byte* from, [[maybe_un
   std::size_t at = 0;
 #if HIROSCO_WIDE_WORDS
   keep_order();
-  for (; at + sizeof(WideWord) <= octets; at += sizeof(WideWord)) {
+  at = by_wide_words(octets, [&](std::size_t each) {
     WideWord value;
-    std::memcpy(&value, from + at, sizeof value);
-    asm volatile("movdqu %1, %0" : "=m"(*reinterpret_cast<WideOctets*>(to + at)) : "x"(value));
-  }
+    std::memcpy(&value, from + each, sizeof value);
+    asm volatile("movdqu %1, %0" : "=m"(*reinterpret_cast<WideOctets*>(to + each)) : "x"(value));
+  });
   keep_order();
 #endif
   return at;
@@ -58,12 +73,12 @@ inline std::size_t load_wide([[maybe_unused]] const std::byte* from, [[maybe_unu
   std::size_t at = 0;
 #if HIROSCO_WIDE_WORDS
   keep_order();
-  for (; at + sizeof(WideWord) <= octets; at += sizeof(WideWord)) {
+  at = by_wide_words(octets, [&](std::size_t each) {
     WideWord value;
-    asm volatile("movdqu %1, %0" : "=x"(value) : "m"(*reinterpret_cast<const WideOctets*>(from + at)));
-    std::memcpy(one + at, &value, sizeof value);
-    std::memcpy(other + at, &value, sizeof value);
-  }
+    asm volatile("movdqu %1, %0" : "=x"(value) : "m"(*reinterpret_cast<const WideOctets*>(from + each)));
+    std::memcpy(one + each, &value, sizeof value);
+    std::memcpy(other + each, &value, sizeof value);
+  });
   keep_order();
 #endif
   return at;
