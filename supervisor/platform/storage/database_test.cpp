@@ -169,6 +169,25 @@ TEST_P(Databases, ShowARepeatedRecordOnce) {
   EXPECT_THAT(numbers(*database->read({})), ElementsAre(1, 2, 3));
 }
 
+/// Each with words and octets of its own.
+std::vector<LogRecord> many(std::uint64_t first, std::uint64_t last) {
+  std::vector<LogRecord> all;
+  for (std::uint64_t number = first; number <= last; ++number) {
+    LogRecord& each = all.emplace_back(record(number, number % 3 == 0 ? LogKind::Event : LogKind::TelecommandReceived));
+    each.source = static_cast<std::uint16_t>(number);
+    each.note = Note{std::to_string(number)};
+    each.packet.resize(number % 2 == 0 ? each.packet.size() : 0);
+  }
+  return all;
+}
+
+TEST_P(Databases, GiveBackLargeBatchesOfWhichSomeWasThereBefore) {
+  auto database = open();
+  ASSERT_TRUE(database->append(many(1, 33)));
+  ASSERT_TRUE(database->append(many(20, 131)));
+  EXPECT_EQ(database->read({})->records, many(1, 131));
+}
+
 TEST_P(Databases, RefuseAPacketLongerThanASpacePacket) {
   auto database = open();
   LogRecord huge = record(1);
@@ -270,6 +289,15 @@ TEST_F(Sqlite, StoresAllOfABatchOrNothing) {
   other.note = "other words";
   EXPECT_EQ(database->append(std::vector{record(4), other}).error().code, ErrorCode::AlreadyExists);
   EXPECT_THAT(numbers(*database->read({})), ElementsAre(5));
+}
+
+TEST_F(Sqlite, StoresAllOfALargeBatchOrNothing) {
+  auto database = std::move(*open_database(DatabaseStrategy::Sqlite, path()));
+  ASSERT_TRUE(database->append(many(50, 50)));
+  auto batch = many(1, 64);
+  batch[49].note = "other words";
+  EXPECT_EQ(database->append(batch).error().code, ErrorCode::AlreadyExists);
+  EXPECT_THAT(numbers(*database->read({})), ElementsAre(50));
 }
 
 TEST_F(Sqlite, AsksForAnotherTryWhileSomebodyElseHoldsTheLock) {

@@ -5,7 +5,9 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <map>
 #include <utility>
 
 namespace hirosco::supervisor {
@@ -13,6 +15,16 @@ namespace hirosco::supervisor {
 namespace {
 
 constexpr const char* columns = "run, number, stored, monotonic, kind, source, peer, lost, note, packet";
+
+/// A statement costs as much as what it stores: most records go by one for so many of them.
+constexpr std::size_t records_at_once = 32;
+
+std::string insertion_of(std::size_t records) {
+  constexpr std::string_view values = "(?,?,?,?,?,?,?,?,?,?,?,?,?)";
+  std::string sql = std::string{"INSERT INTO log ("} + columns + ", apid, service, subtype) VALUES ";
+  for (std::size_t i = 0; i < records; ++i) sql.append(i == 0 ? "" : ",").append(values);
+  return sql + " ON CONFLICT (run, number) DO NOTHING";
+}
 
 /// `reason`: what the operating system said.
 Error error_from(const SQLite::Exception& refused, int reason, const char* what) {
@@ -34,6 +46,16 @@ std::int64_t nanoseconds(TimePoint time) { return time.time_since_epoch().count(
 
 std::string_view text_of(const SQLite::Column& column) {
   return {column.getText(), static_cast<std::size_t>(column.getBytes())};
+}
+
+/// Lives as long as the program: SQLite takes no copy.
+const std::string& name_of(LogKind kind) {
+  static const auto names = [] {
+    std::map<LogKind, std::string> all;
+    for (const auto& [each, text] : EnumTexts<LogKind>::table) all.emplace(each, text);
+    return all;
+  }();
+  return names.at(kind);
 }
 
 /// The record of a row; empty when somebody has put something into the file that is none.
@@ -87,10 +109,8 @@ Result<> SqliteDatabase::set_up(DatabaseAccess access) {
   if (empty_) return ok();
   if (access == DatabaseAccess::Write) {
     HIROSCO_TRY(make_or_check_schema());
-    insert_.emplace(connection_,
-                    "INSERT INTO log (run, number, stored, monotonic, kind, source, peer, lost, note, packet, "
-                    "apid, service, subtype) VALUES (?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13) "
-                    "ON CONFLICT (run, number) DO NOTHING");
+    insert_.emplace(connection_, insertion_of(1));
+    insert_many_.emplace(connection_, insertion_of(records_at_once));
   }
   const std::int64_t version = connection_.execAndGet("PRAGMA user_version");
   const std::int64_t owner = connection_.execAndGet("PRAGMA application_id");
@@ -129,7 +149,12 @@ Result<> SqliteDatabase::do_append(std::span<const LogRecord> batch) {
   if (!insert_) return fail(ErrorCode::NotPermitted, "this log is open for reading only");
   try {
     SQLite::Transaction all{connection_, SQLite::TransactionBehavior::IMMEDIATE};
-    for (const LogRecord& record : batch) HIROSCO_TRY(insert(record));
+    while (!batch.empty()) {
+      const bool many = batch.size() >= records_at_once;
+      const auto records = batch.first(many ? records_at_once : 1);
+      HIROSCO_TRY(insert(many ? *insert_many_ : *insert_, records));
+      batch = batch.subspan(records.size());
+    }
     all.commit();
     return ok();
   } catch (const SQLite::Exception& refused) {
@@ -137,27 +162,33 @@ Result<> SqliteDatabase::do_append(std::span<const LogRecord> batch) {
   }
 }
 
-Result<> SqliteDatabase::insert(const LogRecord& record) {
-  const PacketLabel label = label_of(record.packet);
-  const std::string kind{to_text(record.kind)};
-  const std::string note{record.note.view()};
-  // Without a pointer SQLite would take no octets for no value.
-  const void* packet = record.packet.empty() ? "" : static_cast<const void*>(record.packet.data());
-  static_cast<void>(insert_->tryReset());   // whatever the one before came to
-  insert_->bind(1, nanoseconds(record.run));
-  insert_->bind(2, static_cast<std::int64_t>(record.number));
-  insert_->bind(3, nanoseconds(record.stored));
-  insert_->bind(4, nanoseconds(record.monotonic));
-  insert_->bindNoCopy(5, kind);
-  insert_->bind(6, record.source);
-  insert_->bind(7, record.peer);
-  insert_->bind(8, record.lost);
-  insert_->bindNoCopy(9, note);
-  insert_->bindNoCopy(10, packet, static_cast<int>(record.packet.size()));
-  insert_->bind(11, label.apid);
-  insert_->bind(12, label.service);
-  insert_->bind(13, label.subtype);
-  return insert_->exec() == 0 ? check_same(record) : ok();
+Result<> SqliteDatabase::insert(SQLite::Statement& statement, std::span<const LogRecord> records) {
+  static_cast<void>(statement.tryReset());   // whatever the one before came to
+  std::array<std::string, records_at_once> notes;
+  int column = 0;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const LogRecord& record = records[i];
+    const PacketLabel label = label_of(record.packet);
+    notes[i] = record.note.view();
+    // Without a pointer SQLite would take no octets for no value.
+    const void* packet = record.packet.empty() ? "" : static_cast<const void*>(record.packet.data());
+    statement.bind(++column, nanoseconds(record.run));
+    statement.bind(++column, static_cast<std::int64_t>(record.number));
+    statement.bind(++column, nanoseconds(record.stored));
+    statement.bind(++column, nanoseconds(record.monotonic));
+    statement.bindNoCopy(++column, name_of(record.kind));
+    statement.bind(++column, record.source);
+    statement.bind(++column, record.peer);
+    statement.bind(++column, record.lost);
+    statement.bindNoCopy(++column, notes[i]);
+    statement.bindNoCopy(++column, packet, static_cast<int>(record.packet.size()));
+    statement.bind(++column, label.apid);
+    statement.bind(++column, label.service);
+    statement.bind(++column, label.subtype);
+  }
+  if (statement.exec() == static_cast<int>(records.size())) return ok();
+  for (const LogRecord& record : records) HIROSCO_TRY(check_same(record));
+  return ok();
 }
 
 Result<> SqliteDatabase::check_same(const LogRecord& record) {

@@ -24,7 +24,7 @@ class SqliteDatabase final : public Database {
   SqliteDatabase(const std::filesystem::path& path, int flags) : connection_{path, flags, busy_limit_ms} {}
   Result<> set_up(DatabaseAccess access);
   Result<> make_or_check_schema();
-  Result<> insert(const LogRecord& record);
+  Result<> insert(SQLite::Statement& statement, std::span<const LogRecord> records);
   Result<> check_same(const LogRecord& record);
   [[nodiscard]] Error error_of(const SQLite::Exception& refused, const char* what) const;
   Result<> do_append(std::span<const LogRecord> batch) override;
@@ -34,6 +34,7 @@ class SqliteDatabase final : public Database {
   bool empty_{false};  ///< for reading: begun, and without a table yet
   SQLite::Database connection_;   // closed after its statements
   std::optional<SQLite::Statement> insert_;
+  std::optional<SQLite::Statement> insert_many_;
   std::optional<SQLite::Statement> find_;
 };
 
