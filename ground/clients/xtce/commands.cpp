@@ -150,7 +150,7 @@ class Commands {
         const bool by_name = !request.words.empty();
         if (by_name || service->needs_of(request.subtype) == pus::Needs::SupervisorAsks) continue;
         Layout layout;
-        if (!add_parts(layout, request.data, false)) continue;
+        if (!add_parts(layout, *service, request.data, false)) continue;
         add(std::string{request.name},
             fmt::format("TC[{},{}], service of {}", service->type, request.subtype, service->name), service->type,
             request.subtype, std::move(layout), false);
@@ -208,17 +208,17 @@ class Commands {
   }
 
   /// False: its form is not one that a database can say.
-  [[nodiscard]] bool add_parts(Layout& layout, pus::Shape shape, bool in_list) {
+  [[nodiscard]] bool add_parts(Layout& layout, const pus::ServiceKind& service, pus::Shape shape, bool in_list) {
     constexpr unsigned length_bits = 8;
     constexpr std::uint32_t most_words = 255;
     using pus::Form;
     for (const pus::Part& part : shape) switch (part.form) {
-        case Form::Number: layout.add(part.name, types_.value(named(part))); break;
+        case Form::Number: layout.add(part.name, types_.value(named(service, part))); break;
         case Form::Time: layout.add(part.name, types_.time()); break;
         case Form::Text: layout.add(part.name, types_.value({.type = Type::Text, .text_octets = part.count})); break;
         case Form::Word: layout.add(part.name, types_.words_behind_length(length_bits, most_words)); break;
         case Form::List:
-          if (!add_list(layout, part, in_list)) return false;
+          if (!add_list(layout, service, part, in_list)) return false;
           break;
         case Form::Value:
         case Form::Arguments:
@@ -228,22 +228,26 @@ class Commands {
   }
 
   /// Of single numbers: how many, and they. Of others one, or none where lists stand in a list.
-  [[nodiscard]] bool add_list(Layout& layout, const pus::Part& part, bool in_list) {
+  [[nodiscard]] bool add_list(Layout& layout, const pus::ServiceKind& service, const pus::Part& part, bool in_list) {
     const auto each = part.repeated();
     const bool of_numbers = each.size() == 1 && each.front().form == pus::Form::Number && each.front().count == 1;
     if (of_numbers && !in_list) {
       const std::string count = layout.add(fmt::format("NUMBER_OF_{}", part.name), types_.bits(8));
-      layout.add(part.name, types_.list_by(count, types_.value(named(each.front()))));
+      layout.add(part.name, types_.list_by(count, types_.value(named(service, each.front()))));
       return true;
     }
     const bool nested = std::ranges::any_of(each, [](const pus::Part& one) { return one.form == pus::Form::List; });
     layout.entries.push_back(fixed(fmt::format("number_of_{}", part.name), nested || in_list ? "00" : "01"));
-    return nested || in_list || add_parts(layout, each, true);
+    return nested || in_list || add_parts(layout, service, each, true);
   }
 
-  /// Its values by the names that they have in this subsystem.
-  [[nodiscard]] ValueKind named(const pus::Part& part) const {
+  /// Its values by the names that they have in this subsystem. Whom a question to the supervisor is about stands in the question: what its
+  /// numbers are called nobody knows before.
+  [[nodiscard]] ValueKind named(const pus::ServiceKind& service, const pus::Part& part) const {
     ValueKind kind = kind_of(part);
+    if (part.name == "SUBSYSTEM" && part.type == Type::Uint16)
+      for (const auto* each : catalogue_.mission().everybody()) kind.texts.push_back({each->id, each->name});
+    if (service.needs == pus::Needs::SupervisorAnswers) return kind;
     if (part.name == "PARAMETER" && part.type == Type::Uint32) kind.texts = parameter_ids();
     if (part.name == "EVENT" && part.type == Type::Uint16)
       for (const auto& event : subsystem_.events) kind.texts.push_back({event.id, event.name});

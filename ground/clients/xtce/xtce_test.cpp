@@ -135,6 +135,25 @@ TEST(Xtce, WhatMayBeSetHasACommandOfItsOwnAndNothingElse) {
   EXPECT_TRUE(all(document, "MetaCommand", "WRITE_POSE_X").empty());
 }
 
+/// Names that an argument of a command may be given; none: it is a number.
+std::vector<std::string> choices(const xml::Element& document, const xml::Element& command, const char* argument) {
+  std::vector<std::string> names;
+  const std::string type = attribute(only(command, "Argument", argument), "argumentTypeRef");
+  for (const auto* each : all(document, "EnumeratedArgumentType"))
+    if (type.ends_with(attribute(*each, "name")))
+      for (const auto* value : all(*each, "Enumeration")) names.push_back(attribute(*value, "label"));
+  return names;
+}
+
+TEST(Xtce, WhomAQuestionIsAboutIsChosenByNameAndItsEventByNumber) {
+  auto mission = mission_with("ARM");
+  mission.supervisor.events.push_back({"OTHER", 77, descriptor::Severity::Low, {}, {}});
+  const auto document = document_of(mission);
+  const auto& question = only(document, "MetaCommand", "PREVIEW_PLAN");
+  EXPECT_EQ(choices(document, question, "SUBSYSTEM"), (std::vector<std::string>{"SUPERVISOR", "ARM"}));
+  EXPECT_TRUE(choices(document, question, "EVENT").empty());
+}
+
 TEST(Xtce, EveryCommandEndsByCompletionOrByItsWindow) {
   const auto document = document_of(mission_with("ARM"));
   for (const auto* command : all(document, "MetaCommand")) {

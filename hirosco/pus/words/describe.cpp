@@ -135,8 +135,8 @@ struct Known {
 /// The data of a standard service by their shape (service/service_kind.hpp).
 class ShapeWords {
  public:
-  ShapeWords(const descriptor::SubsystemDescriptor& subsystem, OctetReader& reader)
-      : subsystem_{subsystem}, reader_{reader} {}
+  ShapeWords(const descriptor::Mission& mission, const descriptor::SubsystemDescriptor& subsystem, OctetReader& reader)
+      : mission_{mission}, subsystem_{subsystem}, about_{&subsystem}, reader_{reader} {}
   /// " STRUCTURES=4711,4712"
   [[nodiscard]] std::string parts(Shape shape) {
     std::string text;
@@ -170,16 +170,24 @@ class ShapeWords {
       if (part.name == "PARAMETER") {
         last_ = parameter_of(subsystem_, static_cast<std::uint32_t>(number));
         text.append(last_ ? last_->name : number_text(number));
+      } else if (part.name == "SUBSYSTEM") {
+        about_ = mission_.find_member(static_cast<std::uint16_t>(number));
+        text.append(about_ != nullptr ? about_->name : number_text(number));
       } else if (part.name == "EVENT") {
-        const auto event =
-            std::ranges::find(subsystem_.events, static_cast<std::uint16_t>(number), &descriptor::Event::id);
-        text.append(event != subsystem_.events.end() ? event->name : number_text(number));
+        const auto* event = event_of(static_cast<std::uint16_t>(number));
+        text.append(event != nullptr ? event->name : number_text(number));
       } else {
         const bool named = number >= 0 && number < static_cast<double>(part.names.size());
         text.append(named ? part.names[static_cast<std::size_t>(number)] : number_text(number));
       }
     }
     return text;
+  }
+  /// Of whom is named before it; else of whom the packet is for, or from.
+  [[nodiscard]] const descriptor::Event* event_of(std::uint16_t id) const {
+    if (about_ == nullptr) return nullptr;
+    const auto found = std::ranges::find(about_->events, id, &descriptor::Event::id);
+    return found != about_->events.end() ? &*found : nullptr;
   }
   [[nodiscard]] std::string list_of(const Part& part) {
     const auto count = reader_.get<std::uint8_t>();
@@ -209,18 +217,21 @@ class ShapeWords {
     return text;
   }
 
+  const descriptor::Mission& mission_;
   const descriptor::SubsystemDescriptor& subsystem_;
+  const descriptor::SubsystemDescriptor* about_;
   OctetReader& reader_;
   std::optional<Known> last_;
 };
 
-[[nodiscard]] std::string shape_text(Shape shape, const descriptor::SubsystemDescriptor& subsystem,
-                                     OctetReader& reader) {
-  return ShapeWords{subsystem, reader}.parts(shape);
+[[nodiscard]] std::string shape_text(Shape shape, const descriptor::Mission& mission,
+                                     const descriptor::SubsystemDescriptor& subsystem, OctetReader& reader) {
+  return ShapeWords{mission, subsystem, reader}.parts(shape);
 }
 
 /// " PAGE NUMBER=3 VALUE=1.5,2" of a report that no rule above knows.
-[[nodiscard]] std::string report_text(const descriptor::SubsystemDescriptor& subsystem, std::uint8_t service,
+[[nodiscard]] std::string report_text(const descriptor::Mission& mission,
+                                      const descriptor::SubsystemDescriptor& subsystem, std::uint8_t service,
                                       std::uint8_t subtype, OctetReader& reader) {
   std::string text;
   if (const auto* own = subsystem.find_service(service)) {
@@ -231,7 +242,7 @@ class ShapeWords {
   const ServiceKind* kind = standard_service(service);
   const ReportKind* report = kind != nullptr ? kind->report(subtype) : nullptr;
   if (report == nullptr) return text;
-  return text.append(" ").append(report->name).append(shape_text(report->data, subsystem, reader));
+  return text.append(" ").append(report->name).append(shape_text(report->data, mission, subsystem, reader));
 }
 
 /// Stages of ST[01] by subtype.
@@ -294,7 +305,7 @@ std::string PacketDescriber::describe_telecommand(const TelecommandView& telecom
   const ServiceKind* kind = standard_service(telecommand.service());
   const RequestKind* request = kind != nullptr ? kind->request(telecommand.subtype()) : nullptr;
   if (request == nullptr) return text;
-  return text.append(" ").append(request->name).append(shape_text(request->data, *subsystem, reader));
+  return text.append(" ").append(request->name).append(shape_text(request->data, *mission_, *subsystem, reader));
 }
 
 std::string PacketDescriber::describe_telemetry(const TelemetryView& telemetry) const {
@@ -321,7 +332,7 @@ std::string PacketDescriber::describe_telemetry(const TelemetryView& telemetry) 
     const auto telecommand = TelecommandView::parse(telemetry.source_data());
     text.append(" copy of ").append(telecommand ? describe_telecommand(*telecommand) : "a damaged telecommand");
   } else if (const auto* subsystem = find(telemetry.apid())) {
-    text.append(report_text(*subsystem, telemetry.service(), telemetry.subtype(), reader));
+    text.append(report_text(*mission_, *subsystem, telemetry.service(), telemetry.subtype(), reader));
   }
   return text;
 }

@@ -115,6 +115,24 @@ TEST(PacketDescriber, NamesTheOutcomeOfASelfTestWithItsTimeAndReason) {
   EXPECT_NE(described_telemetry(17, 129, data.first(4)).find("TIME=?"), std::string::npos);
 }
 
+[[nodiscard]] std::string described_question(std::uint16_t about, std::uint16_t event) {
+  auto mission = small_mission();
+  mission.supervisor.events.emplace_back().name = "ITS_OWN";
+  mission.supervisor.events.back().id = 1020;
+  std::array<std::byte, 4> data;
+  OctetWriter writer{data};
+  writer.put(about).put(event);
+  std::array<std::byte, 64> buffer;
+  const auto packet = write_telecommand(buffer, {.apid = 1, .service = 129, .subtype = 6}, writer.written());
+  return PacketDescriber{mission}.describe(*packet);
+}
+
+TEST(PacketDescriber, NamesTheEventThatAQuestionIsAboutAsWhomItIsAboutDoes) {
+  EXPECT_EQ(described_question(10, 1020), "TC[129,6] SUPERVISOR #0 PREVIEW_PLAN SUBSYSTEM=ARM EVENT=LIMIT");
+  EXPECT_EQ(described_question(1, 1020), "TC[129,6] SUPERVISOR #0 PREVIEW_PLAN SUBSYSTEM=SUPERVISOR EVENT=ITS_OWN");
+  EXPECT_EQ(described_question(77, 1020), "TC[129,6] SUPERVISOR #0 PREVIEW_PLAN SUBSYSTEM=77 EVENT=1020");
+}
+
 TEST(PacketDescriber, NamesAFunctionAndItsArguments) {
   const auto mission = small_mission();
   const auto common = common_functions();
