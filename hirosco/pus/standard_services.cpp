@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/pus/standard_services.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "hirosco/pus/st01_verification/verification.hpp"
@@ -15,29 +16,41 @@
 #include "hirosco/pus/st20_parameter/parameter_service.hpp"
 
 namespace hirosco::pus {
+namespace {
+
+/// A service under its type, which stands in its kind as well but is not known there while this is compiled;
+/// `standard_services_test.cpp` holds the two against each other.
+struct OfType {
+  std::uint8_t type;
+  const ServiceKind* kind;
+};
 
 /// A further one: its recipe stands in the header. One of an author's own needs no row: `subsystem/author/custom_service.hpp`.
+constexpr std::array rows{OfType{Verification::service_type, &Verification::service_kind},
+                          OfType{HousekeepingService::service_type, &HousekeepingService::service_kind},
+                          OfType{EventService::service_type, &EventService::service_kind},
+                          OfType{FunctionService::service_type, &FunctionService::service_kind},
+                          OfType{TestService::service_type, &TestService::service_kind},
+                          OfType{ParameterService::service_type, &ParameterService::service_kind},
+                          OfType{st128::service_type, &st128::service_kind},
+                          OfType{st129::service_type, &st129::service_kind},
+                          OfType{DescriptorService::service_type, &DescriptorService::service_kind}};
+
+}  // namespace
+
 std::span<const ServiceKind* const> standard_services() noexcept {
-  static constexpr std::array services{&Verification::service_kind,
-                                       &HousekeepingService::service_kind,
-                                       &EventService::service_kind,
-                                       &FunctionService::service_kind,
-                                       &TestService::service_kind,
-                                       &ParameterService::service_kind,
-                                       &st128::service_kind,
-                                       &st129::service_kind,
-                                       &DescriptorService::service_kind};
-  return services;
+  static constexpr auto kinds = [] {
+    std::array<const ServiceKind*, rows.size()> all{};
+    std::ranges::transform(rows, all.begin(), &OfType::kind);
+    return all;
+  }();
+  return kinds;
 }
 
-/// Asked of every packet on each hop.
-const ServiceKind* standard_service(std::uint8_t type) noexcept {
-  static const auto by_type = [] {
-    std::array<const ServiceKind*, 256> kinds{};
-    for (const ServiceKind* kind : standard_services()) kinds[kind->type] = kind;
-    return kinds;
-  }();
-  return by_type[type];
-}
+constexpr std::array<const ServiceKind*, 256> standard_services_by_type = [] {
+  std::array<const ServiceKind*, 256> kinds{};
+  for (const OfType& row : rows) kinds[row.type] = row.kind;
+  return kinds;
+}();
 
 }  // namespace hirosco::pus

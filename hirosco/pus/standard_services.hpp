@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 
 #include "hirosco/pus/service/service_kind.hpp"
@@ -19,7 +21,12 @@ namespace hirosco::pus {
 /// `standard_services_test.cpp` has an object of it, by which its rows are tried against what it takes.
 [[nodiscard]] std::span<const ServiceKind* const> standard_services() noexcept;
 
-/// Null: the framework has none of this type.
-[[nodiscard]] const ServiceKind* standard_service(std::uint8_t type) noexcept;
+/// Those by their types; null: the framework has none of this type.
+extern const std::array<const ServiceKind*, 256> standard_services_by_type;
+
+/// Asked of every packet on each hop. Null: the framework has none of this type.
+[[nodiscard]] inline const ServiceKind* standard_service(std::uint8_t type) noexcept {
+  return standard_services_by_type[type];
+}
 
 }  // namespace hirosco::pus

@@ -22,6 +22,7 @@ namespace hirosco::pus {
 
 class SumService final : public Service {
  public:
+  static constexpr std::uint8_t service_type = 30;
   static const ServiceKind service_kind;
   explicit SumService(ServiceHome& home) : home_{home} {}
   [[nodiscard]] const ServiceKind& kind() const noexcept override { return service_kind; }
@@ -48,7 +49,7 @@ constexpr ReportKind reports[]{{2, "SUM", sum}};
 }  // namespace
 
 const ServiceKind SumService::service_kind{
-    .type = 30, .name = "sum", .requests = requests, .reports = reports,
+    .type = service_type, .name = "sum", .requests = requests, .reports = reports,
     .make = [](ServiceHome& home) -> std::unique_ptr<Service> { return std::make_unique<SumService>(home); }};
 
 void SumService::handle(const TelecommandView& telecommand, const Request& request) {
@@ -123,7 +124,8 @@ ST[30] adds two numbers.
 EDITS = [
     ("hirosco/pus/standard_services.cpp", '#include "hirosco/pus/st20_parameter/parameter_service.hpp"\n',
      '#include "hirosco/pus/st20_parameter/parameter_service.hpp"\n#include "hirosco/pus/st30_sum/sum_service.hpp"\n'),
-    ("hirosco/pus/standard_services.cpp", "&st128::service_kind", "&SumService::service_kind, &st128::service_kind"),
+    ("hirosco/pus/standard_services.cpp", "                          OfType{st128::service_type,",
+     "                          OfType{SumService::service_type, &SumService::service_kind},\n                          OfType{st128::service_type,"),
 ]
 SOURCES = ["hirosco/pus/standard_services.cpp", "hirosco/pus/st30_sum/sum_service.cpp", "hirosco/pus/st30_sum/sum_service_test.cpp"]
 TRY = """\

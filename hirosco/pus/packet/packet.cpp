@@ -50,6 +50,15 @@ void put_primary_header(OctetWriter& writer, bool telecommand, std::uint16_t api
   return ok();
 }
 
+// What parse() refuses is made apart from it: nothing of what passes, which is nearly all, waits for a notice's octets.
+using Parsed = std::expected<TelecommandView, FailureNotice>;
+[[nodiscard, gnu::cold, gnu::noinline]] Parsed refuse(FailureCode code) noexcept {
+  return std::unexpected{FailureNotice{code}};
+}
+[[nodiscard, gnu::cold, gnu::noinline]] Parsed refuse_length(std::uint16_t announced) noexcept {
+  return std::unexpected{FailureNotice{FailureCode::IllegalLength}.with(announced)};
+}
+
 }  // namespace
 
 std::size_t announced_octets(Octets header) noexcept {
@@ -78,11 +87,10 @@ bool to_be_discarded(Octets packet) noexcept {
 
 std::expected<TelecommandView, FailureNotice> TelecommandView::parse(Octets packet) noexcept {
   using enum FailureCode;
-  const auto refuse = [](FailureCode code) { return std::unexpected{FailureNotice{code}}; };
   if (to_be_discarded(packet)) return refuse(IllegalPrimaryHeader);
   if (packet.size() < telecommand_overhead_octets || packet.size() > max_telecommand_octets ||
       announced_octets(packet) != packet.size())
-    return std::unexpected{FailureNotice{IllegalLength}.with(u16_at(packet, 4))};
+    return refuse_length(u16_at(packet, 4));
   if ((u16_at(packet, 0) & secondary_header_flag) == 0) return refuse(IllegalPrimaryHeader);
   if (sequence_flags_of(packet) != unsegmented) return refuse(IllegalSequenceFlags);
   if (crc16(packet) != 0) return refuse(ErrorControl);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "supervisor/supervision/data_handling/permission.hpp"
 #include "supervisor/supervision/testing/small_mission.hpp"
 
@@ -53,7 +55,7 @@ struct ConfigurationPermission : ::testing::Test {
     const auto packet = testing::telecommand(arm, service, subtype, data);
     const descriptor::SubsystemDescriptor &one = mission.subsystems[0].subsystem,
                                           &other = mission.subsystems[2].subsystem;
-    const auto in_force = [&] {
+    const std::function<std::vector<descriptor::InForce>()> in_force = [&] {
       return std::vector<descriptor::InForce>{{&one, one.find_configuration(configuration)},
                                               {&other, other.find_configuration("WATCHING")}};
     };
@@ -63,7 +65,7 @@ struct ConfigurationPermission : ::testing::Test {
                         .state = state,
                         .configuration = configuration,
                         .power = has_ledger ? &power : nullptr};
-    if (knows_others) situation.in_force = in_force;
+    if (knows_others) situation.in_force = &in_force;
     return decide(*pus::TelecommandView::parse(packet), Origin::ground(), situation);
   }
   auto configure(std::uint8_t wanted, State state = State::Operational, std::uint8_t in_force = 3) {

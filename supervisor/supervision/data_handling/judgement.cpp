@@ -51,7 +51,7 @@ Situation Judgement::situation_of(std::uint16_t apid) const {
                       .power = &power_.ledger(),
                       .down = false,
                       .changing = craft_.changing_to != nullptr,
-                      .in_force = [this] { return in_force(); }};
+                      .in_force = &tells_in_force_};
   if (apid == supervisor_apid) {
     situation.state = own_.state();
     situation.configuration = own_.configuration();

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <expected>
+#include <functional>
 #include <vector>
 
 #include "supervisor/supervision/craft.hpp"
@@ -21,6 +22,8 @@ class Judgement {
  public:
   Judgement(const Craft& craft, OwnSubsystem& own, const LinkGraph& links, const PowerHandling& power)
       : craft_{craft}, own_{own}, links_{links}, power_{power} {}
+  Judgement(const Judgement&) = delete;  // what tells what is in force speaks of this one
+  Judgement& operator=(const Judgement&) = delete;
 
   [[nodiscard]] std::expected<Permitted, pus::FailureNotice> judge(const pus::TelecommandView& telecommand,
                                                                    const Origin& origin) const;
@@ -36,6 +39,8 @@ class Judgement {
   OwnSubsystem& own_;
   const LinkGraph& links_;
   const PowerHandling& power_;
+  /// in_force() as the rules ask for it: made once and not for each telecommand, of which hardly any needs it.
+  const std::function<std::vector<descriptor::InForce>()> tells_in_force_{[this] { return in_force(); }};
 };
 
 }  // namespace hirosco::supervisor

@@ -29,21 +29,29 @@ using pus::FailureNotice;
 
 /// A telecommand with what is known of it before any rule is asked.
 struct Asked {
+  Asked(const pus::TelecommandView& of, const Origin& from, const Situation& now,
+        const descriptor::SubsystemDescriptor& addressee)
+      : telecommand{of}, origin{from}, situation{now}, subsystem{addressee} {
+    if (service == pus::FunctionService::service_type) call = called_function(telecommand);
+    if (call) request = subsystem.find_function(call->name);
+    else if (kind == nullptr) request = subsystem.find_request(service, subtype);
+  }
+
   const pus::TelecommandView& telecommand;
   const Origin& origin;
   const Situation& situation;
   const descriptor::SubsystemDescriptor& subsystem;
+  const std::uint8_t service{telecommand.service()};
+  /// Of a service of the framework, and its request; null: it is an author's, or there is none.
+  const pus::ServiceKind* const kind{pus::standard_service(service)};
+  const std::uint8_t subtype{
+      telecommand.subtype()};  // not beside the service: asked for as one word both would be waited for
+  const pus::RequestKind* const standard_request{kind != nullptr ? kind->request(subtype) : nullptr};
+  /// What its service needs as a whole; one of an author, or that there is not: nothing.
+  const pus::Needs needs{kind != nullptr ? kind->needs : pus::Needs::Nothing};
   std::optional<CalledFunction> call;
   /// The function called or the request of the subsystem's own service; null: none that the descriptor declares.
   const descriptor::Function* request{nullptr};
-  const std::uint8_t service{telecommand.service()};
-  /// Of a service of the framework, and its request; null: it is an author's, or there is none.
-  const pus::ServiceKind* kind{pus::standard_service(service)};
-  const std::uint8_t subtype{
-      telecommand.subtype()};  // not beside the service: asked for as one word both would be waited for
-  const pus::RequestKind* standard_request{kind != nullptr ? kind->request(subtype) : nullptr};
-  bool essential{false};  ///< is_essential()
-  bool bound{false};  ///< is_bound()
 
   [[nodiscard]] std::string_view name() const {
     if (call) return call->name;
@@ -59,9 +67,18 @@ struct Asked {
 
 using Notice = std::optional<FailureNotice>;
 
-[[nodiscard]] FailureNotice wrong_mode(const Asked& asked) {
-  return FailureNotice{FailureCode::WrongMode}.with(asked.situation.mode.id);
+// What a rule says that refuses. It is made apart from the rules: nothing of what they let pass waits for a notice's octets.
+template <WireNumber... Numbers>
+[[nodiscard, gnu::cold, gnu::noinline]] Notice refuse(FailureCode code, Numbers... numbers) {
+  FailureNotice notice{code};
+  static_cast<void>((notice.with(numbers), ...));
+  return notice;
 }
+[[nodiscard, gnu::cold, gnu::noinline]] Notice refuse_because(const pus::Reason& reason) {
+  return FailureNotice{FailureCode::NotPermittedNow}.because(reason);
+}
+
+[[nodiscard]] Notice wrong_mode(const Asked& asked) { return refuse(FailureCode::WrongMode, asked.situation.mode.id); }
 
 /// Does this row of the mode mean addressee and sender? Where it names no sender it means whoever may ask; but a subsystem asks the
 /// supervisor only where a row names it (docs/adr/0216).
@@ -95,28 +112,32 @@ using Notice = std::optional<FailureNotice>;
       return permit_means(permit, asked) && listed(permit.parameters, parameter->field.name);
     });
     if (!parameter->writable() || !parameter->writable_in(*situation.state))
-      return FailureNotice{FailureCode::NotPermittedNow}.with(static_cast<std::uint8_t>(i)).with(id);
-    if (!opened) return FailureNotice{FailureCode::WrongMode}.with(situation.mode.id).with(id);
+      return refuse(FailureCode::NotPermittedNow, static_cast<std::uint8_t>(i), id);
+    if (!opened) return refuse(FailureCode::WrongMode, situation.mode.id, id);
   }
   return std::nullopt;
 }
 
-[[nodiscard]] std::optional<std::uint8_t> absent_link(const descriptor::SubsystemDescriptor& subsystem,
-                                                      const Situation& situation) {
-  const auto* configuration = subsystem.find_configuration(situation.configuration);
-  return configuration == nullptr ? std::nullopt : situation.links.absent_for(subsystem.id, *configuration);
+/// The addressee's configuration in force; null: it has none.
+[[nodiscard]] inline const descriptor::Configuration* in_force(const Asked& asked) {
+  const std::uint8_t configuration = asked.situation.configuration;
+  return configuration == 0 ? nullptr : asked.subsystem.find_configuration(configuration);
+}
+
+[[nodiscard]] std::optional<std::uint8_t> absent_link(const Asked& asked) {
+  const auto* configuration = in_force(asked);
+  return configuration == nullptr ? std::nullopt : asked.situation.links.absent_for(asked.subsystem.id, *configuration);
 }
 
 /// Most that the addressee's configuration in force draws.
-[[nodiscard]] double demand_w(const descriptor::SubsystemDescriptor& subsystem, const Situation& situation) {
-  const auto* configuration = subsystem.find_configuration(situation.configuration);
+[[nodiscard]] double demand_w(const Asked& asked) {
+  const auto* configuration = in_force(asked);
   return configuration != nullptr ? configuration->power_w : 0;
 }
 
 /// `shortage` in mW.
-[[nodiscard]] FailureNotice notice_of(const Shortage& shortage) {
-  FailureNotice notice{FailureCode::PowerShort};
-  return notice.with(shortage.budget).with(shortage.reserved).with(shortage.requested);
+[[nodiscard]] Notice refuse_for(const Shortage& shortage) {
+  return refuse(FailureCode::PowerShort, shortage.budget, shortage.reserved, shortage.requested);
 }
 
 /// Towards safety: never delayed or refused by mode (decision 24).
@@ -129,9 +150,8 @@ using Notice = std::optional<FailureNotice>;
 [[nodiscard]] bool stops_the_craft(const Asked& asked) { return asked.to_supervisor() && asked.calls("SAFE_ALL"); }
 
 [[nodiscard]] bool is_essential(const Asked& asked) {
-  const auto of_service = asked.kind != nullptr ? asked.kind->needs : pus::Needs::Nothing;
   const auto needs =
-      asked.standard_request != nullptr ? asked.standard_request->needs.value_or(of_service) : of_service;
+      asked.standard_request != nullptr ? asked.standard_request->needs.value_or(asked.needs) : asked.needs;
   if (needs == pus::Needs::Essential || needs == pus::Needs::SupervisorAnswers) return true;
   // The supervisor commands Offline at the end of a recovery or of the flight: no disk may hold that up (decision 24).
   const bool goes_down = asked.origin.is_supervisor() && asked.asks_for(State::Offline);
@@ -152,22 +172,22 @@ using Notice = std::optional<FailureNotice>;
   return asked.situation.down && asked.origin.is_ground() && asked.asks_for(State::Offline);
 }
 
+/// Does anybody ask the addressee for something of this service?
+[[nodiscard]] bool has_service(const Asked& asked) {
+  return asked.kind != nullptr ? !asked.kind->requests.empty() : asked.subsystem.find_service(asked.service) != nullptr;
+}
+
 // --- the rules ---------------------------------------------------------------------------------------------------------
 
 /// Is there such a request? Service and subtype are the framework's, or the addressee's own.
 [[nodiscard]] Notice is_known(const Asked& asked) {
-  const std::uint8_t type = asked.service;
-  const std::uint8_t subtype = asked.subtype;
-  const pus::ServiceKind* const kind = asked.kind;
-  const bool here = kind != nullptr ? !kind->requests.empty() &&
-                                          (kind->needs != pus::Needs::SupervisorAnswers || asked.to_supervisor())
-                                    : asked.subsystem.find_service(type) != nullptr;
-  if (!here) return FailureNotice{FailureCode::UnknownService}.with(type);
-  const bool known = kind != nullptr ? asked.standard_request != nullptr : asked.request != nullptr;
-  if (!known) return FailureNotice{FailureCode::UnknownSubtype}.with(type).with(subtype);
+  const bool known = asked.standard_request != nullptr || (asked.kind == nullptr && asked.request != nullptr);
+  const bool elsewhere = asked.needs == pus::Needs::SupervisorAnswers && !asked.to_supervisor();
+  if (!known && !elsewhere && has_service(asked))
+    return refuse(FailureCode::UnknownSubtype, asked.service, asked.subtype);
   // It may be left out, by its descriptor or by the configuration in force (docs/adr/0096).
-  if (!asked.subsystem.offers(type, asked.subsystem.find_configuration(asked.situation.configuration)))
-    return FailureNotice{FailureCode::UnknownService}.with(type);
+  if (!known || elsewhere || !asked.subsystem.offers(asked.service, in_force(asked)))
+    return refuse(FailureCode::UnknownService, asked.service);
   return std::nullopt;
 }
 
@@ -243,26 +263,32 @@ using Notice = std::optional<FailureNotice>;
   return asked.to_supervisor() && asked.service == pus::st129::service_type && asked.subtype == pus::st129::retrieve;
 }
 
-/// May this sender ask for it?
-[[nodiscard]] Notice is_the_senders(const Asked& asked) {
-  // What was said before goes to ground: the downlink is no subsystem's to fill.
-  if (is_about_the_log(asked) && !asked.origin.is_ground()) return FailureNotice{FailureCode::NotDeclared};
-  if (is_about_subscriptions(asked))
-    return may_hear(asked) ? std::nullopt : Notice{FailureNotice{FailureCode::NotDeclared}};
+/// May this sender ask anybody for it? Inline: for whoever is not the supervisor it is the whole of is_the_senders().
+[[nodiscard]] inline Notice may_ask(const Asked& asked) {
   if (asked.origin.is_supervisor()) return std::nullopt;
-  if (asked.kind != nullptr && asked.kind->needs == pus::Needs::SupervisorAsks) return wrong_mode(asked);
-  if (asked.to_supervisor()) {
-    // Its states are what everything else stands on: SHUTDOWN and SET_MODE are the ways to change them (hazard SF1).
-    if (asked.calls("SET_STATE") || asked.calls("CONFIGURE")) return wrong_mode(asked);
-  }
+  if (asked.needs == pus::Needs::SupervisorAsks) return wrong_mode(asked);
   if (asked.origin.is_subsystem() && !stops_the_craft(asked) && !is_declared(asked))
-    return FailureNotice{FailureCode::NotDeclared};
-  // Whatever a descriptor declares and a mode permits: what lifts, raises or replaces what safety rests on is no subsystem's to ask for.
-  if (asked.of_subsystem_to_supervisor() && asked.call && !descriptor::is_for_subsystems(asked.call->name)) {
-    FailureNotice notice{FailureCode::NotPermittedNow};
-    return notice.because({ErrorCode::NotPermitted, 0, "of the supervisor the ground alone may ask for that"});
-  }
+    return refuse(FailureCode::NotDeclared);
   return std::nullopt;
+}
+
+/// May it ask the supervisor? What is said of anybody besides holds here, too.
+[[nodiscard]] Notice may_ask_supervisor(const Asked& asked) {
+  // What was said before goes to ground: the downlink is no subsystem's to fill.
+  if (is_about_the_log(asked) && !asked.origin.is_ground()) return refuse(FailureCode::NotDeclared);
+  if (is_about_subscriptions(asked)) return may_hear(asked) ? std::nullopt : refuse(FailureCode::NotDeclared);
+  // Its states are what everything else stands on: SHUTDOWN and SET_MODE are the ways to change them (hazard SF1).
+  if (!asked.origin.is_supervisor() && (asked.calls("SET_STATE") || asked.calls("CONFIGURE"))) return wrong_mode(asked);
+  if (auto refused = may_ask(asked)) return refused;
+  // Whatever a descriptor declares and a mode permits: what lifts, raises or replaces what safety rests on is no subsystem's to ask for.
+  if (asked.origin.is_subsystem() && asked.call && !descriptor::is_for_subsystems(asked.call->name))
+    return refuse_because({ErrorCode::NotPermitted, 0, "of the supervisor the ground alone may ask for that"});
+  return std::nullopt;
+}
+
+/// May this sender ask this addressee for it?
+[[nodiscard]] Notice is_the_senders(const Asked& asked) {
+  return asked.to_supervisor() ? may_ask_supervisor(asked) : may_ask(asked);
 }
 
 /// The configuration that would follow the one in force without a break (docs/adr/0096); null: it is asked for nothing of the kind.
@@ -288,9 +314,9 @@ using Notice = std::optional<FailureNotice>;
   const Situation& situation = asked.situation;
   if (situation.power != nullptr && !needs_no_grant(asked))
     if (const auto shortage = situation.power->shortage(asked.subsystem.id, wanted.power_w))
-      return notice_of(*shortage);
-  if (!situation.in_force) return std::nullopt;
-  auto all = situation.in_force();
+      return refuse_for(*shortage);
+  if (situation.in_force == nullptr) return std::nullopt;
+  auto all = (*situation.in_force)();
   for (descriptor::InForce& each : all)
     if (each.subsystem->id == asked.subsystem.id) each.configuration = &wanted;
   // Each of them may be brought down later, which takes its loops of services back to what it says itself.
@@ -298,8 +324,7 @@ using Notice = std::optional<FailureNotice>;
     if (cycle.longest) continue;
     const std::string why =
         "may not end in time then: " + std::string{cycle.subsystem} + " " + std::string{cycle.name()};
-    FailureNotice notice{FailureCode::NotPermittedNow};
-    return notice.because({ErrorCode::NotPermitted, cycle.period() / std::chrono::microseconds{1}, why});
+    return refuse_because({ErrorCode::NotPermitted, cycle.period() / std::chrono::microseconds{1}, why});
   }
   return std::nullopt;
 }
@@ -309,18 +334,17 @@ using Notice = std::optional<FailureNotice>;
   const Situation& situation = asked.situation;
   if (const auto* wanted = following(asked)) return is_carried(asked, *wanted);
   if (up_to_safe(asked) || up_to_operational(asked))
-    if (const auto link = absent_link(asked.subsystem, situation))
-      return FailureNotice{FailureCode::LinkAbsent}.with(*link);
+    if (const auto link = absent_link(asked)) return refuse(FailureCode::LinkAbsent, *link);
   if (!(up_to_safe(asked) || up_to_operational(asked)) || situation.power == nullptr) return std::nullopt;
   if (needs_no_grant(asked)) return std::nullopt;
-  if (const auto shortage = situation.power->shortage(asked.subsystem.id, demand_w(asked.subsystem, situation)))
-    return notice_of(*shortage);
+  if (const auto shortage = situation.power->shortage(asked.subsystem.id, demand_w(asked)))
+    return refuse_for(*shortage);
   return std::nullopt;
 }
 
 /// What is neither essential nor the supervisor's own is bound to mode and state.
-[[nodiscard]] bool is_bound(const Asked& asked) {
-  if (asked.essential || asked.origin.is_supervisor()) return false;
+[[nodiscard]] bool is_bound(const Asked& asked, bool essential) {
+  if (essential || asked.origin.is_supervisor()) return false;
   // Whether a function exists is a start-of-execution matter (decision 26): the addressee says so in TM[1,4].
   const bool unknown_function =
       asked.call && asked.request == nullptr && !asked.calls("SET_STATE") && !asked.calls("CONFIGURE");
@@ -347,7 +371,7 @@ constexpr unsigned all_states = 0x03FF;
     const auto event = std::ranges::find(asked.subsystem.events, id, &descriptor::Event::id);
     if (!reader.good() || event == asked.subsystem.events.end()) continue;
     if (event->safety || (asked.to_supervisor() && descriptor::is_about_subsystem(event->name)))
-      return FailureNotice{FailureCode::NotPermittedNow}.with(static_cast<std::uint8_t>(i)).with(id);
+      return refuse(FailureCode::NotPermittedNow, static_cast<std::uint8_t>(i), id);
   }
   return std::nullopt;
 }
@@ -365,9 +389,8 @@ constexpr unsigned all_states = 0x03FF;
   const Situation& situation = asked.situation;
   if (!situation.changing && !situation.rereading) return std::nullopt;
   if (!acts(asked)) return std::nullopt;
-  FailureNotice notice{FailureCode::NotPermittedNow};
-  if (situation.rereading) return notice.because({ErrorCode::NotPermitted, 0, "its descriptor is being read again"});
-  return notice.because({ErrorCode::NotPermitted, situation.mode.id, "a change of mode is under way, from mode"});
+  if (situation.rereading) return refuse_because({ErrorCode::NotPermitted, 0, "its descriptor is being read again"});
+  return refuse_because({ErrorCode::NotPermitted, situation.mode.id, "a change of mode is under way, from mode"});
 }
 
 /// Does the mode open it?
@@ -393,17 +416,17 @@ constexpr unsigned all_states = 0x03FF;
 [[nodiscard]] Notice is_in_state(const Asked& asked) {
   const auto state = asked.situation.state;
   if (!state || (states_of(asked) >> static_cast<int>(*state) & 1) != 0) return std::nullopt;
-  return FailureNotice{FailureCode::WrongState}.with(static_cast<std::uint8_t>(*state));
+  return refuse(FailureCode::WrongState, static_cast<std::uint8_t>(*state));
 }
 
 /// What the first rule says that refuses. A look at what is essential has passed with three of them.
-[[nodiscard]] Notice refusal_of(const Asked& asked) {
+[[nodiscard]] Notice refusal_of(const Asked& asked, bool bound) {
   if (auto refused = is_known(asked)) return refused;
   if (auto refused = is_the_senders(asked)) return refused;
   if (auto refused = spares_safety(asked)) return refused;
   if (asked.call)
     if (auto refused = is_provided_for(asked)) return refused;
-  if (!asked.bound) return std::nullopt;
+  if (!bound) return std::nullopt;
   if (auto refused = crosses_no_change(asked)) return refused;
   if (auto refused = is_in_mode(asked)) return refused;
   return is_in_state(asked);
@@ -420,21 +443,19 @@ std::expected<Permitted, FailureNotice> decide(const pus::TelecommandView& telec
                                                const Situation& situation) {
   const descriptor::SubsystemDescriptor* subsystem = situation.mission.find_member(telecommand.apid());
   if (subsystem == nullptr) return std::unexpected{FailureNotice{FailureCode::UnknownApid}};
-  Asked asked{telecommand, origin, situation, *subsystem, called_function(telecommand)};
-  if (asked.call) asked.request = subsystem->find_function(asked.call->name);
-  else if (asked.kind == nullptr) asked.request = subsystem->find_request(asked.service, asked.subtype);
-  asked.essential = is_essential(asked);
-  asked.bound = is_bound(asked);
+  const Asked asked{telecommand, origin, situation, *subsystem};
   if (!situation.state && !starts(asked))
     return std::unexpected{situation.down ? is_down() : FailureNotice{FailureCode::UnknownApid}};
-  if (const auto refused = refusal_of(asked)) return std::unexpected{*refused};
-  Permitted permitted{.essential = asked.essential, .acts = asked.bound && acts(asked)};
+  const bool essential = is_essential(asked);
+  const bool bound = is_bound(asked, essential);
+  if (const auto refused = refusal_of(asked, bound)) return std::unexpected{*refused};
+  if (!bound && !asked.call) return Permitted{.essential = essential};  // a look, mostly
+  Permitted permitted{.essential = essential, .acts = bound && acts(asked)};
   if (!asked.call) return permitted;
   const auto* const wanted = following(asked);
   const bool reserves = (up_to_safe(asked) || wanted != nullptr) && situation.power != nullptr;
   // Until it has gone over it draws what it draws.
-  const double reserves_w =
-      wanted == nullptr ? demand_w(*subsystem, situation) : std::max(wanted->power_w, demand_w(*subsystem, situation));
+  const double reserves_w = wanted == nullptr ? demand_w(asked) : std::max(wanted->power_w, demand_w(asked));
   permitted.releases_stop = up_to_operational(asked);
   permitted.starts = starts(asked);
   permitted.stops_the_craft = stops_the_craft(asked);

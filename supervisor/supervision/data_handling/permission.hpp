@@ -39,10 +39,10 @@ struct Situation {
   bool down{false};
   /// A change of mode is under way (docs/adr/0075).
   bool changing{false};
-  /// What is in force of everybody, for what their cycles take together; without it that is no matter here.
-  std::function<std::vector<descriptor::InForce>()> in_force{};
   /// Another text of the addressee's descriptor is on its way to it (docs/adr/0095).
   bool rereading{false};
+  /// Who tells what is in force of everybody, for what their cycles take together; null: that is no matter here.
+  const std::function<std::vector<descriptor::InForce>()>* in_force{nullptr};
 };
 
 struct Permitted {

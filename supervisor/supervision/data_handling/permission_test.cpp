@@ -64,6 +64,7 @@ const std::vector<Case> cases{
     {"the question what is permitted", 1, 129, 1, {}, "essential", Origin::ground(), narrow_mode},
     {"that question to another", arm, 129, 1, {}, "6 129"},
     {"its answer sent as a request", 1, 129, 2, {}, "7 129 2"},
+    {"its answer sent as a request to another", arm, 129, 2, {}, "6 129"},
     {"a report sent as a request", arm, 3, 25, {}, "7 3 25"},
     {"another unknown subtype", arm, 8, 2, {}, "7 8 2"},
     {"an unknown subtype of links", arm, 128, 6, {}, "7 128 6", Origin::supervisor()},

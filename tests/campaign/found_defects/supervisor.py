@@ -79,8 +79,8 @@ DEFECTS = [
            "auto& queue = kind == Kind::Housekeeping || PLANTED ? housekeeping_ : reports_;",
            "supervisor_test", "GroundRouteTest.DropsTheOldestHousekeepingAndNoReport"),
     # States of the supervisor were anybody's to command.
-    Defect("SF1 its states", PERMISSION, 'if (asked.calls("SET_STATE") || asked.calls("CONFIGURE")) return wrong_mode',
-           'if (!PLANTED && (asked.calls("SET_STATE") || asked.calls("CONFIGURE"))) return wrong_mode',
+    Defect("SF1 its states", PERMISSION, 'if (!asked.origin.is_supervisor() && (asked.calls("SET_STATE") || asked.calls("CONFIGURE"))) return wrong_mode',
+           'if (!PLANTED && !asked.origin.is_supervisor() && (asked.calls("SET_STATE") || asked.calls("CONFIGURE"))) return wrong_mode',
            "supervisor_test", "Permission.InEveryStateOfTheSupervisorAndFromEveryOriginSafeAllPassesAndNobodyElseChangesThatState"),
     # --- what a subsystem asks of the supervisor (docs/adr/0216) ---
     # A row that names nobody opened the supervisor's functions for whoever declares them.
