@@ -23,6 +23,25 @@ namespace {
   return version.empty() ? std::string{"the mission's own version"} : "version " + version;
 }
 
+/// Nothing: it may be exchanged now.
+[[nodiscard]] std::optional<Outcome> against(const Craft& craft, const UnderWay& under_way, const Member* subject) {
+  if (subject == nullptr) return refused(FailureCode::UnknownIdentifier);
+  if (craft.is_ground_link(*subject))
+    return refused(FailureCode::NotPermittedNow, "it carries the ground link: nobody could confirm it");
+  if (craft.shutting_down) return refused(FailureCode::NotPermittedNow, "the craft shuts down");
+  if (under_way.running()) return refused(FailureCode::Busy, "the craft is commissioned or changes its mode");
+  if (subject->descriptor_changes) return refused(FailureCode::Busy, "its descriptor is being read again");
+  if (subject->alive() && (subject->state() != State::Offline || subject->recovery.running()))
+    return refused(FailureCode::WrongStatus, "it is not Offline");
+  return std::nullopt;
+}
+
+/// By the thread that reads programs: who goes on for another supervisor has not read all of them at once.
+[[nodiscard]] bool is_being_read(ProcessLauncher& launcher, const Member& subject, const std::string& version) {
+  const auto ready = launcher.prepare(subject.described(), version);
+  return ready && !*ready;
+}
+
 }  // namespace
 
 void Replacement::provide() {
@@ -37,21 +56,9 @@ void Replacement::provide() {
   });
 }
 
-std::optional<Outcome> Replacement::against(const Member* subject) const {
-  if (subject == nullptr) return refused(FailureCode::UnknownIdentifier);
-  if (craft_.is_ground_link(*subject))
-    return refused(FailureCode::NotPermittedNow, "it carries the ground link: nobody could confirm it");
-  if (craft_.shutting_down) return refused(FailureCode::NotPermittedNow, "the craft shuts down");
-  if (parts_.under_way.running()) return refused(FailureCode::Busy, "the craft is commissioned or changes its mode");
-  if (subject->descriptor_changes) return refused(FailureCode::Busy, "its descriptor is being read again");
-  if (subject->alive() && (subject->state() != State::Offline || subject->recovery.running()))
-    return refused(FailureCode::WrongStatus, "it is not Offline");
-  return std::nullopt;
-}
-
 Outcome Replacement::replace(std::uint16_t apid, std::string_view version, Duration within, const Call& call) {
   const Member* subject = craft_.member(apid);
-  if (const auto why_not = against(subject)) return *why_not;
+  if (const auto why_not = against(craft_, parts_.under_way, subject)) return *why_not;
   if (!descriptor::is_version(version)) return refused(FailureCode::ValueNotAcceptable, "that is no name of a version");
   if (changes_.contains(apid)) return refused(FailureCode::WrongStatus, "a version of it is on its way or on trial");
   Change change;
@@ -80,7 +87,7 @@ Outcome Replacement::confirm(std::uint16_t apid) {
 
 Outcome Replacement::take_back(std::uint16_t apid, const Call& call) {
   Member* subject = craft_.member(apid);
-  if (const auto why_not = against(subject)) return *why_not;
+  if (const auto why_not = against(craft_, parts_.under_way, subject)) return *why_not;
   auto found = changes_.find(apid);
   if (found != changes_.end() && found->second.phase != Phase::OnTrial)
     return refused(FailureCode::Busy, "a version of it is on its way");
@@ -163,6 +170,7 @@ bool Replacement::step(Member& subject, Change& change, TimePoint now) {
         return false;
       }
       change.process = 0;
+      change.deadline = now + longest_reading;
       return exchange(subject, change, now);
     case Phase::Starting: return start(subject, change, now);
     case Phase::OnTrial:
@@ -203,7 +211,7 @@ bool Replacement::read(Member& subject, Change& change, TimePoint now) {
             "problems, each in a TM[129,10]:", static_cast<std::int64_t>(parts_.texts.problems()));
     return true;
   }
-  if (against(&subject)) {
+  if (against(craft_, parts_.under_way, &subject)) {
     parts_.texts.let_go(subject);
     give_up(change, FailureCode::Aborted, "it is not Offline any more");
     return true;
@@ -236,6 +244,10 @@ bool Replacement::exchange(Member& subject, Change& change, TimePoint now) {
 bool Replacement::start(Member& subject, Change& change, TimePoint now) {
   const std::uint16_t apid = subject.apid();
   const std::string& name = subject.descriptor().name;
+  if (!change.trial && now < change.deadline && is_being_read(craft_.launcher, subject, change.wanted)) {
+    change.phase = Phase::Starting;
+    return false;
+  }
   subject.exchanged = false;
   craft_.launcher.use(subject.described(), change.wanted);
   const bool started = parts_.processes.start(apid).has_value();

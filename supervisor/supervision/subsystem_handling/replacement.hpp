@@ -76,8 +76,6 @@ class Replacement final : public Watch, public Remembered {
       trial = false;
     }
   };
-  /// Nothing: it may be exchanged now.
-  [[nodiscard]] std::optional<Outcome> against(const Member* subject) const;
   /// True: it is over.
   [[nodiscard]] bool step(Member& subject, Change& change, TimePoint now);
   [[nodiscard]] bool read(Member& subject, Change& change, TimePoint now);

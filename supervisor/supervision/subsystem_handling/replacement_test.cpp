@@ -255,6 +255,29 @@ TEST_F(ReplacementTest, IsTakenBackByCommandOnTrialAndAfter) {
   EXPECT_THAT(used, ElementsAre("2", "", "2", ""));
 }
 
+TEST_F(ReplacementTest, WhatIsGoneBackToIsWaitedForWhileItIsBeingReadButNotForEver) {
+  on_trial();
+  ASSERT_EQ(parts.replacement.take_back(arm, {}).kind, Outcome::Kind::Running);
+  ready = false;
+  ends_and_begins();
+  EXPECT_FALSE(craft.member(arm)->alive());
+  EXPECT_EQ(parts.processes.start(arm).error().code, ErrorCode::Unavailable) << "nor does anybody else start it";
+  ready = true;
+  watch();
+  EXPECT_TRUE(craft.member(arm)->alive());
+  EXPECT_THAT(used, ElementsAre("2", ""));
+  set(arm, Offline);
+  ASSERT_EQ(replace().kind, Outcome::Kind::Running);
+  ends_and_begins();
+  ASSERT_EQ(parts.replacement.take_back(arm, {}).kind, Outcome::Kind::Running);
+  ready = false;
+  ends_and_begins();
+  EXPECT_FALSE(craft.member(arm)->alive());
+  wait(61s);
+  watch();
+  EXPECT_TRUE(craft.member(arm)->alive()) << "whoever launches says why where it cannot";
+}
+
 TEST_F(ReplacementTest, AProcessThatDoesNotEndIsEnded) {
   ASSERT_EQ(replace().kind, Outcome::Kind::Running);
   watch();
