@@ -4,6 +4,7 @@
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -69,6 +70,57 @@ class AskedWrongly(unittest.TestCase):
                 self.assertEqual(told(*words)[0], 3, words)
             self.assertEqual(sorted(path.name for path in (here / "log").iterdir()), ["hello.db", "rokviss.db"],
                              "who asks why makes no file")
+
+    def test_what_has_flown_as_an_instance_is_found_without_its_mission_where_only_one_has(self):
+        hello = (REPOSITORY / "missions/hello/mission.xml").read_text().replace("../../", "@hirosco/")
+        stored = REPOSITORY / "tests/command/log_of_0_1_0/database.sqlite"
+        with tempfile.TemporaryDirectory(prefix="hirosco-flown-") as folder:
+            here = pathlib.Path(folder)
+
+            def told(*words):
+                done = subprocess.run([HIROSCO, *words], cwd=here, capture_output=True, text=True, check=False,
+                                      env={**os.environ, "NO_COLOR": "1", "XDG_RUNTIME_DIR": folder})
+                return done.returncode, done.stdout + done.stderr
+
+            def flown(log):
+                (here / log).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(stored, here / log)
+
+            (here / "real.xml").write_text(hello.replace("log/hello.db", "log/real.db"))
+            (here / "broken.xml").write_text(hello.replace("<Modes", "<Moods"))
+            for words in (("log", "--last", "1"), ("why",), ("resources",)):
+                code, text = told(*words, "--instance", "night")
+                self.assertEqual(code, 2, text)
+                self.assertIn("no instance 'night' flies", text)
+                self.assertIn("nor has it flown from this folder: no log/night/NAME.db", text)
+            # Beside a mission.xml that has not flown, and without one.
+            for usual in (False, True):
+                if usual:
+                    (here / "mission.xml").write_text(hello)
+                    self.assertIn("no log/night/hello.db", told("log", "--instance", "night")[1].splitlines()[-1])
+                flown("log/night/real.db")
+                code, text = told("log", "--instance", "night", "--last", "1")
+                self.assertEqual((code, len(text.splitlines())), (0, 2), text)
+                self.assertIn("log/night/real.db: number, time", text)
+                self.assertIn("no archive log/night/real-ground.db", told("why", "--instance", "night")[1])
+                shutil.rmtree(here / "log")
+            flown("log/night/real.db")
+            flown("log/night/hello.db")
+            for command in ("log", "why", "resources"):
+                code, text = told(command, "--instance", "night")
+                self.assertEqual(code, 2, text)
+                self.assertIn("instance 'night' has flown from here with 2 missions; which one?", text)
+                lines = [line.split(": ")[0].split() for line in text.splitlines() if line.startswith("  hirosco")]
+                self.assertEqual([line[2] for line in lines], ["mission.xml", "real.xml"], text)
+                if command == "log":
+                    for line, log in zip(lines, ("hello", "real")):
+                        self.assertIn(f"log/night/{log}.db: number", told(*line[1:], "--last", "1")[1], "what is printed is typed")
+            # Two files of one log, as a copy for a trial is: its mission.xml is meant. And where it has no file here its name is known.
+            (here / "real.xml").write_text(hello)
+            self.assertIn("log/night/hello.db: number", told("log", "--instance", "night", "--last", "1")[1])
+            for file in ("real.xml", "mission.xml"):
+                (here / file).unlink()
+            self.assertIn("log/night/hello.db: number", told("log", "--instance", "night", "--last", "1")[1])
 
     def test_who_asks_for_json_gets_nothing_else(self):
         done = self.hirosco("mode", "--mission", "rokviss", "--json")

@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import socket
 import subprocess
 import tempfile
@@ -73,6 +74,24 @@ class Doctor(unittest.TestCase):
         self.assertEqual(told["verdict"], "missing")
         self.assertIn("old-hello.so: it is no shared object", told["found"])
         self.assertIn("cmake --build", told["mends"])
+
+    def test_a_development_library_of_another_build_is_seen(self):
+        version = subprocess.run([HIROSCO, "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
+        mission = pathlib.Path(__file__).resolve().parents[2] / "missions/hello/mission.xml"
+        for place in ("bin", "lib/hirosco"):
+            (self.folder / place).mkdir(parents=True)
+        shutil.copy2(HIROSCO, self.folder / "bin")
+        own = re.search(rb"[0-9.]+ interface [0-9a-f]{12}", HIROSCO.read_bytes())[0]
+        for place in ("bin", "lib/hirosco"):
+            library = self.folder / place / "libhirosco_utilities.a"
+            for mark, verdict in ((own, "ok"), (f"{version} interface 0123456789ab".encode(), "worth knowing")):
+                library.write_bytes(b"!<arch>\nan interface of \0" + mark + b"\0")
+                told = self.looked(str(mission), program=self.folder / "bin/hirosco")["versions"]
+                self.assertEqual(told["verdict"], verdict, told)
+                if mark != own:
+                    self.assertIn(f"{library} is of another build, {mark.decode()}", told["found"])
+                    self.assertIn("sudo apt install ./*hirosco*.deb", told["mends"])
+            library.unlink()
 
     def test_a_sandbox_that_is_off_is_seen(self):
         self.assertIn("HIROSCO_SANDBOX is off", self.looked("rokviss", HIROSCO_SANDBOX="off")["isolation"]["found"])

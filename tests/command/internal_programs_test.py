@@ -15,7 +15,7 @@ PROGRAMS = {
     "hirosco-supervisor": ("--mission", "FILE", "--quite", "--quiet", FLIGHT),
     "hirosco-threads": ("--screen", "DESCRIPTOR", "--runtme", "--runtime", FLIGHT),
     "hirosco-ground": ("--archive", "FILE", "--jsn", "--json",
-                       "--mission FILE, --archive FILE, --telemetry ADDRESS:PORT, --devices FOLDER, --port N, --page FOLDER, --child, --json, --quiet, --tour, --why, --md, --openapi "
+                       "--mission FILE, --archive FILE, --telemetry ADDRESS:PORT, --devices FOLDER, --port N, --page FOLDER, --child, --json, --quiet, --tour, --why, --flown NANOSECONDS, --md, --openapi "
                        "(started by 'hirosco ground', 'hirosco why' and 'hirosco run')"),
     "hirosco-screen": ("--log", "FILE", "--keper", "--keeper", "--keeper PID, --log FILE (started by 'hirosco run MISSION' on a terminal)"),
     "hirosco-hello": ("--set", "PARAMETER=VALUES", "--adress", "--address",

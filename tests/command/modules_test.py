@@ -32,6 +32,11 @@ class Modules(unittest.TestCase):
                               env={**os.environ, "NO_COLOR": "1", "PATH": f"{path}:{os.environ['PATH']}"})
         return done.returncode, done.stdout + done.stderr
 
+    def checked(self, *words):
+        done = subprocess.run([self.folder / "bin/hirosco", "check", *words, REPOSITORY / "missions/hello"], capture_output=True, text=True,
+                              check=False, env={**os.environ, "NO_COLOR": "1"})
+        return done.returncode, done.stdout + done.stderr
+
     def refused(self, *texts, **settings):
         code, told = self.simulate(**settings)
         self.assertEqual(code, 3, told)
@@ -66,7 +71,8 @@ class Modules(unittest.TestCase):
         self.assertEqual(octets.count(version + b" interface "), 1)
         self.module.write_bytes(octets.replace(version + b" interface ", other + b" interface "))
         self.refused(str(self.module), f"it was built against hirosco {other.decode()} interface ",
-                     f"this is {version.decode()} interface ", "build it again")
+                     f"this is {version.decode()} interface ", "build it again; where that does not help",
+                     "install hirosco and libhirosco-dev of one build")
 
     def test_one_built_against_other_headers_of_the_same_version_is_refused(self):
         octets = self.module.read_bytes()
@@ -74,6 +80,16 @@ class Modules(unittest.TestCase):
         at = octets.index(version + b" interface ") + len(version + b" interface ")
         self.module.write_bytes(octets[:at] + b"0123456789ab" + octets[at + 12:])
         self.refused("interface 0123456789ab, this is ")
+        # Before it is to fly it is told, too; a program that has no module flies without one.
+        for name in ("hirosco-hello", "hirosco-communication", "hirosco-supervisor"):
+            shutil.copy2(BINARIES / name, self.folder / "bin")
+        for fly, expected in ((("--fly",), 1), ((), 0)):
+            code, told = self.checked(*fly)
+            self.assertEqual(code, expected, told)
+            self.assertEqual("error: E0404: no module hirosco-hello for subsystem HELLO" in told and "0123456789ab, this is " in told, bool(fly), told)
+        self.module.unlink()
+        code, told = self.checked("--fly")
+        self.assertEqual(code, 0, told)
 
     def test_what_is_no_module_of_a_subsystem_says_what_it_is(self):
         shutil.copy2(BINARIES / "hirosco-sim-robot.so", self.module)

@@ -7,6 +7,7 @@ import contextlib
 import os
 import pathlib
 import select
+import shutil
 import socket
 import subprocess
 import sys
@@ -15,10 +16,17 @@ import time
 import tty
 import unittest
 
-import own_device
-import reference
-from reference import ACTIVE, FOLDER, OFF, OLD_EPOCH, STOP, TRIPPED, command, status, streamed
+try:
+    import own_device
+    import reference
+    from reference import ACTIVE, FOLDER, OFF, OLD_EPOCH, STOP, TRIPPED, command, status, streamed
+except ModuleNotFoundError as lacking:
+    if lacking.name not in ("own_device", "reference", "local_wires"):
+        raise
+    sys.exit(f"duties_test: {lacking.name}.py is not beside it in {pathlib.Path(__file__).resolve().parent}: "
+             "copy the whole folder, /usr/share/doc/hirosco/examples/device (in the repository: tests/devices)")
 
+HERE = pathlib.Path(__file__).resolve().parent
 PATIENCE = 10.0
 
 
@@ -354,13 +362,45 @@ class Kept(WithFolder):
                 again.close()
         os.rmdir(f"/dev/shm/hirosco/duties-shared_memory-{os.getpid()}")
 
-    def test_an_arm_in_python_with_a_second_inhibit(self):
-        frames, enable = (f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}" for _ in range(2))
-        with subprocess.Popen([reference.PYTHON, "-B", FOLDER / "arm.py", frames, enable]) as arm:
-            self.addCleanup(arm.kill)
-            second = own_device.Enable("udp", enable)
-            self.assertEqual(self.tried_own("udp", frames, takes=48, gives=144, enable=second, just_begun=True), [])
-            arm.kill()
+    def test_an_arm_in_python_with_a_second_inhibit_by_either_way(self):
+        for kind in ("udp", "unix"):
+            with self.subTest(kind=kind):
+                frames, enable = (f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}" for _ in range(2))
+                if kind == "unix":
+                    enable = str(self.folder / "arm-enable")
+                    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as killed:
+                        killed.bind(enable)  # what a driver leaves that did not end by itself
+                with subprocess.Popen([reference.PYTHON, "-B", FOLDER / "arm.py", frames, enable]) as arm:
+                    self.addCleanup(arm.kill)
+                    end = time.monotonic() + PATIENCE
+                    while kind == "unix" and not self.is_somebodys(enable):
+                        self.assertLess(time.monotonic(), end, "it has no second inhibit")
+                    second = own_device.Enable(kind, enable)
+                    self.assertEqual(self.tried_own("udp", frames, takes=48, gives=144, enable=second, just_begun=True), [])
+                    second.end()
+                    arm.kill()
+
+    @staticmethod
+    def is_somebodys(file):
+        """Of the file of a socket that nobody has connecting is refused."""
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as probe, contextlib.suppress(ConnectionRefusedError, FileNotFoundError):
+            probe.connect(file)
+            return True
+        return False
+
+    def test_without_its_neighbours_it_says_in_one_line_who_is_lacking_and_whence_to_copy(self):
+        neighbours = ("local_wires.py", "reference.py", "own_device.py")
+        for name in ("duties_test.py", *neighbours):
+            shutil.copy(HERE / name, self.folder)
+        tried = [reference.PYTHON, "-B", self.folder / "duties_test.py", "--help"]
+        self.assertEqual(subprocess.run(tried, capture_output=True, check=False).returncode, 0, "nothing else is wanted")
+        for name in neighbours:
+            (self.folder / name).unlink()
+            done = subprocess.run(tried, capture_output=True, text=True, check=False)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
+            self.assertIn(f"duties_test: {name} is not beside it in {self.folder.resolve()}: ", done.stderr)
+            self.assertIn("copy the whole folder, /usr/share/doc/hirosco/examples/device", done.stderr)
+            shutil.copy(HERE / name, self.folder)
 
     def test_they_are_as_small_as_they_are_said_to_be(self):
         self.assertLessEqual(len((FOLDER / "device.c").read_text().splitlines()), 200)

@@ -200,6 +200,15 @@ Finding build_tools(const System& system) {
 
 /// A program without its module flies; one with an old module is told before somebody simulates or flies what he did not build.
 Finding versions(const System& system) {
+  if (!system.development_version.empty() && system.development_version != system.version) {
+    const std::string other =
+        fmt::format("hirosco {}, and {} is of another build, {}: what is built with it is refused", system.version,
+                    system.development.string(), system.development_version);
+    const char* const mends =
+        "sudo apt install ./*hirosco*.deb  # where all packages of one build lie; from sources: build all, install "
+        "again";
+    return system.other_versions.empty() ? worth_knowing(other, mends) : missing(other, mends);
+  }
   if (system.other_versions.empty())
     return ok(fmt::format("hirosco {}, and all that {} loads", system.version, system.mission));
   return missing(

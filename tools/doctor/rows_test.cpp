@@ -39,6 +39,8 @@ System good() {
   system.station = system.page_built = true;
   system.builder = "make";
   system.version = "0.1.0 interface 12";
+  system.development = "/d/libparts.a";
+  system.development_version = system.version;
   system.libraries = {"libsqlite3.so.0.8.6"};
   system.python = "python3.11";
   system.world = {.wanted = true,
@@ -145,6 +147,14 @@ const std::vector<Case>& cases() {
          system.other_versions = {"lamp.so: it was built against hirosco 0.0.9 interface 11", "switch.so: likewise"};
        },
        Verdict::Missing, "lamp.so: it was built against hirosco 0.0.9 interface 11 and 1 more", "cmake --build build"},
+      {"versions", [](System& system) { system.development_version = "0.1.0 interface 13"; }, Verdict::WorthKnowing,
+       "/d/libparts.a is of another build, 0.1.0 interface 13", "apt install ./*hirosco*.deb"},
+      {"versions",
+       [](System& system) {
+         system.development_version = "0.1.0 interface 13";
+         system.other_versions = {"lamp.so: it was built against hirosco 0.1.0 interface 13"};
+       },
+       Verdict::Missing, "/d/libparts.a is of another build, 0.1.0 interface 13", "apt install ./*hirosco*.deb"},
       {"libraries", [](System& system) { system.no_libraries = {"lamp.so: libz.so.1: cannot open"}; }, Verdict::Missing,
        "lamp.so: libz.so.1: cannot open", "sudo apt install --fix-broken"},
       {"world", [](System& system) { system.world.program = false; }, Verdict::Missing, "no program",

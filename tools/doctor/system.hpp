@@ -80,6 +80,8 @@ struct System {
   std::string version;                      ///< of this command, with its interface
   std::vector<std::string>
       other_versions;  ///< modules of the mission that this one does not take, in words: mostly of another
+  std::filesystem::path development;        ///< the library that modules are built with, where it is installed
+  std::string development_version;          ///< what it has for `version`
   std::vector<std::string> libraries;  ///< others' that this command runs with, by the names of their files
   std::vector<std::string> no_libraries;  ///< what modules of the mission want of others and have not, in words
   std::string python;                     ///< what python3 is called in full: "python3.11"; empty: there is none

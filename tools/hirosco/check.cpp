@@ -201,7 +201,9 @@ void check_file(const std::filesystem::path& file, const CheckOptions& options, 
       problem.grade = descriptor::Grade::Warning;
   findings.add(std::move(missing));
   findings.add(unisolated(*reading.value));
-  if (options.fly) findings.add(unintroduced(*reading.value));
+  if (!options.fly) return;
+  findings.add(unloadable(*reading.value));
+  findings.add(unintroduced(*reading.value));
 }
 
 }  // namespace

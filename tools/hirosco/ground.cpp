@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "hirosco/utilities/os/installation.hpp"
+#include "supervisor/platform/storage/log_pieces.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/instance.hpp"
 
@@ -73,6 +74,10 @@ int why(const GroundOptions& options) {
   const auto found = find_log("why", options.mission, options.instance);
   if (!found) return found.error();
   if (!found->path.empty()) arguments.insert(arguments.end(), {"--archive", archive_beside(found->path).string()});
+  // Whether the archive has something of the newest flight is seen by when its log began.
+  if (const auto newest = supervisor::read_log(found->path, {.last = 1}); newest && !newest->records.empty())
+    arguments.insert(arguments.end(),
+                     {"--flown", std::to_string(newest->records.back().run.time_since_epoch().count())});
   return become_station(std::move(arguments), found->mission.file, options);
 }
 

@@ -13,6 +13,7 @@
 #include <charconv>
 
 #include "hirosco/data_transfer/device/flow_means.hpp"
+#include "hirosco/descriptor/read/read.hpp"
 #include "supervisor/platform/storage/log_pieces.hpp"
 
 namespace hirosco::tools {
@@ -79,6 +80,51 @@ struct Address {
   for (const auto& flight : flights)
     text += fmt::format("\n  --instance {}: mission {}, telemetry {}, log {}", flight.instance, flight.mission,
                         flight.telemetry.empty() ? "none" : flight.telemetry, flight.log.string());
+  return text;
+}
+
+/// Missions of this folder that have a log of this instance: those whose files stand in it, and those whose names its logs have. Of several that
+/// write into one log its mission.xml is meant.
+[[nodiscard]] std::vector<FoundLog> flown_from_here(const std::string& instance) {
+  std::vector<FoundLog> found;
+  const auto note = [&](const fs::path& file, const fs::path& known_log = {}) {
+    auto reading = descriptor::read_mission(file, descriptor::file_system());
+    if (!reading.value || !reading.problems.empty()) return;
+    auto log = instance_log(*reading.value, instance);
+    if (log != known_log && !supervisor::pieces_of(log).empty())
+      found.push_back({std::move(*reading.value), std::move(log)});
+  };
+  const auto names_in = [](const fs::path& folder) {
+    std::vector<std::string> names;
+    std::error_code failed;
+    for (fs::directory_iterator files{folder, failed}, none; !failed && files != none; files.increment(failed))
+      names.push_back(files->path().filename().string());
+    std::ranges::sort(names);
+    return names;
+  };
+  note("mission.xml");
+  const fs::path its_log = found.empty() ? fs::path{} : found.front().path;
+  for (const std::string& name : names_in("."))
+    if (name.ends_with(".xml") && name != "mission.xml") note(name, its_log);
+  // Pieces of one log are NAME.db, NAME.2.db and so on.
+  std::vector<std::string> flown;
+  for (const std::string& name : names_in(fs::path{"log"} / instance)) flown.push_back(name.substr(0, name.find('.')));
+  flown.erase(std::ranges::unique(flown).begin(), flown.end());
+  for (const std::string& name : flown) {
+    const bool known = std::ranges::any_of(found, [&](const FoundLog& each) { return each.path.stem() == name; });
+    if (const fs::path file = known ? fs::path{} : find_mission(name); !file.empty()) note(file);
+  }
+  return found;
+}
+
+/// What to say of an instance that does not fly: which missions have flown as it, or that none has.
+[[nodiscard]] std::string which_has_flown(const char* command, const std::string& instance,
+                                          const std::vector<FoundLog>& flown) {
+  std::string text =
+      fmt::format("instance '{}' has flown from here with {} missions; which one?", instance, flown.size());
+  for (const FoundLog& each : flown)
+    text += fmt::format("\n  hirosco {} {} --instance {}: mission {}, log {}", command, each.mission.file.string(),
+                        instance, each.mission.name, each.path.string());
   return text;
 }
 
@@ -190,10 +236,21 @@ std::expected<FoundLog, int> find_log(const char* command, const std::string& mi
   const auto flights = FlightRegistry{}.flights();
   const bool flies = std::ranges::find(flights, instance, &FlightEntry::instance) != flights.end();
   if (good_instance(instance) && !flies) {
-    auto flown = only_mission(command, mission);
-    if (!flown) return std::unexpected{flown.error()};
-    auto path = instance_log(flown->mission, instance);
-    if (!supervisor::pieces_of(path).empty()) return FoundLog{std::move(flown->mission), std::move(path)};
+    auto flown = mission.empty() ? flown_from_here(instance) : std::vector<FoundLog>{};
+    if (flown.size() == 1) return std::move(flown.front());
+    if (flown.size() > 1) {
+      fmt::print(stderr, "hirosco {}: {}\n", command, which_has_flown(command, instance, flown));
+      return std::unexpected{exit_usage};
+    }
+    // The one that is named, or meant here: what is wrong with its file is told.
+    const std::string name = mission.empty() ? meant_mission() : mission;
+    auto meant = name.empty() ? std::nullopt : load_mission(name);
+    if (!name.empty() && !meant) return std::unexpected{exit_finding};
+    const fs::path log = meant ? instance_log(*meant, instance) : fs::path{"log"} / instance / "NAME.db";
+    if (meant && !supervisor::pieces_of(log).empty()) return FoundLog{std::move(*meant), log};
+    fmt::print(stderr, "hirosco {0}: {1}\nhirosco {0}: nor has it flown from this folder: no {2}\n", command,
+               choose_flight(flights, {{}, instance}).error(), log.string());
+    return std::unexpected{exit_usage};
   }
   auto found = find_flight(command, mission, instance);
   if (!found) return std::unexpected{found.error()};

@@ -56,6 +56,12 @@ constexpr const char* page_address = "127.0.0.1:8080";
   return line;
 }
 
+[[nodiscard]] std::string octets_of(const fs::path& file) {
+  std::ostringstream octets;
+  octets << std::ifstream{file, std::ios::binary}.rdbuf();
+  return std::move(octets).str();
+}
+
 [[nodiscard]] std::uint64_t limit_of(__rlimit_resource_t which) {
   rlimit limit{};
   return ::getrlimit(which, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ? unlimited : limit.rlim_cur;
@@ -213,8 +219,36 @@ void look_at_module(System& system, const std::string& program, ModuleKind kind)
   if (std::ranges::find(where, loaded.error()) == where.end()) where.push_back(loaded.error());
 }
 
+/// The interface_version in the octets of a library, "0.1.0 interface 0123456789ab" (version.cmake); empty: there is none.
+[[nodiscard]] std::string interface_in(const std::string& octets) {
+  constexpr std::string_view word{" interface "};
+  constexpr std::size_t digits = 12;
+  for (auto at = octets.find(word); at != std::string::npos; at = octets.find(word, at + 1)) {
+    std::size_t begin = at;
+    while (begin > 0 && std::string_view{"0123456789."}.find(octets[begin - 1]) != std::string_view::npos) --begin;
+    const std::string sum = octets.substr(at + word.size(), digits);
+    if (begin < at && sum.size() == digits && sum.find_first_not_of("0123456789abcdef") == std::string::npos)
+      return octets.substr(begin, at - begin).append(word).append(sum);
+  }
+  return {};
+}
+
+/// What modules are built with, where it is installed: beside this program, or in ../lib/hirosco.
+void look_at_development(System& system) {
+  const fs::path folder = this_program().parent_path();
+  std::error_code failed;
+  for (const fs::path& place : {folder, folder.parent_path() / "lib" / "hirosco"}) {
+    const fs::path library = place / "libhirosco_utilities.a";
+    if (!fs::is_regular_file(library, failed)) continue;
+    system.development = library;
+    system.development_version = interface_in(octets_of(library));
+    return;
+  }
+}
+
 void look_at_parts(System& system, const descriptor::Mission& mission, const RobotWorld& robots) {
   system.version = interface_version;
+  look_at_development(system);
   system.libraries = libraries_in_use();  // before anything of the mission is loaded
   for (const auto& member : mission.subsystems) look_at_module(system, member.executable, ModuleKind::Subsystem);
   for (const auto& device : mission.devices)
@@ -251,9 +285,7 @@ void look_at_world(World& world, const descriptor::Mission& mission, const Robot
   if (module.empty()) return;
   world.library = world_library(module, robots);
   if (world.library.empty()) return;
-  std::ostringstream octets;
-  octets << std::ifstream{world.library, std::ios::binary}.rdbuf();
-  const std::string text = std::move(octets).str();
+  const std::string text = octets_of(world.library);
   world.digest = supervisor::sha256(std::as_bytes(std::span{text}));
   std::istringstream{line_of(world.library.parent_path().parent_path() / "SHA256")} >> world.fetched;
 }

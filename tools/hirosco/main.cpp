@@ -110,7 +110,9 @@ int read_and_do(int argc, char** argv) {
   check_command->add_flag("--json", check_options.json, "Problems as JSON, one a line")
       ->excludes(show)
       ->excludes(recovery);
-  check_command->add_flag("--fly", check_options.fly, "Also all programs that a mission needs must be here");
+  check_command->add_flag("--fly", check_options.fly,
+                          "Also all programs that a mission needs must be here, and modules that are here be of this "
+                          "version");
 
   DoctorOptions doctor_options;
   auto* doctor_command = app.add_subcommand(

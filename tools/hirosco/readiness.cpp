@@ -170,6 +170,20 @@ std::vector<Diagnostic> unready(const descriptor::Mission& mission, FlownAs flow
   return findings.take();
 }
 
+std::vector<Diagnostic> unloadable(const descriptor::Mission& mission) {
+  const auto modules = simulation::load_modules(mission);
+  Lacking findings{mission, FlownAs::Simulation};
+  const auto refused = [&](const std::string& executable) {
+    const auto found = modules.missing.find(executable);
+    return found != modules.missing.end() && !find_module(executable).empty() ? found->second : std::string{};
+  };
+  for (const auto& member : mission.subsystems)
+    findings.subsystem(member.executable, "subsystem " + member.subsystem.name, member.at, refused(member.executable));
+  for (const auto& device : mission.devices)
+    findings.device(device.executable, "simulated device " + device.name, device.at, refused(device.executable));
+  return findings.take();
+}
+
 std::vector<Diagnostic> unintroduced(const descriptor::Mission& mission) {
   const auto modules = simulation::load_modules(mission);
   std::vector<Diagnostic> found;

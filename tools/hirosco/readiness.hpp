@@ -20,6 +20,10 @@ enum class FlownAs : std::uint8_t {
 /// that this program has are asked themselves, so that no descriptor library knows what a device is.
 [[nodiscard]] std::vector<descriptor::Diagnostic> unready(const descriptor::Mission& mission, FlownAs flown_as);
 
+/// Modules that are here and that `hirosco simulate` would not take (E0404): built against another version, damaged, or without what they are
+/// linked with. A program without a module flies all the same.
+[[nodiscard]] std::vector<descriptor::Diagnostic> unloadable(const descriptor::Mission& mission);
+
 /// What the Software-Init of each subsystem that has a module here will find of its author's mistakes (E0406), ports of all its
 /// configurations and the settings that nobody reads (E0405) among them. A flight finds the same, later.
 [[nodiscard]] std::vector<descriptor::Diagnostic> unintroduced(const descriptor::Mission& mission);

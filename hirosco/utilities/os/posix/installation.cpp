@@ -37,7 +37,9 @@ namespace {
   if (module.magic != module_magic) return "its hirosco_module() tells of no module";
   const std::string_view built{module.interface};
   if (built != interface_version)
-    return "it was built against hirosco " + std::string{built} + ", this is " + interface_version + ": build it again";
+    return "it was built against hirosco " + std::string{built} + ", this is " + interface_version +
+           ": build it again; where that does not help what it is built with is of another build: "
+           "install hirosco and libhirosco-dev of one build";
   if (module.standard_library != standard_library_release)
     return "it was built with libstdc++ " + std::to_string(module.standard_library) + ", this program with " +
            std::to_string(standard_library_release) + ": build it with the same compiler";
