@@ -63,12 +63,23 @@ struct Widest {
   std::size_t common = model.joint_count() > 1 ? first.size() : 0;
   for (const auto& joint : model.joints())
     common = std::min(common, static_cast<std::size_t>(std::ranges::mismatch(first, joint.name).in1 - first.begin()));
-  const std::size_t end = first.substr(0, common).rfind('_');
+  // Its place stands before it: "1 joint_1", where "1 1" would say nothing.
+  const auto leaves_a_number = [&model](std::size_t end) {
+    return std::ranges::any_of(
+        model.joints(), [end](const auto& joint) { return joint.name[end + 1] >= '0' && joint.name[end + 1] <= '9'; });
+  };
+  std::size_t end = first.substr(0, common).rfind('_');
+  while (end != std::string::npos && leaves_a_number(end)) end = first.substr(0, end).rfind('_');
   return end == std::string::npos ? 0 : end + 1;
 }
 /// "2 lift": its place among numbers, and its name.
 [[nodiscard]] std::string shown_name(const robotics::Model& model, std::size_t joint) {
   return fmt::format("{} {}", joint + 1, model.joints()[joint].name.substr(common_beginning(model)));
+}
+
+/// As the station calls it: what is alone is no array.
+[[nodiscard]] std::string element(const std::string& array, std::size_t i, std::size_t count) {
+  return count == 1 ? array : fmt::format("{}[{}]", array, i);
 }
 
 [[nodiscard]] double rounded(double value) { return std::round(value * 100) / 100; }
@@ -89,24 +100,24 @@ struct Widest {
 
 [[nodiscard]] ordered_json plots_of(const robotics::Model& model, const std::string& subsystem) {
   ordered_json plots = ordered_json::array();
-  for (std::size_t i = 0; i < std::min(model.joints().size(), most_joint_plots); ++i) {
+  const std::size_t count = model.joints().size();
+  for (std::size_t i = 0; i < std::min(count, most_joint_plots); ++i) {
     const auto& joint = model.joints()[i];
     ordered_json plot;
     plot["title"] = shown_name(model, i);
     if (joint.limits.lower && joint.limits.upper)
       plot["range"] = ordered_json::array({rounded(*joint.limits.lower), rounded(*joint.limits.upper)});
     plot["least"] = 0.1;
-    plot["curves"].push_back(curve(fmt::format("{}.CUR_VALUES.POSITION[{}]", subsystem, i), "is", "is"));
-    plot["curves"].push_back(curve(fmt::format("{}.DES_POSITION[{}]", subsystem, i), "set", "set"));
+    plot["curves"].push_back(curve(element(subsystem + ".CUR_VALUES.POSITION", i, count), "is", "is"));
+    plot["curves"].push_back(curve(element(subsystem + ".DES_POSITION", i, count), "set", "set"));
     plots.push_back(plot);
   }
   ordered_json torques;
   torques["title"] = "Torques";
   torques["hint"] = unit(model, "N m", "N");
   torques["least"] = 1;
-  for (std::size_t i = 0; i < std::min(model.joints().size(), most_curves); ++i)
-    torques["curves"].push_back(
-        curve(fmt::format("{}.CUR_VALUES.TORQUE[{}]", subsystem, i), std::to_string(i + 1), ""));
+  for (std::size_t i = 0; i < std::min(count, most_curves); ++i)
+    torques["curves"].push_back(curve(element(subsystem + ".CUR_VALUES.TORQUE", i, count), std::to_string(i + 1), ""));
   plots.push_back(torques);
   return plots;
 }
@@ -129,16 +140,17 @@ struct Widest {
   ordered_json goal, jog;
   goal["function"] = "MOVE_J";
   jog["function"] = "JOG_J";
-  for (std::size_t i = 0; i < robot.model.joints().size(); ++i) {
+  const std::size_t count = robot.model.joints().size();
+  for (std::size_t i = 0; i < count; ++i) {
     const std::string& joint = robot.model.joints()[i].name;
-    shown["joints"][joint] = fmt::format("{}.CUR_VALUES.POSITION[{}]", name.upper, i);
+    shown["joints"][joint] = element(name.upper + ".CUR_VALUES.POSITION", i, count);
     shown["names"][joint] = shown_name(robot.model, i);
-    goal["joints"][joint] = fmt::format("GOAL[{}]", i);
-    jog["joints"][joint] = fmt::format("VELOCITY[{}]", i);
+    goal["joints"][joint] = element("GOAL", i, count);
+    jog["joints"][joint] = element("VELOCITY", i, count);
   }
   for (std::size_t i = 0; robot.hand && i < robot.hand->joints.size(); ++i) {
     const std::string& joint = robot.hand->joints[i].name;
-    shown["joints"][joint] = fmt::format("{}_GRIPPER.CUR_VALUES.POSITION[{}]", name.upper, i);
+    shown["joints"][joint] = element(name.upper + "_GRIPPER.CUR_VALUES.POSITION", i, robot.hand->joints.size());
     shown["names"][joint] = robot.hand->joints.size() == 1 ? "fingers" : fmt::format("finger {}", i + 1);
   }
   goal["speed"] = "SPEED";
