@@ -340,9 +340,11 @@ void add_story(const Basic& is, json& into) {
        {"advice", described(is.text, "what to do"), May::BeAbsent},
        {"plan", nullable(is.text), May::BeAbsent},
        {"mode", described(is.text, "in which it happened"), May::BeAbsent},
+       {"mode_up", described(nullable(is.text), "by which it comes up again; null: no mode brings anybody up"),
+        May::BeAbsent},
        {"severity", described(is.severity, "of the cause"), May::BeAbsent},
        {"stopped", is.texts, May::BeAbsent},
-       {"down", described(is.texts, "who is to be up in this mode and does not run: SET_STATE Offline starts it again"),
+       {"down", described(is.texts, "who is to be up in mode_up and does not run: SET_STATE Offline starts it again"),
         May::BeAbsent},
        {"causes", described(list_of(cause), "empty, and nothing else, when nothing stopped")}});
 }

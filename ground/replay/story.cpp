@@ -120,6 +120,17 @@ struct Asked {
   return down;
 }
 
+/// The mode that brings it up again: a story may begin in one that commissions nobody.
+[[nodiscard]] std::optional<std::string> mode_up(const descriptor::Mission& mission, const std::string& now) {
+  const auto* mode = descriptor::mode_up(mission, now, mission.start_mode);
+  return mode != nullptr ? std::optional{mode->name} : std::nullopt;
+}
+
+[[nodiscard]] std::string advice(const std::string& lost_device, const std::optional<std::string>& up) {
+  return (lost_device.empty() ? "Look into it" : "Mend or plug in the device " + lost_device) +
+         (up ? ", then bring " + *up + " up." : ".");
+}
+
 /// An event has '_' where the name of a device, or of an endnode of one, has what an event may not.
 [[nodiscard]] bool names(std::string_view in_event, std::string_view device) {
   return std::ranges::equal(in_event, device, [](char said, char meant) {
@@ -195,18 +206,21 @@ class Teller {
     lines_.push_back({begin_, Severity::High, "cause", {}, asked.text});
     // Who stops everything may do so because of something.
     for (const StoredEvent& event : severe | std::views::reverse)
-      if (event.t < begin_ && begin_ - event.t <= same_story)
-        lines_.push_back({std::nullopt,
-                          static_cast<Severity>(event.severity),
-                          "event",
-                          {},
-                          sentence(event, json::parse(event.values, nullptr, false))});
+      if (event.t < begin_ && begin_ - event.t <= same_story) {
+        const std::string text = sentence(event, json::parse(event.values, nullptr, false));
+        lines_.push_back({std::nullopt, static_cast<Severity>(event.severity), "event", {}, text});
+      }
     tell_events(to);
-    const std::string mode = mode_.empty() ? catalogue_.mission().start_mode : mode_;
-    return {{"t", json_time(begin_)}, {"title", "SAFE ALL: the actuators of all subsystems are inhibited."},
-            {"detail", asked.by},     {"advice", "Bring " + mode + " up again when all is clear."},
-            {"plan", nullptr},        {"mode", mode},
-            {"severity", "high"},     {"stopped", json::array({"all"})},
+    const auto up = mode_up(catalogue_.mission(), mode_);
+    return {{"t", json_time(begin_)},
+            {"title", "SAFE ALL: the actuators of all subsystems are inhibited."},
+            {"detail", asked.by},
+            {"advice", "Bring " + up.value_or("whom you need") + " up again when all is clear."},
+            {"plan", nullptr},
+            {"mode", mode_.empty() ? catalogue_.mission().start_mode : mode_},
+            {"mode_up", up ? json(*up) : json(nullptr)},
+            {"severity", "high"},
+            {"stopped", json::array({"all"})},
             {"causes", causes_json()}};
   }
 
@@ -433,16 +447,14 @@ class Teller {
       detail = fmt::format("{} within {}, by plan {}.", who_went(), milliseconds(down_ - begin_), plan());
     if (const auto well = still_well(); !well.empty())
       detail += (detail.empty() ? "" : " ") + listed(well) + (well.size() == 1 ? " goes on." : " go on.");
-    const std::string mode = mode_.empty() ? catalogue_.mission().start_mode : mode_;
-    const std::string device = lost_device(cause_);
-    const std::string advice =
-        (device.empty() ? "Look into it" : "Mend or plug in the device " + device) + ", then bring " + mode + " up.";
+    const auto up = mode_up(catalogue_.mission(), mode_);
     return {{"t", json_time(begin_)},
             {"title", std::move(title)},
             {"detail", detail},
-            {"advice", advice},
+            {"advice", advice(lost_device(cause_), up)},
             {"plan", plan()},
-            {"mode", mode},
+            {"mode", mode_.empty() ? catalogue_.mission().start_mode : mode_},
+            {"mode_up", up ? json(*up) : json(nullptr)},
             {"severity", to_text(static_cast<Severity>(cause_.severity))},
             {"stopped", stopped},
             {"causes", causes_json()}};
@@ -462,7 +474,9 @@ class Teller {
 
 json newest_story(const Catalogue& catalogue, Archive& archive, OnboardTime to) {
   json story = Teller{catalogue, archive}.tell(to);
-  if (!story["causes"].empty()) story["down"] = down_at_the_end(catalogue, archive, story["mode"], to);
+  if (!story["causes"].empty())
+    story["down"] =
+        story["mode_up"].is_null() ? json::array() : json(down_at_the_end(catalogue, archive, story["mode_up"], to));
   return story;
 }
 

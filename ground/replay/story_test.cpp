@@ -112,6 +112,19 @@ TEST_F(AStory, HasTheFirstEventAsItsCauseWhereAGraverOneComesLater) {
   EXPECT_EQ(story["advice"], "Look into it, then bring work up.");
 }
 
+/// As of a flight that was not commissioned: `dark` is the initial mode, which commissions nobody.
+TEST_F(AStory, BeginsInAnyModeAndIsBroughtUpByOneThatCommissionsSomebody) {
+  in_mode("dark");
+  becomes("DRILL", State::Operational, opening - 50s);
+  loses_spindle(opening, descriptor::DeviceLoss::Silent);
+  hears(testing::overview(catalogue, {.drill = 255, .lamp = 0, .link_up = 0}, opening + 2s));
+  const auto story = why();
+  EXPECT_EQ(story["mode"], "dark");
+  EXPECT_EQ(story["mode_up"], "work");
+  EXPECT_EQ(story["advice"], "Mend or plug in the device SPINDLE.A, then bring work up.");
+  EXPECT_EQ(story["down"], nlohmann::json::array({"DRILL"}));
+}
+
 TEST_F(AStory, IsOneAsLongAsLessThanThreeSecondsPassFromEventToEvent) {
   for (const Duration after : {0s, 2s, 4s, 10s}) torque(opening + after);
   const auto newest = why();
@@ -165,7 +178,7 @@ TEST_F(AStory, OfASafeAllNamesWhoSentIt) {
   EXPECT_EQ(story["title"], "SAFE ALL: the actuators of all subsystems are inhibited.");
   EXPECT_EQ(story["detail"], "By telecommand of anna.");
   EXPECT_THAT(lines(story), ElementsAre("SAFE ALL by anna, completed", "DRILL → Safe-Operational"));
-  EXPECT_EQ(story["advice"], "Bring dark up again when all is clear.");
+  EXPECT_EQ(story["advice"], "Bring work up again when all is clear.") << "dark has nobody up";
   EXPECT_TRUE(story["plan"].is_null());
   EXPECT_EQ(story["stopped"], nlohmann::json::array({"all"}));
 }

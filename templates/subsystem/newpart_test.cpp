@@ -35,4 +35,9 @@ TEST(NewPart, GoesToWhereItIsToldAndSaysWhenItIsThere) {
   EXPECT_EQ(rig.outcome(request), "1 3 7");
   const auto told = rig.reports(5, 1);
   EXPECT_EQ(std::ranges::count(told, "13893fe0000000000000"), 1) << "event 5001 with the value 0.5, once";
+  EXPECT_EQ(do_now(rig.set("RATE", 10)), "1 3 7")
+      << "a parameter, by its name, as `hirosco tc newpart SET:RATE 10` does";
+  const auto faster = rig.call("GO_TO", {1.5});
+  cycles(150);
+  EXPECT_EQ(rig.outcome(faster), "1 3 7") << "it takes a tenth of a second";
 }

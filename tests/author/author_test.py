@@ -83,6 +83,32 @@ class Built(Outside, unittest.TestCase):
         told = self.said("ctest", "--test-dir", self.built, "--output-on-failure", environment=self.environment)
         self.assertIn("100% tests passed, 0 tests failed out of 3", told)
 
+    def test_a_cycle_that_waits_fails_its_test_in_a_release_build_and_whose_it_is_stands_there(self):
+        """Planted in a copy of the lamp (docs/adr/0230): the heap in a function's handler, a lock and a print in a node."""
+        careless, built = self.folder / "careless", self.folder / "careless_built"
+        shutil.copytree(HERE / "lamp", careless)
+        source = careless / "lamp.cpp"
+        text = "#include <cstdio>\n#include <mutex>\n#include <string>\n" + source.read_text()
+        for place, planted in (("                  raise(programmed_,", "static std::string kept;\nkept = std::string(note.size() + 64, 'x');\n"),
+                               ("    const double step = fade_per_s", "static std::mutex mutex;\nif (goal_ == 0.1) {\n"
+                                "  const std::lock_guard held{mutex};\n  std::printf(\"dim\\n\");\n}\n")):
+            self.assertEqual(text.count(place), 1, place)
+            text = text.replace(place, planted + place)
+        source.write_text(text)
+
+        def tested(*options, code):
+            self.said("cmake", "-S", careless, "-B", built, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                      f"-DCMAKE_PREFIX_PATH={self.prefix}", *options)
+            self.said("cmake", "--build", built, "--target", "lamp_test")
+            return self.said(built / "lamp_test", at=careless, code=code)
+
+        told = tested(code=1)
+        forbidden = "of LAMP does in the cycle what real time forbids:"
+        self.assertRegex(told, rf"Rig::cycle: the handler of PROGRAM {forbidden} [1-9] uses? of the heap, 0 locks, 0 outputs")
+        self.assertIn(f"Rig::cycle: operational() {forbidden} 0 uses of the heap, 1 lock, 1 output", told)
+        self.assertIn("[       OK ] Lamp.IsNotConfiguredByABrightestThatIsNone", told)
+        self.assertNotIn("real time forbids", tested("-DHIROSCO_WATCH_CYCLES=OFF", code=0))
+
     def test_its_mission_is_checked_with_what_the_installed_tree_brings(self):
         self.assertIn("4 files, no problem", self.hirosco("check", "--fly", self.mission))
 

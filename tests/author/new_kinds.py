@@ -36,13 +36,16 @@ def tried():
     return [kind for kind in KINDS if kind != "robot"]
 
 
-def real_arm():
-    """What your_robot.md has typed for the real arm, but for the flight itself."""
+def real_arm(here):
+    """What your_robot.md has typed for the real arm, with a driver here or elsewhere, but for the flight itself; and how the driver here is started."""
     page = (flight.REPOSITORY / "docs/guide/your_robot.md").read_text()
     section = re.search(r"^## The real arm\n(.*?)^## ", page, re.M | re.S)[1]
     blocks = re.findall(r"^```\n(sed .*?)^```$", section, re.M | re.S)
-    assert len(blocks) == 2, "the mission of the real arm, and a slower cycle"
-    return [line for line in "".join(blocks).splitlines() if not line.startswith("hirosco run")]
+    assert len(blocks) == 3, "the mission of the real arm, that of a driver on this computer, and a slower cycle"
+    if not here:
+        del blocks[1]
+    (driver,) = re.findall(r"^```\npython3 /usr/share/doc/hirosco/examples/device/(.*)\n```$", section, re.M)
+    return [line for line in "".join(blocks).splitlines() if not line.startswith("hirosco run")], driver.split()
 
 
 # What drives.py is: six joints that carry next to nothing, behind rotors of 0.5 kg m2, which is what is assumed of 150 N m.
@@ -93,19 +96,25 @@ class New(outside.Installed, unittest.TestCase):
         """Its descriptor and mission as your_robot.md has them typed; its folder's tests pass with them, and without the simulated device."""
         if "robot" not in tried():
             return
-        lines = real_arm()
         folder, _ = made("robot")
-        real = self.folder / "real" / folder.name
-        shutil.copytree(folder, real, ignore=shutil.ignore_patterns("build"))
-        # As it is written for an arm of many joints.
-        slower = real / "lab_arm.xml"
-        slower.write_text(slower.read_text().replace('sampling_us="1000"', 'sampling_us="2000"'))
         path = f"{self.prefix}/bin:{os.environ['PATH']}"
-        told = self.said("bash", "-euc", "\n".join(lines), environment={"PATH": path}, at=real)
-        self.assertEqual(told.count("no problem"), 2, "as the arm's own cycle is, and slower")
-        descriptor = (real / "lab_arm_real.xml").read_text()
-        self.assertEqual(re.findall(r'transfer="(\w+)" address="[^"]*:(\d+)"', descriptor), [("udp", "5002"), ("udp", "5001"), ("udp", "5001")])
-        self.assertEqual(re.findall(r'sampling_us="(\d+)"', descriptor), ["4000", "4000"])
+        for here, checks, enable, frames in ((True, 3, ("unix", "lab_arm-enable"), ("udp", "127.0.0.1:5001")),
+                                             (False, 2, ("udp", "192.0.2.7:5002"), ("udp", "192.0.2.7:5001"))):
+            with self.subTest(here=here):
+                lines, driver = real_arm(here)
+                real = self.folder / ("real_here" if here else "real") / folder.name
+                shutil.copytree(folder, real, ignore=shutil.ignore_patterns("build"))
+                # As it is written for an arm of many joints.
+                slower = real / "lab_arm.xml"
+                slower.write_text(slower.read_text().replace('sampling_us="1000"', 'sampling_us="2000"'))
+                told = self.said("bash", "-euc", "\n".join(lines), environment={"PATH": path}, at=real)
+                self.assertEqual(told.count("no problem"), checks, "as the arm's own cycle is, with its driver here, and slower")
+                descriptor = (real / "lab_arm_real.xml").read_text()
+                self.assertEqual(re.findall(r'transfer="(\w+)" address="([^"]*)"', descriptor), [enable, frames, frames])
+                self.assertEqual(re.findall(r'sampling_us="(\d+)"', descriptor), ["4000", "4000"])
+                self.assertEqual(re.findall(r'id="4711" interval="(\d+)"', descriptor), ["125", "125"], "each half a second")
+                if here:
+                    self.assertEqual(driver, ["arm.py", frames[1], enable[1]], "what is started is where they look for it")
         # Whoever takes the world out of the mission itself has tests that pass, too.
         (real / "mission.xml").write_text((real / "real.xml").read_text())
         told = self.said("bash", "-euc", f"cmake -B build -DCMAKE_PREFIX_PATH={self.prefix} && ctest --test-dir build", at=real)
@@ -185,41 +194,44 @@ class New(outside.Installed, unittest.TestCase):
         return self.hirosco(*words, at=folder)
 
 
-def free_ports(count):
-    held = [socket.socket(type=socket.SOCK_DGRAM) for _ in range(count)]
-    for each in held:
-        each.bind(("127.0.0.1", 0))
-    ports = [each.getsockname()[1] for each in held]
-    for each in held:
-        each.close()
-    return ports
+def free_port():
+    with socket.socket(type=socket.SOCK_DGRAM) as held:
+        held.bind(("127.0.0.1", 0))
+        return held.getsockname()[1]
 
 
 class NewFlown(outside.Installed, unittest.TestCase):
     def test_a_driver_in_python_flies_as_the_guide_has_it(self):
-        """arm.py at both addresses, and not one number changed but those that are typed."""
+        """arm.py at both addresses of a driver on this computer, and not one number changed but those that are typed."""
         place = self.folder / "by_python"
         place.mkdir()
         (place / "light.urdf").write_text(OF_THE_DRIVER)
         self.hirosco("new", "robot", "LabArm", "--urdf", place / "light.urdf", "--to", place)
         folder = place / "lab_arm"
-        frames, enable = (f"127.0.0.1:{port}" for port in free_ports(2))
-        lines = "\n".join(real_arm()).replace("192.0.2.7:5001", frames).replace("192.0.2.7:5002", enable)
-        # In this computer it is behind no network.
-        lines = re.sub(r" \\\n  -e 's\|[^|]*\|  <DeviceNetwork[^']*'|-e 's\|  <Modes\|  <DeviceNetwork[^']*' ?", "", lines)
-        self.assertNotIn("DeviceNetwork", lines)
+        lines, (program, frames, enable) = real_arm(here=True)
+        own = f"127.0.0.1:{free_port()}"  # 5001 may be somebody's
+        lines = "\n".join(lines).replace(frames, own)
         self.said("bash", "-euc", lines, environment={"PATH": f"{self.prefix}/bin:{os.environ['PATH']}"}, at=folder)
-        driver = self.prefix / "share/doc/hirosco/examples/device/arm.py"
-        with subprocess.Popen([sys.executable, "-B", driver, frames, enable]) as arm:
-            self.addCleanup(arm.kill)
-            with flight.Flight(folder / "real.xml", binaries=self.prefix / "bin") as craft:
-                craft.wait_told("commissioned: mode operation", 30.0)
-                for goal in ("0.3,-0.3,0.3,0.3,-0.3,0.3", "0,0,0,0,0,0"):
-                    code, reports = craft.tc("LAB_ARM", "MOVE_J", goal, 0.5)
-                    self.assertEqual((code, reports[-1]), (0, "1,7"))
-                self.assertNotIn("_LIMIT_EXCEEDED", " ".join(line.told for line in craft.told()))
-                self.assertEqual(craft.end(), 0)
-            arm.kill()
+        driver = self.prefix / "share/doc/hirosco/examples/device" / program
+        arm = subprocess.Popen([sys.executable, "-B", driver, own, enable], cwd=folder)
+        self.addCleanup(arm.wait)
+        self.addCleanup(arm.kill)
+        with flight.Flight(folder / "real.xml", binaries=self.prefix / "bin", folder=folder) as craft:
+            craft.wait_told("commissioned: mode operation", 30.0)
+            for goal in ("0.3,-0.3,0.3,0.3,-0.3,0.3", "0,0,0,0,0,0"):
+                code, reports = craft.tc("LAB_ARM", "MOVE_J", goal, 0.5)
+                self.assertEqual((code, reports[-1]), (0, "1,7"))
+                told = craft.hirosco("status", "LAB_ARM", "--mission", craft.mission).stdout
+                self.assertEqual(self.joints(told, "DES_POSITION"), list(map(float, goal.split(","))), told)
+                for is_at, wanted in zip(self.joints(told, "CUR_VALUES.POSITION"), map(float, goal.split(","))):
+                    self.assertAlmostEqual(is_at, wanted, 2)
+            self.assertNotIn("_LIMIT_EXCEEDED", " ".join(line.told for line in craft.told()))
+            self.assertEqual(craft.end(), 0)
+
+    def joints(self, told, name):
+        """The newest values that `hirosco status` shows of a parameter."""
+        self.assertRegex(told, rf"(?m)^\s*{name}\s", "its housekeeping has come within what it listens for")
+        return [float(word) for word in re.search(rf"(?m)^\s*{re.escape(name)}\s+(.*)$", told)[1].split()[:6]]
 
     def test_each_flies_and_shows_in_the_page(self):
         for kind in tried():

@@ -61,7 +61,7 @@ function sample(t, hostile) {
 }
 
 /// What the gateway would tell of a stop: the answer of /api/why but its times.
-const stop = {title: 'JOYSTICK lost its device. MANIPULATOR and JOYSTICK were stopped.', plan: 'network-down', mode: 'telepresence', severity: 'high',
+const stop = {title: 'JOYSTICK lost its device. MANIPULATOR and JOYSTICK were stopped.', plan: 'network-down', mode: 'telepresence', mode_up: 'telepresence', severity: 'high',
   detail: 'MANIPULATOR and JOYSTICK went Offline within 2.5 ms, by plan network-down. SUPERVISOR goes on.', stopped: ['MANIPULATOR', 'JOYSTICK'],
   advice: 'Plug the joystick in, then bring telepresence up.', causes: [[0, 'high', 'JOYSTICK reports that its device is lost'],
     [0.1, 'medium', 'MANIPULATOR misses the samples of link 2'], [1.2, 'info', 'both in Error-Operational'], [2.5, 'info', 'both Offline']]

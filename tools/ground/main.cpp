@@ -48,6 +48,7 @@ constexpr std::array known_options{ProgramOption{"--mission", "FILE"},
                                    ProgramOption{"--quiet"},
                                    ProgramOption{"--tour"},
                                    ProgramOption{"--why"},
+                                   ProgramOption{"--flown", "NANOSECONDS"},
                                    ProgramOption{"--md"},
                                    ProgramOption{"--openapi"}};
 
@@ -95,15 +96,35 @@ constexpr std::array known_options{ProgramOption{"--mission", "FILE"},
   return {};
 }
 
-[[nodiscard]] int print_why(Session& session, const Options& options, const fs::path& archive) {
+/// The beginning of the newest flight, on-board time, where it is later than all that the archive has; empty: it is not, or nobody has said one.
+[[nodiscard]] std::optional<double> unkept_flight(const Options& options, Archive& archive) {
+  const std::string text = option(options, "--flown");
+  Duration::rep began = 0;
+  if (std::from_chars(text.data(), text.data() + text.size(), began).ec != std::errc{}) return std::nullopt;
+  const auto kept = archive.extent();
+  if (kept && kept->to.time_since_epoch().count() >= began) return std::nullopt;
+  return seconds(Duration{began});
+}
+
+[[nodiscard]] int print_why(Session& session, const Options& options, const fs::path& path, Archive& archive) {
   Api api{session, {.token = "-", .observer_token = {}, .page = {}, .transitions = {}}};
-  const HttpRequest request{"GET", "/api/why", {{"host", "127.0.0.1:8080"}, {"authorization", "Bearer -"}}, {}};
+  const auto ask = [&](const char* target, const auto& take) {
+    api.handle({"GET", target, {{"host", "127.0.0.1:8080"}, {"authorization", "Bearer -"}}, {}}, take);
+  };
+  const std::string& mission = session.catalogue().mission().name;
+  WhichFlight which{.story_s = {}, .since_s = unkept_flight(options, archive)};
   const bool colour = ::isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   const WhyStyle style = options.contains("--md") ? WhyStyle::Markdown : colour ? WhyStyle::Coloured : WhyStyle::Lines;
-  api.handle(request, [&](const HttpResponse& response) {
-    if (options.contains("--json")) return fmt::print("{}\n", response.body);
-    fmt::print("{}", why_text(nlohmann::json::parse(response.body, nullptr, false), session.catalogue().mission().name,
-                              archive.string(), style));
+  ask("/api/why", [&](const HttpResponse& response) {
+    if (options.contains("--json")) {
+      if (which.since_s) fmt::print(stderr, "hirosco why: {}\n", flown_since(mission, which));
+      return fmt::print("{}\n", response.body);
+    }
+    const auto story = nlohmann::json::parse(response.body, nullptr, false);
+    ask("/api/flights", [&](const HttpResponse& flights) {
+      which.story_s = flight_of(nlohmann::json::parse(flights.body, nullptr, false), story);
+    });
+    fmt::print("{}", why_text(story, mission, path.string(), style, which));
   });
   return tools::exit_ok;
 }
@@ -229,5 +250,5 @@ int main(int argc, char** argv) {
   if (serves) return serve(options, *mission, catalogue, **archive);
   const SystemClock clock;
   Session session{{.catalogue = catalogue, .archive = **archive, .clock = clock, .outside = {}}};
-  return print_why(session, options, path);
+  return print_why(session, options, path, **archive);
 }

@@ -44,12 +44,20 @@ using nlohmann::json;
   return text;
 }
 
-[[nodiscard]] std::string markdown(const json& story, const std::string& mission, const std::string& archive) {
-  std::string text =
-      fmt::format("# Why {} stopped\n\n**{}** {}\n\n", mission, words(story, "title"), words(story, "detail"));
+/// Before everything else: what follows may be of another flight than one thinks.
+[[nodiscard]] std::string paragraph(const std::string& mission, const WhichFlight& which) {
+  const std::string since = flown_since(mission, which);
+  return since.empty() ? since : since + "\n\n";
+}
+
+[[nodiscard]] std::string markdown(const json& story, const std::string& mission, const std::string& archive,
+                                   const WhichFlight& which) {
+  std::string text = fmt::format("# Why {} stopped\n\n{}**{}** {}\n\n", mission, paragraph(mission, which),
+                                 words(story, "title"), words(story, "detail"));
   text +=
       fmt::format("| | |\n|---|---|\n| when | {} |\n| mission | {}, mode {} |\n| severity | {} |\n",
                   utc_text(story.value("t", 0.0)), cell(mission), cell(words(story, "mode")), words(story, "severity"));
+  if (which.story_s) text += fmt::format("| flight | began {} |\n", utc_text(*which.story_s));
   if (const auto plan = words(story, "plan"); !plan.empty()) text += fmt::format("| plan | {} |\n", cell(plan));
   if (const auto stopped = listed(story, "stopped"); !stopped.empty())
     text += fmt::format("| stopped | {} |\n", cell(stopped));
@@ -59,14 +67,17 @@ using nlohmann::json;
   return text + fmt::format("\n**What to do now:** {}\n", words(story, "advice"));
 }
 
-[[nodiscard]] std::string lines(const json& story, const std::string& mission, bool coloured) {
+[[nodiscard]] std::string lines(const json& story, const std::string& mission, bool coloured,
+                                const WhichFlight& which) {
   const auto look = [&](const std::string& severity) {
     if (!coloured) return "";
     return severity == "high" ? "\x1b[1;31m" : severity == "medium" ? "\x1b[33m" : "";
   };
   const char* plain = coloured ? "\x1b[0m" : "";
-  std::string text = fmt::format("{}, {}, mode {}\n{}{}{}\n", mission, utc_text(story.value("t", 0.0)),
-                                 words(story, "mode"), look(words(story, "severity")), words(story, "title"), plain);
+  std::string text = paragraph(mission, which);
+  if (which.story_s) text += fmt::format("flight of {} that began {}\n", mission, utc_text(*which.story_s));
+  text += fmt::format("{}, {}, mode {}\n{}{}{}\n", mission, utc_text(story.value("t", 0.0)), words(story, "mode"),
+                      look(words(story, "severity")), words(story, "title"), plain);
   if (const auto detail = words(story, "detail"); !detail.empty()) text += detail + "\n";
   text += "\n";
   for (const json& cause : story["causes"]) {
@@ -80,8 +91,9 @@ using nlohmann::json;
       if (one.is_string())
         text += fmt::format("  {:<33} starts its process again, before the next\n",
                             "hirosco tc " + printable_words(one.get<std::string>()) + " SET_STATE 0");
-  if (const auto mode = words(story, "mode"); !mode.empty())
+  if (const auto mode = words(story, "mode_up"); !mode.empty())
     text += fmt::format("  hirosco mode {:<20} brings it up again (--preview: says what is against it)\n", mode);
+  if (which.since_s) return text;  // the log ends with the other flight
   return text + fmt::format("  {:<33} is the story in the log\n", "hirosco log --last 60");
 }
 
@@ -100,13 +112,32 @@ std::string utc_text(double onboard_s) {
                      time.minutes().count(), time.seconds().count(), time.subseconds().count());
 }
 
-std::string why_text(const json& story, const std::string& mission, const std::string& archive, WhyStyle style) {
+std::string flown_since(const std::string& mission, const WhichFlight& which) {
+  if (!which.since_s) return {};
+  return fmt::format(
+      "{} has flown since, from {} on, and no ground station kept that flight: its story is `hirosco log --last 60`. "
+      "What follows is of before.",
+      mission, utc_text(*which.since_s));
+}
+
+std::optional<double> flight_of(const json& flights, const json& story) {
+  const auto t = story.find("t");
+  if (!story.is_object() || t == story.end() || !t->is_number() || !flights.is_object() || !flights.contains("flights"))
+    return std::nullopt;
+  for (const json& flight : flights["flights"])  // the newest first
+    if (const double from_s = flight.value("from", 0.0); from_s <= t->get<double>()) return from_s;
+  return std::nullopt;
+}
+
+std::string why_text(const json& story, const std::string& mission, const std::string& archive, WhyStyle style,
+                     const WhichFlight& which) {
   if (!story.is_object() || !story.contains("causes") || !story["causes"].is_array() || story["causes"].empty())
-    return style == WhyStyle::Markdown
-               ? fmt::format("# Why {} stopped\n\nNothing has stopped, as far as {} tells.\n", mission, archive)
-               : fmt::format("nothing has stopped, as far as the archive {} tells\n", archive);
-  return style == WhyStyle::Markdown ? markdown(story, mission, archive)
-                                     : lines(story, mission, style == WhyStyle::Coloured);
+    return style == WhyStyle::Markdown ? fmt::format("# Why {} stopped\n\n{}Nothing has stopped, as far as {} tells.\n",
+                                                     mission, paragraph(mission, which), archive)
+                                       : fmt::format("{}nothing has stopped, as far as the archive {} tells\n",
+                                                     paragraph(mission, which), archive);
+  return style == WhyStyle::Markdown ? markdown(story, mission, archive, which)
+                                     : lines(story, mission, style == WhyStyle::Coloured, which);
 }
 
 }  // namespace hirosco::ground

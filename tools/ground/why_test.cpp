@@ -10,8 +10,10 @@
 namespace hirosco::ground {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 nlohmann::json story() {
   return {{"t", 2'173'999'550.7},
@@ -20,6 +22,7 @@ nlohmann::json story() {
           {"advice", "Mend or plug in the device HAND, then bring coupled up."},
           {"plan", "network-down"},
           {"mode", "coupled"},
+          {"mode_up", "coupled"},
           {"severity", "high"},
           {"stopped", {"ARM", "HAND"}},
           {"causes",
@@ -36,7 +39,7 @@ TEST(WhyTest, TellsTheDateInUtc) {
 }
 
 TEST(WhyTest, TellsWhenWhatAndWhatToDoInLines) {
-  EXPECT_EQ(why_text(story(), "PAIR", "log/pair-ground.db", WhyStyle::Lines),
+  EXPECT_EQ(why_text(story(), "PAIR", "log/pair-ground.db", WhyStyle::Lines, {}),
             "PAIR, 2026-11-22 00:45:13.700 UTC, mode coupled\n"
             "HAND lost its device: silent. ARM and HAND were stopped.\n"
             "ARM and HAND went Offline within 3.1 ms, by plan network-down.\n"
@@ -54,13 +57,44 @@ TEST(WhyTest, TellsWhenWhatAndWhatToDoInLines) {
 TEST(WhyTest, SaysBeforeTheModeWhoHasToBeStartedAgain) {
   auto dead = story();
   dead["down"] = {"HAND"};
-  EXPECT_THAT(why_text(dead, "PAIR", "a", WhyStyle::Lines),
+  EXPECT_THAT(why_text(dead, "PAIR", "a", WhyStyle::Lines, {}),
               HasSubstr("  hirosco tc HAND SET_STATE 0       starts its process again, before the next\n"
                         "  hirosco mode coupled              brings it up again"));
 }
 
+TEST(WhyTest, ProposesTheModeThatBringsItUpAndNoneWhereNoneDoes) {
+  auto told = story();
+  told["mode"] = "commissioning";
+  EXPECT_THAT(why_text(told, "PAIR", "a", WhyStyle::Lines, {}), HasSubstr("  hirosco mode coupled  "));
+  told["mode_up"] = nullptr;
+  EXPECT_THAT(why_text(told, "PAIR", "a", WhyStyle::Lines, {}), Not(HasSubstr("hirosco mode")));
+}
+
+/// The flight of the story began five minutes before it; flights come newest first, a later one is not its own.
+TEST(WhyTest, SaysFirstOfWhichFlightItIsAndThatTheMissionHasFlownSince) {
+  const double began_s = 2'173'999'250.7, since_s = 2'173'999'670.7;
+  const nlohmann::json flights{{"flights", {{{"from", 2'173'999'600.0}}, {{"from", began_s}}, {{"from", 5.0}}}}};
+  ASSERT_EQ(flight_of(flights, story()), began_s);
+  EXPECT_EQ(flight_of(flights, {{"causes", nlohmann::json::array()}}), std::nullopt);
+  EXPECT_EQ(flight_of(nullptr, story()), std::nullopt);
+  const std::string flight = "flight of PAIR that began 2026-11-22 00:40:13.700 UTC\n";
+  const std::string when = "PAIR, 2026-11-22 00:45:13.700 UTC, mode coupled\n";
+  EXPECT_THAT(why_text(story(), "PAIR", "a", WhyStyle::Lines, {.story_s = began_s}), StartsWith(flight + when));
+  const WhichFlight older{.story_s = began_s, .since_s = since_s};
+  const std::string since =
+      "PAIR has flown since, from 2026-11-22 00:47:13.700 UTC on, and no ground station kept that flight: its story is "
+      "`hirosco log --last 60`. What follows is of before.\n\n";
+  EXPECT_THAT(why_text(story(), "PAIR", "a", WhyStyle::Lines, older),
+              AllOf(StartsWith(since + flight + when), Not(HasSubstr("is the story in the log"))));
+  EXPECT_THAT(why_text(story(), "PAIR", "a", WhyStyle::Markdown, older),
+              AllOf(HasSubstr("# Why PAIR stopped\n\n" + since),
+                    HasSubstr("| flight | began 2026-11-22 00:40:13.700 UTC |\n")));
+  for (const auto style : {WhyStyle::Lines, WhyStyle::Markdown})
+    EXPECT_THAT(why_text(nullptr, "PAIR", "a", style, older), HasSubstr(since)) << "nothing stopped before either";
+}
+
 TEST(WhyTest, IsAReportWithPlanAndTables) {
-  const std::string text = why_text(story(), "PAIR", "log/pair-ground.db", WhyStyle::Markdown);
+  const std::string text = why_text(story(), "PAIR", "log/pair-ground.db", WhyStyle::Markdown, {});
   EXPECT_THAT(text, HasSubstr("# Why PAIR stopped\n\n**HAND lost its device: silent. ARM and HAND were stopped.**"));
   EXPECT_THAT(text, HasSubstr("| when | 2026-11-22 00:45:13.700 UTC |\n"));
   EXPECT_THAT(text, HasSubstr("| plan | network-down |\n| stopped | ARM, HAND |\n"));
@@ -70,23 +104,23 @@ TEST(WhyTest, IsAReportWithPlanAndTables) {
 }
 
 TEST(WhyTest, ColoursWhatIsGraveOnly) {
-  const std::string text = why_text(story(), "PAIR", "a", WhyStyle::Coloured);
+  const std::string text = why_text(story(), "PAIR", "a", WhyStyle::Coloured, {});
   EXPECT_THAT(text, HasSubstr("\x1b[1;31mhigh  \x1b[0m"));
-  EXPECT_THAT(why_text(story(), "PAIR", "a", WhyStyle::Lines), Not(HasSubstr("\x1b")));
-  EXPECT_THAT(why_text(story(), "PAIR", "a", WhyStyle::Markdown), Not(HasSubstr("\x1b")));
+  EXPECT_THAT(why_text(story(), "PAIR", "a", WhyStyle::Lines, {}), Not(HasSubstr("\x1b")));
+  EXPECT_THAT(why_text(story(), "PAIR", "a", WhyStyle::Markdown, {}), Not(HasSubstr("\x1b")));
 }
 
 TEST(WhyTest, SaysSoWhereNothingHasStoppedAndTakesNoHarmFromAnyOtherForm) {
   for (const auto style : {WhyStyle::Lines, WhyStyle::Markdown}) {
-    EXPECT_THAT(why_text({{"causes", nlohmann::json::array()}}, "PAIR", "a.db", style), HasSubstr("a.db tells"));
-    EXPECT_THAT(why_text(nullptr, "PAIR", "a.db", style), HasSubstr("a.db tells"));
+    EXPECT_THAT(why_text({{"causes", nlohmann::json::array()}}, "PAIR", "a.db", style, {}), HasSubstr("a.db tells"));
+    EXPECT_THAT(why_text(nullptr, "PAIR", "a.db", style, {}), HasSubstr("a.db tells"));
   }
   auto hostile = story();
   hostile["title"] = "\x1b[2J";
   hostile["causes"][0] = {{"text", 7}, {"after_ms", "x"}};
   hostile["stopped"] = 7;
-  EXPECT_THAT(why_text(hostile, "PAIR", "a.db", WhyStyle::Lines), Not(HasSubstr("\x1b")));
-  EXPECT_THAT(why_text(hostile, "PAIR", "a.db", WhyStyle::Markdown), Not(HasSubstr("\x1b")));
+  EXPECT_THAT(why_text(hostile, "PAIR", "a.db", WhyStyle::Lines, {}), Not(HasSubstr("\x1b")));
+  EXPECT_THAT(why_text(hostile, "PAIR", "a.db", WhyStyle::Markdown, {}), Not(HasSubstr("\x1b")));
 }
 
 }  // namespace

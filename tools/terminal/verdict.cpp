@@ -75,16 +75,15 @@ std::string inhibition_words(std::uint32_t inhibited) {
 }
 
 std::vector<std::string> way_up(const Overview& overview, const descriptor::Mission& mission) {
-  const std::string name = overview.mode == overview.initial_mode ? overview.usual_mode : overview.mode;
-  const auto mode = std::ranges::find(mission.modes, name, &descriptor::Mode::name);
+  const descriptor::Mode* const mode = descriptor::mode_up(mission, overview.mode, overview.usual_mode);
   std::vector<std::string> commands;
-  if (mode == mission.modes.end()) return commands;
+  if (mode == nullptr) return commands;
   for (const auto& step : mode->commission) {
     const auto member = std::ranges::find(overview.members, step.subsystem, &Overview::Member::name);
     if (member != overview.members.end() && !member->runs)
       commands.push_back(fmt::format("hirosco tc {} SET_STATE 0", member->name));
   }
-  commands.push_back("hirosco mode " + name);
+  commands.push_back("hirosco mode " + mode->name);
   return commands;
 }
 

@@ -41,7 +41,8 @@ struct Judgement {
 /// is not well, and how it is ended is said.
 void miss_keeper(Judgement& judged);
 
-/// The commands that bring up again what is down, in turn: who does not run is started before the mode comes up. Empty: there is no such mode.
+/// The commands that bring up again what is down, in turn: who does not run is started before the mode comes up (descriptor::mode_up()). Empty: no
+/// mode brings anybody up.
 [[nodiscard]] std::vector<std::string> way_up(const Overview& overview, const descriptor::Mission& mission);
 
 /// The same for programs: {"mission", "verdict", "line", "findings": [{"severity", "subject", "text"}], "way_up": `commands`}, the verdict by the

@@ -117,9 +117,13 @@ TEST(VerdictTest, TheWayUpStartsFirstWhoDoesNotRun) {
   EXPECT_THAT(way_up(craft, mission), ElementsAre("hirosco mode coupled"));
   craft.members[1] = {.name = "HAND", .wanted = "Operational"};
   EXPECT_THAT(way_up(craft, mission), ElementsAre("hirosco tc HAND SET_STATE 0", "hirosco mode coupled"));
-  craft.mode = craft.initial_mode = "commissioning";
+  mission.initial_mode = craft.mode = craft.initial_mode = "commissioning";
   EXPECT_THAT(way_up(craft, mission), ElementsAre("hirosco tc HAND SET_STATE 0", "hirosco mode coupled"))
       << "the usual one";
+  craft.mode = "safe";
+  mission.modes.emplace_back().name = craft.mode;
+  EXPECT_THAT(way_up(craft, mission), ElementsAre("hirosco tc HAND SET_STATE 0", "hirosco mode coupled"))
+      << "this one commissions nobody";
   craft.usual_mode.clear();
   EXPECT_THAT(way_up(craft, mission), IsEmpty());
 }

@@ -241,7 +241,7 @@ const server = createServer(async (request, response) => {
       return {packets: lines.filter((one) => words.every((word) => one.text.toLowerCase().includes(word))).slice(0, +(query.get('limit') ?? 200)), before: null};
     },
     // Told, and stopped nobody: no banner over the tests of everything else.
-    '/api/why': () => state === 'stopped' ? {...flight.stop, t: stopped_t, causes: flight.stop.causes.map((one) => ({...one, t: stopped_t + one.after_ms / 1000}))} : ({t: now - 60, title: 'Something happened.', detail: '', advice: 'Look into it.', plan: 'note', mode: status().mode, severity: 'medium', stopped: [],
+    '/api/why': () => state === 'stopped' ? {...flight.stop, t: stopped_t, causes: flight.stop.causes.map((one) => ({...one, t: stopped_t + one.after_ms / 1000}))} : ({t: now - 60, title: 'Something happened.', detail: '', advice: 'Look into it.', plan: 'note', mode: status().mode, mode_up: null, severity: 'medium', stopped: [],
       causes: archive.filter((one) => one.type === 'event' && one.severity === 'high').slice(-3).map((one, i) => ({t: one.t, after_ms: i, severity: 'high', text: `${one.subsystem} reports ${one.name}`}))}),
     '/api/faults': () => {
       if (body.line === 'burst') for (let i = 0; i < burst_events; ++i) tell({...list.find((one) => one.type === 'event'), t: now, id: 3, text: `burst ${i}`});

@@ -98,7 +98,7 @@ export function fallen_text(name) {
 export const rising = signal(null);
 export async function bring_up_again() {
   const told = story.value;
-  const mode = mission.value.modes.find((one) => one.name === told?.mode && one.commission?.length) ??
+  const mode = mission.value.modes.find((one) => one.name === told?.mode_up) ??
     mission.value.modes.find((one) => one.name === mission.value.start_mode);
   if (!mode || rising.value?.running) return;
   rising.value = {running: true, steps: [], mode: mode.name};

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <utility>
 
@@ -12,8 +13,9 @@ namespace {
 
 template <class Range, class Key, class Projection>
 auto find_in(const Range& range, const Key& key, Projection projection) noexcept -> decltype(&*range.begin()) {
-  const auto found = std::ranges::find(range, key, projection);
-  return found == range.end() ? nullptr : &*found;
+  for (const auto& each : range)
+    if (std::invoke(projection, each) == key) return &each;
+  return nullptr;
 }
 
 }  // namespace
@@ -173,6 +175,16 @@ const MissionSubsystem* Mission::find_subsystem(std::uint16_t apid) const noexce
 const Mode* Mission::find_mode(std::string_view mode) const noexcept { return find_in(modes, mode, &Mode::name); }
 const MissionLink* Mission::find_link(std::uint8_t link) const noexcept {
   return find_in(links, link, &MissionLink::id);
+}
+
+const Mode* mode_up(const Mission& mission, std::string_view now, std::string_view usual) noexcept {
+  const auto brings_up = [&](std::string_view name) -> const Mode* {
+    const Mode* const mode = mission.find_mode(name);
+    return mode != nullptr && !mode->commission.empty() ? mode : nullptr;
+  };
+  if (now != mission.initial_mode)
+    if (const Mode* const mode = brings_up(now)) return mode;
+  return brings_up(usual);
 }
 
 double cycle_share(const SubsystemDescriptor& subsystem, const Configuration* in_force) noexcept {

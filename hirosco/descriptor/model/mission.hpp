@@ -274,6 +274,10 @@ struct Mission {
   [[nodiscard]] const MissionLink* find_link(std::uint8_t link) const noexcept;
 };
 
+/// The mode that brings a craft up again which is in the mode `now`: that one, or the `usual` one where it is the initial one or commissions
+/// nobody. Null: neither brings anybody up.
+[[nodiscard]] const Mode* mode_up(const Mission& mission, std::string_view now, std::string_view usual) noexcept;
+
 /// Of what this mode needs and excludes that which does not hold with everybody Offline, in words: as a flight begins.
 [[nodiscard]] std::vector<std::string> against_beginning(const Mode& mode);
 /// Why commissioning cannot enter this mode from the initial one, with everybody Offline, in words; empty: it can.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -80,11 +81,7 @@ struct Driven {
     const descriptor::SubsystemDescriptor& descriptor = rig.descriptor();
     const auto its = std::ranges::find(descriptor.parameters, name, [](const auto& each) { return each.field.name; });
     ASSERT_NE(its, descriptor.parameters.end()) << name;
-    std::vector<std::byte> data(1 + 4 + its->field.octets());
-    OctetWriter writer{data};
-    writer.put(std::uint8_t{1}).put(ParameterId{descriptor.id, its->field.type, its->id}.wire());
-    for (std::uint32_t i = 0; i < its->field.values(); ++i) writer.put(value);
-    const auto request = rig.send(20, 3, data);
+    const auto request = rig.set_with(name, std::vector<std::optional<Value>>(its->field.values(), value));
     cycle(3);
     ASSERT_EQ(rig.outcome(request), "1 3 7") << name;
   }

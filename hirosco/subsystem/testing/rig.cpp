@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "hirosco/descriptor/read/read.hpp"
+#include "hirosco/pus/requests.hpp"
 #include "hirosco/pus/testing/report_shape.hpp"
 #include "hirosco/subsystem/testing/inside.hpp"
 
@@ -61,6 +63,27 @@ std::optional<std::size_t> value_octets(const descriptor::SubsystemDescriptor& s
   return OctetReader{report.data}.get<std::uint16_t>();
 }
 
+[[nodiscard]] std::string outcome_in(const std::vector<Telemetry>& telemetry, Sent request) {
+  std::string text;
+  for (const Telemetry& report : telemetry) {
+    if (report.service != 1 || report.data.size() < 4) continue;
+    OctetReader reader{report.data};
+    if (reader.get<std::uint32_t>() != request.id) continue;
+    if (!text.empty()) text += ' ';
+    text += std::to_string(report.subtype);
+    if (report.data.size() > 4) text.append(1, ':').append(hex(Octets{report.data}.subspan(4)));
+  }
+  return text;
+}
+
+[[nodiscard]] std::vector<std::string> reports_in(const std::vector<Telemetry>& telemetry, std::uint8_t service,
+                                                  std::uint8_t subtype) {
+  std::vector<std::string> found;
+  for (const Telemetry& report : telemetry)
+    if (report.service == service && report.subtype == subtype) found.push_back(hex(report.data));
+  return found;
+}
+
 [[nodiscard]] st128::Agreement in_memory(std::vector<st128::OfferedField> fields, Duration producer_period,
                                          Duration consumer_period) {
   return {.method = LinkMethod::SharedMemory,
@@ -71,7 +94,21 @@ std::optional<std::size_t> value_octets(const descriptor::SubsystemDescriptor& s
           .fields = std::move(fields)};
 }
 
-/// Application data of TC[8,1] by the function's name. Whoever sends a telecommand may not know the ranges; the subsystem does, and refuses.
+/// What is sent may be outside of its range. Whoever sends a telecommand may not know the ranges; the subsystem does, and refuses.
+[[nodiscard]] descriptor::Function unbounded(descriptor::Function request) {
+  for (auto& argument : request.arguments) {
+    argument.field.minimum = argument.field.maximum = std::nullopt;
+    argument.texts.clear();
+  }
+  return request;
+}
+
+[[nodiscard]] std::runtime_error no_carrier(const std::string& what, const Error& error, std::size_t values) {
+  return std::runtime_error{what + ": " + error.text + ": no telecommand can carry it; give " + std::to_string(values) +
+                            " values of the types that the descriptor says"};
+}
+
+/// Application data of TC[8,1] by the function's name.
 [[nodiscard]] std::vector<std::byte> call_data(const descriptor::SubsystemDescriptor& subsystem,
                                                std::string_view function,
                                                const std::vector<std::optional<Value>>& arguments) {
@@ -85,17 +122,41 @@ std::optional<std::size_t> value_octets(const descriptor::SubsystemDescriptor& s
     throw std::runtime_error{"Rig::call: " + subsystem.name + " has no function '" + std::string{function} +
                              "'; its descriptor has:" + names};
   }
-  descriptor::Function unbounded = *found;
-  for (auto& argument : unbounded.arguments) {
-    argument.field.minimum = argument.field.maximum = std::nullopt;
-    argument.texts.clear();
-  }
-  auto data = pus::encode_call(unbounded, arguments);
+  auto data = pus::encode_call(unbounded(*found), arguments);
   if (!data)
-    throw std::runtime_error{"Rig::call: " + found->name + " of " + subsystem.name + ": " + data.error().text +
-                             ": no telecommand can carry it; give " + std::to_string(pus::value_count(*found)) +
-                             " values of the types that the descriptor says"};
+    throw no_carrier("Rig::call: " + found->name + " of " + subsystem.name, data.error(), pus::value_count(*found));
   return std::move(*data);
+}
+
+/// Application data of TC[20,3] with one parameter, by the name of it or of a part of it.
+[[nodiscard]] std::vector<std::byte> set_data(const descriptor::SubsystemDescriptor& subsystem,
+                                              std::string_view parameter,
+                                              const std::vector<std::optional<Value>>& values) {
+  std::string names;
+  for (const descriptor::Function& request : pus::requests_of(subsystem)) {
+    if (!request.name.starts_with(pus::setting_prefix)) continue;
+    const std::string name = request.name.substr(pus::setting_prefix.size());
+    names += " " + name;
+    if (name != parameter) continue;
+    auto data = pus::encode_request(unbounded(request), values);
+    if (!data) throw no_carrier("Rig::set: " + name + " of " + subsystem.name, data.error(), pus::value_count(request));
+    return std::move(*data);
+  }
+  throw std::runtime_error{"Rig::set: " + subsystem.name + " has no writable parameter '" + std::string{parameter} +
+                           "'; its descriptor has:" + (names.empty() ? " none" : names)};
+}
+
+[[nodiscard]] std::string count_of(std::uint64_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+[[nodiscard]] std::string in_words(const AuthorUses& done, const descriptor::SubsystemDescriptor& subsystem) {
+  const std::string where =
+      done.node != nullptr ? done.node : "the handler of " + subsystem.functions[done.function].name;
+  return where + " of " + subsystem.name +
+         " does in the cycle what real time forbids: " + count_of(done.uses.heap, "use") + " of the heap, " +
+         count_of(done.uses.locks, "lock") + ", " + count_of(done.uses.outputs, "output") +
+         "; do it before or in service(), take from pools; a debugger stops at it by `break hirosco_forbidden_use`";
 }
 
 }  // namespace
@@ -207,6 +268,9 @@ void Rig::cycle(int count) {
     if (!supervisor_silent) permit.heartbeat.fetch_add(1);
     clock.advance(demand.period);
     static_cast<void>(subsystem.cycle_step(clock.now()));
+    const AuthorUses done = std::exchange(subsystem.cycle().author_uses(), {});
+    if (cycles_watched && done.uses != RealtimeUses{})
+      throw std::runtime_error{"Rig::cycle: " + in_words(done, subsystem.descriptor())};
   }
 }
 
@@ -240,6 +304,10 @@ Sent Rig::call(std::string_view function, std::initializer_list<double> argument
 
 Sent Rig::call_with(std::string_view function, const std::vector<std::optional<Value>>& arguments) {
   return send(8, 1, call_data(subsystem.descriptor(), function, arguments));
+}
+
+Sent Rig::set_with(std::string_view parameter, const std::vector<std::optional<Value>>& values) {
+  return send(20, 3, set_data(subsystem.descriptor(), parameter, values));
 }
 
 void Rig::answer(std::uint16_t from, std::uint8_t service, std::uint8_t subtype, Octets data,
@@ -286,24 +354,10 @@ void Rig::bring_to(State target, std::uint8_t id) {
   if (target == State::Operational) step(State::Operational);
 }
 
-std::string Rig::outcome(Sent request) const {
-  std::string text;
-  for (const Telemetry& report : telemetry) {
-    if (report.service != 1 || report.data.size() < 4) continue;
-    OctetReader reader{report.data};
-    if (reader.get<std::uint32_t>() != request.id) continue;
-    if (!text.empty()) text += ' ';
-    text += std::to_string(report.subtype);
-    if (report.data.size() > 4) text.append(1, ':').append(hex(Octets{report.data}.subspan(4)));
-  }
-  return text;
-}
+std::string Rig::outcome(Sent request) const { return outcome_in(telemetry, request); }
 
 std::vector<std::string> Rig::reports(std::uint8_t service, std::uint8_t subtype) const {
-  std::vector<std::string> found;
-  for (const Telemetry& report : telemetry)
-    if (report.service == service && report.subtype == subtype) found.push_back(hex(report.data));
-  return found;
+  return reports_in(telemetry, service, subtype);
 }
 
 int Rig::events(std::uint16_t id) const {

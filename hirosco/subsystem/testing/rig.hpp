@@ -79,7 +79,9 @@ class Rig {
   // --- stepping -----------------------------------------------------------------------------------------------------
   /// One step of the service loop; collects what the subsystem sent. The supervisor's heart beats unless it is silent.
   void service();
-  /// What a cycle thread does: runs `count` cycles of the configuration while they are wanted, else parks.
+  /// What a cycle thread does: runs `count` cycles of the configuration while they are wanted, else parks. Throws std::runtime_error, which fails
+  /// the test, where the author's code used the heap, locked or put out in one: which node or handler, and how often (docs/adr/0230). Seen where
+  /// the hook is linked, as hirosco_subsystem() has it come with NAME_objects.
   void cycle(int count = 1);
   /// Both in turn until nothing can be under way any more.
   void settle(int rounds = 12);
@@ -96,6 +98,11 @@ class Rig {
   Sent call(std::string_view function, std::initializer_list<double> arguments = {});
   /// The same with arguments of any type, arrays element by element.
   Sent call_with(std::string_view function, const std::vector<std::optional<Value>>& arguments);
+  /// Sets a writable parameter by its name, or a part of one ("LAMP.LEVEL", "LAMP"), by TC[20,3] with the id on the wire that goes with it;
+  /// as of call() values outside the range are sent and refused, and std::runtime_error is thrown where nothing can be sent.
+  Sent set(std::string_view parameter, double value) { return set_with(parameter, {value}); }
+  /// The same with values of any type, of an array or a structure one behind the other.
+  Sent set_with(std::string_view parameter, const std::vector<std::optional<Value>>& values);
   Sent set_state(State target) { return call("SET_STATE", {static_cast<double>(target)}); }
   Sent configure(std::uint8_t id) { return call("CONFIGURE", {static_cast<double>(id)}); }
   /// Sends, settles, and gives outcome().
@@ -161,6 +168,7 @@ class Rig {
   std::vector<Raised> raised;  ///< told to the supervisor, whatever ST[05] is told
   std::vector<Asked> asked;
   bool supervisor_silent{false};
+  bool cycles_watched{true};  ///< false: the test's own code runs in cycles and may do what an author's must not
   std::uint32_t link_epoch{5};  ///< of the next attach()
 
  private:

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
-"""arm.py HOST:PORT HOST:PORT: frames and second inhibit of a six-joint arm, by UDP (docs/guide/your_robot.md). drives.py is yours to replace."""
-import binascii, select, socket, struct, sys, time
+"""arm.py HOST:PORT HOST:PORT|NAME: frames and second inhibit of a six-joint arm, by UDP or by a UNIX socket NAME (docs/guide/your_robot.md). drives.py is yours to replace."""
+import binascii, os, select, socket, struct, sys, time
 
 from drives import JOINTS, Drives
 
@@ -59,11 +59,17 @@ class Arm:
             self.drives.stop()
         self.drives.step(self.wanted, CYCLE)
 
+def bound(address):
+    host, _, port = address.rpartition(":")
+    way = socket.socket(socket.AF_INET if host else socket.AF_UNIX, socket.SOCK_DGRAM)
+    if not host and os.path.exists(address):                   # a file of this folder, which one that was killed has left
+        os.unlink(address)
+    way.bind((host, int(port)) if host else address)
+    return way
+
 def main(*addresses):
-    arm, due, ways = Arm(Drives()), time.monotonic(), {}
-    for address, answer in zip(addresses, (arm.take, arm.inhibit)):
-        ways[socket.socket(type=socket.SOCK_DGRAM)] = answer
-        list(ways)[-1].bind((address.split(":")[0], int(address.split(":")[1])))
+    arm, due = Arm(Drives()), time.monotonic()
+    ways = {bound(address): answer for address, answer in zip(addresses, (arm.take, arm.inhibit))}
     while True:
         for way in select.select(list(ways), [], [], max(0, due - time.monotonic()))[0]:
             try:

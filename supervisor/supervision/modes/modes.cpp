@@ -23,6 +23,20 @@ namespace {
   return found != modes.end() ? &*found : nullptr;
 }
 
+/// The words of the failure, which a notice cuts: which mode, because of whom as far as whole words of it fit, and where the rest of it stands.
+[[nodiscard]] std::string not_reached(std::string_view mode, std::string_view why) {
+  constexpr std::string_view tail = "; hirosco log";
+  constexpr std::size_t most = pus::FailureNotice::max_reason_text_octets - tail.size();
+  std::string text =
+      fmt::format("mode {} not reached", mode.substr(0, most - std::string_view{"mode  not reached"}.size()));
+  // What it is about; the answer to the step that failed is in the log.
+  std::string_view whom = why.substr(0, why.find_first_of(":;"));
+  const std::size_t room = most - std::min(most, text.size() + std::string_view{": "}.size());
+  if (whom.size() > room) whom = whom.substr(0, std::min(whom.find_last_of(' ', room), whom.size()));
+  if (!whom.empty() && whom.size() <= room) text.append(": ").append(whom);
+  return text.append(tail);
+}
+
 }  // namespace
 
 void Modes::provide() {
@@ -186,8 +200,7 @@ void Modes::fall_back(std::string_view why, StatesFollow states) {
   if (const auto* initial = craft_.mission.find_mode(craft_.mission.initial_mode)) enter(*initial);
   if (const auto call = std::exchange(call_, std::nullopt)) {
     begin_pause(*call);
-    parts_.own.abort(*call, pus::FailureCode::ExecutionError, "the craft is in its initial mode; why: the story, mode",
-                     mode.id);
+    parts_.own.abort(*call, pus::FailureCode::ExecutionError, not_reached(mode.name, why).c_str());
   }
 }
 

@@ -294,11 +294,34 @@ TEST_F(ModeChangeTest, WhoeverFailsOnTheWayEndsItInTheInitialModeWithEverybodyOf
   ASSERT_FALSE(sent.empty());
   verify(hand, sent.front().request, 8, pus::FailureCode::DeviceError);
   go_on();
-  EXPECT_NE(end, "done");
+  EXPECT_EQ(end, "execution error: mode narrow not reached: HAND PostOperational; hirosco log");
   EXPECT_EQ(craft.mode->name, "open");
   EXPECT_EQ(craft.changing_to, nullptr);
   for (const std::uint16_t apid : {arm, hand}) EXPECT_TRUE(fenced(apid)) << apid;
   EXPECT_TRUE(was_told("the change to mode narrow stopped: HAND PostOperational: "));
+}
+
+/// A reason has 64 octets: of what does not fit whole words are left out, and what to do never is.
+TEST_F(ModeChangeTest, WhoAskedIsToldWhichModeWasNotReachedBecauseOfWhomAndWhatToDoHoweverLongTheNamesAre) {
+  const auto told = [&](std::size_t letters, std::string_view why) {
+    TearDown();
+    std::destroy_at(this);
+    std::construct_at(this);
+    SetUp();
+    craft.mission.modes[1].name.assign(letters, 'm');
+    begin();
+    static_cast<void>(parts.under_way.cancel(why));
+    go_on();
+    return end.substr(std::string_view{"execution error: "}.size());
+  };
+  EXPECT_EQ(told(6, "SAFE_ALL"), "mode mmmmmm not reached: SAFE_ALL; hirosco log");
+  EXPECT_EQ(told(9, "CORONAGRAPH SafeOperational: timeout"), "mode mmmmmmmmm not reached: CORONAGRAPH; hirosco log");
+  EXPECT_EQ(told(34, "ARM Operational: timeout"), "mode " + std::string(34, 'm') + " not reached; hirosco log");
+  for (std::size_t letters = 1; letters <= 64; ++letters) {
+    const std::string words = told(letters, "one of several reasons; and another one");
+    EXPECT_LE(words.size(), pus::FailureNotice::max_reason_text_octets) << words;
+    EXPECT_THAT(words, ::testing::EndsWith("; hirosco log"));
+  }
 }
 
 TEST_F(ModeChangeTest, WhoFellBackToAnotherConfigurationOnTheWayIsNotWhereTheModeWantsIt) {
