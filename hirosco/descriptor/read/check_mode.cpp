@@ -2,11 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hirosco/data_transfer/link/latest_link.hpp"
+#include "hirosco/data_transfer/link/loaned_link.hpp"
+#include "hirosco/data_transfer/link/queued_link.hpp"
+#include "hirosco/data_transfer/wire_layout.hpp"
+#include "hirosco/descriptor/model/common_link_way.hpp"
 #include "hirosco/descriptor/model/response_time.hpp"
 #include "hirosco/descriptor/read/detail/mission_link_reader.hpp"
 #include "hirosco/descriptor/read/detail/mode_parts.hpp"
 
-/// What a mode needs to be flown as it is written: links, power, processor.
+/// What a mode needs to be flown as it is written: links and their memory, power, processor.
 namespace hirosco::descriptor::detail {
 namespace {
 
@@ -40,6 +52,44 @@ std::string refuse_link(const Mission& mission, const Mode& mode, const MissionL
   return mismatch({*producer.subsystem, *producer.configuration, *provided, *consumer.subsystem,
                    *consumer.configuration, *required},
                   link.method);
+}
+
+/// Of a link that comes up: by what, and both ends.
+struct LinkInMode {
+  LinkEnds ends;
+  LinkWay way;
+};
+
+std::optional<LinkInMode> link_in(const Mission& mission, const Mode& mode, const MissionLink& link) {
+  if (!refuse_link(mission, mode, link).empty()) return std::nullopt;
+  const auto consumer = commissioned_in(mission, mode, link.to), producer = commissioned_in(mission, mode, link.from);
+  const auto& provides = *std::ranges::find(producer.configuration->provides, link.provides, &Provides::name);
+  const auto& wanted = *std::ranges::find(consumer.configuration->requires_, link.requires_, &Requires::name);
+  LinkTerms offered = provides.terms;
+  if (link.method) offered.methods = {*link.method};
+  const auto way = first_common_way(offered, wanted.terms, wanted.starts, carried_here);
+  if (!way) return std::nullopt;
+  return LinkInMode{
+      {*producer.subsystem, *producer.configuration, provides, *consumer.subsystem, *consumer.configuration, wanted},
+      *way};
+}
+
+/// As the handshake makes it.
+std::uint64_t memory_octets(const LinkInMode& link) {
+  if (link.way.method != LinkMethod::SharedMemory) return 0;
+  std::size_t packed = 0;
+  NaturalLayout natural;
+  for (const Field& field : fields_of_sample(link.ends.producer, link.ends.provides)) {
+    packed += field.octets();
+    natural.add(field.type, field.count);
+  }
+  const auto payload = static_cast<std::uint32_t>(packed);
+  switch (link.way.kind) {
+    case LinkKind::Latest: return link_memory_octets(payload);
+    case LinkKind::Queued: return queued_memory_octets(payload, link.ends.requires_.depth);
+    case LinkKind::Loaned: return loaned_memory_octets(static_cast<std::uint32_t>(natural.octets()));
+  }
+  return 0;
 }
 
 }  // namespace
@@ -127,6 +177,32 @@ void check_established(const xml::Element& element, const Mode& mode, const Miss
     if (!first && before->second != link->id)
       problems.add(*at, "E0323", fmt::format("links {} and {} both fill '{}'", before->second, link->id, before->first),
                    "one link into each required set");
+  }
+}
+
+void check_shared_memory(const xml::Element& element, const Mode& mode, const Mission& mission, Problems& problems) {
+  std::map<std::string, std::uint64_t> octets;
+  std::set<std::pair<std::string, std::string>> lent;
+  for (const std::uint8_t id : std::set<std::uint8_t>{mode.establish.begin(), mode.establish.end()}) {
+    const MissionLink* const link = mission.find_link(id);
+    const auto found = link == nullptr ? std::nullopt : link_in(mission, mode, *link);
+    if (!found) continue;
+    const std::uint64_t taken = memory_octets(*found);
+    octets[link->to] += taken;
+    // A set that is lent has one memory for all its consumers (docs/adr/0094).
+    const bool more = found->way.kind != LinkKind::Loaned || lent.emplace(link->from, link->provides).second;
+    if (more) octets[link->from] += taken;
+  }
+  for (const auto& [name, sum] : octets) {
+    const auto* member = mission.find_subsystem(name);
+    const auto most_kb = amount_of(member->subsystem.resources.most, Resource::SharedMemory);
+    if (!most_kb || sum <= std::uint64_t{*most_kb} * 1024) continue;
+    problems.add(
+        element, "E0377",
+        fmt::format("in mode {} the links of '{}' take {} octets of shared memory", in_quotes(mode.name), name, sum),
+        fmt::format("at most {}, the shared memory that it says: shorter queues, smaller samples, or "
+                    "shared_memory_kB=\"{}\" or more in <Resources>",
+                    std::uint64_t{*most_kb} * 1024, (sum + 1023) / 1024));
   }
 }
 

@@ -71,13 +71,18 @@ bool carried_here(LinkMethod method, LinkKind kind, bool wakes) {
   return mechanism != nullptr && (!wakes || mechanism->wakes());
 }
 
+std::vector<Field> fields_of_sample(const SubsystemDescriptor& producer, const Provides& set) {
+  if (set.terms.lent()) return set.fields;
+  std::vector<Field> fields;
+  for (const ParameterRef& reference : set.parameters)
+    std::ranges::move(fields_of(producer, reference), std::back_inserter(fields));
+  return fields;
+}
+
 std::string mismatch(const LinkEnds& ends, std::optional<LinkMethod> method) {
   const auto& [producer, giving, provides, consumer, taking, requires_] = ends;
-  std::vector<Field> offered;
-  for (const ParameterRef& reference : provides.parameters)
-    std::ranges::move(fields_of(producer, reference), std::back_inserter(offered));
+  const std::vector<Field> offered = fields_of_sample(producer, provides);
   const bool lent = provides.terms.lent() && requires_.terms.lent();
-  if (provides.terms.lent()) offered = provides.fields;
   for (const Field& wanted : requires_.fields) {
     const auto found = std::ranges::find(offered, wanted.name, &Field::name);
     if (found == offered.end()) return fmt::format("field '{}' is not in the provided set", wanted.name);

@@ -63,6 +63,7 @@ void ModeReader::read_mode(const xml::Element& element) {
     check_cycles(element, mode, mission_, problems_);
     check_required(mode, mission_, problems_);
     check_established(element, mode, mission_, problems_);
+    check_shared_memory(element, mode, mission_, problems_);
   }
   mission_.modes.push_back(std::move(mode));
 }

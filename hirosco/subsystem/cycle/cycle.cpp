@@ -121,6 +121,7 @@ void CycleLoop::begin_self_test(const CycleCommand& command) noexcept {
 
 void CycleLoop::run_function(const CycleCommand& command) noexcept {
   pus::ArgumentReader reader{parts_.descriptor.functions[command.index].arguments, command.arguments};
+  const AuthorCall watched{author_uses_, nullptr, command.index};
   const Outcome outcome = functions_[command.index](reader, Call{command.request});
   switch (outcome.kind) {
     case Outcome::Kind::Refused:
@@ -135,6 +136,7 @@ void CycleLoop::run_function(const CycleCommand& command) noexcept {
 }
 
 void CycleLoop::reconfigure(Reconfiguration& wanted, TimePoint planned) noexcept {
+  const AuthorCall watched{author_uses_, "bumpless()"};
   if (!bumpless_change_.begin(wanted, planned)) return;
   begin_counting(*wanted.to);
   parts_.vital.period_ns.store(static_cast<std::uint64_t>(wanted.to->sampling.count()), std::memory_order_relaxed);
@@ -180,12 +182,15 @@ void CycleLoop::run_node(TimePoint planned) noexcept {
                     .active = control_.active()};
   first_ = false;
   Result<> result;
-  switch (control_.state()) {
-    case State::PreOperational: result = parts_.author.pre_operational(cycle); break;
-    case State::SafeOperational: result = parts_.author.safe_operational(cycle); break;
-    case State::Operational: result = parts_.author.operational(cycle); break;
-    case State::ErrorOperational: result = parts_.author.error_operational(cycle); break;
-    default: break;
+  {
+    const AuthorCall watched{author_uses_, control_.state()};
+    switch (control_.state()) {
+      case State::PreOperational: result = parts_.author.pre_operational(cycle); break;
+      case State::SafeOperational: result = parts_.author.safe_operational(cycle); break;
+      case State::Operational: result = parts_.author.operational(cycle); break;
+      case State::ErrorOperational: result = parts_.author.error_operational(cycle); break;
+      default: break;
+    }
   }
   if (control_.failed()) return;
   if (result || control_.state() == State::ErrorOperational) return run_self_test(cycle);
@@ -199,6 +204,7 @@ void CycleLoop::run_node(TimePoint planned) noexcept {
 void CycleLoop::run_self_test(Cycle cycle) noexcept {
   if (!self_test_.running()) return;
   cycle.first = self_test_.first(cycle.planned);
+  const AuthorCall watched{author_uses_, "self_test()"};
   self_test_.take(parts_.author.self_test(cycle), cycle.planned);
 }
 

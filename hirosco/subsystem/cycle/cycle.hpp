@@ -24,6 +24,7 @@
 #include "hirosco/subsystem/cycle/loop_rings.hpp"
 #include "hirosco/subsystem/cycle/own_writes.hpp"
 #include "hirosco/subsystem/cycle/permit_watch.hpp"
+#include "hirosco/subsystem/cycle/realtime_watch.hpp"
 #include "hirosco/subsystem/cycle/reconfiguration.hpp"
 #include "hirosco/subsystem/cycle/report_writer.hpp"
 #include "hirosco/subsystem/cycle/self_test_run.hpp"
@@ -95,6 +96,9 @@ class CycleLoop final : private pus::SampleSource {
   /// What may start the next one before it is due.  Realtime: wait-free. Thread: cycle.
   [[nodiscard]] const CycleWait& wait() const noexcept { return pace_.wait(); }
 
+  /// What the author's code did in cycles that have been, the first of it; who has looked empties it.  Thread: the cycle's, between two of them.
+  [[nodiscard]] AuthorUses& author_uses() noexcept { return author_uses_; }
+
   // --- the author, from inside the cycle --------------------------------------------------------------------------
   [[nodiscard]] ReportWriter& reports() noexcept { return reports_; }
   void inhibit(Inhibition reason) noexcept { control_.inhibit(reason); }
@@ -134,6 +138,7 @@ class CycleLoop final : private pus::SampleSource {
   std::atomic<const descriptor::Configuration*> in_force_{nullptr};
   bool first_{true};
   std::uint64_t count_{0};
+  AuthorUses author_uses_;
 };
 
 }  // namespace hirosco

@@ -5,6 +5,17 @@
 #include <algorithm>
 
 namespace hirosco {
+namespace {
+
+[[nodiscard]] const char* name_of_node(State state) noexcept {
+  if (state == State::PreOperational) return "pre_operational()";
+  if (state == State::SafeOperational) return "safe_operational()";
+  return state == State::Operational ? "operational()" : "error_operational()";
+}
+
+}  // namespace
+
+AuthorCall::AuthorCall(AuthorUses& first, State state) noexcept : AuthorCall{first, name_of_node(state)} {}
 
 void RealtimeWatch::begin(Duration sampling) noexcept {
   pause_cycles_ = static_cast<std::uint64_t>(std::max<std::int64_t>(Duration{1s} / sampling, 1));

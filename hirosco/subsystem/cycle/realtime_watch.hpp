@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "hirosco/subsystem/author/states.hpp"
 #include "hirosco/utilities/allocation_guard.hpp"
 #include "hirosco/utilities/time.hpp"
 
@@ -26,6 +27,35 @@ class RealtimeWatch {
   std::uint64_t rest_cycles_{0};  ///< before it may be told again
   RealtimeUses sum_;
   RealtimeUses told_;
+};
+
+/// The first piece of an author's code that did within a cycle what real time forbids, for who tests it (testing/rig.hpp, docs/adr/0230).
+struct AuthorUses {
+  const char* node{nullptr};  ///< "operational()"; null: the handler of a function
+  std::uint16_t function{0};  ///< then: its index in the descriptor
+  RealtimeUses uses;  ///< all 0: nothing was done
+};
+
+/// Lies around one call of an author's code within a cycle.  Realtime: wait-free. Thread: cycle.
+class AuthorCall {
+ public:
+  /// `node`, `function`: as in AuthorUses. \param first outlives this, and is kept once it has something.
+  AuthorCall(AuthorUses& first, const char* node, std::uint16_t function = 0) noexcept
+      : first_{first}, node_{node}, function_{function} {}
+  /// Of the node of a state that has a cyclic one.
+  AuthorCall(AuthorUses& first, State state) noexcept;
+  ~AuthorCall() {
+    const RealtimeUses uses = scope_.uses();
+    if (uses != RealtimeUses{} && first_.uses == RealtimeUses{}) first_ = {node_, function_, uses};
+  }
+  AuthorCall(const AuthorCall&) = delete;
+  AuthorCall& operator=(const AuthorCall&) = delete;
+
+ private:
+  AuthorUses& first_;
+  const char* node_;
+  std::uint16_t function_;
+  RealtimeScope scope_;
 };
 
 /// Uses of the heap once a subsystem is commissioned, as a parameter of every subsystem: HEAP_USES

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hirosco/data_transfer/address/internet_address.hpp"
 #include "hirosco/descriptor/read/detail/mission_draft.hpp"
@@ -23,6 +24,8 @@ struct LinkEnds {
 
 /// What the mechanisms of this platform carry.
 [[nodiscard]] bool carried_here(LinkMethod method, LinkKind kind, bool wakes);
+/// What a sample of the set has.
+[[nodiscard]] std::vector<Field> fields_of_sample(const SubsystemDescriptor& producer, const Provides& set);
 /// Why the producer's set cannot feed the consumer's, by this method where there is one; empty when it can. By the words of the
 /// handshake in flight, which decides anew.
 [[nodiscard]] std::string mismatch(const LinkEnds& ends, std::optional<LinkMethod> method);

@@ -38,6 +38,8 @@ void check_start(const xml::Attribute& start, const Mode& mode, const Mission& m
 void check_power(const xml::Element& element, const Mode& mode, const Mission& mission, Problems& problems);
 /// And the one processor of all cycles.
 void check_cycles(const xml::Element& element, const Mode& mode, const Mission& mission, Problems& problems);
+/// What the links that a mode brings up take of shared memory fits what each of their ends says of it.
+void check_shared_memory(const xml::Element& element, const Mode& mode, const Mission& mission, Problems& problems);
 /// A mode brings up a link into each set that what it commissions requires.
 void check_required(const Mode& mode, const Mission& mission, Problems& problems);
 /// Both ends of a link are commissioned with the sets that it joins.

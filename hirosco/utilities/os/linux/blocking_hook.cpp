@@ -3,6 +3,7 @@
 // Stands before the C library's locks and outputs in the executables that link it, reports each use to allocation_guard and
 // goes on to the real ones. std::mutex, streams and fmt stand on them. Trying a lock is no wait, so it is not counted; nor are
 // sockets, which devices and links are spoken to by. What prints by way of another output counts more than once.
+// A program built with _FORTIFY_SOURCE prints by functions of other names, as __printf_chk for printf().
 
 #include <features.h>
 // With an optimiser the C library has some of these functions inline, which clang does not let anybody define again.
@@ -58,6 +59,7 @@ constinit Real<int(int, FILE*)> real_fputc{"fputc"};
 constinit Real<int(int, FILE*)> real_putc{"putc"};
 constinit Real<int(int)> real_putchar{"putchar"};
 constinit Real<int(FILE*, const char*, va_list)> real_vfprintf{"vfprintf"};
+constinit Real<int(FILE*, int, const char*, va_list)> real_vfprintf_chk{"__vfprintf_chk"};
 
 }  // namespace
 
@@ -156,6 +158,36 @@ int printf(const char* format, ...) {
   va_end(arguments);
   return written;
 }
+
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the C library's own names
+int __vfprintf_chk(FILE* file, int checks, const char* format, va_list arguments) {
+  hirosco_note_output();
+  return real_vfprintf_chk(file, checks, format, arguments);
+}
+
+int __vprintf_chk(int checks, const char* format, va_list arguments) {
+  hirosco_note_output();
+  return real_vfprintf_chk(stdout, checks, format, arguments);
+}
+
+int __fprintf_chk(FILE* file, int checks, const char* format, ...) {
+  hirosco_note_output();
+  va_list arguments;
+  va_start(arguments, format);
+  const int written = real_vfprintf_chk(file, checks, format, arguments);
+  va_end(arguments);
+  return written;
+}
+
+int __printf_chk(int checks, const char* format, ...) {
+  hirosco_note_output();
+  va_list arguments;
+  va_start(arguments, format);
+  const int written = real_vfprintf_chk(stdout, checks, format, arguments);
+  va_end(arguments);
+  return written;
+}
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 }  // extern "C"
 #pragma GCC visibility pop

@@ -16,6 +16,11 @@
 
 #include "hirosco/utilities/allocation_guard.hpp"
 
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): what printf() and its like are with _FORTIFY_SOURCE
+extern "C" int __printf_chk(int checks, const char* format, ...);
+extern "C" int __fprintf_chk(std::FILE* file, int checks, const char* format, ...);
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
+
 namespace hirosco {
 namespace {
 
@@ -75,6 +80,8 @@ TEST(BlockingHook, CountsEachWayToPutOut) {
   EXPECT_GE(outputs([&] { (void)std::fputc('x', nowhere); }), 1U);
   EXPECT_GE(outputs([&] { std::fprintf(nowhere, "%d", seven); }), 1U);
   EXPECT_GE(outputs([&] { std::printf("%d", seven); }), 1U);
+  EXPECT_GE(outputs([&] { __fprintf_chk(nowhere, 1, "%d", seven); }), 1U);
+  EXPECT_GE(outputs([&] { __printf_chk(1, "%d", seven); }), 1U);
   EXPECT_GE(outputs([&] { std::puts(""); }), 1U);
   EXPECT_GE(outputs([&] { fmt::print(nowhere, "{}", seven); }), 1U);
   EXPECT_GE(outputs([&] { std::cerr << seven; }), 1U);
