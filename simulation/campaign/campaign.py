@@ -9,6 +9,7 @@ sys.path.insert(0, str(HERE / "judge"))
 from descriptors import STATES, read_mission  # noqa: E402
 from judge import judge  # noqa: E402
 from draw import Draw, commands_of, faults_of, out_of_reach  # noqa: E402
+from flown_build import build_of, modules_of  # noqa: E402
 from shrink import shrink  # noqa: E402
 
 BATCH = 20                 # flights that are drawn from the same coverage
@@ -72,23 +73,28 @@ class Campaign:
         self.fault_cells = [cell for cell in faults_of(self.mission) if cell not in self.out_of_reach]
         self.failed, self.violations, self.flown, self.before_s = [], 0, 0, 0.0
         self.kept = pathlib.Path(arguments.keep) if arguments.keep else None
+        self.of = self.of_what() if self.kept else None
         if self.kept and self.kept.exists():
             self.go_on(json.loads(self.kept.read_text()))
 
     def of_what(self):
         """What a campaign that goes on must have alike."""
-        return {"mission": str(pathlib.Path(self.arguments.mission).resolve().name), "seed": self.arguments.seed, "defect": self.arguments.defect}
+        mission, fly_plan = self.arguments.mission, self.arguments.fly_plan
+        return {"mission": str(pathlib.Path(mission).resolve().name), "seed": self.arguments.seed, "defect": self.arguments.defect,
+                "build": build_of(mission, [fly_plan, *modules_of(mission, fly_plan)])}
 
     def go_on(self, kept):
-        if kept["of"] != self.of_what():
-            raise SystemExit(f"{self.kept}: is the campaign of {kept['of']}, not of {self.of_what()}: name another file, or take it away")
+        if kept["of"] != self.of:
+            raise SystemExit(f"{self.kept}: is the campaign of {kept['of']}, not of {self.of}: name another file, or take it away")
         self.commands.update(kept["commands"])
         self.faults.update(kept["faults"])
         self.failed, self.violations, self.flown, self.before_s = kept["failed"], kept["violations"], kept["flown"], kept["seconds"]
 
     def keep(self, flown, seconds):
         """In one stroke: whoever is killed here goes on from the batch before."""
-        kept = {"of": self.of_what(), "flown": flown, "seconds": seconds, "violations": self.violations, "failed": self.failed,
+        if self.of != self.of_what():
+            raise SystemExit(f"{self.kept}: {flown} flights, the last of them flown while the programs were built anew: those until the batch before are kept")
+        kept = {"of": self.of, "flown": flown, "seconds": seconds, "violations": self.violations, "failed": self.failed,
                 "commands": self.commands, "faults": self.faults}
         new = self.kept.with_name(self.kept.name + ".new")
         new.write_text(json.dumps(kept))

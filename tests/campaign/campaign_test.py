@@ -81,6 +81,33 @@ def flights():
             check(False, "a campaign of another seed is not gone on with")
 
 
+def builds():
+    """Whoever goes on flies the same programs: one octet of one of them is another build."""
+    with tempfile.TemporaryDirectory() as folder:
+        program, module, kept = (pathlib.Path(folder) / name for name in ("hirosco-fly-plan", "hirosco-joystick.so", "kept.json"))
+        words = [MISSION, "--keep", str(kept), "--fly-plan", str(program)]
+        program.write_bytes(b"program")
+        module.write_bytes(b"module")
+        Campaign(parse(words)).keep(0, 0.0)
+        check(not stopped(lambda: Campaign(parse(words))), "a campaign of the same build is gone on with")
+        for file in (program, module):
+            under_way = Campaign(parse(words))
+            before = file.read_bytes()
+            file.write_bytes(before + b" anew")
+            check("build" in stopped(lambda: Campaign(parse(words))), f"a campaign of another {file.name} is not gone on with")
+            check("built anew" in stopped(lambda: under_way.keep(20, 1.0)), f"{file.name} may not be built anew while it flies")
+            file.write_bytes(before)
+
+
+def stopped(work):
+    """By what words it ends, if it does."""
+    try:
+        work()
+    except SystemExit as refusal:
+        return str(refusal)
+    return ""
+
+
 def typed():
     """A subsystem with a function of every type: what is drawn for it is carried out or refused as its descriptor says."""
     mission = HERE.parent / "typed"
@@ -148,6 +175,7 @@ def losses_drawn():
 
 
 def tools():
+    builds()
     for misfit in (gone := defects_flown.misfits() + defects_in_unit_tests.misfits()):
         print(misfit)
     check(not gone, "every finding that is put back into a copy of the code still has its place there")

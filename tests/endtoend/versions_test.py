@@ -8,6 +8,7 @@ import hashlib
 import os
 import pathlib
 import shutil
+import signal
 import struct
 import sys
 import tempfile
@@ -15,10 +16,13 @@ import time
 import unittest
 
 import flight
+import missed
 
 PROGRAM = "hirosco-test-pilot"    # nowhere else in PATH
 PILOT = 8
 EXCHANGES_S = 4.5                 # what they take together
+PEER = "memfd:hirosco-hello (deleted)"     # started as the manifest has it
+STILL_S = 0.020                   # of a peer that is stopped to be seen: far from a hang
 # What the next version has, each by where it goes: behind the parameters that were there, all else where it likes.
 ADDITIONS = (
     ('<ParamRef name="DES_POSITION" id="1" type="DOUBLE" unit="rad" init="0.3"/>',
@@ -102,19 +106,45 @@ class Versions(unittest.TestCase):
             with flight.Flight(mission=files.mission,
                                environment={"PATH": f"{files.programs}:{os.environ['PATH']}"}) as craft:
                 craft.wait_told("commissioned: mode operation", 20.0)
-                begin, begun = craft.count(), peer(craft)
-                time.sleep(EXCHANGES_S)
-                before = peer(craft)
+                pid = craft.pid_of(PEER)
+                with missed.Missed(pid) as before:
+                    time.sleep(EXCHANGES_S)
+                begin = craft.count()
                 self.runs(craft, "")
-                for exchange in (self.comes_back_unless_it_is_confirmed, self.stays_when_it_is_confirmed_and_is_taken_back_by_command,
-                                 self.falls_back_when_it_dies, self.is_refused):
-                    exchange(craft, files)
-                    self.peer_cycles_on(craft, begin)
-                during = peer(craft)["missed"] - before["missed"]
-                # Printed, not judged: what a machine takes from everybody is as much before.
-                flight.measure(f"cycles that the peer missed at 2 kHz during all of it: {during}, in as long a time before: "
-                               f"{before['missed'] - begun['missed']}")
+                with missed.Missed(pid) as during:
+                    for exchange in (self.comes_back_unless_it_is_confirmed, self.stays_when_it_is_confirmed_and_is_taken_back_by_command,
+                                     self.falls_back_when_it_dies, self.is_refused):
+                        exchange(craft, files)
+                        self.peer_cycles_on(craft, begin)
+                flight.measure(f"cycles that the peer missed in a row by itself at 2 kHz: {during.in_a_row} at most during all of it, {before.in_a_row} before, where "
+                               f"{during.limit(files.descriptor)} end it; all that it missed, with the pauses of its processor: {sum(many for _, many in during.rows)} in "
+                               f"{len(during.pauses)} pauses, before {sum(many for _, many in before.rows)} in {len(before.pauses)}")
+                self.misses_fewer_in_a_row_than_end_it(during, files.descriptor)
                 self.assertEqual(craft.end(), 0, craft.errors)
+
+    def misses_fewer_in_a_row_than_end_it(self, during, descriptor):
+        self.assertLess(during.in_a_row, during.limit(descriptor), f"missed {during.rows}, while its processor stood still {during.pauses}")
+
+    def test_a_peer_that_stands_still_meanwhile_is_seen(self):
+        with tempfile.TemporaryDirectory(prefix="hirosco-versions-") as folder:
+            files = Craft(folder)
+            with flight.Flight(mission=files.mission, environment={"PATH": f"{files.programs}:{os.environ['PATH']}"}) as craft:
+                craft.wait_told("commissioned: mode operation", 20.0)
+                pid = craft.pid_of(PEER)
+                with missed.Missed(pid) as still:
+                    os.kill(pid, signal.SIGSTOP)
+                    time.sleep(STILL_S)
+                    os.kill(pid, signal.SIGCONT)
+                    time.sleep(STILL_S)
+                with self.assertRaises(AssertionError):
+                    self.misses_fewer_in_a_row_than_end_it(still, files.descriptor)
+                craft.end()
+
+    def test_what_its_processor_did_for_nobody_is_not_missed_by_a_peer(self):
+        rows = [(1.0, 2), (2.0, 5)]
+        self.assertEqual(missed.in_a_row(rows, [], 0.0005), 5)
+        self.assertEqual(missed.in_a_row(rows, [(1.9985, 2.0)], 0.0005), 2)
+        self.assertEqual(missed.in_a_row(rows, [(1.5, 1.9), (2.1, 2.2)], 0.0005), 5, "another pause is none of it")
 
     def peer_cycles_on(self, craft, begin):
         """As before, and nothing was told of it since, by itself or by who watches it, but that the machine was late."""

@@ -13,10 +13,11 @@ import select
 import signal
 import time
 
+import accounts
 import flight
 import honest
-import supervisor_kills
 import supervisors
+import witness
 
 MODE = 3
 SAFE_AFTER_S = 2.0          # supervisor_silence_limit of hirosco/subsystem/pages/supervisor_silence.hpp
@@ -37,7 +38,7 @@ def held(pid):
     return octets, len(os.listdir(f"/proc/{pid}/fd"))
 
 
-class Exhausted(supervisor_kills.Accounts):
+class Exhausted(accounts.Accounts):
     def starve(self, craft, what):
         """From now on it gets nothing more; returns its pid."""
         pid = craft.pid_of("hirosco-supervisor")
@@ -81,7 +82,7 @@ class Exhausted(supervisor_kills.Accounts):
         """While the robot pushes and a client commands without a pause."""
         self.push(craft)
         ground = honest.Honest()
-        client = supervisor_kills.Client(ground)
+        client = witness.Client(ground)
         with flight.Telemetry() as telemetry:
             time.sleep(0.5)
             begin = craft.count()

@@ -40,6 +40,12 @@ class Operator(flight.Telemetry):
         with self._mutex:
             return [r.data for r in self.reports if (r.apid, r.service, r.subtype) == (self.apid, service, subtype)][-1]
 
+    def sampled(self, structure):
+        """What it has reported of a housekeeping structure, behind its id."""
+        with self._mutex:
+            return [r.data[2:] for r in self.reports
+                    if (r.apid, r.service, r.subtype) == (self.apid, 3, 25) and int.from_bytes(r.data[:2], "big") == structure]
+
     def events(self):
         """Ids of all events that it has reported."""
         with self._mutex:

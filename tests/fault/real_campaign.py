@@ -9,7 +9,7 @@ Judged from outside: only the victim dies (I1), the supervisor answers throughou
 the robot in the world puts out nothing after a stop, everybody else cycles on (hazards SF2, SF14, SF15, SF18). Each other flight asks at its end for
 all that was said, which comes as the log has it (I14).
 
-    real_campaign.py [--flights N] [--seed S] [--only K] [--keep FILE]    FILE: how far it is; goes on from there
+    real_campaign.py [--flights N] [--seed S] [--only K] [--keep FILE]    FILE: how far it is, and of which build; goes on from there
     real_campaign.py --hundreds [N]      each of spinning, stopped, unplugged, killed (each subsystem) N times (100), and what it took
     ... --evidence FOLDER                where the log of a flight with a violation is kept, with what was told
 """
@@ -23,28 +23,33 @@ import threading
 import time
 
 import flight
+import link_gaps
 import pages
 import punctual
-from demands import BACK_S, Demands, Unready, Violation, expect
+import reactions
+from demands import BACK_S, Unready, Violation, expect
+from kept_flights import KeptFlights
+from link_gaps import LinkGaps
+from reactions import CYCLE_S, GRID_S, LOOK_S, Reactions
 
 SPINNABLE = {"hirosco-joystick": "hirosco-spinnable-joystick", "hirosco-manipulator": "hirosco-spinnable-manipulator"}
 RESTARTS = {"60": "1"}              # three deaths in a minute are many for a mission, few for a campaign
 ROBOT, JOYSTICK, GROUND = "hirosco-spinnable-manipulator", "hirosco-spinnable-joystick", "hirosco-telepresence-relay"
-CYCLE_S = 0.0005
 # How long a cycle may stand still until it hangs (20 looks of the guard, 10 ms apart, and the one that it moved in), until the
 # others cycle again once it has lost its priority, and what the watch's own grid adds. The robot does not wait for that: it
 # obeys nobody once its watchdog has run out.
-HANG_S, AGAIN_S, GRID_S, WATCHDOG_S, LOOK_S = 0.220, 0.005, 2 * pages.PERIOD_S, 0.010, 0.010
+HANG_S, AGAIN_S, WATCHDOG_S = 0.220, 0.005, 0.010
 ADOPTED_S = 1.0                                 # another supervisor goes on with what runs
 STILL_S, STILL_PACE_S = 3.0, 0.5                # of a keeper: supervisor/keeper/kept.hpp
 MODES = {"standalone": 2, "telepresence": 3}
 # What took how long, and the deadline that it was held to.
 DEADLINES_S = {"the robot obeys nobody": WATCHDOG_S + LOOK_S, "network fenced": HANG_S + 5 * CYCLE_S + GRID_S, "others cycle again": AGAIN_S + GRID_S,
-               "longest pause of others": AGAIN_S + GRID_S, "network down": 2.0, "back after its death": BACK_S, "adopted": ADOPTED_S,
-               "a still keeper is told of": STILL_S + STILL_PACE_S, "a lost keeper is told of": ADOPTED_S}
+               "longest pause of others": AGAIN_S + GRID_S, "back after its death": BACK_S, "adopted": ADOPTED_S,
+               "a still keeper is told of": STILL_S + STILL_PACE_S, "a lost keeper is told of": ADOPTED_S,
+               **reactions.DEADLINES_S, **link_gaps.DEADLINES_S}
 
 
-class Trial(Demands):
+class Trial(Reactions, LinkGaps):
     """One flight: some faults, what they must lead to, and a bring-up after each."""
 
     def __init__(self, seed, number, kind=None, times=3):
@@ -120,7 +125,7 @@ class Trial(Demands):
             done = time.monotonic()
             happens()
             hang = self.craft.wait_told(f"{name} hangs", 3.0, self.begin)
-            time.sleep(0.05)
+            self.until_offline([self.name(other)])
             self.craft.wait_at_rest("robot", hang.received)
         # A process is stopped when each of its threads has heard of it, which a busy computer takes its time for: what follows
         # is counted from its last cycle.
@@ -141,6 +146,8 @@ class Trial(Demands):
         self.answers()
         died = self.craft.wait_told(f"{name} died: signal 9", 4.0, self.begin)
         expect(0.9 < died.at_s - hang.at_s < 1.5, f"grace was {died.at_s - hang.at_s:.2f} s")
+        # That it hangs is known from the fence on.
+        self.comes_down(watch, reactions.HANG, max(watch.fenced.values()), [other], died.received)
         self.only_died(name)
 
     def others_go_on_without_its_priority(self, watch, victim, other, _):
@@ -161,9 +168,20 @@ class Trial(Demands):
 
     def killed(self):
         victim = self.victim()
-        killed = self.craft.kill(victim)
-        self.craft.wait_told(f"{self.name(victim)} died: signal 9", 2.0, self.begin)
-        self.craft.wait_at_rest("robot", killed)
+        other = JOYSTICK if victim == ROBOT else ROBOT
+        with pages.Watch(self.craft, (ROBOT, JOYSTICK)) as watch:
+            before = self.look_before()
+            killed = self.craft.kill(victim)
+            self.craft.wait_told(f"{self.name(victim)} died: signal 9", 2.0, self.begin)
+            self.until_offline([self.name(other)])
+            self.craft.wait_at_rest("robot", killed)
+        expect(victim in watch.ended, f"the system did not mark the end of {victim}")
+        # Each of its threads has to run once more to end, which a busy computer takes its time for.
+        dead = watch.ended[victim]
+        self.took("it is dead after", dead - killed)
+        self.is_safe(watch, reactions.DEATH, dead, [other])
+        self.obeys_nobody(watch, reactions.DEATH, dead, before)
+        self.comes_down(watch, reactions.DEATH, dead, [other])
         self.answers()
         self.only_died(self.name(victim))
 
@@ -178,11 +196,21 @@ class Trial(Demands):
 
     def unplugged(self):
         device = self.random.choice(("joystick", "robot"))
-        unplugged = time.monotonic()
-        self.craft.ask(device, "unplug")
-        self.craft.wait_told("MANIPULATOR is Offline", 2.0, self.begin)
-        self.took("network down", time.monotonic() - unplugged)
-        self.craft.wait_at_rest("robot", unplugged)
+        owner = ROBOT if device == "robot" else JOYSTICK
+        with pages.Watch(self.craft, (ROBOT, JOYSTICK)) as watch:
+            before, unplugged = self.look_before(), time.monotonic()
+            self.craft.ask(device, "unplug")
+            pulled = time.monotonic()
+            self.until_offline([self.name(ROBOT), self.name(JOYSTICK)])
+            self.craft.wait_at_rest("robot", unplugged)
+        # Pulled by then at the latest: a device hears of it in its own time, and whoever drives it may be quicker than its answer.
+        noticed = watch.first(owner, lambda look: look.inhibited & pages.BY_DEVICE, unplugged)
+        expect(noticed is not None, f"{owner} did not miss its device")
+        since = min(pulled, noticed.at)
+        self.took("it is unplugged after", since - unplugged)
+        self.is_safe(watch, reactions.UNPLUGGING, since, [ROBOT, JOYSTICK])
+        self.obeys_nobody(watch, reactions.UNPLUGGING, since, before)
+        self.comes_down(watch, reactions.UNPLUGGING, since, [ROBOT, JOYSTICK])
         self.answers()
         self.craft.ask(device, "plug")
         self.only_died()
@@ -217,8 +245,11 @@ class Trial(Demands):
 
     def supervisor_lost(self, number):
         """Cycles and links run on, and another one goes on with them as they are."""
-        lost = self.craft.kill("hirosco-supervisor", number)
-        self.another_goes_on(lost)
+        with link_gaps.watched(self.craft, (ROBOT, JOYSTICK)) as watch:
+            lost = self.craft.kill("hirosco-supervisor", number)
+            self.another_goes_on(lost)
+            there = time.monotonic()
+        self.no_link_had_a_gap(watch, (ROBOT, JOYSTICK), lost, there)
         changed = [line.told for line in self.craft.told(self.begin) if "STATE_CHANGED" in line.told and "SUPERVISOR" not in line.told]
         expect(not changed, f"a lost supervisor changed {changed[:1]}")
         self.answers()
@@ -324,15 +355,17 @@ def table(figures):
     rows = []
     for what, seconds in figures.items():
         seconds.sort()
-        margin = f", deadline {1e3 * DEADLINES_S[what]:.0f} ms, margin {1e3 * (DEADLINES_S[what] - seconds[-1]):.1f} ms" if what in DEADLINES_S else ""
-        rows.append(f"    {what:26} median {1e3 * seconds[len(seconds) // 2]:8.1f} ms, p99 {1e3 * seconds[int(0.99 * len(seconds))]:8.1f} ms, "
+        margin = f", deadline {1e3 * DEADLINES_S[what]:.1f} ms, margin {1e3 * (DEADLINES_S[what] - seconds[-1]):.1f} ms" if what in DEADLINES_S else ""
+        if what in link_gaps.DEADLINES_S:
+            margin += f", worst {seconds[-1] / CYCLE_S:.0f} cycles"
+        rows.append(f"    {what:39} median {1e3 * seconds[len(seconds) // 2]:8.1f} ms, p99 {1e3 * seconds[int(0.99 * len(seconds))]:8.1f} ms, "
                     f"worst {1e3 * seconds[-1]:8.1f} ms of {len(seconds)}{margin}")
     return rows
 
 
 def hundreds(mission, seed, times, evidence):
-    """Each kind so many times, in flights of ten; the table of what it took."""
-    violations, late, rows = 0, 0, []
+    """Each kind so many times, in flights of ten; the table of what it took. Whether each was done as often as was asked for, without a violation."""
+    violations, late, lacking, rows = 0, 0, [], []
     for kind, share in KINDS.items():
         figures, done, wanted, number = {}, 0, share * times, 0
         while done < wanted and number < 2 * wanted:
@@ -344,17 +377,15 @@ def hundreds(mission, seed, times, evidence):
             done += trial.done
             for what, seconds in trial.figures.items():
                 figures.setdefault(what, []).extend(seconds)
+        if done < wanted:
+            lacking.append(f"{kind} was done {done} times of {wanted}")
         rows.append(f"{kind:14} {done}/{wanted} times brought up again")
         rows.extend(table(figures))
         print("\n".join(rows[-1 - len(figures):]), flush=True)
     print("\nAll together\n" + "\n".join(rows) + f"\n{violations} violations; {late} new flights because the host was late")
-    return violations
-
-
-def outcomes(kept, seed):
-    """{number: whether it passed} of the flights of this seed that were flown already."""
-    lines = kept.read_text(encoding="utf-8").splitlines() if kept and kept.exists() else []
-    return {int(line.split()[1]): line.split()[2] == "passed" for line in lines if int(line.split()[0]) == seed}
+    if lacking:
+        print("FEWER than were asked for: " + "; ".join(lacking), flush=True)
+    return not violations and not lacking
 
 
 def main():
@@ -363,7 +394,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", type=int)
     parser.add_argument("--kind", help="each fault of a flight is of this kind, which is the name of a function of Trial")
-    parser.add_argument("--keep", type=pathlib.Path, help="a line for each flight; those that are in it already are not flown again")
+    parser.add_argument("--keep", type=pathlib.Path, help="a line for each flight; those that this build has flown by it are not flown again")
     parser.add_argument("--hundreds", type=int, nargs="?", const=100)
     parser.add_argument("--evidence", type=pathlib.Path, help="the log of a flight with a violation is kept in this folder")
     options = parser.parse_args()
@@ -371,12 +402,11 @@ def main():
         parser.error("--keep is of flights that are flown one after the other: not with --hundreds or --only")
     with flight.MissionCopy({**SPINNABLE, **RESTARTS}) as mission:
         if options.hundreds:
-            return 1 if hundreds(mission, options.seed, options.hundreds, options.evidence) else 0
+            return 0 if hundreds(mission, options.seed, options.hundreds, options.evidence) else 1
         numbers = [options.only] if options.only is not None else range(options.flights)
-        failed, kept, figures = 0, outcomes(options.keep, options.seed), {}
+        kept = KeptFlights(options.keep, mission, options.seed, options.kind)
         for number in numbers:
-            if number in kept:
-                failed += not kept[number]
+            if number in kept.passed:
                 continue
             trial = Trial(options.seed, number, options.kind)
             print(f"flight {number}: {' '.join(step.__name__ for step in trial.steps)}", flush=True)
@@ -385,13 +415,9 @@ def main():
                 if outcome is not None:
                     break
                 trial = Trial(options.seed, number, options.kind)
-            failed += not outcome
-            for what, seconds in trial.figures.items():
-                figures.setdefault(what, []).extend(seconds)
-            if options.keep:
-                with options.keep.open("a", encoding="utf-8") as file:
-                    file.write(f"{options.seed} {number} {'passed' if outcome else 'failed'}\n")
-    print("\n".join(table(figures)))
+            kept.add(number, bool(outcome), trial.figures)
+    failed = sum(not kept.passed[number] for number in numbers)
+    print("\n".join(table(kept.figures)))
     print(f"{len(numbers) - failed} passed, {failed} failed")
     return 1 if failed else 0
 
