@@ -8,9 +8,10 @@ void Drives::forget(std::size_t joints) noexcept {
   measured_.position = measured_.velocity = measured_.torque = JointVector::Zero(static_cast<Eigen::Index>(joints));
 }
 
-void Drives::measure(State state) noexcept {
+void Drives::measure(const Cycle& cycle) noexcept {
   const ArmInput in = says();
-  current_.store({static_cast<std::int32_t>(state), in.position, in.velocity, in.torque, port().flags()});
+  sample_time_.update(cycle.planned, cycle.period, cycle.count == 0, port().fresh());
+  current_.store({static_cast<std::int32_t>(cycle.state), in.position, in.velocity, in.torque, port().flags()});
   measured_ = {vector_of(in.position), vector_of(in.velocity), vector_of(in.torque)};
 }
 

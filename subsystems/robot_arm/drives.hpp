@@ -7,7 +7,8 @@
 
 #include "hirosco/parameter/parameter.hpp"
 #include "hirosco/subsystem/author/ports.hpp"
-#include "hirosco/subsystem/author/states.hpp"
+#include "hirosco/subsystem/author/subsystem.hpp"
+#include "subsystems/robot_arm/control/sample_time.hpp"
 #include "subsystems/robot_arm/robot_arm_data.hpp"
 
 namespace hirosco::robot_arm {
@@ -36,7 +37,9 @@ class Drives {
   /// As if so many joints stood at 0.
   void forget(std::size_t joints) noexcept;
   /// Takes what the device last said, and tells it.
-  void measure(State state) noexcept;
+  void measure(const Cycle& cycle) noexcept;
+  /// When that was measured.
+  [[nodiscard]] const SampleTime& sample_time() const noexcept { return sample_time_; }
   /// Of no length before there is any.
   [[nodiscard]] const Measured& measured() const noexcept { return measured_; }
   /// What the device last said, of the lengths that its descriptor has.
@@ -84,6 +87,7 @@ class Drives {
   bool tells_force_{false};
   bool tells_references_{false};
   Measured measured_;
+  SampleTime sample_time_;
 };
 
 }  // namespace hirosco::robot_arm

@@ -10,6 +10,9 @@
 
 namespace hirosco::robot_arm {
 
+/// Why a motion ended that met somebody while cycles were missed, before how many (SampleTime): what was felt then is to be doubted sooner (docs/adr/0229).
+inline constexpr const char* cycles_missed_before = "cycles were missed in the second before:";
+
 /// Whether what acts on the joints of an arm, on whatever base, is a contact (docs/adr/0117): more than a share of a joint's effort for some cycles, beside what stood there before.
 /// Realtime: wait-free, no allocation. Thread: the cycle, and the service loop while there is none.
 class JointContact {

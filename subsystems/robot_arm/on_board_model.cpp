@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/on_board_model.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hirosco::robot_arm {
@@ -18,7 +17,6 @@ void OnBoardModel::begin(double cycle_s) {
   dynamics_.emplace(model, robotics::Base::Fixed);
   observer_.emplace(model.joint_count(), cycle_s, observer_gain_per_s);
   brakes_.setZero(model.joint_count());
-  fades_ = std::max(0.0, 1 - observer_gain_per_s * cycle_s);
   updated_ = false;
 }
 
@@ -35,9 +33,12 @@ void OnBoardModel::update() noexcept {
   robotics::Coordinates of_payload = robotics::Coordinates::Zero(known.model().joint_count());
   Law::add_payload(payload(), known.tip(), {gravity[0], gravity[1], gravity[2]}, *dynamics_,
                    JointVector::Zero(known.model().joint_count()), of_payload);
-  observer_->update(measured, *dynamics_, of_payload);
+  const SampleTime::Between between = parts_.drives.sample_time().between();
+  if (between.s > 0) {
+    observer_->update(measured, *dynamics_, of_payload, between);
+    brakes_ *= observer_->kept();
+  }
   parts_.parameters.external_torque.store(joints_of(observer_->external()));
-  brakes_ *= fades_;
   if (brakes_.cwiseAbs().maxCoeff() < nothing) brakes_.setZero();
   tell_work();
   updated_ = true;

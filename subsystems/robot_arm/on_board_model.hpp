@@ -54,8 +54,7 @@ class OnBoardModel {
   std::optional<robotics::Dynamics> dynamics_;
   std::optional<MomentumObserver> observer_;
   ToolLever lever_;
-  JointVector brakes_;  ///< what the observer still has of them
-  double fades_{1};  ///< to, in a cycle: as the observer forgets
+  JointVector brakes_;  ///< what the observer still has of them: it fades as that forgets
   robotics::State state_;
   bool updated_{false};
 };

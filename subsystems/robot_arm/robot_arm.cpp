@@ -99,7 +99,7 @@ Result<> RobotArm::error_operational(const Cycle& cycle) noexcept {
 }
 
 void RobotArm::measure(const Cycle& cycle) noexcept {
-  drives_.measure(cycle.state);
+  drives_.measure(cycle);
   if (homing_.update()) model_.forget_external();
   parameters_.active.store(0);
   moving_ = false;
@@ -211,7 +211,8 @@ void RobotArm::watch_contact() noexcept {
     raise(events_.wrist_contact, its->force_n, its->moment_n_m, static_cast<std::uint8_t>(yielding_.reaction()));
   if (!met.counts) return;
   const bool stood = guidance_.at_rest() && !motion_;
-  end_motion(Trouble::contact);
+  if (const auto missed = drives_.sample_time().missed_lately(); missed == 0) end_motion(Trouble::contact);
+  else end_motion(Trouble::contact, robot_arm::cycles_missed_before, missed);
   yielding_.react({.stood = stood, .stopping = stop_.has_value()});
 }
 

@@ -121,7 +121,7 @@ Result<> FloatingArm::error_operational(const Cycle& cycle) noexcept {
 }
 
 void FloatingArm::measure(const Cycle& cycle) noexcept {
-  drives_.measure(cycle.state);
+  drives_.measure(cycle);
   parameters_.active.store(0);
   const bool driven = moving_ && cycle.state == State::Operational;
   moving_ = false;
@@ -243,7 +243,8 @@ void FloatingArm::watch_contact() noexcept {
   const bool stood = guidance_.holds() && !motion_;
   const bool backs_off = guidance_.retracts();
   if (stood && by != Reaction::Float) return;
-  end_motion(Trouble::contact);
+  if (const auto missed = drives_.sample_time().missed_lately(); missed == 0) end_motion(Trouble::contact);
+  else end_motion(Trouble::contact, missed, robot_arm::cycles_missed_before);
   if (by == Reaction::Float) guidance_.let_go();
   else if (by == Reaction::Retract && !backs_off) guidance_.retract(parameters_.retract_distance.load());
   else guidance_.halt();

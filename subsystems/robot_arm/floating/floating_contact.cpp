@@ -19,8 +19,10 @@ void FloatingContact::forget() noexcept {
 void FloatingContact::update(bool driven) noexcept {
   if (!offered_ || !observer_) return;
   if (!driven) return forget();
-  observer_->update(parts_.drives.measured(), parts_.craft.model().inertia(), parts_.craft.bias(),
-                    JointVector::Zero(parts_.drives.measured().velocity.size()));
+  const SampleTime::Between between = parts_.drives.sample_time().between();
+  if (between.s > 0)
+    observer_->update(parts_.drives.measured(), parts_.craft.model().inertia(), parts_.craft.bias(),
+                      JointVector::Zero(parts_.drives.measured().velocity.size()), between);
   parts_.parameters.external_torque.store(joints_of(observer_->external()));
 }
 

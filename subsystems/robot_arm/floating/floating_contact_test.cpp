@@ -16,6 +16,7 @@ using robot_arm::JointVector;
 using robot_arm::MomentumObserver;
 using robot_arm::vector_of;
 using robot_arm::testing::FreePlant;
+using ::testing::EndsWith;
 using ::testing::Not;
 using ::testing::StartsWith;
 
@@ -179,6 +180,22 @@ TEST_F(FloatingArmMeets, SomebodyAndStands) {
   const auto away = ask("MOVE_TOOL", {-0.02, 0, 0, 3});
   flown.finish(away);
   EXPECT_EQ(flown.rig.outcome(away), done);
+}
+
+TEST_F(FloatingArmMeets, SomebodyAndTellsHowManyCyclesWereMissedBefore) {
+  begin();
+  const auto motion = ask("MOVE_TOOL", {0.1, 0, 0, 8});
+  flown.cycle(3500);
+  flown.rig.clock.advance(5ms);
+  flown.cycle(100);
+  ASSERT_EQ(flown.rig.events(contact_event), 0) << "nobody was there";
+  push(-32);
+  for (int i = 0; i < 200 && flown.rig.events(contact_event) == 0; ++i) flown.cycle();
+  flown.cycle(20);
+  const std::string words = robot_arm::cycles_missed_before;
+  EXPECT_THAT(flown.rig.outcome(motion), StartsWith("1 3 8:800c"));
+  EXPECT_THAT(flown.rig.outcome(motion),
+              EndsWith("0000000000000005" + hirosco::testing::hex(std::as_bytes(std::span{words}))));
 }
 
 TEST_F(FloatingArmMeets, SomebodyAndGoesBackByTheWayItCame) {
