@@ -20,8 +20,8 @@ CHOSEN = "HIROSCO_PLANTED_FINDING"  # which of them a flight has
 DEFECTS = {
     # States of the supervisor were anybody's to command, and SAFE_ALL a function that some of them do not permit.
     "SF1": ("I4", [
-        (f"{SUPERVISION}/data_handling/permission.cpp", 'if (asked.calls("SET_STATE") || asked.calls("CONFIGURE")) return wrong_mode',
-         'if (!planted("SF1") && (asked.calls("SET_STATE") || asked.calls("CONFIGURE"))) return wrong_mode'),
+        (f"{SUPERVISION}/data_handling/permission.cpp", 'if (!asked.origin.is_supervisor() && (asked.calls("SET_STATE") || asked.calls("CONFIGURE"))) return wrong_mode',
+         'if (!planted("SF1") && !asked.origin.is_supervisor() && (asked.calls("SET_STATE") || asked.calls("CONFIGURE"))) return wrong_mode'),
         (TELECOMMANDS, "apid == supervisor_apid && call ? at_once_", '!planted("SF1") && apid == supervisor_apid && call ? at_once_'),
         (STOPS, f'on_function("SAFE_ALL", []() -> Outcome {{ {REFUSED} }});',
          f'on_function("SAFE_ALL", [this]() -> Outcome {{ if (!planted("SF1")) {REFUSED}\n'
