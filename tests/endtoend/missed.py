@@ -4,7 +4,6 @@
 configuration names raise CYCLE_OVERRUNS and end what it does. Python's standard library only."""
 import contextlib
 import math
-import multiprocessing
 import os
 import time
 import xml.etree.ElementTree as xml
@@ -33,25 +32,17 @@ def in_a_row(rows, pauses, cycle_s):
     return worst
 
 
-class Missed:
+class Missed(pages.Beside):
     """`with Missed(pid) as missed:` — until the end of the block a process above all cycles, on their processor, looks at the page of this one.
     Afterwards: in_a_row, the most that it missed in a row by itself; rows, pauses: of which that was made; limit(descriptor)."""
 
     def __init__(self, pid):
         self._vital = pages.Vital(pid)
-        self._stop, (self._told, tells) = multiprocessing.Event(), multiprocessing.Pipe(False)
-        self._process = multiprocessing.Process(target=self._look, args=(tells,), daemon=True)
+        super().__init__()
 
-    def __enter__(self):
-        self._process.start()
-        self._told.recv()           # it looks
-        return self
-
-    def __exit__(self, *_):
-        self._stop.set()
-        self.rows, self.pauses = self._told.recv()
-        self._process.join()
-        self.in_a_row = in_a_row(self.rows, self.pauses, self._vital.period_s())
+    def _saw(self, rows, pauses):
+        self.rows, self.pauses = rows, pauses
+        self.in_a_row = in_a_row(rows, pauses, self._vital.period_s())
 
     def limit(self, descriptor):
         return limit_of(descriptor, self._vital.configuration(), self._vital.realtime())

@@ -126,7 +126,26 @@ class Look:
     inhibited_at_cycle: int
 
 
-class Watch:
+class Beside:
+    """A block beside which another process looks: _look(tells) sends None when it does, and what it has seen once `_stop` is set; _saw() takes that."""
+
+    def __init__(self):
+        self._stop, (self._told, tells) = multiprocessing.Event(), multiprocessing.Pipe(False)
+        self._process = multiprocessing.Process(target=self._look, args=(tells,), daemon=True)
+
+    def __enter__(self):
+        self._process.start()
+        self._told.recv()           # it looks
+        return self
+
+    def __exit__(self, *_):
+        self._stop.set()
+        seen = self._told.recv()
+        self._process.join()
+        self._saw(*seen)
+
+
+class Watch(Beside):
     """`with Watch(craft, programs) as watch:` — until the end of the block a process above all cycles looks at the pages of these
     programs. Afterwards, as time.monotonic(): fenced[program], when its permission ended; demoted[program], when its cycle
     thread lost its priority or was gone; ended[program], when the system marked the end of its process; counts[program], [(time, cycles)]
@@ -138,18 +157,11 @@ class Watch:
         self._period_s = period_s
         pids = {program: craft.pid_of(program) for program in programs}
         self._pages = {program: (Permit(pid), Vital(pid), cycle_thread(pid)) for program, pid in pids.items()}
-        self._stop, (self._told, tells) = multiprocessing.Event(), multiprocessing.Pipe(False)
-        self._process = multiprocessing.Process(target=self._look, args=(tells,), daemon=True)
+        super().__init__()
 
-    def __enter__(self):
-        self._process.start()
-        self._told.recv()           # it looks
-        return self
-
-    def __exit__(self, *_):
-        self._stop.set()
-        self.fenced, self.demoted, self.ended, self.counts, self.changes, self.gaps, self.stale, self.worst_s = self._told.recv()
-        self._process.join()
+    def _saw(self, fenced, demoted, ended, counts, changes, gaps, stale, worst_s):
+        self.fenced, self.demoted, self.ended, self.worst_s = fenced, demoted, ended, worst_s
+        self.counts, self.changes, self.gaps, self.stale = counts, changes, gaps, stale
 
     def _look(self, tells):
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(ABOVE_CYCLES))
