@@ -151,7 +151,7 @@ TARGETS = {"arguments": (
      "a polygon may be longer than what is left":
          (COLLADA, "if (count > corners.size() - at)", "if (count > corners.size() - at + 1)")}),
     "screen": (
-    [SCREEN, SCREEN_MODEL, "tools/terminal/columns.cpp", "tools/terminal/verdict.cpp"],
+    [SCREEN, SCREEN_MODEL, "tools/terminal/columns.cpp", "tools/terminal/verdict.cpp", "hirosco/descriptor/model/find.cpp"],
     {"a row may be wider than the terminal":
          (SCREEN, "cut(text, columns_ - used_)", "cut(text, columns_)"),
      "a value may be of any kind":
