@@ -11,9 +11,9 @@
 namespace hirosco::supervisor::testing {
 
 namespace st129 = pus::st129;
+using enum descriptor::State;
 
 struct RetrievalTest : PartsTest {
-  using enum descriptor::State;
   static constexpr std::uint16_t ground = 7, other_ground = 8;
   static constexpr OnboardTime never_before{}, always_after{std::chrono::hours{24 * 365 * 100}};
   struct Down {
