@@ -243,7 +243,7 @@ BUILT_IN = {"CYCLE_STATS": (("OVERRUNS", "UINT32", 1), ("MAX_US", "FLOAT", 1), (
                                      "POOL_HIGH", "POOL_REFUSED")) +
                               tuple((name, "UINT16", 1) for name in ("PORTS", "PORTS_HIGH", "FILES", "FILES_HIGH", "HELD_REFUSED")) +
                               (("SHARED_MEMORY", "UINT64", 1), ("SHARED_MEMORY_HIGH", "UINT64", 1), ("PROCESSOR", "UINT16", 1), ("PROCESSOR_HIGH", "UINT16", 1),
-                               ("WAITING", "UINT16", 3), ("WAITING_HIGH", "UINT16", 3), ("QUEUES", "UINT8", 7), ("QUEUES_HIGH", "UINT8", 7)),
+                               ("WAITING", "UINT16", 3), ("WAITING_HIGH", "UINT16", 3), ("QUEUES", "UINT8", 7), ("QUEUES_HIGH", "UINT8", 7), ("CORE", "UINT16", 1)),
             "HEAP_USES": (("CYCLE", "UINT64", 1), ("SERVICE", "UINT64", 1), ("COUNTED", "BOOL", 1)),
             "DESCRIPTOR": (("HASH", "UINT32", 1), ("CHANGES", "UINT16", 1)),
             "LINK_STATS": (("RECEIVED", "UINT32", 1), ("LOST", "UINT32", 1))}

@@ -25,7 +25,8 @@ FRAMEWORK = {"CYCLE_STATS": [("OVERRUNS", 244, 5, 1), ("MAX_US", 240, 9, 1), ("A
                                 ("POOL_REFUSED", 254, 5, 1), ("PORTS", 250, 3, 1), ("PORTS_HIGH", 251, 3, 1), ("FILES", 252, 3, 1),
                                 ("FILES_HIGH", 253, 3, 1), ("HELD_REFUSED", 254, 3, 1),
                                 ("SHARED_MEMORY", 243, 7, 1), ("SHARED_MEMORY_HIGH", 244, 7, 1), ("PROCESSOR", 241, 3, 1), ("PROCESSOR_HIGH", 242, 3, 1),
-                                ("WAITING", 243, 3, 3), ("WAITING_HIGH", 244, 3, 3), ("QUEUES", 254, 1, 7), ("QUEUES_HIGH", 255, 1, 7)],
+                                ("WAITING", 243, 3, 3), ("WAITING_HIGH", 244, 3, 3), ("QUEUES", 254, 1, 7), ("QUEUES_HIGH", 255, 1, 7),
+                                ("CORE", 245, 3, 1)],
              "HEAP_USES": [("CYCLE", 255, 7, 1), ("SERVICE", 254, 7, 1), ("COUNTED", 255, 33, 1)],
              "DESCRIPTOR": [("HASH", 255, 5, 1), ("CHANGES", 240, 3, 1)],
              "LINK_STATS": [("RECEIVED", 242, 5, 1), ("LOST", 243, 5, 1)]}

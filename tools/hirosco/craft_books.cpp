@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "hirosco/descriptor/model/cores.hpp"
 #include "hirosco/descriptor/model/status_rows.hpp"
 
 namespace hirosco::tools {
@@ -42,6 +43,11 @@ using descriptor::State;
   for (const auto& configuration : subsystem.configurations)
     most = std::max(most, descriptor::cycle_share(subsystem, &configuration));
   return most;
+}
+
+/// Where somebody names cores it says of which.
+[[nodiscard]] std::string share_attribute(std::optional<std::uint16_t> core) {
+  return core ? "cycles_percent of core " + std::to_string(*core) : "cycles_percent";
 }
 
 [[nodiscard]] const pus::HousekeepingValue* find_value(std::span<const pus::HousekeepingValue> values,
@@ -83,14 +89,9 @@ void CraftBooks::hear(std::span<const pus::HousekeepingValue> values, OnboardTim
         take_row(apid, static_cast<std::uint64_t>(states->values[i]),
                  static_cast<std::uint8_t>(configurations->values[i]), newest);
     std::uint64_t running = 0;
-    double share = 0;
-    for (const auto& [apid, member] : members_) {
-      if (apid == mission_.supervisor.id) continue;
-      running += member.runs ? 1 : 0;
-      share += member.share;
-    }
+    for (const auto& [apid, member] : members_) running += apid != mission_.supervisor.id && member.runs ? 1 : 0;
     most_running_ = std::max(most_running_, running);
-    most_share_ = std::max(most_share_, share);
+    for (const auto& [core, share] : shares_now()) most_shares_[core] = std::max(most_shares_[core], share);
   }
   const auto* budget = find_value(values, "POWER", "BUDGET");
   const auto* reserved = find_value(values, "POWER", "RESERVED");
@@ -107,23 +108,37 @@ bool CraftBooks::runs(std::uint16_t apid) const {
   return found != members_.end() && found->second.runs;
 }
 
-/// Of all subsystems: what the mission limits of processes, and the processor that their cycles share.
+CraftBooks::Shares CraftBooks::shares_now() const {
+  Shares shares;
+  for (const auto& member : mission_.subsystems)
+    if (const auto found = members_.find(member.subsystem.id); found != members_.end())
+      shares[core_of(mission_, member)] += found->second.share;
+  return shares;
+}
+
+/// Of all subsystems: what the mission limits of processes, and the cores that their cycles share.
 void CraftBooks::add_of_all(std::vector<ResourceRow>& rows) const {
   std::uint64_t running = 0;
-  double share = 0, promised = 0;
-  for (const auto& member : mission_.subsystems) promised = std::max(promised, greatest_share(member.subsystem));
-  for (const auto& [apid, member] : members_) {
-    if (apid == mission_.supervisor.id) continue;
-    running += member.runs ? 1 : 0;
-    share += member.share;
+  Shares promised;
+  for (const auto& member : mission_.subsystems) {
+    double& most = promised[core_of(mission_, member)];
+    most = std::max(most, greatest_share(member.subsystem));
   }
+  for (const auto& [apid, member] : members_) running += apid != mission_.supervisor.id && member.runs ? 1 : 0;
   if (const auto most = amount_of(mission_.budget, descriptor::Resource::Processes)) {
     rows.push_back({"processes of all", *most, most_running_});
     if (!members_.empty()) rows.back().now = running;
   }
-  if (promised <= 0) return;
-  rows.push_back({"cycles_percent", 100, whole_percent(most_share_)});
-  if (!members_.empty()) rows.back().now = whole_percent(share);
+  const auto of = [](const Shares& shares, std::optional<std::uint16_t> core) {
+    const auto found = shares.find(core);
+    return whole_percent(found != shares.end() ? found->second : 0);
+  };
+  const Shares now = shares_now();
+  for (const auto& [core, most] : promised) {
+    if (most <= 0) continue;
+    rows.push_back({share_attribute(core), 100, of(most_shares_, core)});
+    if (!members_.empty()) rows.back().now = of(now, core);
+  }
 }
 
 std::vector<ResourceRow> CraftBooks::rows(const descriptor::SubsystemDescriptor& subsystem) const {
@@ -134,7 +149,9 @@ std::vector<ResourceRow> CraftBooks::rows(const descriptor::SubsystemDescriptor&
   if (found != members_.end()) rows.back().now = member.runs ? 1 : 0;
   if (subsystem.id == mission_.supervisor.id) add_of_all(rows);
   else if (const double most = greatest_share(subsystem); most > 0) {
-    rows.push_back({"cycles_percent", whole_percent(most), whole_percent(member.most_share)});
+    const auto* const flown = mission_.find_subsystem(subsystem.id);
+    rows.push_back({share_attribute(flown != nullptr ? core_of(mission_, *flown) : std::nullopt), whole_percent(most),
+                    whole_percent(member.most_share)});
     if (found != members_.end()) rows.back().now = whole_percent(member.share);
   }
   ResourceRow power{.attribute = "power_W"};

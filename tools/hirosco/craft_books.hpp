@@ -25,7 +25,7 @@ class CraftBooks {
   void hear(std::span<const pus::HousekeepingValue> values, OnboardTime at);
   /// False also where nothing was told of it.
   [[nodiscard]] bool runs(std::uint16_t apid) const;
-  /// Whether there is a process, its share of the one processor of all cycles that its budgets promise, in whole percent (docs/adr/0007),
+  /// Whether there is a process, its share of the core of its cycle that its budgets promise, in whole percent (docs/adr/0007, 0234),
   /// and the power that is promised to it, in whole W, as its state and configuration say; of the supervisor processes, cycles and power of
   /// the craft. Without what is not accounted.
   [[nodiscard]] std::vector<ResourceRow> rows(const descriptor::SubsystemDescriptor& member) const;
@@ -36,9 +36,11 @@ class CraftBooks {
     bool has_run{false};
     double power_w{0};
     double most_power_w{0};
-    double share{0};  ///< of the processor of cycles
+    double share{0};  ///< of the core of its cycle
     double most_share{0};
   };
+  using Shares = std::map<std::optional<std::uint16_t>, double>;  ///< of cores; empty: of all who name none
+  [[nodiscard]] Shares shares_now() const;
   void add_of_all(std::vector<ResourceRow>& rows) const;
   void take_row(std::uint16_t apid, std::uint64_t state, std::uint8_t configuration, bool newest);
 
@@ -49,7 +51,7 @@ class CraftBooks {
   std::optional<double> budget_w_, reserved_w_;
   double most_reserved_w_{0};
   std::uint64_t most_running_{0};
-  double most_share_{0};  ///< of all at once
+  Shares most_shares_;  ///< of all at once
 };
 
 }  // namespace hirosco::tools

@@ -106,6 +106,20 @@ TEST_F(CraftBooksTest,
   EXPECT_THAT(of_all(), ElementsAre("processes 1 1 1", "processes of all 2 2 1", "cycles_percent 100 36 10"));
 }
 
+TEST_F(CraftBooksTest, TellOfEachCoreThatTheMissionNamesWhatIsPromisedOfIt) {
+  auto& arm = mission.subsystems[0];
+  arm.subsystem.configurations[1].sampling = 1ms;
+  arm.subsystem.configurations[1].budget = 253us;
+  arm.cores.cycle = 3;
+  mission.subsystems[1].subsystem.service_loops.push_back(
+      {.name = "QUICK", .period = 10ms, .priority = 10, .budget = 1ms});
+  tell(safe, 2, at);
+  EXPECT_THAT(of(0), ElementsAre("processes 1 1 1", "cycles_percent of core 3 26 26 26", "power_W 60 60 60"));
+  EXPECT_THAT(of(1), ElementsAre("processes 1 1 1", "cycles_percent 10 10 10"));
+  EXPECT_THAT(book_lines(books.rows(mission.supervisor)),
+              ElementsAre("processes 1 1 1", "cycles_percent 100 10 10", "cycles_percent of core 3 100 26 26"));
+}
+
 TEST_F(CraftBooksTest, OfTheSupervisorAreThePowerOfTheCraft) {
   tell(safe, 2, at);
   const auto power = [&](double budget, double reserved, OnboardTime when) {

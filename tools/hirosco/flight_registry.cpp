@@ -84,26 +84,36 @@ constexpr std::chrono::milliseconds between_holds{20};
   return fmt::format("no ports are free above {} and {}", planned.telemetry, planned.telecommand);
 }
 
-/// Empty when all fit into the one processor of all cycles (adr 0007).
-[[nodiscard]] std::string judge_load(const FlightEntry& entry, const std::vector<FlightEntry>& others) {
-  double load = entry.load;
-  for (const FlightEntry& other : others) load += other.load;
-  constexpr double rounding = 1e-9;
-  if (load <= 1.0 + rounding) return {};
-  std::string text =
-      fmt::format("the cycles of all flights need {:.0f} % of the processor that they share: this one {:.0f} %",
-                  load * 100, entry.load * 100);
-  for (const FlightEntry& other : others) text += fmt::format(", {} {:.0f} %", other.instance, other.load * 100);
-  return text;
+[[nodiscard]] std::vector<OtherCores> cores_of(const std::vector<FlightEntry>& others) {
+  std::vector<OtherCores> cores;
+  for (const FlightEntry& other : others) cores.push_back({other.instance, other.core_uses});
+  return cores;
+}
+
+/// "3 0.25", behind it "alone" where it is nobody else's; "shared 0.5" where it is not known which it is.
+[[nodiscard]] std::string text_of(const CoreUse& use) {
+  return fmt::format("{} {}{}", use.core ? std::to_string(*use.core) : "shared", use.load, use.alone ? " alone" : "");
+}
+
+[[nodiscard]] CoreUse core_use_in(const std::string& text) {
+  std::istringstream words{text};
+  std::string core, alone;
+  CoreUse use;
+  words >> core >> use.load >> alone;
+  std::uint16_t number = 0;
+  if (std::from_chars(core.data(), core.data() + core.size(), number).ec == std::errc{}) use.core = number;
+  use.alone = alone == "alone";
+  return use;
 }
 
 }  // namespace
 
 std::string entry_text(const FlightEntry& entry) {
-  std::string text = fmt::format(
-      "instance={}\nmission={}\nfile={}\nfolder={}\nlog={}\ntelemetry={}\ntelecommand={}\nload={}\nkeeper={}\n",
-      entry.instance, entry.mission, entry.file.string(), entry.folder.string(), entry.log.string(), entry.telemetry,
-      entry.telecommand, entry.load, entry.keeper);
+  std::string text =
+      fmt::format("instance={}\nmission={}\nfile={}\nfolder={}\nlog={}\ntelemetry={}\ntelecommand={}\nkeeper={}\n",
+                  entry.instance, entry.mission, entry.file.string(), entry.folder.string(), entry.log.string(),
+                  entry.telemetry, entry.telecommand, entry.keeper);
+  for (const CoreUse& use : entry.core_uses) text += fmt::format("core={}\n", text_of(use));
   for (const std::string& address : entry.udp) text += fmt::format("udp={}\n", address);
   return text;
 }
@@ -125,7 +135,7 @@ std::optional<FlightEntry> entry_from_text(const std::string& text) {
     else if (name == "telecommand") entry.telecommand = value;
     else if (name == "udp") entry.udp.push_back(value);
     else if (name == "keeper") std::from_chars(value.data(), value.data() + value.size(), entry.keeper);
-    else if (name == "load") std::from_chars(value.data(), value.data() + value.size(), entry.load);
+    else if (name == "core") entry.core_uses.push_back(core_use_in(value));
   }
   if (!good_instance(entry.instance) || entry.mission.empty() || entry.folder.empty()) return std::nullopt;
   return entry;
@@ -184,7 +194,11 @@ std::expected<Admission, std::string> FlightRegistry::enter(FlightEntry entry) c
   if (!lock) return std::unexpected{fmt::format("{} cannot be written", (folder_ / entry.instance).string())};
   if (is_taken(lock.get())) return std::unexpected{fmt::format("{} flies already", entry.instance)};
   const auto others = flights();
-  if (auto reason = judge_load(entry, others); !reason.empty()) return std::unexpected{std::move(reason)};
+  const auto their_cores = cores_of(others);
+  keep_off(entry.cores, their_cores);
+  entry.core_uses = entry.cores.uses();
+  if (auto reason = judge_cores(entry.core_uses, their_cores); !reason.empty())
+    return std::unexpected{std::move(reason)};
   for (const FlightEntry& other : others)
     for (const std::string& address : entry.udp)
       if (std::ranges::find(other.udp, address) != other.udp.end())

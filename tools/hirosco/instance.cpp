@@ -53,8 +53,14 @@ struct Address {
   };
   for (const auto& member : mission.subsystems) {
     for (const auto& device : member.subsystem.devices)
-      if (device.enable) note(*device.enable);
-    for (const auto& power : member.subsystem.power_switches) note(power.endnode);
+      if (device.enable) {
+        note(*device.enable);
+        std::ranges::for_each(device.enable_terms.fall_backs, note);
+      }
+    for (const auto& power : member.subsystem.power_switches) {
+      note(power.endnode);
+      std::ranges::for_each(power.terms.fall_backs, note);
+    }
     for (const auto& configuration : member.subsystem.configurations)
       for (const auto& use : configuration.devices) {
         note(use.endnode);
@@ -168,7 +174,7 @@ FlightEntry plan_flight(const descriptor::Mission& mission, const std::string& i
                     .folder = runtime_folder(instance),
                     .log = fs::absolute(instance_log(mission, instance), failed),
                     .udp = ports_of(mission),
-                    .load = descriptor::cycle_share(mission),
+                    .cores = flight_cores(mission, ProcessorSet::of_this_thread()),
                     .keeper = ::getpid()};
   if (mission.ground.subsystem.empty()) return entry;
   entry.telemetry = in_numbers(mission.ground.telemetry);

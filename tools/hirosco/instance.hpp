@@ -13,6 +13,7 @@
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/core_places.hpp"
 
 /// Several flights on one computer (adr 0037): what belongs to one of them, and where all of them are found.
 namespace hirosco::tools {
@@ -27,7 +28,8 @@ struct FlightEntry {
   std::string telemetry{};       ///< HOST:PORT; empty: a mission without ground link
   std::string telecommand{};
   std::vector<std::string> udp{};  ///< addresses of its devices that no instance changes
-  double load{0};                ///< declared share of the one processor of all cycles (adr 0007)
+  FlightCores cores{};           ///< of a flight that is planned: where its cycles are to be (adr 0007, 0234)
+  std::vector<CoreUse> core_uses{};  ///< of one that is entered: where they are, and their declared shares
   int keeper{0};                 ///< its process
 
   /// It has a name of its own, and so all that the mission's file names once.

@@ -33,7 +33,7 @@ class Flights : public testing::Test {
             .log = "/l/" + instance + ".db",
             .telemetry = std::string{test_host} + ":31015",
             .telecommand = std::string{test_host} + ":31025",
-            .load = load,
+            .cores = {.shared_load = load},
             .keeper = 7};
   }
   fs::path folder_;
@@ -151,7 +151,7 @@ TEST_F(Flights, OfAFolderThatIsNotOursAreRefusedAndNotBelieved) {
 TEST_F(Flights, WithAPathThatWouldSayMoreThanAPathAreRefused) {
   const FlightRegistry registry{folder_};
   FlightEntry forged = entry("one");
-  forged.log = "/l/one.db\nload=0";
+  forged.log = "/l/one.db\nkeeper=0";
   EXPECT_NE(reason(registry.enter(forged)).find("characters"), std::string::npos);
 }
 

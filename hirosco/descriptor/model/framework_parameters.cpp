@@ -74,7 +74,8 @@ std::vector<Parameter> framework_parameters() {
                  member("WAITING", 243, Uint16, "", 3),
                  member("WAITING_HIGH", 244, Uint16, "", 3),
                  member("QUEUES", 254, Uint8, "%", queues_of_subsystem),
-                 member("QUEUES_HIGH", 255, Uint8, "%", queues_of_subsystem)}),
+                 member("QUEUES_HIGH", 255, Uint8, "%", queues_of_subsystem),
+                 member("CORE", 245, Uint16)}),
       structure(framework_parameter::heap_uses, 33,
                 {member("CYCLE", 255, Uint64), member("SERVICE", 254, Uint64), member("COUNTED", 255, Bool)}),
       structure(framework_parameter::descriptor, 36, {member("HASH", 255, Uint32), member("CHANGES", 240, Uint16)})};

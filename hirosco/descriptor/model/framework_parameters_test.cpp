@@ -40,7 +40,7 @@ TEST(FrameworkParameters, AreThereInADescriptorThatDeclaresNoneWithTheSameIdsInA
   EXPECT_EQ(subsystem.find_parameter("LINK_STATS")->octets(), 8U);
   EXPECT_EQ(subsystem.find_parameter("CYCLE_SPIN")->octets(), 16U);
   EXPECT_EQ(subsystem.find_parameter("LOOP_STATS")->octets(), 192U);
-  EXPECT_EQ(subsystem.find_parameter("RESOURCE_STATS")->octets(), 148U);
+  EXPECT_EQ(subsystem.find_parameter("RESOURCE_STATS")->octets(), 150U);
   EXPECT_EQ(subsystem.find_parameter("HEAP_USES")->octets(), 17U);
   EXPECT_EQ(subsystem.find_parameter("DESCRIPTOR")->octets(), 6U);
 }

@@ -35,8 +35,9 @@ enum class Resource : std::uint8_t {
   LoopReports = 16,
   Channel = 17,  ///< what waits in the control channel towards the supervisor, kB; its own likewise
   Processes = 18,  ///< of the system; each subsystem is one (docs/adr/0220)
+  Cores = 19,  ///< percent of one that a mission names (docs/adr/0234)
 };
-inline constexpr std::size_t counted_resources = 19;  ///< those among them of which there is no amount
+inline constexpr std::size_t counted_resources = 20;  ///< those among them of which there is no amount
 inline constexpr std::size_t queues_of_subsystem = 7;  ///< from CycleCommands on
 
 /// By Resource; empty = not declared, so not limited.
@@ -51,7 +52,7 @@ using Amounts = std::array<std::optional<std::uint32_t>, counted_resources>;
 /// "kB", "%", or nothing.
 [[nodiscard]] constexpr const char* unit_of(Resource resource) noexcept {
   return resource <= Resource::SharedMemory || resource == Resource::Channel ? " kB"
-         : resource == Resource::Processor                                   ? " %"
+         : resource == Resource::Processor || resource == Resource::Cores    ? " %"
                                                                              : "";
 }
 
@@ -152,6 +153,7 @@ struct EnumTexts<descriptor::Resource> {
                                                                   {LoopRequests, "requests to a service loop"},
                                                                   {LoopReports, "reports of a service loop"},
                                                                   {Channel, "control channel"},
-                                                                  {Processes, "processes"}});
+                                                                  {Processes, "processes"},
+                                                                  {Cores, "cores"}});
 };
 }  // namespace hirosco

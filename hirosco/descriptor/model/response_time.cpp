@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "hirosco/descriptor/model/cores.hpp"
+
 namespace hirosco::descriptor {
 namespace {
 
@@ -38,7 +40,7 @@ struct Runner {
 
 /// What this one takes from `of` until that has ended, if it began with all due and took `span`.
 [[nodiscard]] Duration taken(const CycleResponse& other, const CycleResponse& of, Duration span) {
-  if (other.priority() < of.priority()) return Duration{};
+  if (other.core != of.core || other.priority() < of.priority()) return Duration{};
   const bool in_turn =
       other.priority() == of.priority() && of.priority() > 0;  // without a priority nobody keeps a turn
   return in_turn ? other.load() : begun_within(span, other.period()) * other.load();
@@ -83,15 +85,15 @@ enum class Reckoned { AsInForce, AlsoUnconfigured };
 
 [[nodiscard]] std::vector<Runner> runners(std::span<const InForce> all, Reckoned reckoned) {
   std::vector<Runner> found;
-  for (const auto& [subsystem, configuration] : all) {
+  for (const auto& [subsystem, configuration, core] : all) {
     if (configuration != nullptr)
-      found.emplace_back().may({subsystem->name, configuration, nullptr, std::nullopt}, When::Configured);
+      found.emplace_back().may({subsystem->name, configuration, nullptr, std::nullopt, core}, When::Configured);
     for (std::size_t i = 0; i < subsystem->service_loops.size(); ++i) {
       const ServiceLoop &own = subsystem->service_loops[i], &now = subsystem->loop_in_force(i, configuration);
       const bool goes_otherwise = &now != &own && reckoned == Reckoned::AlsoUnconfigured;
       Runner& loop = found.emplace_back();
-      loop.may({subsystem->name, nullptr, &now, std::nullopt}, goes_otherwise ? When::Configured : When::Always);
-      if (goes_otherwise) loop.may({subsystem->name, nullptr, &own, std::nullopt}, When::Unconfigured);
+      loop.may({subsystem->name, nullptr, &now, std::nullopt, core}, goes_otherwise ? When::Configured : When::Always);
+      if (goes_otherwise) loop.may({subsystem->name, nullptr, &own, std::nullopt, core}, When::Unconfigured);
     }
   }
   return found;
@@ -101,11 +103,12 @@ enum class Reckoned { AsInForce, AlsoUnconfigured };
   std::vector<InForce> all;
   for (const CommissionStep& step : mode.commission)
     if (const auto* member = mission.find_subsystem(step.subsystem))
-      all.push_back({&member->subsystem, member->subsystem.find_configuration(step.configuration)});
+      all.push_back(
+          {&member->subsystem, member->subsystem.find_configuration(step.configuration), core_of(mission, *member)});
   // Loops of services run whatever is commissioned.
   for (const MissionSubsystem& member : mission.subsystems)
     if (std::ranges::find(all, &member.subsystem, &InForce::subsystem) == all.end())
-      all.push_back({&member.subsystem, nullptr});
+      all.push_back({&member.subsystem, nullptr, core_of(mission, member)});
   return all;
 }
 

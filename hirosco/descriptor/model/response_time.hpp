@@ -9,16 +9,18 @@
 
 #include "hirosco/descriptor/model/mission.hpp"
 
-/// Whether the cycles of a mode end in time on the one processor that they share (docs/adr/0007, 0085).
+/// Whether the cycles of a mode end in time on the core that they share (docs/adr/0007, 0085), or that they are given (docs/adr/0234).
 namespace hirosco::descriptor {
 
-/// A cycle of a mode, or a loop of services of its own, at its worst instant: all others are due when it is.
+/// A cycle of a mode, or a loop of services of its own, at its worst instant: all others of its core are due when it is.
 struct CycleResponse {
   std::string_view subsystem;  ///< of the mission, which outlives this
   const Configuration* configuration{nullptr};  ///< of a cycle
   const ServiceLoop* loop{nullptr};  ///< of services, instead (docs/adr/0096)
   /// From due to done, what goes before it included; empty: it does not end before it is due again, or never.
   std::optional<Duration> longest;
+  /// On which it goes, and takes nothing of any other; empty: on that of all who name none.
+  std::optional<std::uint16_t> core{};
 
   [[nodiscard]] std::string_view name() const noexcept { return loop != nullptr ? loop->name : configuration->name; }
   /// The shortest.
@@ -34,6 +36,7 @@ struct CycleResponse {
 struct InForce {
   const SubsystemDescriptor* subsystem{nullptr};
   const Configuration* configuration{nullptr};
+  std::optional<std::uint16_t> core{};  ///< core_of()
 };
 
 /// The cycles that this mode commissions and the loops of services of all subsystems, the most urgent first. Who declares no budget

@@ -14,6 +14,7 @@
 #include "hirosco/data_transfer/link/queued_link.hpp"
 #include "hirosco/data_transfer/wire_layout.hpp"
 #include "hirosco/descriptor/model/common_link_way.hpp"
+#include "hirosco/descriptor/model/cores.hpp"
 #include "hirosco/descriptor/model/response_time.hpp"
 #include "hirosco/descriptor/read/detail/mission_link_reader.hpp"
 #include "hirosco/descriptor/read/detail/mode_parts.hpp"
@@ -111,13 +112,17 @@ void check_power(const xml::Element& element, const Mode& mode, const Mission& m
 }
 
 void check_cycles(const xml::Element& element, const Mode& mode, const Mission& mission, Problems& problems) {
-  const double share = cycle_share(mission, mode);
-  if (share > 1)
-    return problems.add(
-        element, "E0324",
-        fmt::format("the cycles of mode {} take {:.0f} % of a processor", in_quotes(mode.name), 100 * share),
-        "all cycles share one: the sum of budget_us / sampling_us is at most 1, or of budget_us / least_us where "
-        "samples start the cycle");
+  const std::size_t before_shares = problems.count();
+  for (const auto& [core, share] : core_shares(mission, mode)) {
+    if (share <= 1) continue;
+    problems.add(element, "E0324",
+                 fmt::format("the cycles of mode {} take {:.0f} % of {}", in_quotes(mode.name), 100 * share,
+                             core ? core_words(core) : "a processor"),
+                 core ? "the sum of budget_us / sampling_us of all who are there is at most 1: give some another 'core'"
+                      : "all cycles share one: the sum of budget_us / sampling_us is at most 1, or of budget_us / "
+                        "least_us where samples start the cycle");
+  }
+  if (problems.count() != before_shares) return;
   const auto end_in_time = [&](const std::vector<CycleResponse>& cycles, std::string_view when) {
     const std::size_t before = problems.count();
     for (const CycleResponse& cycle : cycles) {

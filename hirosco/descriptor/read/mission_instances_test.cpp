@@ -126,7 +126,7 @@ TEST(MissionInstances, MeetByAFallBackOrASwitchThatTheMissionLeaves) {
   EXPECT_EQ(told(of_stick + ">" + moved_ends + end), "E0313 'orbiter-power' is a device's of 'FLYWHEEL'");
   const std::string owned = of_stick + R"(power="left-power">)";
   EXPECT_EQ(told(owned + moved_ends + R"(<FallBack address="none" to="left-4"/></Device>)"),
-            "E0217 'none': no configuration falls back to this address");
+            "E0217 'none': nothing of it falls back to this address");
   EXPECT_EQ(told(owned + R"(<FallBack address="orbiter-stick-3" to="left"/></Device>)"),
             "E0217 'orbiter-stick-3': the device has that address already");
   EXPECT_EQ(told(owned + moved_ends + moved_ends + end).substr(0, 5), "E0201");

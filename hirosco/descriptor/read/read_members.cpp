@@ -190,6 +190,7 @@ void MemberReader::read_member(const xml::Element& element) {
   member.at = place(element.at);
   member.executable = attributes.name("executable", NameKind::Loose);
   member.starts = attributes.yes("start", true);
+  read_cores(attributes, member, problems_);
   auto subsystem = read_descriptor(attributes);
   if (!subsystem) return;  // what is set in it cannot be judged
   member.subsystem = std::move(*subsystem);

@@ -19,6 +19,7 @@ void read_simulated_device(const xml::Element& element, MissionDraft& draft, Uni
   device.name = attributes.name("name", NameKind::Loose);
   device.executable = attributes.name("executable", NameKind::Loose);
   device.seed = attributes.integer_or<std::uint64_t>("seed", 0, std::numeric_limits<std::int64_t>::max(), 1);
+  device.core = read_core(attributes);
   const auto* subsystem = attributes.required("subsystem");
   const auto* played = attributes.required("device");
   if (subsystem != nullptr) device.subsystem = subsystem->value;

@@ -81,6 +81,7 @@ void ResourceMeter::note(const ProcessUsage& usage, TimePoint now) noexcept {
   note(Resource::SharedMemory, usage.shared_memory_kb);
   note(Resource::Threads, usage.threads);
   note(Resource::Descriptors, usage.descriptors);
+  core_.store(usage.cycle_core, std::memory_order_relaxed);
   if (const auto percent = processor_.look(usage.processor, now)) note(Resource::Processor, *percent);
 }
 
@@ -176,6 +177,7 @@ ResourceStatistics ResourceMeter::statistics() const noexcept {
     all.waiting.queues[i] = queues_[i].load(std::memory_order_relaxed);
     all.waiting.queues_high[i] = queues_high_[i].load(std::memory_order_relaxed);
   }
+  all.waiting.core = core_.load(std::memory_order_relaxed);
   all.pool_high = pool_high_before_;
   std::uint64_t refused = pool_refused_before_;
   for (std::size_t i = 0; pools_ != nullptr && i < pools_->size(); ++i) {

@@ -51,6 +51,9 @@ struct ResourceStatistics {
     /// Of what each holds, in percent, by Resource from CycleCommands on: likewise.
     std::array<std::uint8_t, descriptor::queues_of_subsystem> queues{};
     std::array<std::uint8_t, descriptor::queues_of_subsystem> queues_high{};
+    /// On which its cycle is (docs/adr/0234); behind all others, so that who knows nothing of it reads the rest. 65535: on none alone, or
+    /// nobody can tell.
+    std::uint16_t core{ProcessUsage::no_core};
   } waiting{};
 };
 
@@ -117,6 +120,7 @@ class ResourceMeter {
   const descriptor::Resources& declared_;
   std::array<Seen, descriptor::counted_resources> seen_;
   ProcessorShare processor_;
+  std::atomic<std::uint16_t> core_{ProcessUsage::no_core};
   std::array<std::atomic<std::uint32_t>, descriptor::most_pools> pool_crossings_{};  ///< by who allocates
   Quota ports_, files_;
   std::unique_ptr<BlockPools> pools_;

@@ -70,6 +70,16 @@ TEST_F(ResourceMeterTest, SharedMemoryAndTheShareOfAProcessorAreCountedToo) {
   EXPECT_TRUE(told().empty()) << "neither is limited";
 }
 
+TEST(ResourceMeter, TellsOnWhichCoreTheCycleIsAndOfNobodyElsesNothing) {
+  const descriptor::Resources declared;
+  ResourceMeter meter{declared};
+  EXPECT_EQ(meter.statistics().waiting.core, 65'535) << "nobody has told";
+  meter.note({.cycle_core = 3}, TimePoint{1s});
+  EXPECT_EQ(meter.statistics().waiting.core, 3);
+  meter.note({}, TimePoint{2s});
+  EXPECT_EQ(meter.statistics().waiting.core, 65'535);
+}
+
 TEST(ProcessorOfASubsystem, IsWarnedOfOnceWhereASecondTakesThreeQuartersOfWhatItsDescriptorSays) {
   descriptor::Resources declared;
   declared.most[static_cast<std::size_t>(Resource::Processor)] = 80;

@@ -13,6 +13,9 @@
 namespace hirosco {
 namespace {
 
+/// To its own, or to the one that all share who name none.
+Result<> pin_to(std::optional<unsigned> core) noexcept { return core ? pin_to_cpu(*core) : pin_to_cycle_cpu(); }
+
 /// Of the cycle's thread. All memory is locked, so that every octet of it is taken from the computer.
 constexpr std::size_t cycle_stack_octets = std::size_t{1} << 20;
 
@@ -83,6 +86,13 @@ class ServiceWait {
 
 }  // namespace
 
+bool may_spin(bool realtime, std::optional<unsigned> core) noexcept {
+  if (!realtime) return false;
+  ProcessorSet all = ProcessorSet::of_this_thread();
+  if (core) all.add(*core);
+  return all.count() > 1;
+}
+
 Result<Bell> Bell::make() {
   HIROSCO_TRY_LET(auto event, WakeEvent::create());
   return Bell{std::move(event)};
@@ -106,7 +116,7 @@ void CycleThread::tell_heap_uses(const char* program) const {
 
 void CycleThread::run() {
   if (hold_ != nullptr) hold_->enter();
-  static_cast<void>(realtime_ ? pin_to_cycle_cpu() : ask_for_short_slices());
+  take_place();
   while (!ending_.load(std::memory_order_acquire)) {
     const auto demand = subsystem_.cycle_demand();
     if (!demand.wanted) {
@@ -118,6 +128,16 @@ void CycleThread::run() {
     cycle(demand.generation, demand.priority);
   }
   if (hold_ != nullptr) hold_->leave();
+}
+
+/// Where one is named it is there without real-time rights, too: the mission says so.
+void CycleThread::take_place() noexcept {
+  const auto named = core_ != nullptr ? core_->named : std::nullopt;
+  if (realtime_ || named) static_cast<void>(pin_to(named));
+  if (!realtime_) static_cast<void>(ask_for_short_slices());
+  const ProcessorSet mine = ProcessorSet::of_this_thread();
+  if (core_ != nullptr && mine.count() == 1)
+    core_->is.store(static_cast<std::uint16_t>(*mine.last()), std::memory_order_relaxed);
 }
 
 /// Of the configuration; 0 is ordinary scheduling, whatever the one before had.
@@ -173,14 +193,14 @@ void OwnLoopThread::run() {
   if (hold_ != nullptr) hold_->leave();
 }
 
-/// One with a priority shares the processor of the cycles, where its response is reckoned (adr 0085); one without goes anywhere.
+/// One with a priority shares the processor of its cycle, where its response is reckoned (adr 0085); one without goes anywhere.
 void OwnLoopThread::take_priority(int priority) {
   if (!realtime_ || priority == priority_) return;
   // Up: priority, then processor. Down: the other way round, as behind the cycles of their processor it might not come to ask for others.
   if (priority > 0) {
     // The guard takes the right to one for a while: it stays as it is, and asks again before its next step.
     if (!set_fifo_priority(priority)) return;
-    static_cast<void>(pin_to_cycle_cpu());
+    static_cast<void>(pin_to(core_));
   } else {
     static_cast<void>(anywhere_.take());
     static_cast<void>(set_ordinary_scheduling());

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "hirosco/data_transfer/channel/channel.hpp"
 #include "hirosco/subsystem/service_loop/generic_subsystem.hpp"
+#include "hirosco/utilities/os/process_usage.hpp"
 #include "hirosco/utilities/os/semaphore.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/thread_hold.hpp"
@@ -21,6 +23,16 @@ namespace hirosco {
 /// Of every service loop. Real-time, but below every cycle: a busy core cannot hold up a command to stop (decision 8a). Service loops
 /// share: one that never rests must not keep those of others from stepping, which would then count as hanging (hazard R18).
 inline constexpr int service_loop_priority = 20;
+
+/// Whether a cycle may spin (docs/adr/0104): with the right to go before others, and where who serves has another processor. `core`: its
+/// own, where its mission names one. Thread: the service loop's.
+[[nodiscard]] bool may_spin(bool realtime, std::optional<unsigned> core) noexcept;
+
+/// Where a cycle goes.
+struct CycleCore {
+  std::optional<unsigned> named{};  ///< by its mission (docs/adr/0234)
+  std::atomic<std::uint16_t> is{ProcessUsage::no_core};  ///< where it is, as the system tells; written by its thread
+};
 
 /// By which the cycle, or somebody outside, wakes the service loop: rung once until it is heard, so that a service loop that gets no
 /// processor costs the cycle one system call, not one in each cycle.
@@ -47,9 +59,10 @@ class Bell {
 /// The cycle thread: sleeps to absolute times, or until a sample starts its cycle, while a cycle is wanted, rests on a semaphore otherwise.
 class CycleThread {
  public:
-  /// All must outlive end(). `hold` (may be null): how others reach the thread.
-  CycleThread(GenericSubsystem& subsystem, const Clock& clock, Bell& bell, bool realtime, ThreadHold* hold = nullptr)
-      : subsystem_{subsystem}, clock_{clock}, bell_{bell}, realtime_{realtime}, hold_{hold} {}
+  /// All must outlive end(). `hold` (may be null): how others reach the thread. `core` (may be null): where it goes.
+  CycleThread(GenericSubsystem& subsystem, const Clock& clock, Bell& bell, bool realtime, ThreadHold* hold = nullptr,
+              CycleCore* core = nullptr)
+      : subsystem_{subsystem}, clock_{clock}, bell_{bell}, realtime_{realtime}, hold_{hold}, core_{core} {}
   /// `name` shows in the tools of the operating system.
   [[nodiscard]] Result<> start(std::string name);
   void wake() { wanted_.post(); }
@@ -60,6 +73,7 @@ class CycleThread {
 
  private:
   void run();
+  void take_place() noexcept;
   void take_priority(int priority);
   void cycle(std::uint32_t generation, int priority);
 
@@ -68,6 +82,7 @@ class CycleThread {
   Bell& bell_;
   bool realtime_;
   ThreadHold* hold_;
+  CycleCore* core_;
   Semaphore wanted_{0};
   std::atomic<bool> ending_{false};
   std::uint64_t cycles_{0};  ///< the cycle thread's until it is joined, like the next
@@ -80,8 +95,8 @@ class CycleThread {
 class OwnLoopThread {
  public:
   OwnLoopThread(GenericSubsystem& subsystem, std::size_t loop, const Clock& clock, Bell& bell, bool realtime,
-                ThreadHold* hold = nullptr)
-      : subsystem_{subsystem}, loop_{loop}, clock_{clock}, bell_{bell}, realtime_{realtime}, hold_{hold} {}
+                ThreadHold* hold = nullptr, std::optional<unsigned> core = std::nullopt)
+      : subsystem_{subsystem}, loop_{loop}, clock_{clock}, bell_{bell}, realtime_{realtime}, hold_{hold}, core_{core} {}
   /// The guard tells the cycle's thread by its name: no loop has the same.
   [[nodiscard]] Result<> start();
   void end();
@@ -96,6 +111,7 @@ class OwnLoopThread {
   Bell& bell_;
   bool realtime_;
   ThreadHold* hold_;
+  std::optional<unsigned> core_;
   int priority_{0};  ///< that it has; the thread's own, like the next
   ProcessorSet anywhere_{};
   std::atomic<bool> ending_{false};

@@ -26,7 +26,7 @@ namespace {
 /// One subsystem with its threads; the test's thread is its service loop and its supervisor.
 class Driven {
  public:
-  Driven(Subsystem& author, const std::string& descriptor, bool precise = false)
+  Driven(Subsystem& author, const std::string& descriptor, bool precise = false, CycleCore* core = nullptr)
       : subsystem{author,
                   testing::read_descriptor(descriptor),
                   {.clock = clock,
@@ -43,7 +43,7 @@ class Driven {
                   channels.subsystem_end(),
                   vital,
                   permit},
-        cycle_{subsystem, clock, bell_, false} {
+        cycle_{subsystem, clock, bell_, false, nullptr, core} {
     permit.release();
     EXPECT_TRUE(cycle_.start("cycle"));
     for (std::size_t i = 0; i < subsystem.own_loops(); ++i) {
@@ -210,6 +210,36 @@ TEST(CycleThreads, SpinBeforeEachCycleWhereTheConfigurationAsksForItAndTheComput
     EXPECT_EQ(sleeps.longest_us, 0.0F);
     EXPECT_EQ(sleeps.exceeded, 0U);
   }
+}
+
+TEST(CycleThreads, GoToTheCoreThatTheMissionNamesWhateverRightsTheyHave) {
+  const ProcessorSet mine = ProcessorSet::of_this_thread();
+  ASSERT_GT(mine.count(), 0U);
+  Idle idle;
+  CycleCore named{.named = mine.beyond(ProcessorSet{})}, nowhere;
+  {
+    Driven driven{idle, precise_descriptor, false, &named};
+    driven.go(State::PreOperational);
+    driven.until([&] { return named.is != ProcessUsage::no_core; });
+    EXPECT_EQ(named.is, named.named);
+    EXPECT_EQ(to_string(ProcessorSet::of_this_thread()), to_string(mine)) << "who serves stays where he may be";
+  }
+  Driven driven{idle, precise_descriptor, false, &nowhere};
+  driven.go(State::PreOperational);
+  const bool one_alone = mine.count() == 1;
+  EXPECT_TRUE(one_alone || nowhere.is == ProcessUsage::no_core) << "without rights and a name nothing is tied";
+}
+
+TEST(CycleThreads, SpinOnlyWhereWhoServesHasAnotherCore) {
+  Thread::start("server", [] {
+    const ProcessorSet mine = ProcessorSet::of_this_thread();
+    EXPECT_EQ(may_spin(true, std::nullopt), mine.count() > 1);
+    EXPECT_FALSE(may_spin(false, std::nullopt));
+    ASSERT_TRUE(pin_to_cycle_cpu());
+    EXPECT_FALSE(may_spin(true, std::nullopt));
+    EXPECT_FALSE(may_spin(true, mine.last()));
+    EXPECT_TRUE(may_spin(true, *mine.last() + 1));
+  })->join();
 }
 
 // --- loops of services beside it ---------------------------------------------------------------------------------------

@@ -44,15 +44,17 @@ struct Options {
   int vital{-1};
   int permit{-1};
   int text{-1};  ///< of the descriptor; -1: its file is read
+  std::optional<unsigned> core{};  ///< of its cycle, where its mission names one
   [[nodiscard]] bool complete() const { return !descriptor.empty() && channel >= 0 && vital >= 0 && permit >= 0; }
 };
 
-/// Those behind the first five change what the descriptor says (descriptor::changes_of()).
+/// Those behind the first six change what the descriptor says (descriptor::changes_of()).
 constexpr std::array known_options{ProgramOption{"--descriptor", "FILE"},
                                    ProgramOption{"--channel", "FD"},
                                    ProgramOption{"--vital", "FD"},
                                    ProgramOption{"--permit", "FD"},
                                    ProgramOption{"--text", "FD"},
+                                   ProgramOption{"--core", "NUMBER"},
                                    ProgramOption{"--as", "NAME:ID"},
                                    ProgramOption{"--set", "PARAMETER=VALUES"},
                                    ProgramOption{"--address", "DEVICE=ADDRESS"},
@@ -79,6 +81,7 @@ constexpr std::array known_options{ProgramOption{"--descriptor", "FILE"},
     else if (name == "--vital") options.vital = number_of(value);
     else if (name == "--permit") options.permit = number_of(value);
     else if (name == "--text") options.text = number_of(value);
+    else if (name == "--core") options.core = static_cast<unsigned>(number_of(value));
     else options.changes.emplace_back(name, value);
   }
   return options;
@@ -126,14 +129,20 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
   }
   const Options& options = *said;
   if (!options.complete()) {
-    fmt::print(stderr,
-               "{}: a subsystem is started by the supervisor (hirosco run MISSION), which passes\n"
-               "  --descriptor FILE --channel FD --vital FD --permit FD [--as NAME:ID] [--set PARAMETER=VALUES]\n"
-               "  [--text FD] [--address DEVICE=ADDRESS] [--enable DEVICE=ADDRESS] [--power DEVICE=ADDRESS]\n"
-               "  [--fall-back DEVICE=ADDRESS=ADDRESS] [--setting DEVICE:NAME=VALUE] [--commands NAME=ID:FILE]\n"
-               "  [--subscribes NAME=ID:FILE]\n",
-               argv[0]);
+    fmt::print(
+        stderr,
+        "{}: a subsystem is started by the supervisor (hirosco run MISSION), which passes\n"
+        "  --descriptor FILE --channel FD --vital FD --permit FD [--as NAME:ID] [--set PARAMETER=VALUES]\n"
+        "  [--text FD] [--core NUMBER] [--address DEVICE=ADDRESS] [--enable DEVICE=ADDRESS] [--power DEVICE=ADDRESS]\n"
+        "  [--fall-back DEVICE=ADDRESS=ADDRESS] [--setting DEVICE:NAME=VALUE] [--commands NAME=ID:FILE]\n"
+        "  [--subscribes NAME=ID:FILE]\n",
+        argv[0]);
     return exit_usage;
+  }
+  if (options.core && !grants_processor(*options.core)) {
+    fmt::print(stderr, "{}: core {}, which the mission gives its cycle, is none of this computer that it may use\n",
+               argv[0], *options.core);
+    return exit_environment;
   }
   const auto source = descriptor::file_system();
   // What flies is what the supervisor has judged, whatever the file says by now.
@@ -170,16 +179,21 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     static_cast<void>(set_shared_priority(service_loop_priority));
   }
   auto meter = ProcessMeter::own();
+  CycleCore core{.named = options.core};
   const descriptor::SubsystemDescriptor begun = *reading.value;
   const Platform platform{
       .clock = clock,
       .memory = memory,
       .flows = flows,
       .realtime = realtime,
-      .precise = realtime && usable_processors() > 1,
+      .precise = may_spin(realtime, options.core),
       .wakes = true,
       .explain = [](std::string_view text) { std::fputs(fmt::format("{}\n", text).c_str(), stderr); },
-      .usage = [&meter]() -> std::optional<ProcessUsage> { return meter ? meter->look() : std::nullopt; },
+      .usage = [&meter, &core]() -> std::optional<ProcessUsage> {
+        auto usage = meter ? meter->look() : std::nullopt;
+        if (usage) usage->cycle_core = core.is.load(std::memory_order_relaxed);
+        return usage;
+      },
       .read_again = [&begun,
                      &options](std::string_view text) { return descriptor::read_again(begun, text, options.changes); }};
   const auto author = make();
@@ -194,7 +208,7 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
     fmt::print(stderr, "{}: {} (errno {})\n", argv[0], bell.error().text, bell.error().value);
     return exit_environment;
   }
-  CycleThread cycle{subsystem, clock, *bell, realtime};
+  CycleThread cycle{subsystem, clock, *bell, realtime, nullptr, &core};
   if (const auto started = cycle.start("cycle"); !started) {
     fmt::print(stderr, "{}: {} (errno {})\n", argv[0], started.error().text, started.error().value);
     return exit_environment;
@@ -209,7 +223,7 @@ int run_subsystem(int argc, char** argv, const std::function<std::unique_ptr<Sub
   };
   std::vector<std::unique_ptr<OwnLoopThread>> loops;
   for (std::size_t i = 0; i < subsystem.own_loops(); ++i) {
-    loops.push_back(std::make_unique<OwnLoopThread>(subsystem, i, clock, *bell, realtime));
+    loops.push_back(std::make_unique<OwnLoopThread>(subsystem, i, clock, *bell, realtime, nullptr, options.core));
     if (const auto started = loops.back()->start(); !started) {
       fmt::print(stderr, "{}: {} (errno {})\n", argv[0], started.error().text, started.error().value);
       return exit_environment;

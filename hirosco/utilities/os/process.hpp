@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/processor_set.hpp"
 #include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/result.hpp"
 
@@ -33,6 +34,8 @@ struct ProcessLimits {
   /// The highest of real time that its threads may take; less where we have less ourselves. Root's right to all of them ends in a sandbox
   /// only.
   std::optional<std::uint64_t> realtime_priority{};
+  /// That its threads begin with; where the computer has none of them it is not started.
+  std::optional<ProcessorSet> processors{};
   /// Where memory ends, the system ends a process: this one before those that are not so marked, as if it had half the computer's memory more.
   bool goes_first{false};
 };

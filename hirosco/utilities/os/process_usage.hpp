@@ -21,6 +21,8 @@ struct ProcessUsage {
   Duration processor{};  ///< of all its threads since its start
   std::uint32_t processes{
       1};  ///< itself, and of another process those that it has started and that have not ended, where the system tells; a hundred are enough
+  static constexpr std::uint16_t no_core = 0xFFFF;
+  std::uint16_t cycle_core{no_core};  ///< on which its cycle is alone, where whoever asks knows that
 };
 
 /// Looks at one process again and again.  Realtime: system calls, bounded, no heap. Thread: one at a time.

@@ -4,13 +4,13 @@
 
 #include <pthread.h>
 
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "hirosco/utilities/os/processor_set.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
 
@@ -65,20 +65,6 @@ class Thread {
 /// Ties the calling thread to the last processor that it may use: the one that all cycles and devices of a node share
 /// (docs/adr/0007). Unavailable where the system has no affinity.
 [[nodiscard]] Result<> pin_to_cycle_cpu() noexcept;
-/// The processors that a thread may use: what goes back to them after pin_to_cpu(). Where the system has no affinity there are none,
-/// and nothing to go back to.
-class ProcessorSet {
- public:
-  ProcessorSet() = default;
-  [[nodiscard]] static ProcessorSet of_this_thread() noexcept;
-  /// The calling thread may use these, and no others, from now on. Realtime: bounded.
-  [[nodiscard]] Result<> take() const noexcept;
-
- private:
-  /// As the system has them, so that this header needs none of its headers.
-  [[maybe_unused]] std::array<std::byte, 128> octets_{};
-  [[maybe_unused]] bool known_{false};
-};
 /// How many processors the calling thread may use; 1 where the system cannot say.
 [[nodiscard]] unsigned usable_processors() noexcept;
 /// Names the calling thread (first 15 octets); for tools only, so a refusal is silent.

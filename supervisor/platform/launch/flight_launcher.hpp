@@ -24,6 +24,7 @@ class FlightLauncher : public ProcessLauncher {
                                        InheritedParts /*inherited*/, KeeperPage* /*page*/) {
     return false;
   }
+  [[nodiscard]] bool grants_core(std::uint16_t core) noexcept override { return grants_processor(core); }
   /// Ends what still runs, as far as that is possible: nobody would be left to do it.
   virtual void kill_all() = 0;
   /// True while one that was started still runs.

@@ -22,7 +22,7 @@ constexpr std::size_t service_stack_octets = std::size_t{2} << 20;
 /// As the end of a process that was killed, so that whoever reads a log finds one word for it.
 constexpr ProcessEnd killed{true, 9};
 constexpr ProcessEnd by_defect{false, 4};
-constexpr std::array<std::string_view, 8> not_isolated{
+constexpr std::array<std::string_view, 9> not_isolated{
     "threads of one process share their memory: who writes where it should not damages any other, the supervisor and "
     "its guard too",
     "the pages that gate actuators and the memory of links are sealed against nobody",
@@ -35,6 +35,7 @@ constexpr std::array<std::string_view, 8> not_isolated{
     "counted and limited for nobody",
     "processor_percent that a subsystem declares is held against the time of its loops: a thread that its author "
     "starts is counted for nobody",
+    "cores that the mission names hold for their loops; a thread that goes elsewhere by itself is found by nobody",
     "the supervisor cannot be lost alone: its end is the end of all",
 };
 
@@ -81,7 +82,9 @@ struct ThreadLauncher::Member {
     return all;
   }
   /// The rest is of the whole process.
-  [[nodiscard]] ProcessUsage usage() noexcept { return {.processor = processor_time()}; }
+  [[nodiscard]] ProcessUsage usage() noexcept {
+    return {.processor = processor_time(), .cycle_core = core.is.load(std::memory_order_relaxed)};
+  }
 
   const descriptor::MissionSubsystem
       described;  ///< as it was launched; that of the mission may be read again meanwhile
@@ -94,6 +97,7 @@ struct ThreadLauncher::Member {
   std::optional<WakeEvent> gone;  ///< readable when it has ended
   ThreadHold service, cycle;
   std::vector<std::unique_ptr<ThreadHold>> loops;  ///< of services of its own (adr 0096)
+  CycleCore core{.named = described.cores.cycle};
   std::atomic<bool> let_go{false};
   std::atomic<bool> resting{false};
   std::atomic<std::int64_t> told_at_ns{0};
@@ -124,6 +128,8 @@ void ThreadLauncher::Member::run() noexcept {
 }
 
 void ThreadLauncher::Member::fly() {
+  // Whatever it starts begins there; its cycle goes from there to its own.
+  if (!described.cores.services.empty()) static_cast<void>(ProcessorSet::of(described.cores.services).take());
   if (parts->realtime) static_cast<void>(set_shared_priority(service_loop_priority));
   else static_cast<void>(ask_for_short_slices());
   const Platform platform{
@@ -131,7 +137,7 @@ void ThreadLauncher::Member::fly() {
       .memory = *memory,
       .flows = parts->flows,
       .realtime = parts->realtime,
-      .precise = parts->realtime && usable_processors() > 1,
+      .precise = may_spin(parts->realtime, core.named),
       .wakes = true,
       .explain =
           [this](std::string_view text) {
@@ -149,7 +155,7 @@ void ThreadLauncher::Member::fly() {
                              *channel,
                              *reinterpret_cast<VitalPage*>(vital.octets.data()),
                              *reinterpret_cast<const PermitPage*>(permit.octets.data())};
-  CycleThread cycles{subsystem, parts->clock, bell, parts->realtime, &cycle};
+  CycleThread cycles{subsystem, parts->clock, bell, parts->realtime, &cycle, &core};
   std::vector<std::unique_ptr<OwnLoopThread>> own_loops;
   // Whatever leaves this function, the threads are joined first: they work on what stands here.
   struct Joined {
@@ -168,7 +174,7 @@ void ThreadLauncher::Member::fly() {
   or_end(cycles.start(described.subsystem.name + " cycle"));
   for (std::size_t i = 0; i < std::min(subsystem.own_loops(), loops.size()); ++i) {
     own_loops.push_back(
-        std::make_unique<OwnLoopThread>(subsystem, i, parts->clock, bell, parts->realtime, loops[i].get()));
+        std::make_unique<OwnLoopThread>(subsystem, i, parts->clock, bell, parts->realtime, loops[i].get(), core.named));
     or_end(own_loops.back()->start());
   }
   serve({.subsystem = subsystem,

@@ -22,7 +22,8 @@ namespace {
 
 }  // namespace
 
-ResourceHandling::ResourceHandling(Craft& craft, OwnSubsystem& own) : craft_{craft}, own_{own} {
+ResourceHandling::ResourceHandling(Craft& craft, OwnSubsystem& own)
+    : craft_{craft}, own_{own}, cores_{craft.mission, craft.launcher} {
   for (std::size_t i = 0; i < books_.size(); ++i) books_[i].set_budget(craft.mission.budget[i]);
 }
 
@@ -33,19 +34,30 @@ std::optional<std::string> ResourceHandling::claim(const Member& member) {
   for (std::size_t i = 0; i < books_.size(); ++i) {
     const auto resource = static_cast<Resource>(i);
     const auto shortage = books_[i].shortage(member.apid(), amount(i));
-    if (!shortage) continue;
-    own_.announce("RESOURCE_REFUSED",
-                  {static_cast<double>(member.apid()), static_cast<double>(i), static_cast<double>(shortage->budget),
-                   static_cast<double>(shortage->reserved), static_cast<double>(shortage->requested)});
-    return fmt::format("{} short: it asks for {}, {} of {} are reserved", to_text(resource),
-                       words(shortage->requested, resource), words(shortage->reserved, resource),
-                       words(shortage->budget, resource));
+    if (shortage) return refuse(member, resource, *shortage);
+  }
+  if (const auto lacks = cores_.claim(member.described())) {
+    const std::string reason = refuse(member, Resource::Cores, lacks->shortage);
+    return lacks->shortage.budget == 0
+               ? fmt::format("the mission gives it core {}, which is none of this computer that the flight may use",
+                             lacks->core)
+               : fmt::format("core {}: {}", lacks->core, reason);
   }
   for (std::size_t i = 0; i < books_.size(); ++i) books_[i].hold(member.apid(), amount(i));
   return std::nullopt;
 }
 
+std::string ResourceHandling::refuse(const Member& member, Resource resource, const Shortage& shortage) {
+  own_.announce("RESOURCE_REFUSED", {static_cast<double>(member.apid()), static_cast<double>(resource),
+                                     static_cast<double>(shortage.budget), static_cast<double>(shortage.reserved),
+                                     static_cast<double>(shortage.requested)});
+  return fmt::format("{} short: it asks for {}, {} of {} are reserved", to_text(resource),
+                     words(shortage.requested, resource), words(shortage.reserved, resource),
+                     words(shortage.budget, resource));
+}
+
 void ResourceHandling::release(std::uint16_t apid) {
+  cores_.release(apid);
   for (Book& book : books_) book.hold(apid, 0);
   seen_.erase(apid);
 }
@@ -62,8 +74,27 @@ void ResourceHandling::watch(TimePoint) {
   if (seen.ended) return;
   if (const auto excess = excess_of(member, seen, *usage)) {
     seen.ended = true;
-    end(member, *excess);
+    return end(member, *excess,
+               fmt::format("has taken {} of {}, {} {} at most", words(excess->used, excess->resource),
+                           to_text(excess->resource),
+                           excess->resource == Resource::Processes ? "each subsystem is" : "its descriptor says",
+                           words(excess->limit, excess->resource)));
   }
+  watch_cores(member, seen);
+}
+
+/// Until it has come to Pre-Operational for the first time its threads may still be on their way.
+void ResourceHandling::watch_cores(const Member& member, Seen& seen) {
+  const auto state = member.state();
+  seen.settled |= state && *state != descriptor::State::Offline && !is_transient(*state);
+  if (!seen.settled) return;
+  const auto stray = cores_.stray(member.described(), member.process());
+  if (!stray) return;
+  seen.ended = true;
+  const auto own = member.described().cores.cycle;
+  end(member, {Resource::Cores, stray->processor, own ? *own : 0U},
+      fmt::format("has a thread {} that may go on core {}, which the mission does not give it", stray->name.data(),
+                  stray->processor));
 }
 
 std::optional<ResourceHandling::Excess> ResourceHandling::excess_of(const Member& member, Seen& seen,
@@ -92,12 +123,8 @@ std::optional<ResourceHandling::Excess> ResourceHandling::excess_of(const Member
   return Excess{Resource::Processor, *percent, *limit};
 }
 
-void ResourceHandling::end(const Member& member, const Excess& excess) {
-  craft_.tell(fmt::format("{} has taken {} of {}, {} {} at most: it is ended", member.descriptor().name,
-                          words(excess.used, excess.resource), to_text(excess.resource),
-                          excess.resource == Resource::Processes ? "each subsystem is" : "its descriptor says",
-                          words(excess.limit, excess.resource)),
-              member.apid());
+void ResourceHandling::end(const Member& member, const Excess& excess, const std::string& what) {
+  craft_.tell(fmt::format("{} {}: it is ended", member.descriptor().name, what), member.apid());
   own_.announce("RESOURCE_EXCEEDED", {static_cast<double>(member.apid()), static_cast<double>(excess.resource),
                                       static_cast<double>(excess.used), static_cast<double>(excess.limit)});
   // What it moves is stopped before it is gone: its end takes the way of every death.

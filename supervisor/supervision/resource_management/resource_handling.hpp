@@ -13,6 +13,7 @@
 #include "supervisor/supervision/craft.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/resource_management/book.hpp"
+#include "supervisor/supervision/resource_management/core_books.hpp"
 #include "supervisor/supervision/watch_and_hear.hpp"
 
 namespace hirosco::supervisor {
@@ -33,6 +34,7 @@ class ResourceHandling final : public Watch {
   [[nodiscard]] const Book& book(descriptor::Resource resource) const noexcept {
     return books_[static_cast<std::size_t>(resource)];
   }
+  [[nodiscard]] const Book& core(std::uint16_t core) { return cores_.book(core); }
   /// One member in its turn: who has taken more than it may is ended and named.
   void watch(TimePoint now) override;
 
@@ -42,6 +44,7 @@ class ResourceHandling final : public Watch {
     ProcessorShare processor{};
     int too_much{0};
     bool ended{false};  ///< told: it is on its way out
+    bool settled{false};  ///< this process has come to Pre-Operational: each thread is where it is to be
   };
   struct Excess {
     descriptor::Resource resource{};
@@ -49,11 +52,15 @@ class ResourceHandling final : public Watch {
     std::uint32_t limit{0};
   };
   [[nodiscard]] std::optional<Excess> excess_of(const Member& member, Seen& seen, const ProcessUsage& usage);
-  void end(const Member& member, const Excess& excess);
+  [[nodiscard]] std::string refuse(const Member& member, descriptor::Resource resource, const Shortage& shortage);
+  void watch_cores(const Member& member, Seen& seen);
+  /// `what` it has done, in words.
+  void end(const Member& member, const Excess& excess, const std::string& what);
 
   Craft& craft_;
   OwnSubsystem& own_;
   std::array<Book, descriptor::counted_resources> books_;
+  CoreBooks cores_;
   std::map<std::uint16_t, Seen> seen_;
   std::size_t turn_{0};
 };

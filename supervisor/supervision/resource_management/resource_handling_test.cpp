@@ -3,6 +3,8 @@
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 
 #include <cstdlib>
+#include <map>
+#include <set>
 
 #include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/sanitizer.hpp"
@@ -30,6 +32,13 @@ struct ResourceHandlingTest : PartsTest {
   std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override {
     const auto found = uses.find(process);
     return found != uses.end() ? std::optional{found->second} : std::nullopt;
+  }
+  std::optional<std::set<std::uint16_t>> granted;  ///< cores of this computer; empty: all
+  bool grants_core(std::uint16_t core) noexcept override { return !granted || granted->contains(core); }
+  std::map<std::uint32_t, StrayThread> strayed;  ///< by process
+  std::optional<StrayThread> stray(std::uint32_t process, const ThreadPlaces&) noexcept override {
+    const auto found = strayed.find(process);
+    return found != strayed.end() ? std::optional{found->second} : std::nullopt;
   }
   void look() {
     for (std::size_t i = 0; i < craft.members.size(); ++i) resources.watch(clock.now());
@@ -107,6 +116,61 @@ TEST_F(ResourceHandlingTest, WhoFliesWithoutASandboxByHisOwnWishMayHaveADebugger
   look();
   EXPECT_TRUE(killed.empty());
   if (!was_unwanted) ::unsetenv("HIROSCO_SANDBOX");
+}
+
+TEST_F(ResourceHandlingTest, WhoIsGivenACoreThatThisComputerHasNotIsNotStartedAndTheReasonIsTold) {
+  craft.mission.subsystems[0].cores.cycle = 7;
+  granted = {0, 1};
+  EXPECT_EQ(resources.claim(*craft.member(arm)),
+            "the mission gives it core 7, which is none of this computer that the flight may use");
+  granted = {7};
+  EXPECT_FALSE(resources.claim(*craft.member(arm)));
+  EXPECT_EQ(resources.core(7).held(arm), 1U);
+  resources.release(arm);
+  EXPECT_EQ(resources.core(7).held(arm), 0U);
+}
+
+TEST_F(ResourceHandlingTest, WhoIsOnAnotherCoreThanItsOwnIsFencedEndedAndNamedOnce) {
+  craft.mission.subsystems[0].cores.cycle = 1;
+  ResourceHandling looks{craft, parts.own};
+  const auto look_with_cores = [&] {
+    for (std::size_t i = 0; i < 2 * craft.members.size(); ++i) looks.watch(clock.now());
+  };
+  start_all(Operational);
+  use_of(arm) = {.threads = 1};
+  look_with_cores();
+  EXPECT_TRUE(killed.empty());
+  strayed[played[arm].process] = {.name = {'c', 'y', 'c', 'l', 'e'}, .processor = 0};
+  look_with_cores();
+  EXPECT_THAT(killed, ::testing::ElementsAre(played[arm].process));
+  EXPECT_TRUE(guard.fenced(arm));
+  EXPECT_TRUE(
+      was_told("ARM has a thread cycle that may go on core 0, which the mission does not give it: it is ended"));
+}
+
+TEST_F(ResourceHandlingTest, WhoHasGoneDownSinceIsFoundElsewhereAllTheSame) {
+  craft.mission.subsystems[0].cores.cycle = 1;
+  ResourceHandling looks{craft, parts.own};
+  start_all(Operational);
+  use_of(arm) = {.threads = 1};
+  const auto look_with_cores = [&] {
+    for (std::size_t i = 0; i < craft.members.size(); ++i) looks.watch(clock.now());
+  };
+  look_with_cores();
+  set(arm, Offline);
+  strayed[played[arm].process] = {.name = {'c'}, .processor = 0};
+  look_with_cores();
+  EXPECT_THAT(killed, ::testing::ElementsAre(played[arm].process));
+}
+
+TEST_F(ResourceHandlingTest, OnTheWayToItsCoreNobodyIsAnywhereElse) {
+  craft.mission.subsystems[0].cores.cycle = 1;
+  ResourceHandling looks{craft, parts.own};
+  start_all(Offline);
+  use_of(arm) = {.threads = 1};
+  strayed[played[arm].process] = {.name = {'c'}, .processor = 0};
+  for (std::size_t i = 0; i < craft.members.size(); ++i) looks.watch(clock.now());
+  EXPECT_TRUE(killed.empty());
 }
 
 TEST_F(ResourceHandlingTest, WhatLeadsToOneMayBeTwoProcessesBeforeItActs) {

@@ -147,6 +147,7 @@ void offer_to_go_first() noexcept {
   if (plan.directory != nullptr && ::chdir(plan.directory) != 0) give_up(plan.report, errno);
   reset_signals(plan.blocked);
   if (plan.limits.goes_first) offer_to_go_first();
+  if (plan.limits.processors && !plan.limits.processors->take()) give_up(plan.report, EINVAL);
   set_priority_limit(plan);  // by it a sandbox knows what it has to keep
   if (plan.sandbox != nullptr)
     if (const int error = plan.sandbox->enter(); error != 0) give_up(plan.report, error);

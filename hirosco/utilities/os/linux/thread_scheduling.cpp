@@ -82,32 +82,8 @@ bool realtime_permitted() noexcept {
 }
 
 Result<> pin_to_cycle_cpu() noexcept {
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  if (const int error = pthread_getaffinity_np(pthread_self(), sizeof allowed, &allowed); error != 0)
-    return fail(ErrorCode::SystemFailure, "processor affinity", error);
-  for (unsigned cpu = CPU_SETSIZE; cpu-- > 0;)
-    if (CPU_ISSET(cpu, &allowed)) return pin_to_cpu(cpu);
-  return fail(ErrorCode::Internal, "no processor");
-}
-
-ProcessorSet ProcessorSet::of_this_thread() noexcept {
-  static_assert(sizeof(cpu_set_t) <= sizeof octets_);
-  ProcessorSet found;
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  found.known_ = pthread_getaffinity_np(pthread_self(), sizeof allowed, &allowed) == 0;
-  std::memcpy(found.octets_.data(), &allowed, sizeof allowed);
-  return found;
-}
-
-Result<> ProcessorSet::take() const noexcept {
-  if (!known_) return fail(ErrorCode::Unavailable, "it is not known which processors it could use");
-  cpu_set_t allowed;
-  std::memcpy(&allowed, octets_.data(), sizeof allowed);
-  if (::sched_setaffinity(0, sizeof allowed, &allowed) != 0)
-    return fail(ErrorCode::SystemFailure, "processor affinity", errno);
-  return ok();
+  const auto last = ProcessorSet::of_this_thread().last();
+  return last ? pin_to_cpu(*last) : fail(ErrorCode::SystemFailure, "processor affinity");
 }
 
 unsigned usable_processors() noexcept {

@@ -45,8 +45,6 @@ bool realtime_permitted() noexcept {
 }
 
 Result<> pin_to_cycle_cpu() noexcept { return fail(ErrorCode::Unavailable, "POSIX has no processor affinity"); }
-ProcessorSet ProcessorSet::of_this_thread() noexcept { return {}; }
-Result<> ProcessorSet::take() const noexcept { return fail(ErrorCode::Unavailable, "POSIX has no processor affinity"); }
 unsigned usable_processors() noexcept { return 1; }
 Result<> pin_to_cpu(unsigned cpu) noexcept {
   return fail(ErrorCode::Unavailable, "POSIX has no processor affinity", cpu);
