@@ -59,6 +59,8 @@ std::vector<std::string> DeviceArguments::arguments() const {
   if (enable)
     words.insert(words.end(),
                  {"--enable-transfer", std::string{to_text(enable->transfer)}, "--enable-address", enable->address});
+  for (const FlowAddress& other : settings.enable_fall_backs)
+    words.insert(words.end(), {"--enable-fall-back", text_of(other)});
   for (const FlowAddress& other : settings.fall_backs) words.insert(words.end(), {"--fall-back", text_of(other)});
   if (!settings.endnode.empty()) words.insert(words.end(), {"--endnode", settings.endnode});
   for (const FurtherEndnode& further : settings.further) {
@@ -69,9 +71,12 @@ std::vector<std::string> DeviceArguments::arguments() const {
     text = fmt::format("{},{},{}", further.name, text_of(further.actuator->stop),
                        count_of<std::chrono::milliseconds>(further.actuator->stop_within));
     if (further.actuator->enable) text += "," + text_of(*further.actuator->enable);
+    for (const FlowAddress& other : further.actuator->enable_fall_backs) text += "," + text_of(other);
     words.insert(words.end(), {"--drive", text});
   }
   if (settings.power) words.insert(words.end(), {"--power", text_of(*settings.power)});
+  for (const FlowAddress& other : settings.power_fall_backs)
+    words.insert(words.end(), {"--power-fall-back", text_of(other)});
   for (const auto& [name, file] : settings.files)
     words.insert(words.end(), {"--file", fmt::format("{}={}", name, file)});
   return words;
@@ -89,6 +94,12 @@ struct Played {
   const descriptor::Configuration* first{nullptr};
   Duration cycle{};
 };
+
+[[nodiscard]] Addresses addresses_of(const std::vector<descriptor::Endnode>& endnodes) {
+  Addresses found;
+  for (const auto& each : endnodes) found.push_back(address_of(each));
+  return found;
+}
 
 [[nodiscard]] Addresses addresses_of(const descriptor::DeviceUse& use) {
   Addresses found{address_of(use.endnode)};
@@ -149,6 +160,7 @@ struct Played {
   if (!device.actuator) return std::nullopt;
   FurtherActuator made{.stop = stop_of(device.stop), .stop_within = device.stop_within};
   if (device.enable) made.enable = address_of(*device.enable);
+  made.enable_fall_backs = addresses_of(device.enable_terms.fall_backs);
   return made;
 }
 
@@ -201,6 +213,7 @@ std::expected<DeviceArguments, std::string> device_arguments(const descriptor::M
   settings.stop = stop_of(main.device->stop);
   settings.stop_within = main.device->stop_within;
   if (made.enable) settings.enable = address_of(*made.enable);
+  settings.enable_fall_backs = addresses_of(main.device->enable_terms.fall_backs);
   settings.fall_backs.assign(main.addresses.begin() + 1, main.addresses.end());
   const auto name_of = [&](const Played& played) {
     const descriptor::Device& whole = *played.device;
@@ -213,7 +226,9 @@ std::expected<DeviceArguments, std::string> device_arguments(const descriptor::M
                                 .byte_order = endian_of(endnodes[i].byte_order),
                                 .actuator = actuator_of(*endnodes[i].device)});
   const auto power = std::ranges::find(subsystem.power_switches, device.device, &descriptor::PowerSwitch::device);
-  if (power != subsystem.power_switches.end()) settings.power = address_of(power->endnode);
+  if (power == subsystem.power_switches.end()) return made;
+  settings.power = address_of(power->endnode);
+  settings.power_fall_backs = addresses_of(power->terms.fall_backs);
   return made;
 }
 

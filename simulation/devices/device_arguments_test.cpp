@@ -154,6 +154,33 @@ TEST(DeviceArguments, OfTwoActuatorsInOneDeviceTheFirstDrivesItsWorldAndEachHasA
   EXPECT_EQ(*(said - 1), "DRIVE,big,udp=joints,unix=joints2") << "behind the endnode that it is of";
 }
 
+TEST(DeviceArguments, TellEachWayToSecondInhibitsAndToThePowerSwitch) {
+  const auto by = [](const char* address) {
+    descriptor::Endnode made;
+    made.transfer = Transfer::Unix;
+    made.address = address;
+    return made;
+  };
+  for (const bool further : {false, true}) {
+    auto mission = several_endnodes();
+    descriptor::SubsystemDescriptor& arm = mission.subsystems[0].subsystem;
+    arm.devices[1].enable_terms.fall_backs = {by("enable2"), by("enable3")};
+    arm.power_switches[0].terms.fall_backs = {by("power2")};
+    arm.devices[0].actuator = further;  // then it drives the world, and the joints are beside it
+    const auto made = device_arguments(mission, mission.devices[0]);
+    ASSERT_TRUE(made) << made.error();
+    const auto words = made->arguments();
+    const auto behind = [&](const char* word) {
+      const auto at = std::ranges::find(words, word);
+      return at != words.end() ? *(at + 1) : std::string{};
+    };
+    EXPECT_EQ(behind("--power-fall-back"), "unix=power2");
+    EXPECT_EQ(behind("--enable-fall-back"), further ? "" : "unix=enable2");
+    EXPECT_EQ(std::ranges::count(words, "--enable-fall-back"), further ? 0 : 2);
+    EXPECT_EQ(behind("--drive"), further ? "DRIVE,controlled,200,unix=joints.enable,unix=enable2,unix=enable3" : "");
+  }
+}
+
 TEST(DeviceArguments, TellTheDeviceTheFilesThatItsSettingsName) {
   auto mission = a_mission();
   auto& subsystem = mission.subsystems[0].subsystem;

@@ -55,16 +55,7 @@ EndnodeWays* DeviceEndnodes::ways_of(std::string_view endnode) noexcept {
 Result<> DeviceEndnodes::fault(const Words& words) {
   const bool named = words[0] == "endnode";
   EndnodeWays* ways = named ? ways_of(words[1]) : driving_.get();
-  const std::size_t at = named ? 2 : 1;
-  if (ways == nullptr) return fail(ErrorCode::NotFound, "no such endnode, or it is unplugged");
-  const bool counted = words[at + 1] == "corrupt";
-  HIROSCO_TRY(words.expect(at + (counted ? 3 : 2)));
-  HIROSCO_TRY_LET(const double way, words.number(at, 0, static_cast<double>(ways->count()) - 1));
-  double frames = 0;
-  if (counted) {
-    HIROSCO_TRY_LET(frames, words.number(at + 2, 0, 1e9));
-  }
-  return ways->fault(static_cast<std::size_t>(way), words[at + 1], static_cast<std::uint32_t>(frames));
+  return fault_way(ways, words, named ? 2 : 1);
 }
 
 void DeviceEndnodes::heal() noexcept {

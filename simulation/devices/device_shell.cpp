@@ -64,13 +64,16 @@ struct Options {
   std::int64_t stop_within_ms{0};
   Transfer enable_transfer{Transfer::SharedMemory};
   std::string enable_address;
+  std::vector<std::string> enable_fall_backs;
   std::vector<std::string> fall_backs;
   std::string endnode;
   std::vector<std::string> further;
   std::vector<std::string> drives;
   std::string power;
+  std::vector<std::string> power_fall_backs;
   std::vector<std::string> files;
   std::vector<std::string> settings;
+  std::optional<unsigned> core;
 };
 
 /// TRANSFER=ADDRESS. No address holds a comma or an equals sign (`read_configuration.cpp`).
@@ -92,24 +95,30 @@ std::vector<std::string_view> parts_of(std::string_view text) {
   }
 }
 
+/// False: one of them is none.
+bool add_addresses(const auto& texts, std::vector<FlowAddress>& addresses) {
+  for (const auto& text : texts) {
+    auto address = address_in(text);
+    if (!address) return false;
+    addresses.push_back(std::move(*address));
+  }
+  return true;
+}
+
 /// NAME,BYTE_ORDER,TRANSFER=ADDRESS,...
 std::optional<FurtherEndnode> endnode_in(std::string_view text) {
   const auto parts = parts_of(text);
   const auto order = parts.size() < 3 ? byte_orders.end() : byte_orders.find(std::string{parts[1]});
   if (order == byte_orders.end()) return std::nullopt;
   FurtherEndnode found{std::string{parts[0]}, {}, order->second};
-  for (std::size_t i = 2; i < parts.size(); ++i) {
-    auto address = address_in(parts[i]);
-    if (!address) return std::nullopt;
-    found.addresses.push_back(std::move(*address));
-  }
+  if (!add_addresses(std::span{parts}.subspan(2), found.addresses)) return std::nullopt;
   return found;
 }
 
-/// NAME,STOP,MILLISECONDS[,TRANSFER=ADDRESS]. False: it is none, or of no endnode.
+/// NAME,STOP,MILLISECONDS[,TRANSFER=ADDRESS[,TRANSFER=ADDRESS]...]. False: it is none, or of no endnode.
 bool add_drive(std::string_view text, std::vector<FurtherEndnode>& endnodes) {
   const auto parts = parts_of(text);
-  if (parts.size() < 3 || parts.size() > 4) return false;
+  if (parts.size() < 3) return false;
   const auto endnode = std::ranges::find(endnodes, parts[0], &FurtherEndnode::name);
   const auto stop = stops.find(std::string{parts[1]});
   std::int64_t within_ms = 0;
@@ -120,17 +129,17 @@ bool add_drive(std::string_view text, std::vector<FurtherEndnode>& endnodes) {
   FurtherActuator& made = endnode->actuator.emplace();
   made.stop = stop->second;
   made.stop_within = std::chrono::milliseconds{within_ms};
-  if (parts.size() == 4) made.enable = address_in(parts[3]);
-  return parts.size() == 3 || made.enable.has_value();
+  if (parts.size() == 3) return true;
+  made.enable = address_in(parts[3]);
+  return made.enable && add_addresses(std::span{parts}.subspan(4), made.enable_fall_backs);
 }
 
 /// False: one of them is none.
 bool add_endnodes(const Options& options, SimulatedDevice::Settings& settings) {
-  for (const std::string& text : options.fall_backs) {
-    auto address = address_in(text);
-    if (!address) return false;
-    settings.fall_backs.push_back(std::move(*address));
-  }
+  if (!add_addresses(options.fall_backs, settings.fall_backs) ||
+      !add_addresses(options.enable_fall_backs, settings.enable_fall_backs) ||
+      !add_addresses(options.power_fall_backs, settings.power_fall_backs))
+    return false;
   settings.endnode = options.endnode;
   for (const std::string& text : options.further) {
     auto endnode = endnode_in(text);
@@ -161,13 +170,17 @@ std::optional<int> read_options(int argc, char** argv, const char* name, Options
   app.add_option("--enable-transfer", options.enable_transfer, "Means of transfer of the second inhibit")
       ->transform(CLI::CheckedTransformer{transfers()});
   app.add_option("--enable-address", options.enable_address, "Its address; without one there is none");
+  app.add_option("--enable-fall-back", options.enable_fall_backs, "TRANSFER=ADDRESS of another way to it");
   app.add_option("--fall-back", options.fall_backs, "TRANSFER=ADDRESS of another way to the same frames");
   app.add_option("--endnode", options.endnode, "Name of its endnode, where it has several");
   app.add_option("--further", options.further, "Another endnode: NAME,BYTE_ORDER,TRANSFER=ADDRESS and its fall-backs");
   app.add_option("--drive", options.drives,
-                 "The actuator of one of these: NAME,STOP,MILLISECONDS and TRANSFER=ADDRESS of its second inhibit");
+                 "The actuator of one of these: NAME,STOP,MILLISECONDS, TRANSFER=ADDRESS of its second inhibit and its "
+                 "fall-backs");
   app.add_option("--power", options.power, "TRANSFER=ADDRESS of its power switch; without one it has power");
+  app.add_option("--power-fall-back", options.power_fall_backs, "TRANSFER=ADDRESS of another way to that");
   app.add_option("--file", options.files, "NAME=PATH of a file that a setting of the device names");
+  app.add_option("--core", options.core, "Processor on which it goes; without one the last that it may use");
   app.add_option("--set", options.settings, "NAME=VALUE, carried out at the start");
   try {
     app.parse(argc, argv);
@@ -240,14 +253,16 @@ struct World {
   std::atomic<bool> ended{false};
 };
 
-/// Both are wishes: without the rights the device runs as well as it can, and its subsystem's limits are announced wider.
-void take_priority() noexcept {
-  (void)(realtime_permitted() ? pin_to_cycle_cpu() : ask_for_short_slices());
+/// Wishes, but for a core that is named: without the rights the device runs as well as it can, and its subsystem's limits are announced wider.
+void take_priority(const Options& options) noexcept {
+  if (options.core) (void)pin_to_cpu(*options.core);
+  else if (realtime_permitted()) (void)pin_to_cycle_cpu();
+  if (!realtime_permitted()) (void)ask_for_short_slices();
   (void)set_fifo_priority(priority);
 }
 
 void run(Played& played, World& world) {
-  take_priority();
+  take_priority(played.options);
   const SystemClock clock;
   const bool watch_input = input_tells_of_starter();
   TimePoint look_at = clock.now();
@@ -321,6 +336,11 @@ int run_device(int argc, char** argv, const char* name, const MakeDevice& make) 
     all.emplace_back();
     if (const auto code = read_options(static_cast<int>(words.size()), words.data(), name, all.back().options))
       return *code;
+    if (const auto core = all.back().options.core; core && !grants_processor(*core)) {
+      std::cerr << name << ": core " << *core
+                << ", which the mission gives it, is none of this computer that it may use\n";
+      return 1;
+    }
     begin = end + 1;
   }
   hold_back_ending_signals();

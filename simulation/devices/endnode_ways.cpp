@@ -41,8 +41,10 @@ void EndnodeWays::heal() noexcept {
   }
 }
 
-Result<> EndnodeWays::do_send(Octets frame) noexcept {
-  Way& way = ways_[asked_by_];
+Result<> EndnodeWays::do_send(Octets frame) noexcept { return send_by(asked_by_, frame); }
+
+Result<> EndnodeWays::send_by(std::size_t at, Octets frame) noexcept {
+  Way& way = ways_[at];
   if (way.flow == nullptr) return fail(ErrorCode::Unavailable, "unplugged");
   if (way.silent) return ok();
   if (way.corrupt_frames == 0 || frame.empty()) return way.flow->send(frame);
@@ -59,10 +61,8 @@ Result<Received> EndnodeWays::do_receive(MutableOctets buffer) noexcept {
   Result<Received> answer = fail(ErrorCode::Unavailable, "unplugged");
   for (std::size_t i = 0; i < ways_.size(); ++i) {
     const std::size_t at = (asked_by_ + i) % ways_.size();
-    Way& way = ways_[at];
-    if (way.flow == nullptr) continue;
-    Result<Received> received = way.flow->receive(buffer);
-    if (way.deaf) received = Received{};
+    if (ways_[at].flow == nullptr) continue;
+    const Result<Received> received = receive_by(at, buffer);
     const bool news = received && received->flow == Flow::New;
     if (news) asked_by_ = at;
     if (news || i == 0) answer = received;
@@ -71,9 +71,28 @@ Result<Received> EndnodeWays::do_receive(MutableOctets buffer) noexcept {
   return answer;
 }
 
+Result<Received> EndnodeWays::receive_by(std::size_t at, MutableOctets buffer) noexcept {
+  Way& way = ways_[at];
+  if (way.flow == nullptr) return fail(ErrorCode::Unavailable, "unplugged");
+  const Result<Received> received = way.flow->receive(buffer);
+  return way.deaf ? Result<Received>{Received{}} : received;
+}
+
 bool EndnodeWays::do_wait(Duration timeout) noexcept {
   const Way& way = ways_[asked_by_];
   return way.flow != nullptr && way.flow->wait(timeout);
+}
+
+Result<> fault_way(EndnodeWays* ways, const Words& words, std::size_t at) {
+  if (ways == nullptr) return fail(ErrorCode::NotFound, "no such endnode, or it is unplugged");
+  const bool counted = words[at + 1] == "corrupt";
+  HIROSCO_TRY(words.expect(at + (counted ? 3 : 2)));
+  HIROSCO_TRY_LET(const double way, words.number(at, 0, static_cast<double>(ways->count()) - 1));
+  double frames = 0;
+  if (counted) {
+    HIROSCO_TRY_LET(frames, words.number(at + 2, 0, 1e9));
+  }
+  return ways->fault(static_cast<std::size_t>(way), words[at + 1], static_cast<std::uint32_t>(frames));
 }
 
 }  // namespace hirosco::simulation

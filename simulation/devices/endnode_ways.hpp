@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
+#include "simulation/devices/words.hpp"
 
 namespace hirosco::simulation {
 
@@ -21,6 +22,9 @@ class EndnodeWays final : public DataFlow {
                                                                  std::vector<FlowAddress> addresses);
 
   [[nodiscard]] std::size_t count() const noexcept { return ways_.size(); }
+  /// By this way alone, for who looks at each. Unavailable: it is unplugged.
+  [[nodiscard]] Result<Received> receive_by(std::size_t way, MutableOctets buffer) noexcept;
+  [[nodiscard]] Result<> send_by(std::size_t way, Octets frame) noexcept;
   /// unplug | plug | silent | deaf | heal, or "corrupt" for `frames` frames. InvalidArgument: not one of these; what else opening says.
   [[nodiscard]] Result<> fault(std::size_t way, std::string_view what, std::uint32_t frames);
   void heal() noexcept;
@@ -42,5 +46,8 @@ class EndnodeWays final : public DataFlow {
   std::vector<Way> ways_;
   std::size_t asked_by_{0};
 };
+
+/// The words from `at` on: N WHAT, of one way (EndnodeWays::fault). NotFound: there are none.
+[[nodiscard]] Result<> fault_way(EndnodeWays* ways, const Words& words, std::size_t at);
 
 }  // namespace hirosco::simulation

@@ -6,6 +6,7 @@
 
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/device/testing/flow_conformance.hpp"
+#include "simulation/devices/simulated_inhibit.hpp"
 #include "simulation/devices/simulated_switch.hpp"
 
 /// The ways of an endnode are one flow, whichever of them is used; and the switch in front of a device.
@@ -163,6 +164,123 @@ TEST_F(Switch, HearsNoGarbage) {
   EXPECT_FALSE(made.step(now));
   EXPECT_TRUE(made.on());
   EXPECT_FALSE(said());
+}
+
+/// By two ways (docs/adr/0237).
+struct TwoWays : ::testing::Test {
+  const FlowAddress first{Transfer::SharedMemory, "first"}, second{Transfer::SharedMemory, "second"};
+  LocalFlows flows;
+  std::array<std::unique_ptr<DataFlow>, 2> guard{flows.open(first, FlowSide::Subsystem).value(),
+                                                 flows.open(second, FlowSide::Subsystem).value()};
+  TimePoint now{std::chrono::seconds{1}};
+};
+
+struct TwoWaysToASwitch : TwoWays {
+  SimulatedSwitch made{first, {second}};
+  TwoWaysToASwitch() { EXPECT_TRUE(made.open(flows)); }
+  void tell(std::size_t way, bool on, std::uint32_t sequence) {
+    std::array<std::byte, power_frame_octets> frame;
+    ASSERT_TRUE(guard[way]->send(*write_power_command(frame, {on, std::chrono::milliseconds{100}, sequence})));
+    static_cast<void>(made.step(now));
+  }
+};
+
+TEST_F(TwoWaysToASwitch, TheNewestCommandCountsByWhicheverItComes) {
+  tell(0, true, 10);
+  EXPECT_TRUE(made.on());
+  tell(1, false, 11);
+  EXPECT_FALSE(made.on());
+  tell(0, true, 10);
+  EXPECT_FALSE(made.on()) << "late by the other way";
+  tell(0, true, 12);
+  EXPECT_TRUE(made.on());
+}
+
+TEST_F(TwoWaysToASwitch, TheSameCommandByBothIsOneAndEachIsAnswered) {
+  tell(0, true, 10);
+  now += std::chrono::milliseconds{90};
+  tell(1, true, 10);
+  EXPECT_EQ(made.off_at(), now + std::chrono::milliseconds{10}) << "no second sign of life";
+  for (const auto& flow : guard) {
+    std::array<std::byte, max_frame_octets> frame;
+    const auto received = flow->receive(frame);
+    ASSERT_TRUE(received && received->flow == Flow::New);
+    EXPECT_EQ(read_power_status(Octets{frame}.first(received->octets))->sequence, 10U);
+  }
+}
+
+TEST_F(TwoWaysToASwitch, WhoHeardNothingUntilItWasOffTakesWhateverNumberComes) {
+  tell(0, true, 1000);
+  now += std::chrono::milliseconds{200};
+  static_cast<void>(made.step(now));
+  ASSERT_FALSE(made.on());
+  tell(1, true, 3);
+  EXPECT_TRUE(made.on()) << "a computer that has begun anew counts from another number";
+}
+
+struct TwoWaysToAnInhibit : TwoWays {
+  SimulatedInhibit made{first, std::chrono::milliseconds{50}, {second}};
+  TwoWaysToAnInhibit() { EXPECT_TRUE(made.open(flows)); }
+  void tell(std::size_t way, bool enabled, std::uint32_t epoch, std::uint32_t sequence) {
+    std::array<std::byte, enable_frame_octets> frame;
+    ASSERT_TRUE(
+        guard[way]->send(*write_enable_command(frame, {static_cast<std::uint8_t>(enabled ? 1 : 0), epoch, sequence})));
+    made.receive(now, true);
+  }
+};
+
+TEST_F(TwoWaysToAnInhibit, GoesOnByTheOtherInTheSameEpoch) {
+  tell(0, true, 5, 10);
+  EXPECT_TRUE(made.enabled(5, now));
+  now += std::chrono::milliseconds{40};
+  tell(1, true, 5, 18);
+  now += std::chrono::milliseconds{40};
+  EXPECT_TRUE(made.enabled(5, now));
+}
+
+TEST_F(TwoWaysToAnInhibit, WhatOneHasInhibitedTheOtherEnablesInALaterEpochOnly) {
+  for (const std::size_t one : {std::size_t{0}, std::size_t{1}}) {
+    const std::uint32_t epoch = 10 * static_cast<std::uint32_t>(one + 1);
+    tell(one, true, epoch, 10);
+    tell(one, false, epoch, 11);
+    tell(1 - one, true, epoch, 12);
+    EXPECT_FALSE(made.enabled(epoch, now)) << one;
+    tell(1 - one, true, epoch + 1, 13);
+    EXPECT_TRUE(made.enabled(epoch + 1, now)) << one;
+  }
+}
+
+TEST_F(TwoWaysToAnInhibit, IsInhibitedByEitherWhateverNumberThatBears) {
+  for (const std::size_t by : {std::size_t{0}, std::size_t{1}})
+    for (const std::uint32_t sequence : {5U, 11U, 900U}) {
+      const std::uint32_t epoch = 1000 * static_cast<std::uint32_t>(by + 1) + sequence;
+      tell(0, true, epoch, 10);
+      ASSERT_TRUE(made.enabled(epoch, now));
+      tell(by, false, epoch, sequence);
+      EXPECT_FALSE(made.enabled(epoch, now)) << by << " " << sequence;
+    }
+}
+
+TEST_F(TwoWaysToAnInhibit, ALateCommandOfAWayThatWasLeftEnablesNothing) {
+  tell(0, true, 5, 10);
+  tell(1, true, 5, 20);
+  now += std::chrono::milliseconds{49};
+  tell(0, true, 5, 15);
+  now += std::chrono::milliseconds{2};
+  EXPECT_FALSE(made.enabled(5, now)) << "that is no sign of life";
+}
+
+TEST_F(TwoWaysToAnInhibit, OneThatIsCutIsMissedAndTheOtherAnswers) {
+  ASSERT_TRUE(made.ways()->fault(0, "unplug", 0));
+  std::array<std::byte, enable_frame_octets> frame;
+  static_cast<void>(guard[0]->send(*write_enable_command(frame, {1, 5, 10})));
+  made.receive(now, true);
+  EXPECT_FALSE(made.enabled(5, now));
+  tell(1, true, 5, 11);
+  EXPECT_TRUE(made.enabled(5, now));
+  made.answer(true, {.output = DeviceOutput::Active});
+  EXPECT_EQ(guard[1]->receive(frame).value().flow, Flow::New);
+  EXPECT_EQ(read_enable_status(frame)->sequence, 11U);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ struct FurtherActuator {
   DeviceStop stop{DeviceStop::Drop};
   Duration stop_within{0};  ///< of DeviceStop::Controlled
   std::optional<FlowAddress> enable{};  ///< endnode of its second inhibit; none: the subsystem's frames suffice
+  std::vector<FlowAddress> enable_fall_backs{};  ///< other ways to that
 };
 
 /// An endnode of a simulated device besides the one that drives it: where it is reached.

@@ -27,7 +27,7 @@ bool FurtherPayloads::can_at(std::string_view, DeviceStop) const noexcept { retu
 FurtherEnds::Drive::Drive(const FurtherEndnode& described, Duration watchdog, Duration enable_limit)
     : name{described.name},
       stop{described.actuator->stop},
-      inhibit{described.actuator->enable, enable_limit},
+      inhibit{described.actuator->enable, enable_limit, described.actuator->enable_fall_backs},
       obedience{{.actuator = true, .watchdog = watchdog, .stop = stop, .stop_within = described.actuator->stop_within},
                 inhibit} {}
 
@@ -46,6 +46,16 @@ Result<> FurtherEnds::open(FlowFactory& flows) {
     HIROSCO_TRY(drive->inhibit.open(flows));
   }
   return ok();
+}
+
+EndnodeWays* FurtherEnds::inhibit_ways(std::string_view endnode) noexcept {
+  Drive* const drive = drive_of(endnode);
+  return drive != nullptr ? drive->inhibit.ways() : nullptr;
+}
+
+void FurtherEnds::heal() noexcept {
+  for (const auto& drive : drives_)
+    if (EndnodeWays* const ways = drive->inhibit.ways()) ways->heal();
 }
 
 Duration FurtherEnds::forgive(const WorldClock::Held& held) noexcept {

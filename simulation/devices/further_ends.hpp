@@ -70,6 +70,11 @@ class FurtherEnds {
   /// As if no enable command had come.
   void withdraw() noexcept;
 
+  /// The ways to the second inhibit there; null: there is none.
+  [[nodiscard]] EndnodeWays* inhibit_ways(std::string_view endnode) noexcept;
+  /// Ends what was done to ways of second inhibits.
+  void heal() noexcept;
+
   /// Off where there is no actuator.
   [[nodiscard]] DeviceOutput output(std::string_view endnode) const noexcept;
   [[nodiscard]] Duration stop_left(std::string_view endnode) const noexcept;

@@ -12,14 +12,21 @@ namespace {
 
 constexpr std::size_t most_injections = 10'000;  // then the record ends; the faults still work
 
+/// enable [NAME] N WHAT: of the endnode that drives the device, or of the one that is named.
+[[nodiscard]] Result<> fault_inhibit(const Words& words, std::string_view driving, SimulatedInhibit& inhibit,
+                                     FurtherEnds& further) {
+  if (words.number(1, 0, 1e9)) return fault_way(inhibit.ways(), words, 1);
+  return fault_way(words[1] == driving ? inhibit.ways() : further.inhibit_ways(words[1]), words, 2);
+}
+
 }  // namespace
 
 SimulatedDevice::SimulatedDevice(FlowFactory& flows, FlowAddress address, const Settings& settings)
     : flows_{flows},
       settings_{settings},
       endnodes_{flows, {std::move(address), settings.fall_backs, settings.endnode, settings.further}},
-      inhibit_{settings.enable, settings.enable_limit},
-      switch_{settings.power},
+      inhibit_{settings.enable, settings.enable_limit, settings.enable_fall_backs},
+      switch_{settings.power, settings.power_fall_backs},
       obedience_{{settings.actuator, settings.watchdog, settings.stop, settings.stop_within}, inhibit_},
       further_{settings.further, settings.watchdog, settings.enable_limit, *this},
       clock_{settings.cycle, settings.clock} {}
@@ -142,6 +149,9 @@ std::string SimulatedDevice::truth() const {
 void SimulatedDevice::heal() noexcept {
   answers_.heal();
   endnodes_.heal();
+  further_.heal();
+  for (EndnodeWays* const ways : {inhibit_.ways(), switch_.ways()})
+    if (ways != nullptr) ways->heal();
   do_heal();
 }
 
@@ -166,6 +176,8 @@ Result<> SimulatedDevice::apply_fault(const Words& words) {
   if (what == "stall" || what == "freeze" || what == "delay" || what == "corrupt")
     return answers_.fault(words, clock_.now());
   if (what == "way" || what == "endnode") return endnodes_.fault(words);
+  if (what == "enable") return fault_inhibit(words, settings_.endnode, inhibit_, further_);
+  if (what == "power") return fault_way(switch_.ways(), words, 1);
   return do_fault(words);
 }
 

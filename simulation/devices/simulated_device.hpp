@@ -64,11 +64,13 @@ class SimulatedDevice : protected FurtherPayloads {
     Stop stop{Stop::Drop};
     Duration stop_within{0};  ///< of Stop::Controlled
     std::optional<FlowAddress> enable{};  ///< endnode of its second inhibit; none: the subsystem's frames suffice
+    std::vector<FlowAddress> enable_fall_backs{};  ///< other ways to that
     Duration enable_limit{hirosco::enable_limit};  ///< an older enable command counts as withdrawn
     std::vector<FlowAddress> fall_backs{};  ///< other ways to the same frames
     std::string endnode{};  ///< name of the one that the frames are of, where the device has several; empty: it has one
     std::vector<FurtherEndnode> further{};  ///< the others
     std::optional<FlowAddress> power{};  ///< endnode of its power switch; none: it has power always
+    std::vector<FlowAddress> power_fall_backs{};  ///< other ways to that
     /// Files that settings of the device name, by the settings' names: where each is, as file_system() takes it.
     std::map<std::string, std::string> files{};
     /// In whose world it is (docs/adr/0120): plugged in before it, and there as long as it is stepped; null: in one of its own.
@@ -91,6 +93,8 @@ class SimulatedDevice : protected FurtherPayloads {
       FaultLine{"delay 20", "every frame 20 ms late"},
       FaultLine{"heal", "all well again"},
       FaultLine{"reboot", "begins anew: forgets what it was told"},
+      FaultLine{"enable 0 unplug", "one way to its second inhibit; as with way"},
+      FaultLine{"power 0 unplug", "one way to its power switch; as with way"},
       FaultLine{"way 0 silent", "one way to it: unplug, plug, silent, deaf, corrupt N, heal; 1 is the first fall-back"},
   };
   static constexpr std::array<FaultLine, 0> fault_lines{};
@@ -113,7 +117,7 @@ class SimulatedDevice : protected FurtherPayloads {
 
   /// Injects a fault from one line of text and records it with the time of the last step:
   ///   unplug | plug | silent | stall MS | freeze MS | corrupt N | delay MS | reboot | heal
-  ///   way N WHAT | endnode NAME N WHAT   (WHAT: unplug | plug | silent | deaf | corrupt FRAMES | heal; N: 0 preferred, 1 first fall-back)
+  ///   way N WHAT | endnode NAME N WHAT | enable [NAME] N WHAT | power N WHAT   (WHAT: unplug | plug | silent | deaf | corrupt FRAMES | heal; N: 0 preferred, 1 first fall-back)
   /// and what the device adds; heal ends all that was injected, but plugs nothing in and
   /// gives back nothing that a reboot forgot. InvalidArgument, OutOfRange: nothing was done.
   [[nodiscard]] Result<> fault(std::string_view line);

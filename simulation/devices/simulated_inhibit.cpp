@@ -11,38 +11,50 @@
 namespace hirosco::simulation {
 
 Result<> SimulatedInhibit::open(FlowFactory& flows) {
-  if (!endnode_ || flow_ != nullptr) return ok();
-  FlowAddress address = *endnode_;
-  address.holder = FlowHolder::Supervisor;
-  HIROSCO_TRY_LET(flow_, flows.open(address, FlowSide::Device));
+  if (!endnode_ || ways_ != nullptr) return ok();
+  std::vector<FlowAddress> addresses{*endnode_};
+  addresses.insert(addresses.end(), fall_backs_.begin(), fall_backs_.end());
+  for (FlowAddress& address : addresses) address.holder = FlowHolder::Supervisor;
+  HIROSCO_TRY_LET(ways_, EndnodeWays::open(flows, std::move(addresses)));
+  asked_.resize(ways_->count());
   return ok();
 }
 
 void SimulatedInhibit::receive(TimePoint now, bool hears) noexcept {
-  if (flow_ == nullptr) return;
-  std::array<std::byte, max_device_frame_octets> buffer;
-  const auto received = flow_->receive(buffer);
-  if (!received || received->flow != Flow::New || !hears) return;
-  const auto command = read_enable_command(Octets{buffer}.first(std::min(received->octets, buffer.size())));
-  if (!command) {
-    ++damaged_commands_;
-    return;
+  for (std::size_t way = 0; way < asked_.size(); ++way) {
+    std::array<std::byte, max_device_frame_octets> buffer;
+    const auto received = ways_->receive_by(way, buffer);
+    if (!received || received->flow != Flow::New || !hears) continue;
+    const auto command = read_enable_command(Octets{buffer}.first(std::min(received->octets, buffer.size())));
+    if (command) take(*command, way, now);
+    else ++damaged_commands_;
   }
-  asked_ = command->sequence;
+}
+
+void SimulatedInhibit::take(const EnableCommand& command, std::size_t way, TimePoint now) noexcept {
+  asked_[way] = command.sequence;
   // A repetition is no sign of life, and nobody goes back to what was given before.
-  if (enable_ && (command->sequence == enable_->sequence || command->epoch < enable_->epoch)) return;
-  enable_ = *command;
+  if (enable_ && (command.sequence == enable_->sequence || command.epoch < enable_->epoch)) return;
+  // Nor does one way give what was said before by another one, or what that has taken.
+  if (enable_ && way != told_by_ && command.enabled == 1 && command.epoch == enable_->epoch) {
+    const bool older = static_cast<std::int32_t>(command.sequence - enable_->sequence) < 0;
+    if (older || enable_->enabled == 0) return;
+  }
+  enable_ = command;
+  told_by_ = way;
   until_ = now + limit_;
 }
 
 void SimulatedInhibit::answer(bool plugged, EnableStatus status) noexcept {
-  const auto asked = std::exchange(asked_, std::nullopt);
-  if (!asked || !plugged) return;
-  status.sequence = *asked;
-  std::array<std::byte, enable_frame_octets> buffer;
-  const auto written = write_enable_status(buffer, status);
-  // Nobody listening is no matter of a device's.
-  if (written) (void)flow_->send(*written);
+  for (std::size_t way = 0; way < asked_.size(); ++way) {
+    const auto asked = std::exchange(asked_[way], std::nullopt);
+    if (!asked || !plugged) continue;
+    status.sequence = *asked;
+    std::array<std::byte, enable_frame_octets> buffer;
+    const auto written = write_enable_status(buffer, status);
+    // Nobody listening is no matter of a device's.
+    if (written) (void)ways_->send_by(way, *written);
+  }
 }
 
 bool SimulatedInhibit::enabled(std::uint32_t epoch, TimePoint now) const noexcept {
@@ -52,7 +64,7 @@ bool SimulatedInhibit::enabled(std::uint32_t epoch, TimePoint now) const noexcep
 
 void SimulatedInhibit::forget() noexcept {
   enable_.reset();
-  asked_.reset();
+  std::ranges::fill(asked_, std::nullopt);
 }
 
 }  // namespace hirosco::simulation

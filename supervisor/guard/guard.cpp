@@ -16,6 +16,7 @@ Guard::Guard(Parts parts)
           {.clock = clock_, .guarded = guarded_, .number = stop_number_, .time = time_, .findings = findings_}},
       supervisor_watch_{{.guarded = guarded_, .number = stop_number_, .findings = findings_}},
       loop_watch_{{.guarded = guarded_, .time = time_, .findings = findings_}},
+      inhibit_watch_{findings_},
       processes_{{.clock = clock_, .guarded = guarded_, .number = stop_number_, .time = time_, .findings = findings_}} {
 }
 
@@ -43,6 +44,11 @@ std::string_view Guard::adopt(std::uint16_t apid, const AdoptedSubsystem& adopte
   started(apid, adopted.launched);
   const LockGuard lock{mutex_};
   return processes_.go_on(apid, adopted, against);
+}
+
+void Guard::looks_at_its_page(std::uint16_t apid) {
+  const LockGuard lock{mutex_};
+  processes_.looks_at_its_page(apid);
 }
 
 void Guard::ended_before(std::uint16_t apid) {
@@ -162,19 +168,17 @@ TimePoint Guard::step(TimePoint now) {
   for (GuardedMember& member : guarded_.members()) {
     member.end_permission(watched);
     stop_number_.renew(member);
+    inhibit_watch_.step(member, watched);
     for (WatchedDevice& device : member.devices) {
-      device.hear(watched);
       // What has no power moves nothing, and cannot say so; how it rests when it has some again is no matter of what it did before.
       const bool unpowered = !member.power.none() && member.power.said() == power_off;
       if (unpowered) device.acts = false;
       const bool still = device.rests() || unpowered;
       if (!member.released && still && !device.stopped) device.stopped = now - member.stop_begun;
-      const bool acts = member.seen_operational && member.released && member.uses(device.place);
-      if (acts && device.falls_silent(member.released_at, watched))
-        findings_.find_out(device.silence(), member.apid(), device.place);
       device.tell(member.released && !supervisor_watch_.still(), member.epoch);
     }
     member.drive_power(watched);
+    if (const auto found = member.power_finding(watched)) findings_.find_out(found->kind, found->apid, found->device);
     if (member.doomed) loop_watch_.judge_doomed(member, watched);
   }
   if (stop_of_all_.under_way()) stop_of_all_.follow(now);

@@ -16,6 +16,7 @@
 #include "supervisor/guard/guard_time.hpp"
 #include "supervisor/guard/guarded_member.hpp"
 #include "supervisor/guard/guarded_processes.hpp"
+#include "supervisor/guard/inhibit_watch.hpp"
 #include "supervisor/guard/loop_watch.hpp"
 #include "supervisor/guard/stop_number.hpp"
 #include "supervisor/guard/stop_of_all.hpp"
@@ -69,6 +70,8 @@ class Guard {
   /// \param against Why it may not go on; empty: it may.
   /// \return why it is not permitted; empty: it is.
   std::string_view adopt(std::uint16_t apid, const AdoptedSubsystem& adopted, std::string_view against);
+  /// Whom this guard has adopted looks at its new permit page from now on: one that does not any more is one whose page is damaged.
+  void looks_at_its_page(std::uint16_t apid);
   /// It was added, and its process had ended already under the guard before: its devices may be coming to rest still.
   void ended_before(std::uint16_t apid);
   /// It is permitted, and a device of it says that it does not put out what it is told: it stopped while nobody told it that it may.
@@ -128,6 +131,7 @@ class Guard {
   StopOfAll stop_of_all_;
   SupervisorWatch supervisor_watch_;
   LoopWatch loop_watch_;
+  InhibitWatch inhibit_watch_;
   GuardedProcesses processes_;
 };
 

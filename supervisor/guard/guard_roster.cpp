@@ -19,22 +19,44 @@ Result<GuardedMember> GuardRoster::open(const descriptor::MissionSubsystem& desc
     const std::uint16_t own_place = place++;
     member.rest_within = std::max(member.rest_within, device.stop_within);
     if (!device.enable) continue;
-    HIROSCO_TRY_LET(auto flow, flows_.open(held_address(*device.enable), FlowSide::Subsystem));
     WatchedDevice watched;
     watched.name = device.name;
     watched.place = own_place;
-    watched.flow = std::move(flow);
+    watched.silence = device.enable_terms.silence;
+    watched.silence_reduced = device.enable_terms.silence_reduced;
+    watched.goes_on = device.enable_terms.goes_on;
     watched.stop_within = device.stop_within;
     watched.stop = device.stop;
-    watched.note = notes_.of(described.subsystem.id, device.name);
-    if (watched.note != nullptr) watched.sequence = watched.note->sequence.load(std::memory_order_acquire);
+    HIROSCO_TRY_LET(auto flows, open_all(*device.enable, device.enable_terms));
+    for (auto& flow : flows) add_way(watched, described.subsystem.id, std::move(flow));
     member.devices.push_back(std::move(watched));
   }
   for (const descriptor::PowerSwitch& power : described.subsystem.power_switches) {
-    HIROSCO_TRY_LET(auto flow, flows_.open(held_address(power.endnode), FlowSide::Subsystem));
-    member.power.add(std::move(flow));
+    HIROSCO_TRY_LET(auto flows, open_all(power.endnode, power.terms));
+    member.power.add({std::move(flows), power.terms.silence, power.terms.silence_reduced});
   }
   return member;
+}
+
+Result<std::vector<std::unique_ptr<DataFlow>>> GuardRoster::open_all(const descriptor::Endnode& preferred,
+                                                                     const descriptor::HeldTerms& terms) const {
+  std::vector<std::unique_ptr<DataFlow>> opened;
+  HIROSCO_TRY_LET(opened.emplace_back(), flows_.open(held_address(preferred), FlowSide::Subsystem));
+  for (const descriptor::Endnode& other : terms.fall_backs) {
+    HIROSCO_TRY_LET(opened.emplace_back(), flows_.open(held_address(other), FlowSide::Subsystem));
+  }
+  return opened;
+}
+
+/// It goes on where whoever told it last has been.
+void GuardRoster::add_way(WatchedDevice& device, std::uint16_t apid, std::unique_ptr<DataFlow> flow) const {
+  KeptInhibit* const note = notes_.of(apid, device.name, device.ways.size());
+  if (note != nullptr) {
+    const std::uint32_t told = note->sequence.load(std::memory_order_acquire);
+    if (device.ways.empty() || static_cast<std::int32_t>(told - device.sequence) > 0) device.sequence = told;
+    if (note->enabled()) device.way = device.ways.size();
+  }
+  device.ways.push_back({std::move(flow), note});
 }
 
 void GuardRoster::add(GuardedMember member) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -36,6 +37,11 @@ class GuardRoster {
   [[nodiscard]] std::uint32_t highest_epoch() const noexcept;
 
  private:
+  /// Each way to what the supervisor's side holds, the preferred one first.
+  [[nodiscard]] Result<std::vector<std::unique_ptr<DataFlow>>> open_all(const descriptor::Endnode& preferred,
+                                                                        const descriptor::HeldTerms& terms) const;
+  void add_way(WatchedDevice& device, std::uint16_t apid, std::unique_ptr<DataFlow> flow) const;
+
   FlowFactory& flows_;
   std::uint32_t first_epoch_;
   InhibitNotes notes_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace hirosco::supervisor {
 namespace {
@@ -45,32 +46,73 @@ std::string_view WatchedDevice::rests_otherwise() const noexcept {
 }
 
 void WatchedDevice::hear(TimePoint now) noexcept {
+  for (std::size_t i = 0; i < ways.size(); ++i) hear_by(ways[i], i == way, now);
+}
+
+void WatchedDevice::hear_by(InhibitWay& by, bool in_use, TimePoint now) noexcept {
   std::array<std::byte, enable_frame_octets> frame;
-  const auto received = flow->receive(frame);
+  const auto received = by.flow->receive(frame);
   if (!received || received->flow != Flow::New) return;
   const auto status = read_enable_status(Octets{frame}.first(std::min(received->octets, frame.size())));
-  other_version = !status && status.error().code == ErrorCode::Mismatch;
+  if (in_use) other_version = !status && status.error().code == ErrorCode::Mismatch;
   if (!status) return;
+  if (std::exchange(by.answered, status->sequence) != status->sequence) {
+    by.heard_at = now;
+    if (in_use) silence_told = false;
+  }
+  // It has one inhibit: what it said to a later command counts, by whichever way that went. One that has one way may begin to count anew.
+  const bool newer = static_cast<std::int32_t>(status->sequence - last.sequence) >= 0;
+  if (heard && ways.size() > 1 && !newer) return;
   last = *status;
   heard = true;
-  heard_at = now;
-  silence_told = false;
   acts = acts || last.output == DeviceOutput::Active;
 }
 
 bool WatchedDevice::falls_silent(TimePoint since, TimePoint now) noexcept {
-  if (silence_told || now - std::max(since, heard_at) < inhibit_silence) return false;
+  if (silence_told || !unconfirmed(since, inhibit_silence, now)) return false;
   silence_told = true;
   return true;
+}
+
+bool WatchedDevice::unconfirmed(TimePoint since, Duration limit, TimePoint now) const noexcept {
+  const TimePoint heard_at = ways.empty() ? TimePoint{} : ways[way].heard_at;
+  return limit > Duration{} && now - std::max({since, taken_at, heard_at}) >= limit;
+}
+
+bool WatchedDevice::fall_back(TimePoint now) noexcept {
+  if (way + 1 >= ways.size()) return false;
+  ++way;
+  taken_at = now;
+  return true;
+}
+
+bool WatchedDevice::choose_way(Duration limit, TimePoint now) noexcept {
+  if (limit <= Duration{}) return false;
+  const auto answers = [&](const InhibitWay& each) { return now - each.heard_at < limit; };
+  const auto first = std::ranges::find_if(ways, answers);
+  const std::size_t chosen = first != ways.end() ? static_cast<std::size_t>(first - ways.begin()) : 0;
+  if (chosen == std::exchange(way, chosen)) return false;
+  taken_at = now;
+  return way != 0;
 }
 
 void WatchedDevice::tell(bool enabled, std::uint32_t epoch) noexcept {
   std::array<std::byte, enable_frame_octets> frame;
   const auto written = write_enable_command(
       frame, {.enabled = static_cast<std::uint8_t>(enabled ? 1 : 0), .epoch = epoch, .sequence = ++sequence});
-  if (note != nullptr) note->note(enabled, epoch, sequence);
-  // A device that does not hear it stops by itself: that is what it waits for.
-  if (written) static_cast<void>(flow->send(*written));
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    // A stop goes by each; a permission by one, so that none gives what another one has taken.
+    const bool told = !enabled || i == way;
+    if (ways[i].note != nullptr && told) ways[i].note->note(enabled, epoch, sequence);
+    if (ways[i].note != nullptr && !told) ways[i].note->note_untold(epoch, sequence);
+    // A device that does not hear it stops by itself: that is what it waits for.
+    if (told && written) static_cast<void>(ways[i].flow->send(*written));
+  }
+}
+
+void WatchedDevice::withdraw_notes() noexcept {
+  for (const InhibitWay& each : ways)
+    if (each.note != nullptr) each.note->withdraw();
 }
 
 // --- what a member's pages say -----------------------------------------------------------------------------------------
@@ -113,9 +155,16 @@ Duration GuardedMember::sampling() const noexcept {
   return configured != nullptr ? configured->sampling : Duration{};
 }
 
+Duration GuardedMember::limit_of(const WatchedDevice& device) const noexcept {
+  return has_realtime() ? device.silence : device.silence_reduced;
+}
+
+bool GuardedMember::has_realtime() const noexcept {
+  return vital != nullptr && vital->realtime.load(std::memory_order_relaxed) != 0 && taken != Taken::All;
+}
+
 std::uint32_t GuardedMember::hang_limit() const noexcept {
-  const bool realtime = vital->realtime.load(std::memory_order_relaxed) != 0 && taken != Taken::All;
-  const std::uint32_t limit = realtime ? described->subsystem.hang.realtime : described->subsystem.hang.reduced;
+  const std::uint32_t limit = has_realtime() ? described->subsystem.hang.realtime : described->subsystem.hang.reduced;
   return std::max(limit, static_cast<std::uint32_t>(slow_steps * sampling() / guard_observation_period));
 }
 
@@ -137,9 +186,7 @@ std::string_view GuardedMember::why_it_rests() const noexcept {
 
 void GuardedMember::fence() noexcept {
   ++fences;
-  for (WatchedDevice& device : devices)
-    // Nobody goes on with it either, should this process end now.
-    if (device.note != nullptr) device.note->go.store(0, std::memory_order_release);
+  for (WatchedDevice& device : devices) device.withdraw_notes();
   // Who stands fenced stays so: a further epoch, or a further answer to wait for, would only put off its word that it has stopped.
   if (stands_fenced()) return;
   released = false;
@@ -172,6 +219,7 @@ void GuardedMember::release(TimePoint now) noexcept {
   released = true;
   seen_operational = false;
   released_at = now;
+  for (WatchedDevice& device : devices) device.falls_back = device.choose_way(limit_of(device), now);
   // Whoever lets it move is told again of whom nobody would hear; what it stops is what has acted since.
   for (WatchedDevice& device : devices) device.silence_told = device.acts = false;
 }
@@ -202,8 +250,16 @@ void GuardedMember::drive_power(TimePoint now) noexcept {
   // Told nothing, a switch stays as it is for a while (data_transfer/device/power_frame.hpp): that is long enough for most stops.
   power_unknown = power_unknown && !needed && may_still_move(now);
   if (power_unknown) return;
-  power.step(needed || (power.told_on() && may_still_move(now)));
+  power.step(needed || (power.told_on() && may_still_move(now)), has_realtime(), now);
   if (permit != nullptr) permit->powered.store(power.said(), std::memory_order_release);
+}
+
+std::optional<GuardFinding> GuardedMember::power_finding(TimePoint now) noexcept {
+  // Where nothing is wanted of a switch its silence is a matter of the way to Offline, which tells it.
+  const auto found = power.told_on() ? power.find_silence(now) : std::nullopt;
+  if (!found) return std::nullopt;
+  using enum GuardFinding::Kind;
+  return GuardFinding{found->falls_back ? PowerFellBack : PowerSilent, apid(), found->place};
 }
 
 bool GuardedMember::needs_power() const noexcept {

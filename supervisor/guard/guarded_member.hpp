@@ -41,26 +41,42 @@ struct GuardFinding {
     StopAsked,  ///< somebody stopped everything by signal or local socket
     InhibitSilent,  ///< it may act, and the second inhibit of one of its devices does not answer
     InhibitOfOtherVersion,  ///< as above, as it answers by frames of another version
+    InhibitLost,  ///< it was let move, and an answer by the way in use is older than it may be: fenced
+    InhibitFellBack,  ///< as above, and it goes on by the next way, or was let go by another than the preferred one
+    PowerSilent,  ///< no word of a power switch is young enough: whether its device has power is not known
+    PowerFellBack,  ///< the words of a power switch come by another way than before
   };
   Kind kind{};
   std::uint16_t apid{0};
-  std::uint16_t device{0};  ///< of an inhibit: place in its descriptor
+  std::uint16_t device{0};  ///< of an inhibit, or a power switch: place in its descriptor
   friend bool operator==(const GuardFinding&, const GuardFinding&) = default;
 };
 
-/// A device of a member, by the endnode of its second inhibit.
+/// One way to the second inhibit of a device (docs/adr/0237).
+struct InhibitWay {
+  std::unique_ptr<DataFlow> flow;
+  KeptInhibit* note{nullptr};  ///< of what it was told last; null: nobody would go on telling it
+  TimePoint heard_at{};
+  std::optional<std::uint32_t> answered{};  ///< by it: the same again is no sign of life
+};
+
+/// A device of a member, by the endnode of its second inhibit. Enabled it is by one way, inhibited by all of them.
 struct WatchedDevice {
   std::string name;
   std::uint16_t place{0};  ///< in the descriptor of its member
-  std::unique_ptr<DataFlow> flow;
+  std::vector<InhibitWay> ways;  ///< the preferred one, then its fall-backs
+  std::size_t way{0};  ///< in use
+  Duration silence{};  ///< oldest answer by it that counts; 0: there is no such limit
+  Duration silence_reduced{};
+  bool goes_on{false};  ///< by the next way, without a stop
+  TimePoint taken_at{};  ///< when the way in use was
+  bool falls_back{false};  ///< it was let go by another way than before: still to be told
   Duration stop_within{};
   descriptor::StopKind stop{};  ///< as its descriptor declares
   bool acts{false};  ///< it has said so since it was let go last, and has had power since
   std::uint32_t sequence{0};
-  KeptInhibit* note{nullptr};  ///< of what it was told last; null: nobody would go on telling it
   EnableStatus last{};
   bool heard{false};
-  TimePoint heard_at{};
   bool silence_told{false};
   bool other_version{false};  ///< of its newest answer: it counts as none
   std::uint32_t fenced_at_sequence{0};  ///< an answer to a later command knows of the newest stop
@@ -74,10 +90,22 @@ struct WatchedDevice {
   void hear(TimePoint now) noexcept;
   /// Once for each silence: it has not answered for `inhibit_silence`, counted from `since` at the earliest.
   [[nodiscard]] bool falls_silent(TimePoint since, TimePoint now) noexcept;
-  [[nodiscard]] GuardFinding::Kind silence() const noexcept {
+  /// The newest answer by the way in use, or its begin, or `since`, is older than `limit`; never without one.
+  [[nodiscard]] bool unconfirmed(TimePoint since, Duration limit, TimePoint now) const noexcept;
+  /// Takes the next way. False: there is none.
+  bool fall_back(TimePoint now) noexcept;
+  /// Before it is let go: by the first way that has answered within `limit`; where none has it is the preferred one.
+  /// \return another one than before, and not the preferred one.
+  bool choose_way(Duration limit, TimePoint now) noexcept;
+  [[nodiscard]] GuardFinding::Kind why_silent() const noexcept {
     return other_version ? GuardFinding::Kind::InhibitOfOtherVersion : GuardFinding::Kind::InhibitSilent;
   }
   void tell(bool enabled, std::uint32_t epoch) noexcept;
+  /// Nobody goes on enabling it, should this process end now.
+  void withdraw_notes() noexcept;
+
+ private:
+  void hear_by(InhibitWay& by, bool in_use, TimePoint now) noexcept;
 };
 
 struct GuardedMember {
@@ -95,6 +123,7 @@ struct GuardedMember {
   bool life_told{false};  ///< it has ended, or what its word says is no life
   Taken taken{Taken::Nothing};
   bool guarded_before{false};  ///< by a guard that is gone and may have taken it as well
+  bool page_on_its_way{false};  ///< it was adopted, and has not said yet that it looks at its new permit page
   std::uint32_t epoch{0};  ///< of the page, kept when a process ends
   std::uint64_t fences{0};
   std::uint32_t stopped_in{
@@ -136,6 +165,10 @@ struct GuardedMember {
   [[nodiscard]] const descriptor::Configuration* in_force() const noexcept;
   /// Of its cycle, as declared; 0 while it has none.
   [[nodiscard]] Duration sampling() const noexcept;
+  /// By its own word, while the guard has not taken it.
+  [[nodiscard]] bool has_realtime() const noexcept;
+  /// Of the answers of its second inhibit, the one that holds; 0: they have none.
+  [[nodiscard]] Duration limit_of(const WatchedDevice& device) const noexcept;
   /// Whether its configuration in force uses this device of its descriptor.
   [[nodiscard]] bool uses(std::uint16_t device) const noexcept;
   /// In observations.
@@ -160,6 +193,8 @@ struct GuardedMember {
   /// Its devices have power from Hardware-Init to Hardware-Deinit, and then, or when its process is gone, until they rest, but no longer
   /// than their declared stop may take.
   void drive_power(TimePoint now) noexcept;
+  /// Of a power switch that has fallen silent, or whose words come by another way, once each.
+  [[nodiscard]] std::optional<GuardFinding> power_finding(TimePoint now) noexcept;
   [[nodiscard]] bool needs_power() const noexcept;
   [[nodiscard]] bool may_still_move(TimePoint now) noexcept;
 

@@ -26,7 +26,8 @@ struct WatchedDeviceTest : ::testing::Test {
   WatchedDevice device;
   TimePoint now{10s};
   WatchedDeviceTest() {
-    device.flow = flows.open({Transfer::SharedMemory, "motor-enable"}, FlowSide::Subsystem).value();
+    device.ways.resize(1);
+    device.ways[0].flow = flows.open({Transfer::SharedMemory, "motor-enable"}, FlowSide::Subsystem).value();
   }
   /// `kind` empty: of this version.
   void answer(std::uint32_t sequence, DeviceOutput output = DeviceOutput::Off,
@@ -139,25 +140,25 @@ TEST_F(WatchedDeviceTest, FallsSilentOnceForEachSilenceAndNoSoonerThanItsTimeAft
 TEST_F(WatchedDeviceTest, AnAnswerOfAnotherVersionCountsAsNoneAndNamesTheSilence) {
   answer(1, DeviceOutput::Holding);
   const TimePoint heard = now;
-  EXPECT_EQ(device.silence(), GuardFinding::Kind::InhibitSilent);
+  EXPECT_EQ(device.why_silent(), GuardFinding::Kind::InhibitSilent);
   now += 100ms;
   answer(2, DeviceOutput::Active, 0x5A);
   EXPECT_EQ(device.last.sequence, 1U);
   EXPECT_EQ(device.last.output, DeviceOutput::Holding);
-  EXPECT_EQ(device.heard_at, heard);
-  EXPECT_EQ(device.silence(), GuardFinding::Kind::InhibitOfOtherVersion);
+  EXPECT_EQ(device.ways[0].heard_at, heard);
+  EXPECT_EQ(device.why_silent(), GuardFinding::Kind::InhibitOfOtherVersion);
   ASSERT_TRUE(motor->send(std::array<std::byte, enable_frame_octets>{}));
   device.hear(now);
-  EXPECT_EQ(device.silence(), GuardFinding::Kind::InhibitSilent) << "damage is of no version";
+  EXPECT_EQ(device.why_silent(), GuardFinding::Kind::InhibitSilent) << "damage is of no version";
   answer(3, DeviceOutput::Active, 0x5A);
   answer(4);
-  EXPECT_EQ(device.silence(), GuardFinding::Kind::InhibitSilent);
-  EXPECT_EQ(device.heard_at, now);
+  EXPECT_EQ(device.why_silent(), GuardFinding::Kind::InhibitSilent);
+  EXPECT_EQ(device.ways[0].heard_at, now);
 }
 
 TEST_F(WatchedDeviceTest, EachCommandHasTheNextNumberAndIsNotedForWhoGoesOnTellingIt) {
   KeptInhibit note;
-  device.note = &note;
+  device.ways[0].note = &note;
   device.sequence = greatest_sequence - 1;
   device.tell(true, 77);
   const EnableCommand enabled = told();
@@ -288,7 +289,8 @@ TEST_F(GuardedMemberTest, APermissionThatIsNotUsedEndsWithItsTimeOrThreeStepsOfA
 TEST_F(GuardedMemberTest, AFenceOfWhoStandsFencedCountsAndAsksForNoFurtherAnswer) {
   KeptInhibit note;
   member.devices.resize(1);
-  member.devices[0].note = &note;
+  member.devices[0].ways.resize(1);
+  member.devices[0].ways[0].note = &note;
   member.devices[0].sequence = 5;
   vital.cycles = 70;
   member.release(now);

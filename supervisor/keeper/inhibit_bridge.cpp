@@ -58,7 +58,7 @@ std::optional<std::uint32_t> InhibitBridge::lost() const noexcept {
 }
 
 void InhibitBridge::stop() noexcept {
-  for (KeptInhibit& inhibit : page_.inhibits) inhibit.go.store(0, std::memory_order_release);
+  for (KeptInhibit& inhibit : page_.inhibits) inhibit.withdraw();
 }
 
 void InhibitBridge::await(std::uint32_t start) {
@@ -133,7 +133,7 @@ bool InhibitBridge::step(TimePoint now) noexcept {
   if (!until_ || now > *until_ || page_.stops_asked.load() != page_.stops_taken.load()) stop();
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     KeptInhibit& inhibit = page_.inhibits[i];
-    if (lines_[i].flow == nullptr) continue;
+    if (lines_[i].flow == nullptr || inhibit.untold.load(std::memory_order_acquire) != 0) continue;
     const std::uint32_t sequence = inhibit.sequence.fetch_add(1, std::memory_order_acq_rel) + 1;
     std::array<std::byte, enable_frame_octets> frame;
     const auto written = write_enable_command(frame, {.enabled = static_cast<std::uint8_t>(inhibit.enabled() ? 1 : 0),

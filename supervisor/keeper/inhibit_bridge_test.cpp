@@ -238,6 +238,36 @@ TEST(InhibitBridge, EachDeviceIsToldWhatItWasToldItselfAndBeyondTheMostNobodyIsT
   EXPECT_TRUE(flows.open(addresses.back(), FlowSide::Subsystem)) << "that endnode is left to others";
 }
 
+TEST(InhibitBridge, TellsNothingByAWayThatIsNotInUseUntilItInhibitsByAll) {
+  LocalFlows flows;
+  KeeperPage page;
+  page.starts.store(1);
+  const std::vector<FlowAddress> addresses{{Transfer::SharedMemory, "a"}, {Transfer::SharedMemory, "b"}};
+  std::vector<std::unique_ptr<DataFlow>> ends;
+  for (const auto& address : addresses) ends.push_back(flows.open(address, FlowSide::Device).value());
+  page.inhibits[0].note_untold(77, 500);
+  page.inhibits[1].note(true, 77, 500);
+  InhibitBridge bridge{page, flows, addresses};
+  const auto told = [&](std::size_t way) -> std::optional<EnableCommand> {
+    std::array<std::byte, enable_frame_octets> frame;
+    const auto received = ends[way]->receive(frame);
+    if (!received || received->flow != Flow::New) return std::nullopt;
+    return read_enable_command(frame).value();
+  };
+  bridge.begin_at(TimePoint{10s});
+  ASSERT_TRUE(bridge.step(TimePoint{10s}));
+  EXPECT_FALSE(told(0));
+  EXPECT_EQ(told(1)->enabled, 1);
+  bridge.stop();
+  ASSERT_TRUE(bridge.step(TimePoint{10s} + InhibitBridge::pace));
+  for (const std::size_t way : {std::size_t{0}, std::size_t{1}}) {
+    const auto command = told(way);
+    ASSERT_TRUE(command) << way;
+    EXPECT_EQ(command->enabled, 0) << way;
+    EXPECT_EQ(command->epoch, 77U) << way;
+  }
+}
+
 // --- by its own thread ---------------------------------------------------------------------------------------------
 
 /// Endnodes whose devices listen from any thread.

@@ -49,14 +49,26 @@ struct KeptInhibit {
   std::atomic<std::uint32_t> epoch{0};
   std::atomic<std::uint32_t> sequence{0};  ///< of the newest command
   std::atomic<std::uint64_t> go{0};  ///< permission_word(epoch): enabled
+  /// 1: another way to the same inhibit is what enables it, and this one is told nothing meanwhile (docs/adr/0237).
+  std::atomic<std::uint32_t> untold{0};
 
   /// Realtime: wait-free.
   void note(bool enabled, std::uint32_t of_epoch, std::uint32_t of_sequence) noexcept {
+    untold.store(0, std::memory_order_release);
     const std::uint64_t word = enabled ? permission_word(of_epoch) : 0;
     if (go.load(std::memory_order_relaxed) != word) go.store(0, std::memory_order_release);
     epoch.store(of_epoch, std::memory_order_release);
     sequence.store(of_sequence, std::memory_order_release);
     go.store(word, std::memory_order_release);
+  }
+  void note_untold(std::uint32_t of_epoch, std::uint32_t of_sequence) noexcept {
+    note(false, of_epoch, of_sequence);
+    untold.store(1, std::memory_order_release);
+  }
+  /// From now on whoever goes on telling it inhibits by it.
+  void withdraw() noexcept {
+    go.store(0, std::memory_order_release);
+    untold.store(0, std::memory_order_release);
   }
   [[nodiscard]] bool enabled() const noexcept {
     return go.load(std::memory_order_acquire) == permission_word(epoch.load(std::memory_order_acquire));
@@ -77,7 +89,7 @@ inline constexpr std::size_t most_ends = 64;
 struct KeeperPage {
   /// Of this layout. Keeper and supervisor of one flight are of one build; whoever finds another number knows nothing of what is there, not
   /// even whether a craft flies already.
-  static constexpr std::uint64_t layout_now = 0x484B'5047'0000'0006;  // "HKPG"
+  static constexpr std::uint64_t layout_now = 0x484B'5047'0000'0007;  // "HKPG"
   std::atomic<std::uint64_t> layout{layout_now};
   std::atomic<std::uint64_t> keeper{0};
   std::atomic<std::uint64_t> supervisor{0};

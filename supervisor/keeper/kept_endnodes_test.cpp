@@ -80,5 +80,27 @@ TEST(InhibitNotes, WhoIsNotKeptHasNoPlaceAndWithoutAKeeperNobodyHas) {
   EXPECT_EQ(InhibitNotes{}.of(10, "DRIVE"), nullptr);
 }
 
+TEST(KeptEndnodes, FallBacksStandBehindAllThatIsPreferredAndGiveWayToThat) {
+  auto mission = craft_with_inhibits();
+  descriptor::Device& drive = mission.subsystems[0].subsystem.devices[0];
+  drive.enable_terms.fall_backs.assign(2, *drive.enable);
+  drive.enable_terms.fall_backs[1].address = "DRIVE-third";
+  const auto kept = kept_endnodes(mission);
+  ASSERT_THAT(kept, SizeIs(5));
+  EXPECT_EQ(kept[2].way, 0U);
+  EXPECT_EQ(kept[4].device, "DRIVE");
+  EXPECT_EQ(kept[4].way, 2U);
+  EXPECT_EQ(kept[4].address.address, "DRIVE-third");
+  const auto page = std::make_unique<KeeperPage>();
+  const InhibitNotes notes{mission, *page};
+  EXPECT_EQ(notes.of(10, "DRIVE", 0), &page->inhibits[0]);
+  EXPECT_EQ(notes.of(10, "DRIVE", 1), &page->inhibits[3]);
+  EXPECT_EQ(notes.of(10, "DRIVE", 2), &page->inhibits[4]);
+  EXPECT_EQ(notes.of(12, "DRIVE", 1), nullptr);
+  for (std::size_t i = 0; i < most_inhibits; ++i)
+    mission.subsystems[2].subsystem.devices.push_back(kept_device("D" + std::to_string(i), true));
+  for (const KeptEndnode& each : kept_endnodes(mission)) EXPECT_EQ(each.way, 0U);
+}
+
 }  // namespace
 }  // namespace hirosco::supervisor

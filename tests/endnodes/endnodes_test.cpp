@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
+#include <functional>
+#include <stdexcept>
 
 #include "simulation/spacecraft/observed_flight.hpp"
 
@@ -13,7 +16,10 @@ namespace {
 using simulation::SimulatedDevice;
 
 struct Endnodes : ::testing::Test {
+  explicit Endnodes(std::function<void(descriptor::Mission&)> edit = {}) : edit_{std::move(edit)} {}
+  std::function<void(descriptor::Mission&)> edit_;
   simulation::Flight flight{{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "tests/endnodes/mission.xml",
+                             .edit = edit_,
                              .subsystems = {},
                              .devices = {}}};
 
@@ -109,6 +115,149 @@ TEST_F(Endnodes, WhileItGoesOverTheActuatorIsAtRest) {
   EXPECT_EQ(truth("angle"), angle) << "the watchdog of what was left has not run out";
   flight.craft().run(1s);
   EXPECT_GT(truth("angle"), angle);
+}
+
+/// Of its second inhibit and its power switch (docs/adr/0237).
+[[nodiscard]] descriptor::Device& pointing_of(descriptor::Mission& mission) {
+  for (auto& member : mission.subsystems)
+    for (auto& device : member.subsystem.devices)
+      if (device.name == "IMAGER.POINTING") return device;
+  throw std::runtime_error{"the mission has no IMAGER.POINTING"};
+}
+
+struct EndnodesGoOn : Endnodes {
+  EndnodesGoOn() : Endnodes{[](descriptor::Mission& mission) { pointing_of(mission).enable_terms.goes_on = true; }} {}
+};
+
+constexpr std::array faults_of_a_way{"unplug", "silent", "deaf", "corrupt 1000000"};
+
+TEST_F(Endnodes, AWayToTheSecondInhibitThatIsLostInMotionStopsTheDeviceInTheWorldAndItsSubsystemIsFenced) {
+  ASSERT_TRUE(flight.commission()) << flight.story().text();
+  for (const char* what : faults_of_a_way) {
+    point(truth("angle") > 0 ? -1 : 1);
+    ASSERT_TRUE(flight.craft().run_until([&] { return truth("moves") == 1; }, 1s)) << what;
+    const std::size_t told = flight.story().count("SUPERVISOR medium INHIBIT_LOST");
+    fault("enable 0 " + std::string{what});
+    EXPECT_TRUE(flight.craft().run_until([&] { return truth("moves") == 0; }, 50ms)) << what;
+    flight.craft().run(100ms);
+    EXPECT_EQ(truth("moves"), 0) << what << ": the other way gives nothing back";
+    EXPECT_EQ(flight.story().count("SUPERVISOR medium INHIBIT_LOST"), told + 1) << what << flight.story().text();
+    EXPECT_TRUE(flight.run_until_state("IMAGER", State::SafeOperational, 2s)) << what << flight.story().text();
+    ASSERT_TRUE(flight.set_state("IMAGER", State::Operational).completed) << what << flight.story().text();
+    const double angle = truth("angle");
+    point(angle > 0 ? -1 : 1);
+    flight.craft().run(500ms);
+    EXPECT_TRUE(operational()) << what << ": by the other way" << flight.story().text();
+    EXPECT_NE(truth("angle"), angle) << what;
+    fault("heal");
+    fault("enable 0 plug");
+    ASSERT_TRUE(flight.set_state("IMAGER", State::SafeOperational).completed);
+    flight.craft().run(100ms);
+    ASSERT_TRUE(flight.set_state("IMAGER", State::Operational).completed) << flight.story().text();
+  }
+  EXPECT_EQ(flight.story().count("SUPERVISOR low INHIBIT_FALL_BACK"), faults_of_a_way.size()) << flight.story().text();
+}
+
+TEST_F(EndnodesGoOn, ByTheNextWayToTheSecondInhibitWithoutAPause) {
+  for (const char* what : faults_of_a_way) {
+    simulation::Flight each{{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "tests/endnodes/mission.xml",
+                             .edit = edit_,
+                             .subsystems = {},
+                             .devices = {}}};
+    ASSERT_TRUE(each.commission());
+    ASSERT_TRUE(each.craft().command("IMAGER", "POINT", {1}).completed);
+    each.craft().run(1s);
+    SimulatedDevice& device = *each.craft().device("imager");
+    ASSERT_TRUE(device.active());
+    ASSERT_TRUE(device.fault("enable 0 " + std::string{what}));
+    bool always = true;
+    for (int i = 0; i < 500; ++i) {
+      each.craft().run(1ms);
+      always = always && device.active();
+    }
+    EXPECT_TRUE(always) << what << each.story().text();
+    EXPECT_EQ(each.story().count("INHIBIT_FALL_BACK"), 1U) << what << each.story().text();
+    EXPECT_FALSE(each.story().has("INHIBIT_LOST")) << what;
+    ASSERT_TRUE(device.fault("enable 1 " + std::string{what}));
+    EXPECT_TRUE(each.craft().run_until([&] { return !device.active(); }, 50ms)) << what << ": there is no third one";
+    each.craft().run(1s);
+    EXPECT_FALSE(device.active()) << what;
+    EXPECT_TRUE(each.story().has("INHIBIT_LOST")) << what << each.story().text();
+  }
+}
+
+TEST_F(EndnodesGoOn, ByTheWayInUseBetweenTwoSupervisorsAndUnderTheNextOne) {
+  simulation::Flight each{{.mission = std::filesystem::path{HIROSCO_SOURCE_DIR} / "tests/endnodes/mission.xml",
+                           .edit = edit_,
+                           .subsystems = {},
+                           .devices = {},
+                           .revives_after = 300ms}};
+  ASSERT_TRUE(each.commission());
+  ASSERT_TRUE(each.craft().command("IMAGER", "POINT", {1}).completed);
+  SimulatedDevice& device = *each.craft().device("imager");
+  ASSERT_TRUE(device.fault("enable 0 silent"));
+  each.craft().run(200ms);
+  ASSERT_TRUE(device.active());
+  each.craft().kill_supervisor();
+  bool always = true;
+  for (int i = 0; i < 1000; ++i) {
+    each.craft().run(1ms);
+    always = always && device.active();
+  }
+  EXPECT_TRUE(always) << each.story().text();
+  EXPECT_EQ(each.state("IMAGER"), State::Operational);
+  EXPECT_FALSE(each.story().has("INHIBIT_LOST")) << each.story().text();
+  ASSERT_TRUE(device.fault("enable 1 silent"));
+  EXPECT_TRUE(each.craft().run_until([&] { return !device.active(); }, 50ms)) << each.story().text();
+}
+
+TEST_F(EndnodesGoOn, AStopOfEverythingReachesTheDeviceByEitherWay) {
+  ASSERT_TRUE(flight.commission());
+  for (const int way : {0, 1}) {
+    point(way == 0 ? 1 : -1);
+    ASSERT_TRUE(flight.craft().run_until([&] { return imager().active(); }, 1s)) << way << flight.story().text();
+    fault("enable " + std::to_string(way) + " silent");
+    flight.craft().run(200ms);
+    ASSERT_TRUE(imager().active()) << way << ": a way that it is enabled by, or one that waits";
+    ASSERT_TRUE(flight.craft().command("SUPERVISOR", "SAFE_ALL", {}).completed) << way << flight.story().text();
+    EXPECT_FALSE(imager().active()) << way;
+    fault("heal");
+    flight.craft().run(1s);
+    ASSERT_TRUE(flight.set_state("IMAGER", State::Operational).completed) << flight.story().text();
+  }
+}
+
+TEST_F(Endnodes, OfflineSwitchesOffByWhicheverWayIsLeft) {
+  ASSERT_TRUE(flight.commission());
+  for (const char* what : faults_of_a_way)
+    for (const int way : {0, 1}) {
+      SCOPED_TRACE(std::string{what} + " " + std::to_string(way));
+      ASSERT_EQ(truth("powered"), 1);
+      fault("power " + std::to_string(way) + " " + what);
+      flight.craft().run(3s);
+      EXPECT_EQ(truth("powered"), 1) << "longer than a switch waits that hears nothing";
+      EXPECT_TRUE(operational()) << flight.story().text();
+      for (const State down : {State::SafeOperational, State::PostOperational, State::Offline})
+        ASSERT_TRUE(flight.set_state("IMAGER", down).completed) << to_text(down) << flight.story().text();
+      EXPECT_EQ(truth("powered"), 0);
+      fault("heal");
+      fault("power " + std::to_string(way) + " plug");
+      ASSERT_TRUE(flight.set_mode("operation").completed) << flight.story().text();
+    }
+}
+
+TEST_F(Endnodes, APowerSwitchThatIsHeardByNoWayIsToldAndTheDeviceIsStoppedWhileItHasPower) {
+  ASSERT_TRUE(flight.commission());
+  point(1);
+  flight.craft().run(1s);
+  fault("power 0 unplug");
+  flight.craft().run(500ms);
+  EXPECT_TRUE(flight.story().has("SUPERVISOR low POWER_FALL_BACK")) << flight.story().text();
+  EXPECT_FALSE(flight.story().has("POWER_SILENT"));
+  fault("power 1 unplug");
+  ASSERT_TRUE(flight.craft().run_until([&] { return truth("moves") == 0; }, 1s)) << flight.story().text();
+  EXPECT_EQ(truth("powered"), 1) << "it stops before its power is gone";
+  EXPECT_TRUE(flight.story().has("SUPERVISOR medium POWER_SILENT")) << flight.story().text();
 }
 
 /// What a fault of one way does: with a fall-back the flight goes on, without one the device is lost.

@@ -47,6 +47,28 @@ class Imager(unittest.TestCase):
             self.points_to(imager, 0.2)
             imager.end()
 
+    def test_a_way_to_the_second_inhibit_that_is_unplugged_in_motion_stops_the_device_and_the_other_is_for_who_is_let_go_again(self):
+        with flight.Flight(MISSION) as imager:
+            imager.wait_told("commissioned: mode operation", 20.0)
+            imager.tc("IMAGER", "POINT", 1)
+            self.wait_truth(imager, lambda truth: truth["moves"] == 1.0, 5.0)
+            begin = imager.count()
+            imager.fault("imager", "enable", 0, "unplug")
+            cut = time.monotonic()
+            self.wait_truth(imager, lambda truth: truth["moves"] == 0.0, 2.0)
+            flight.measure(f"at rest {time.monotonic() - cut:.3f} s after its second inhibit was unplugged")
+            imager.wait_told("SUPERVISOR medium INHIBIT_LOST", 5.0, begin)
+            imager.wait_told("IMAGER to SafeOperational because of INHIBIT_LOST", 5.0, begin)
+            self.assertEqual(imager.truth("imager")["moves"], 0.0)
+            imager.tc("IMAGER", "SET_STATE", "Operational")
+            imager.wait_told("SUPERVISOR low INHIBIT_FALL_BACK", 5.0, begin)
+            self.points_to(imager, 0.3)
+            imager.fault("imager", "power", 0, "unplug")
+            imager.wait_told("SUPERVISOR low POWER_FALL_BACK", 5.0, begin)
+            self.assertEqual(imager.truth("imager")["powered"], 1.0)
+            imager.end()
+            self.assertEqual(sum("SUPERVISOR medium INHIBIT_LOST" in line.told for line in imager.told(begin)), 1)
+
     def test_who_is_killed_at_speed_leaves_a_device_at_rest_and_then_without_power(self):
         with flight.Flight(MISSION) as imager:
             imager.wait_told("commissioned: mode operation", 20.0)

@@ -75,10 +75,15 @@ void check_reach(MissionDraft& draft) {
                    "beside frames by udp), or a device beyond this computer",
                    8);
     };
+    const auto check_all = [&](const Endnode& held, const HeldTerms& terms, const std::string& what) {
+      check(held, what);
+      for (const Endnode& other : terms.fall_backs) check(other, what);
+    };
     for (const Device& device : owner.subsystem.devices)
-      if (device.enable) check(*device.enable, fmt::format("the second inhibit of '{}'", device.name));
+      if (device.enable)
+        check_all(*device.enable, device.enable_terms, fmt::format("the second inhibit of '{}'", device.name));
     for (const PowerSwitch& power : owner.subsystem.power_switches)
-      check(power.endnode, fmt::format("the power switch of '{}'", power.device));
+      check_all(power.endnode, power.terms, fmt::format("the power switch of '{}'", power.device));
     if (problems.count() != 0) draft.subsystem_problems.push_back(problems.take());
   }
 }

@@ -62,6 +62,16 @@ TEST(SecondInhibit, IsRefusedWhereAnothersSandboxLetsThatOneIn) {
   EXPECT_NE(reading.problems[0].message.find("FLYWHEEL"), std::string::npos) << reading.problems[0].message;
 }
 
+TEST(SecondInhibit, IsRefusedWhereASandboxLetsSomebodyInToAFallBackOfIts) {
+  const auto with = [&](const std::string& other) {
+    return reached_by(R"(transfer="shared_memory" address="robot-enable" silence_ms="30"><FallBack )" + other +
+                          R"(/></Enable><Power transfer="shared_memory" address="power")",
+                      in_memory, R"(transfer="unix" address="stick")");
+  };
+  EXPECT_EQ(first_code(with(R"(transfer="unix" address="robot-enable-b")")), "E0349");
+  EXPECT_TRUE(with(R"(transfer="shared_memory" address="robot-enable-b")").value);
+}
+
 TEST(SecondInhibit, OfTwoLinesIsTheOneThatIsNoSubsystems) {
   EXPECT_TRUE(
       reached_by(R"(transfer="serial" address="/dev/ttyS1@115200")", R"(transfer="serial" address="/dev/ttyS0@115200")")

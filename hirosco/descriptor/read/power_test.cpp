@@ -92,5 +92,47 @@ TEST(MeasuredPower, IsReportedAlikeInEveryConfigurationWithoutATelecommand) {
   EXPECT_EQ(with(changed(R"(interval="100")", R"(interval="100" enabled="no")", array_text)), "E0376");
 }
 
+/// What members draw (docs/adr/0237).
+FileSource drawn_by(const std::string& draw) {
+  const std::string first = R"(<Subsystem executable="hirosco-flywheel" descriptor="flywheel.xml"/>)";
+  const std::string text = changed(R"(<Power budget_W="150"/>)", R"(<Power budget_W="150">)" + draw + "</Power>",
+                                   changed(first, first + R"(<Subsystem executable="array" descriptor="array.xml"/>)"));
+  return overlay({{"mission.xml", text}, {"array.xml", array_text}});
+}
+
+TEST(PowerDraw, IsToldByAParameterOfAnybodyForOneOrSeveral) {
+  const auto source = drawn_by(
+      R"(<Draw of="FLYWHEEL ARRAY" measured="ARRAY.STATE.BUDGET" age_ms="300" beyond_W="2.5" longer_than_ms="4000"/>)"
+      R"(<Draw of="FLYWHEEL" measured="ARRAY.STATE.BUDGET" age_ms="300" longer_than_ms="1"/>)");
+  const auto reading = read_mission(data / "mission.xml", source);
+  ASSERT_TRUE(reading.value) << rendered(reading.problems, source);
+  ASSERT_EQ(reading.value->power_draws.size(), 2U);
+  const PowerDraw& both = reading.value->power_draws[0];
+  EXPECT_EQ(both.of, (std::vector<std::uint16_t>{reading.value->find_subsystem("FLYWHEEL")->subsystem.id, 41}));
+  EXPECT_EQ(both.measured.name, "ARRAY.STATE.BUDGET");
+  EXPECT_EQ(both.measured.apid, 41);
+  EXPECT_EQ(both.measured.at.offset, 9U);
+  EXPECT_EQ(both.measured.age, std::chrono::milliseconds{300});
+  EXPECT_EQ(both.beyond_w, 2.5);
+  EXPECT_EQ(both.longer_than, std::chrono::seconds{4});
+  EXPECT_EQ(reading.value->power_draws[1].beyond_w, 0);
+  EXPECT_FALSE(reading.value->power_measured) << "that is another matter";
+}
+
+TEST(PowerDraw, ThatNobodyTellsOrOfNobodyIsRefused) {
+  const auto told = [](const std::string& of, const std::string& measured, const std::string& times) {
+    return first_words(drawn_by("<Draw of=\"" + of + "\" measured=\"" + measured + "\" " + times + "/>"));
+  };
+  const std::string load = "ARRAY.STATE.BUDGET", times = R"(age_ms="300" longer_than_ms="4000")";
+  EXPECT_EQ(told("FLYWHEEL", load, times), "");
+  EXPECT_EQ(told("FLYWHEL", load, times), "E0304 subsystem 'FLYWHEL' is not in the mission");
+  EXPECT_EQ(told("FLYWHEEL FLYWHEEL", load, times).substr(0, 5), "E0113");
+  EXPECT_EQ(told(" ", load, times).substr(0, 5), "E0109");
+  EXPECT_EQ(told("FLYWHEEL", "ARRAY.ANGLE", times),
+            "E0376 'ARRAY.ANGLE' measures no draw: it is no single DOUBLE in W");
+  EXPECT_EQ(told("FLYWHEEL", load, R"(age_ms="10" longer_than_ms="4000")").substr(0, 5), "E0376");
+  EXPECT_EQ(told("FLYWHEEL", load, R"(age_ms="300")").substr(0, 5), "E0105");
+}
+
 }  // namespace
 }  // namespace hirosco::descriptor

@@ -73,8 +73,14 @@ void DeviceAddresses::read_device_network(const xml::Element& element) {
 void DeviceAddresses::check_endnodes(const SubsystemDescriptor& subsystem) {
   Problems problems{subsystem.file};
   for (const Device& device : subsystem.devices)
-    if (device.enable) check_endnode(*device.enable, subsystem.name, problems);
-  for (const PowerSwitch& power : subsystem.power_switches) check_endnode(power.endnode, subsystem.name, problems);
+    if (device.enable) {
+      check_endnode(*device.enable, subsystem.name, problems);
+      for (const Endnode& other : device.enable_terms.fall_backs) check_endnode(other, subsystem.name, problems);
+    }
+  for (const PowerSwitch& power : subsystem.power_switches) {
+    check_endnode(power.endnode, subsystem.name, problems);
+    for (const Endnode& other : power.terms.fall_backs) check_endnode(other, subsystem.name, problems);
+  }
   for (const Configuration& configuration : subsystem.configurations)
     for (const DeviceUse& use : configuration.devices) {
       check_endnode(use.endnode, subsystem.name, problems);

@@ -61,9 +61,16 @@ void check_addresses(const SubsystemDescriptor& subsystem, Problems& problems) {
         fmt::format("see {}:{}; each needs its own", before->second.second.line, before->second.second.column));
   };
   for (const Device& device : subsystem.devices)
-    if (device.enable) take(*device.enable, fmt::format("the enable endnode of device '{}'", device.name));
-  for (const PowerSwitch& power : subsystem.power_switches)
-    take(power.endnode, fmt::format("the power switch of device '{}'", power.device));
+    if (device.enable) {
+      const std::string user = fmt::format("the enable endnode of device '{}'", device.name);
+      take(*device.enable, user);
+      for (const Endnode& other : device.enable_terms.fall_backs) take(other, user);
+    }
+  for (const PowerSwitch& power : subsystem.power_switches) {
+    const std::string user = fmt::format("the power switch of device '{}'", power.device);
+    take(power.endnode, user);
+    for (const Endnode& other : power.terms.fall_backs) take(other, user);
+  }
   for (const Configuration& configuration : subsystem.configurations)
     for (const DeviceUse& use : configuration.devices) {
       if (use.device >= subsystem.devices.size()) continue;
@@ -102,12 +109,6 @@ void DeviceReader::read(const xml::Element& element) {
   each_child(
       element, problems_,
       {{"Endnode", read_one, max_device_endnodes}, {"Power", [&](const auto& power) { read_power(power, name); }, 1}});
-}
-
-void DeviceReader::read_power(const xml::Element& element, const std::string& device) {
-  Attributes attributes{element, problems_};
-  no_children(element, problems_);
-  subsystem_.power_switches.push_back({device, read_address(attributes, problems_), place(element.at)});
 }
 
 /// What a device, or an endnode of one that has several, exchanges.
@@ -159,15 +160,6 @@ void DeviceReader::read_stop(Attributes& attributes, Device& device) {
     if (element.find(name) != nullptr && !device.actuator)
       problems_.add(*element.find(name), "E0223",
                     fmt::format("'{}' is no actuator: it has nothing to stop", device.name), "actuator=\"yes\"");
-}
-
-void DeviceReader::read_enable(const xml::Element& element, Device& device) {
-  Attributes attributes{element, problems_};
-  no_children(element, problems_);
-  device.enable = read_address(attributes, problems_);  // its frames are little endian, always
-  if (!device.actuator)
-    problems_.add(element, "E0223", fmt::format("'{}' is no actuator: there is nothing to enable", device.name),
-                  "actuator=\"yes\"");
 }
 
 void DeviceReader::check_octets(const xml::Element& element, const Device& device) {

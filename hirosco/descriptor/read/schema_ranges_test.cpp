@@ -80,7 +80,9 @@ const std::string ranged_subsystem = R"(<Subsystem name="S" id="10">
   </CustomService>
   <Hang realtime="20" reduced="200"/>
   <Device name="P" actuator="yes" stop="controlled" stop_within_ms="9"><Input><Field name="A" type="INT8" count="2"/></Input>
-    <Output><Field name="A" type="INT8" count="1" safe="0"/></Output></Device>
+    <Output><Field name="A" type="INT8" count="1" safe="0"/></Output>
+    <Enable transfer="unix" address="e" silence_ms="30" silence_reduced_ms="90"/>
+    <Power transfer="unix" address="w" silence_ms="30" silence_reduced_ms="90"/></Device>
   <Device name="Q"><Endnode name="A" actuator="yes" stop="controlled" stop_within_ms="9">
     <Output><Field name="A" type="INT8" safe="0"/></Output></Endnode></Device>
   <Configuration name="R" id="1" priority="1" sampling_us="1000" budget_us="9" spin_us="9" overruns="3" power_W="5">
@@ -96,7 +98,8 @@ const std::string ranged_subsystem = R"(<Subsystem name="S" id="10">
 std::string ranged_mission() {
   const std::pair<const char*, const char*> more[]{
       {R"(path="log/orbiter.db")", R"(path="log/orbiter.db" rotate_MB="9" rotate_h="9" keep_MB="99")"},
-      {R"(<Power budget_W="150"/>)", R"(<Power budget_W="150" measured="FLYWHEEL.NONE" age_ms="9" least_W="1"/>
+      {R"(<Power budget_W="150"/>)", R"(<Power budget_W="150" measured="FLYWHEEL.NONE" age_ms="9" least_W="1">
+        <Draw of="FLYWHEEL" measured="FLYWHEEL.NONE" age_ms="9" longer_than_ms="9" beyond_W="1"/></Power>
         <Resources/>)"},
       {R"(<Link id="2" )", R"(<Link id="2" on_loss="hold" hold_ms="9" )"},
       {R"(<Do action="log"/>)", R"(<Do action="log"/></Plan>

@@ -23,6 +23,11 @@ class KeptJoints {
     return (goal_ - drives_.measured().position).cwiseAbs().maxCoeff() <= tolerance_rad;
   }
 
+  /// On their course: for springs.
+  [[nodiscard]] Setpoint setpoint(const Course& at) const noexcept {
+    const JointVector way = goal_ - from_;
+    return {from_ + at.share * way, at.per_s * way, JointVector::Zero(way.size())};
+  }
   /// rad/s or m/s of each: on their course.
   [[nodiscard]] JointVector rates(const Course& at) const noexcept {
     const JointVector way = goal_ - from_;

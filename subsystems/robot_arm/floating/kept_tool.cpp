@@ -22,7 +22,10 @@ void KeptTool::keep_base() noexcept {
   base_let_go_ = false;
 }
 
-void KeptTool::begin_course(const Vector3& offset_m) noexcept {
+void KeptTool::begin_course(const Vector3& offset_m, double duration_s, const PreferredPosture& preferred) noexcept {
+  preferred_ = preferred;
+  duration_s_ = duration_s;
+  pace_ = 0;
   from_ = goal_.pose.position;
   offset_ = offset_m;
 }
@@ -30,14 +33,15 @@ void KeptTool::begin_course(const Vector3& offset_m) noexcept {
 void KeptTool::go(const Course& at) noexcept {
   goal_.pose.position = from_ + at.share * offset_;
   goal_.velocity_m_s = at.per_s * offset_;
+  pace_ = pace(at, duration_s_);
 }
 
-void KeptTool::lead(const Vector3& turning_rad_s, const Vector3& moving_m_s, double cycle_s) noexcept {
+void KeptTool::lead(const Vector3& turning_rad_s, const Vector3& moving_m_s, double cycle_s, Leash leash) noexcept {
   const robotics::Pose& tool = parts_.craft.tool();
   double behind = (goal_.pose.position - tool.position).norm() / leash_m;
   if (parts_.craft.law() != ToolLaw::AttitudeHold)
     behind = std::max(behind, rotation_between(tool.rotation, goal_.pose.rotation).norm() / leash_rad);
-  const double pace = std::clamp(2 * (1 - behind), 0.0, 1.0);
+  const double pace = leash == Leash::Goes ? 1 : std::clamp(2 * (1 - behind), 0.0, 1.0);
   goal_.velocity_m_s = pace * moving_m_s;
   goal_.turning_rad_s = pace * turning_rad_s;
   goal_.pose.position += cycle_s * goal_.velocity_m_s;
@@ -49,7 +53,10 @@ void KeptTool::lead(const Vector3& turning_rad_s, const Vector3& moving_m_s, dou
 
 JointVector KeptTool::rates(Bounds bounds) const noexcept {
   const FloatingCraft& craft = parts_.craft;
-  return tool_rates(craft.law(), craft.model(), bounds, goal_, craft.attitude(), base_);
+  if (!(pace_ > 0) || !preferred_.draws())
+    return tool_rates(craft.law(), craft.model(), bounds, goal_, craft.attitude(), base_);
+  const JointVector drawn = drawn_to(preferred_, craft.model().position(), bounds, pace_);
+  return tool_rates(craft.law(), craft.model(), bounds, goal_, craft.attitude(), base_, &drawn);
 }
 
 /// The mean of the way that is left, not of its length: noise of the base's place has no direction.

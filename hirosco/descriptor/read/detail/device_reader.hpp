@@ -38,6 +38,8 @@ class DeviceReader {
   void check_octets(const xml::Element& element, const Device& device);
   void read_stop(Attributes& attributes, Device& device);
   void read_enable(const xml::Element& element, Device& device);
+  [[nodiscard]] HeldTerms read_held_terms(Attributes& attributes, const Endnode& preferred);
+  void check_goes_on(const xml::Element& element, const HeldTerms& terms);
   void read_output(const xml::Element& element, Device& device, Unique& names);
 
   Problems& problems_;
