@@ -21,7 +21,7 @@ void GuardedProcesses::started(std::uint16_t apid, const LaunchedSubsystem& laun
   member->permit = reinterpret_cast<PermitPage*>(launched.permit.octets.data());
   member->grip = launched.grip;
   member->taken = GuardedMember::Taken::Nothing;
-  member->guarded_before = false;
+  member->guarded_before = member->page_on_its_way = false;
   // A device may have heard of every epoch of the process before.
   member->permit->epoch.store(++member->epoch, std::memory_order_release);
   // One that a guard before had given is written on it.
@@ -52,7 +52,7 @@ std::string_view GuardedProcesses::go_on(std::uint16_t apid, const AdoptedSubsys
   PermitPage& page = *member->permit;
   page.epoch.store(member->epoch, std::memory_order_release);
   page.powered.store(adopted.powered, std::memory_order_release);
-  member->guarded_before = true;
+  member->guarded_before = member->page_on_its_way = true;
   member->power_unknown = adopted.powered != power_off;
   const std::string_view rests = member->why_it_rests();
   member->service_moved = parts_.time.watched_at(parts_.clock.now());
@@ -70,6 +70,10 @@ std::string_view GuardedProcesses::go_on(std::uint16_t apid, const AdoptedSubsys
   member->released = member->seen_operational = true;
   member->released_at = parts_.time.watched_at(parts_.clock.now());
   return {};
+}
+
+void GuardedProcesses::looks_at_its_page(std::uint16_t apid) noexcept {
+  if (GuardedMember* member = parts_.guarded.find(apid)) member->page_on_its_way = false;
 }
 
 void GuardedProcesses::ended_before(std::uint16_t apid) {

@@ -34,6 +34,8 @@ class GuardedProcesses {
   /// \param against Why it may not go on; empty: it may.
   /// \return why it is not permitted; empty: it is.
   [[nodiscard]] std::string_view go_on(std::uint16_t apid, const AdoptedSubsystem& adopted, std::string_view against);
+  /// It has said so, of the page that it was given in go_on().
+  void looks_at_its_page(std::uint16_t apid) noexcept;
   /// It had ended already under the guard before.
   void ended_before(std::uint16_t apid);
   /// It has ended: its devices stay inhibited.

@@ -171,6 +171,46 @@ TEST_F(GuardAdoption, AFenceOfItReachesWhoGoesOn) {
   EXPECT_TRUE(next.fenced(hand));
 }
 
+/// Its service loop, which would read of the new page, wants the processor of a busy computer.
+TEST_F(GuardAdoption, WhoWasStoppedAndHasNotReadOfItsNewPageYetIsNotTakenForOneWhosePageIsDamaged) {
+  operational(hand);
+  ASSERT_EQ(adopt(hand, "a stop was under way"), "a stop was under way");
+  // Its cycle makes its steps, and sees the epoch of the page before.
+  const auto cycles_by = [&](Duration span) {
+    for (const TimePoint end = clock.now() + span; clock.now() < end; clock.advance(Guard::period)) {
+      next.beat();
+      ++lives[hand].vital->cycles;
+      ++lives[hand].vital->service_steps;
+      static_cast<void>(next.step(clock.now()));
+    }
+  };
+  cycles_by(10s);
+  EXPECT_THAT(next.take_findings(), ::testing::IsEmpty()) << "whether that is too long is not the guard's to say";
+  EXPECT_FALSE(permits(hand));
+  EXPECT_FALSE(lives[hand].process->killed);
+  lives[hand].vital->seen_epoch = pages[hand]->epoch.load();
+  next.looks_at_its_page(hand);
+  cycles_by(1s);
+  EXPECT_THAT(next.take_findings(), ::testing::IsEmpty());
+  ASSERT_TRUE(next.release(hand, next.fences(hand)));
+  cycles_by(1s);
+  const auto found = next.take_findings();
+  ASSERT_EQ(found.size(), 1U) << "from then on it is to see what is written there";
+  EXPECT_EQ(found[0].kind, GuardFinding::Kind::PageDamaged);
+}
+
+TEST_F(GuardAdoption, WhoseCycleStandsStillOnTheWayToItsNewPageHangs) {
+  operational(hand);
+  ASSERT_EQ(adopt(hand, "a stop was under way"), "a stop was under way");
+  for (const TimePoint end = clock.now() + 300ms; clock.now() < end; clock.advance(Guard::period)) {
+    ++lives[hand].vital->service_steps;
+    static_cast<void>(next.step(clock.now()));
+  }
+  const auto found = next.take_findings();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].kind, GuardFinding::Kind::CycleHangs);
+}
+
 TEST_F(GuardTest, WhoseProcessHasEndedIsHeldByNobodyAnyMore) {
   ASSERT_EQ(lives[hand].process.use_count(), 2);
   guard.forget(hand);

@@ -42,7 +42,9 @@ void LoopWatch::observe_cycle(GuardedMember& member, TimePoint now) {
   }
   const std::uint64_t cycles = member.vital->cycles.load(std::memory_order_acquire);
   const bool moves = cycles != std::exchange(member.cycles, cycles);
-  const bool looks = member.vital->seen_epoch.load(std::memory_order_acquire) == member.epoch;
+  // Who was adopted looks at the page before until its service loop has read of the new one: for how long it may is not the cycle's
+  // concern (Adoption::longest_change), and a page that is on its way is none that is damaged.
+  const bool looks = member.page_on_its_way || member.vital->seen_epoch.load(std::memory_order_acquire) == member.epoch;
   if (moves && looks) {
     member.still = 0;
     return;

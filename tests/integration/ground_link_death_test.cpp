@@ -54,7 +54,8 @@ TEST_F(GroundLinkDeath, InAChangeOfModeEndsItAndTheGroundChangesTheModeAgain) {
   ASSERT_TRUE(begins("SET_MODE", {operation}, "change from mode operation to operation")) << flight.story().text();
   flight.craft().kill("COMMUNICATION");
   ASSERT_TRUE(comes_back(2s)) << flight.story().text();
-  EXPECT_TRUE(flight.story().has("the change to mode operation stopped: plan default")) << flight.story().text();
+  EXPECT_TRUE(flight.story().has("the change to mode operation stopped: plan default because of COMMUNICATION"))
+      << flight.story().text();
   EXPECT_TRUE(flight.set_mode("operation").completed) << flight.story().text();
   EXPECT_EQ(flight.state("HELLO"), State::Operational);
 }

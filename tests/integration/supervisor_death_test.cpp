@@ -1,28 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
 #include <map>
 #include <string>
 
-#include "tests/integration/mortal_flight.hpp"
+#include "tests/integration/loss_judges.hpp"
 
 /// The supervisor dies, before or after each single message that it sends or takes, and another one goes on (docs/adr/0093): rokviss,
 /// with its links and its devices.
 namespace hirosco::testing {
 namespace {
-
-const std::array<const char*, 2> movers{"MANIPULATOR", "JOYSTICK"};
-
-/// And again: the mode that holds is brought up whole.
-void flies_again(MortalFlight& mortal) {
-  Flight& flight = mortal.flight;
-  for (const char* name : movers)
-    if (!flight.craft().alive(name)) static_cast<void>(flight.set_state(name, State::Offline));
-  flight.craft().run(200ms);
-  EXPECT_TRUE(flight.set_mode("telepresence").completed) << mortal.text();
-  flight.craft().run(200ms);
-  for (const char* name : movers) EXPECT_TRUE(mortal.may_move(name)) << name << "\n" << mortal.text();
-}
 
 TEST(SupervisorDeath, InSteadyFlightNobodyIsStoppedAndNoLinkBreaks) {
   MortalFlight mortal{0};
@@ -142,19 +128,8 @@ TEST(SupervisorDeath, AtEveryMomentOfAModeChangeEndsInTheOldModeTheNewOneOrSafe)
   const int flights = at_every_moment(
       [](MortalFlight& mortal) { mortal.send(3000, "SET_MODE", mortal.flight.mission().find_mode("standalone")->id); },
       [&](MortalFlight& mortal) {
-        Flight& flight = mortal.flight;
-        const std::string now = flight.craft().supervisor().mode().name;
-        const bool known = now == "telepresence" || now == "standalone" || now == flight.mission().initial_mode;
-        EXPECT_TRUE(known) << now;
-        ++ends[now];
-        if (now == flight.mission().initial_mode) {
-          for (const char* name : movers) EXPECT_FALSE(mortal.may_move(name)) << name << "\n" << mortal.text();
-        }
-        for (const auto& [id, verdict] : mortal.verdicts.of) {
-          EXPECT_LE(verdict.final - verdict.unknown, 1) << std::hex << id << "\n" << mortal.text();
-          EXPECT_TRUE(verdict.accepted == 0 || verdict.final > 0) << std::hex << id << "\n" << mortal.text();
-          told_twice += verdict.final > 1 ? 1 : 0;
-        }
+        is_in_the_old_mode_the_new_one_or_safe(mortal, ends);
+        told_twice += each_telecommand_has_one_end(mortal);
         flies_again(mortal);
       });
   EXPECT_GT(flights, 20 / one_in(3));
@@ -168,15 +143,8 @@ TEST(SupervisorDeath, AtEveryMomentOfAModeChangeEndsInTheOldModeTheNewOneOrSafe)
 
 TEST(SupervisorDeath, AtEveryMomentOfAStopEverybodyHasStopped) {
   const int flights = at_every_moment([](MortalFlight& mortal) { mortal.send(3000, "SAFE_ALL"); },
-                                      [&](MortalFlight& mortal) {
-                                        const auto asked = mortal.verdicts.of;
-                                        bool taken = false;
-                                        for (const auto& [id, verdict] : asked) taken = taken || verdict.accepted > 0;
-                                        for (const char* name : movers) {
-                                          EXPECT_FALSE(taken && mortal.may_move(name)) << mortal.text();
-                                          const bool rests = mortal.flight.state(name) != State::Operational;
-                                          EXPECT_TRUE(mortal.may_move(name) || rests) << mortal.text();
-                                        }
+                                      [](MortalFlight& mortal) {
+                                        has_stopped_all_or_nobody(mortal);
                                         flies_again(mortal);
                                       });
   EXPECT_GT(flights, 10 / one_in(3));
@@ -186,7 +154,8 @@ TEST(SupervisorDeath, AtEveryMomentOfARecoveryBothMachinesComeToRest) {
   const int flights = at_every_moment(
       [](MortalFlight& mortal) { static_cast<void>(mortal.flight.craft().device("joystick")->fault("unplug")); },
       [&](MortalFlight& mortal) {
-        for (const char* name : movers) EXPECT_FALSE(mortal.may_move(name)) << name << "\n" << mortal.text();
+        nobody_may_move(mortal);
+        what_was_told_to_begin_is_done(mortal);
         static_cast<void>(mortal.flight.craft().device("joystick")->fault("plug"));
         flies_again(mortal);
       });

@@ -25,7 +25,17 @@ constexpr const char* version_text = "HIROSCO packet log, version 1";
 constexpr const char* set_up_session =
     "SELECT set_config('synchronous_commit', CASE current_setting('synchronous_commit') WHEN 'off' THEN 'on' ELSE "
     "current_setting('synchronous_commit') END, false), set_config('statement_timeout', $1, false), "
-    "current_setting('fsync'), set_config('bytea_output', 'hex', false)";
+    "current_setting('fsync'), set_config('bytea_output', 'hex', false), set_config('lock_timeout', $2, false)";
+/// Who writes a log holds this for as long as its session lives: what one that is gone had sent last is carried out to its end, or not at all,
+/// before another one writes, or asks how far the log has come (docs/adr/0233). The first number is "HIRO".
+constexpr const char* take_turn = "SELECT pg_advisory_lock(1212764751, hashtext($1))";
+constexpr const char* turn_is_taken = "SELECT set_config('lock_timeout', '0', false)";
+/// A session that nobody is at the other end of any more, of which its server has not heard, as of a computer that has lost its network.
+constexpr const char* end_whose_turn_it_is =
+    "SELECT pg_terminate_backend(pid) FROM pg_locks WHERE locktype = 'advisory' AND granted AND classid = 1212764751 "
+    "AND "
+    "objid::bigint = (hashtext($1)::bigint & 4294967295) AND database = (SELECT oid FROM pg_database WHERE datname = "
+    "current_database())";
 constexpr const char* make_table =
     "CREATE TABLE IF NOT EXISTS hirosco_log (log text NOT NULL, run bigint NOT NULL, number bigint NOT NULL, stored "
     "bigint "
@@ -143,6 +153,7 @@ class PostgresqlDatabase final : public Database {
   [[nodiscard]] StoreTrouble do_trouble() const override { return trouble_; }
 
   Answer<void> connect();
+  Answer<void> wait_for_turn();
   Answer<void> check_version();
   Answer<void> store(std::span<const LogRecord> batch);
   Answer<void> store_gap();
@@ -166,7 +177,8 @@ Answer<void> PostgresqlDatabase::connect() {
   std::string fsync;
   // The server's own end of a statement comes after ours, so that it is we who say what happened.
   const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(2 * place_.limit).count();
-  const auto ready = (*session)->ask(set_up_session, std::vector{std::to_string(patience)}, 3, [&](auto row) {
+  const std::vector limits{std::to_string(patience), std::to_string(patience / 4)};
+  const auto ready = (*session)->ask(set_up_session, limits, 3, [&](auto row) {
     fsync = row[2];
     return true;
   });
@@ -174,7 +186,20 @@ Answer<void> PostgresqlDatabase::connect() {
   if (fsync == "off" && access_ == DatabaseAccess::Write)
     return std::unexpected{Refusal{{ErrorCode::NotPermitted, "nothing is durable there", 0}, "its fsync is off"}};
   session_ = std::move(*session);
+  if (access_ == DatabaseAccess::Write)
+    if (auto turn = wait_for_turn(); !turn) return turn;
   return check_version();
+}
+
+/// Half as long as an answer may take; then it ends who writes, and is refused, so that it comes again.
+Answer<void> PostgresqlDatabase::wait_for_turn() {
+  const std::vector log{place_.log};
+  auto turn = session_->ask(take_turn, log);
+  if (turn) return session_->ask(turn_is_taken, {});
+  // A server that does not answer at all does not answer this either.
+  static_cast<void>(session_->ask(end_whose_turn_it_is, log));
+  return std::unexpected{
+      Refusal{turn.error().error, "another session still writes this log, and is ended: " + turn.error().words}};
 }
 
 Answer<void> PostgresqlDatabase::check_version() {
@@ -314,6 +339,12 @@ void PostgresqlDatabase::note(StoreFault fault, const Error& error, std::string 
 
 Result<LogPage> PostgresqlDatabase::do_read(const LogQuery& query) {
   if (query.last == 0) return LogPage{};
+  // Who is to write goes on from what it reads: nobody else adds to that any more.
+  if (access_ == DatabaseAccess::Write && !session_)
+    if (const auto connected = connect(); !connected) {
+      const auto healed = heal_from(connected.error());
+      return fail(healed.error());
+    }
   // A session of its own: who has enough rows leaves it.
   PostgresqlDatabase reader{place_, DatabaseAccess::Read};
   if (const auto connected = reader.connect(); !connected) return fail(connected.error().error);

@@ -7,10 +7,12 @@
 #include <signal.h>
 
 #include <atomic>
+#include <optional>
 #include <thread>
 
 #include "hirosco/utilities/os/clock.hpp"
 #include "hirosco/utilities/testing/slice.hpp"
+#include "supervisor/platform/storage/begin_log.hpp"
 #include "supervisor/platform/storage/log_store.hpp"
 #include "supervisor/platform/storage/packet_log.hpp"
 #include "supervisor/platform/storage/testing/batches.hpp"
@@ -36,7 +38,11 @@ class PostgresqlLog : public ::testing::Test {
     return std::move(*open_postgresql({.connection = server_->connection(), .log = log_name(log()), .limit = limit}));
   }
   [[nodiscard]] std::filesystem::path log() const { return folder_.path() / "log.db"; }
-  [[nodiscard]] LogPage page() const { return *open()->read({.last = 1'000'000}); }
+  [[nodiscard]] LogPage page() const {
+    const auto reader = std::move(*open_postgresql(
+        {.connection = server_->connection(), .log = log_name(log()), .limit = 20s}, DatabaseAccess::Read));
+    return *reader->read({.last = 1'000'000});
+  }
   /// Tries as the writer thread does, until the server is there again.
   static void append_at_last(Database& database, const std::vector<LogRecord>& batch) {
     for (int i = 0; i < 1000; ++i) {
@@ -92,6 +98,44 @@ TEST_F(PostgresqlLog, AFrozenServerIsGivenUpInTimeAndWhatItDoesLaterIsNotThereTw
   append_at_last(*database, batch_of(21, 30));
   EXPECT_FALSE(database->trouble().present);
   expect_each_once(30);
+}
+
+/// A server that takes its time for a statement, of a supervisor that is killed meanwhile: nobody waits for its answer any more.
+TEST_F(PostgresqlLog, WhatOneThatDiedHadSentIsThereBeforeTheNextOneAsksHowFarTheLogHasCome) {
+  {
+    const auto database = open();
+    ASSERT_TRUE(database->append(batch_of(1, 10)));
+  }
+  ASSERT_EQ(server_->sql(
+                "CREATE FUNCTION slow() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN IF NEW.number = 20 THEN PERFORM "
+                "pg_sleep(1); END IF; RETURN NEW; END $$; CREATE TRIGGER slow BEFORE INSERT ON hirosco_log FOR EACH "
+                "ROW EXECUTE FUNCTION slow(); SELECT 'done'"),
+            "done\n");
+  {
+    const auto dying = open(700ms);
+    append_at_last(*dying, batch_of(1, 10));  // it has its turn
+    ASSERT_EQ(dying->append(batch_of(11, 20)).error().code, ErrorCode::Unavailable);
+  }
+  const auto next = open();
+  const LogResumption noted{.run = batch_of(1, 1)[0].run, .last = 25, .durable = 10};
+  std::optional<LogResumption> found;
+  for (int i = 0; i < 1000 && !found; ++i) found = resumption_in(*next, noted, 1 << 20);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->durable, 20U)
+      << "else these would count as lost, and the gap of them would have the number of one that is there";
+  EXPECT_TRUE(next->append(batch_of(21, 25)));
+  ASSERT_EQ(server_->sql("DROP FUNCTION slow CASCADE; SELECT 'done'"), "done\n");
+  expect_each_once(25);
+}
+
+TEST_F(PostgresqlLog, ASessionThatDoesNotEndByItselfIsEnded) {
+  const auto forgotten = open();
+  ASSERT_TRUE(forgotten->append(batch_of(1, 10)));
+  const auto next = open(1s);
+  append_at_last(*next, batch_of(11, 20));
+  EXPECT_EQ(next->trouble().count, 1U) << "told, and over";
+  EXPECT_FALSE(next->trouble().present);
+  expect_each_once(20);
 }
 
 TEST_F(PostgresqlLog, AKilledServerIsUsedAgainWhenItIsBackAndHasAllThatWasAcknowledged) {

@@ -142,6 +142,8 @@ bool PlanRuns::is_overtaken(const Run& run) const {
 
 void PlanRuns::step_begins(Run& run, std::size_t step) {
   run.at = step;
+  // Whom it stops is fenced by now: should this supervisor die before the end of its step, the next one is to know what for.
+  if (step == 0 && holds(run.plan)) means_.craft.remember();
   give_up_those_down(run);
   if (is_overtaken(run)) give_up(run, loss_of_a_link, "for the loss of a link");
 }

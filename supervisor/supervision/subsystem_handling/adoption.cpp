@@ -129,6 +129,11 @@ void Adoption::hand_over(Member& member, Page& page) {
   static_cast<void>(member.channel()->send({.kind = MessageKind::PermitPage, .memory = page.memory}));
 }
 
+void Adoption::confirmed(std::uint16_t apid) {
+  pages_.erase(apid);
+  craft_.guard.looks_at_its_page(apid);
+}
+
 /// The states of those that were not let go on follow, and what had been begun ends.
 void Adoption::finish_what_was_begun() {
   parts_.telecommands.end_what_was_begun();

@@ -64,7 +64,7 @@ class Adoption final : public Watch, public Remembered, public Succession {
   /// Of now, or of one that the supervisor before had begun and not ended.
   [[nodiscard]] bool stop_asked() const noexcept { return stop_asked_; }
   [[nodiscard]] bool waits() const noexcept override { return waits_; }
-  void confirmed(std::uint16_t apid) override { pages_.erase(apid); }
+  void confirmed(std::uint16_t apid) override;
   void watch(TimePoint now) override;
   void note(OctetWriter& writer) const override;
   void recall(OctetReader& reader) override;

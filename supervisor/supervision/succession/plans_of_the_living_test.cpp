@@ -91,6 +91,58 @@ TEST_F(PlansOfTheLiving, BeginAnewAndWhomTheyAddressInTheNetworkActsUntilThen) {
   for (const std::uint16_t apid : {arm, hand}) EXPECT_FALSE(next.craft.guard.fenced(apid)) << apid;
 }
 
+/// docs/adr/0233
+TEST_F(PlansOfTheLiving, AreNotedAsTheyBeginBehindTheirFencesAndBeforeTheirFirstStep) {
+  fly("HOT", {hand_to(SafeOperational)});
+  static_cast<void>(received(hand));
+  std::vector<bool> fenced;
+  craft.remembers = [&] {
+    fenced.push_back(guard.fenced(hand));
+    if (fenced.size() == 1) {
+      EXPECT_THAT(texts(hand), IsEmpty());
+    }
+    EXPECT_TRUE(notes.note());
+  };
+  event(arm, hot, Severity::Low);
+  ASSERT_FALSE(fenced.empty());
+  EXPECT_TRUE(fenced.front());
+  EXPECT_THAT(texts(hand), ElementsAre("SET_STATE 4"));
+  // It dies before the end of its step, and what it was about to say with it.
+  craft.remembers = nullptr;
+  SupervisorParts& next = go_on();
+  begins_to_hear(next);
+  EXPECT_EQ(std::ranges::count(story, anew), 1);
+  EXPECT_THAT(texts(hand), ElementsAre("SET_STATE 4"));
+}
+
+/// docs/adr/0233
+TEST_F(PlansOfTheLiving, ThatTakeANetworkDownHaveThatNotedBeforeAnybodyIsSentAnything) {
+  fly("HOT", {{"shut_down_network"}});
+  for (const std::uint16_t apid : {arm, hand}) static_cast<void>(received(apid));
+  std::size_t noted = 0;
+  craft.remembers = [&] {
+    for (const std::uint16_t apid : {arm, hand}) {
+      EXPECT_TRUE(guard.fenced(apid)) << apid;
+      EXPECT_THAT(texts(apid), IsEmpty()) << apid;
+    }
+    ++noted;
+    EXPECT_TRUE(notes.note());
+  };
+  event(arm, hot, Severity::Low);
+  EXPECT_EQ(noted, 1U);
+  craft.remembers = nullptr;
+  for (const std::uint16_t apid : {arm, hand}) static_cast<void>(received(apid));
+  story.clear();
+  // Before the end of its step it dies.
+  SupervisorParts& next = go_on();
+  begins_to_hear(next);
+  EXPECT_TRUE(was_told(failed));
+  for (const std::uint16_t apid : {arm, hand}) {
+    EXPECT_TRUE(next.craft.guard.fenced(apid)) << apid;
+    EXPECT_THAT(obeys(next, apid), Contains("SET_STATE 0")) << apid;
+  }
+}
+
 TEST_F(PlansOfTheLiving, BeginAnewOnceHoweverManySupervisorsDieBeforeTheyCouldCommand) {
   is_under_way({hand_brakes});
   for (int death = 0; death < 3; ++death) ASSERT_TRUE(go_on().memory.note());

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -59,13 +60,19 @@ void shut_down(const ProcedureStep& step, const Means& means, const CommandDone&
   const auto network = members(step, means);
   const std::string plan = "plan " + step.occasion.plan;
   means.craft.tell(plan + ": network {" + names(network, means.craft) + "} to ErrorOperational and down", step.subject);
-  if (means.under_way.cancel(plan) == Cancelled::ForGood) means.craft.fail();
+  const std::string_view event = step.occasion.event;
+  const std::string because = plan + " because of " + means.craft.name_of(step.subject) + (event.empty() ? "" : " ");
+  if (means.under_way.cancel(because + std::string{event}) == Cancelled::ForGood) means.craft.fail();
+  std::vector<const Member*> led;
   for (const std::uint16_t apid : network) {
     Member* member = means.craft.member(apid);
     if (member == nullptr || !member->alive()) continue;
     means.commanded.lower(apid, State::Offline, step.occasion.event);
-    if (member->recovery.goes_down()) bring_down(*member, means);
+    if (member->recovery.goes_down()) led.push_back(member);
   }
+  // The plan ends with this step, and who is fenced and on the way down is to be taken there by whoever goes on.
+  means.craft.remember();
+  for (const Member* member : led) bring_down(*member, means);
   for (const std::uint8_t link : means.links.links_out_of(network)) means.losses.lost(link);
   done(true, {});
 }
