@@ -22,6 +22,7 @@
 #include "supervisor/keeper/keeper.hpp"
 #include "supervisor/keeper/kept_endnodes.hpp"
 #include "supervisor/platform/launch/own_users.hpp"
+#include "supervisor/platform/launch/spare_folders.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/flight_lock.hpp"
 #include "tools/hirosco/instance.hpp"
@@ -91,6 +92,7 @@ void clear_sockets(const descriptor::Mission& mission, const std::filesystem::pa
 /// those of another mission that has the same devices may be the same, and somebody be let in there by now (docs/adr/0169). Into those of
 /// users of their own nobody else is let, so they go.
 void clear_places(const descriptor::Mission& mission, const FlightEntry& flight, ProcessUser user) {
+  supervisor::SpareFolders::sweep();
   if (!flight.named() && user == ProcessUser::WhoeverFlies) return;
   for (const auto& member : mission.subsystems)
     for (const FlowAddress& flow : descriptor::flows_of(member.subsystem)) remove_place(flow, flight_instance(), user);
@@ -195,6 +197,7 @@ struct Locks {
   start.arguments = made->arguments();
   start.arguments.insert(start.arguments.end(),
                          {"--seed", std::to_string(device.seed), "--control", (folder / device.name).string()});
+  if (device.core) start.arguments.insert(start.arguments.end(), {"--core", std::to_string(*device.core)});
   for (const auto& [name, value, at] : device.settings)
     if (name != simulation::world_setting) start.arguments.insert(start.arguments.end(), {"--set", name + "=" + value});
   return start;
@@ -249,6 +252,13 @@ int run(const RunOptions& options) {
   const auto locks = take_locks(*mission, flight);
   if (!locks) return exit_environment;
   const auto& folder = flight.folder;
+  // Behind what is another flight's alone, and before whoever inherits it; a cycle, device or service loop goes from here to its own core.
+  if (ProcessorSet::of_this_thread().beyond(flight.cores.processors))
+    if (const auto taken = flight.cores.processors.take(); !taken) {
+      fmt::print(stderr, "hirosco run: the cores that are left to the flight ({}) cannot be taken: {}\n",
+                 to_string(flight.cores.processors), taken.error().text);
+      return exit_environment;
+    }
   introduce(flight, options);
   tell_children(flight, *mission);
   clear_injections(*mission, folder);

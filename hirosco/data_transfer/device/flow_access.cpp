@@ -56,6 +56,12 @@ void remove_place(const FlowAddress& flow, const std::string& instance, ProcessU
     means->access.remove_place(address_in_flight(means->form, flow.address, instance));
 }
 
+std::string memory_folder_of(const FlowAddress& flow, const std::string& instance) {
+  const FlowMeans* means = find_flow_means(flow.transfer);
+  if (means == nullptr || means->access.memory_folder == nullptr) return {};
+  return means->access.memory_folder(address_in_flight(means->form, flow.address, instance));
+}
+
 std::string why_not_own(const FlowAddress& flow) {
   const OwnFlowAccess* own = own_access(find_flow_means(flow.transfer));
   if (own == nullptr) return "by " + std::string{to_text(flow.transfer)} + " nothing is known of whose it is";

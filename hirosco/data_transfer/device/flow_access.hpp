@@ -24,6 +24,9 @@ struct FlowAccess {
   Result<> (*make_place)(const std::string& address){nullptr};
   /// Removes that where nobody who was let in lives any more.
   void (*remove_place)(const std::string& address){nullptr};
+  /// That place, where it is a folder for which another one can stand while who was let in runs (exchanged_folder.hpp). Null: who reaches it
+  /// is settled when its process starts.
+  std::string (*memory_folder)(const std::string& address){nullptr};
   /// For a subsystem that is a user of its own. Null: nothing is known of whose the flow is, so that none of its subsystems is one.
   const OwnFlowAccess* own{nullptr};
 };
@@ -41,6 +44,9 @@ void let_in(const FlowAddress& flow, const std::string& instance, Sandbox& sandb
 [[nodiscard]] Result<> make_place(const FlowAddress& flow, const std::string& instance);
 /// Realtime: blocks, allocates.
 void remove_place(const FlowAddress& flow, const std::string& instance, ProcessUser user = ProcessUser::WhoeverFlies);
+
+/// Such a folder that the flow is in, or is to be; empty: by its means there is none.
+[[nodiscard]] std::string memory_folder_of(const FlowAddress& flow, const std::string& instance);
 
 /// Why a subsystem that is a user of its own cannot have it for itself, in words; empty: it can.
 [[nodiscard]] std::string why_not_own(const FlowAddress& flow);

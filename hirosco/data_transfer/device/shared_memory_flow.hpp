@@ -60,6 +60,7 @@ inline constexpr FlowAccess shared_memory_access{.let_in = let_in_shared_memory,
                                                  .is_reached = is_reached_by_shared_memory,
                                                  .make_place = make_device_memory_folder,
                                                  .remove_place = remove_device_memory_folder,
+                                                 .memory_folder = device_memory_folder,
                                                  .own = &own_memory_access};
 
 }  // namespace hirosco

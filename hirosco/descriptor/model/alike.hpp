@@ -16,6 +16,10 @@ namespace hirosco::descriptor::alike {
 [[nodiscard]] inline bool same_address(const Endnode& a, const Endnode& b) {
   return a.transfer == b.transfer && a.address == b.address && a.byte_order == b.byte_order && a.framing == b.framing;
 }
+[[nodiscard]] inline bool same_held(const HeldTerms& a, const HeldTerms& b) {
+  return std::ranges::equal(a.fall_backs, b.fall_backs, same_address) && a.silence == b.silence &&
+         a.silence_reduced == b.silence_reduced && a.goes_on == b.goes_on;
+}
 /// In descriptors whose parameters are the same ones in the same order.
 [[nodiscard]] inline bool same_reference(const ParameterRef& a, const ParameterRef& b) {
   return a.parameter == b.parameter && a.member == b.member;

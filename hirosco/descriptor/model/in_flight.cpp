@@ -6,26 +6,27 @@
 #include <utility>
 
 #include "hirosco/descriptor/model/alike.hpp"
+#include "hirosco/descriptor/model/differences.hpp"
 #include "hirosco/descriptor/model/framework_parameters.hpp"
 #include "hirosco/descriptor/model/supervisor_events.hpp"
 
 namespace hirosco::descriptor {
 namespace {
 
-constexpr std::string_view layout_why = "its place in memory and on the wire was made when the process started";
-constexpr std::string_view meaning_why = "ground and log read its values by what it was when the flight began";
 constexpr std::string_view content_why =
     "ground and log read the reports of this id by it: another content has another id";
 constexpr std::string_view code_why = "the program that runs has it built in, or has not";
 constexpr std::string_view timing_why = "guard and links go by it, and that the cycles of the mode end in time";
 constexpr std::string_view link_why = "links are made by it, and their other ends read them so";
+constexpr std::string_view by_name_why =
+    "its other ends read it by name, type and length: what is otherwise stands beside it under another name";
+constexpr std::string_view lent_why =
+    "a lent sample is one object in the memory of all ends of its links: all their programs at once, in another flight";
 constexpr std::string_view guard_why = "the guard holds it from before the start, out of reach of everybody";
 constexpr std::string_view limit_why = "pools, limits and the books of resources were made when the process started";
 constexpr std::string_view safety_why = "nothing that safety rests on is loosened in flight";
 constexpr std::string_view force_why =
     "the configuration in force was made of it: read before CONFIGURE, or in Offline";
-constexpr std::string_view addition_why =
-    "a program has to have it: REPLACE starts one that does, in Offline, and takes this text with it";
 constexpr std::string_view stored_why = "what is stored was laid out when the flight began";
 constexpr std::string_view foreign_why = "whom it hears was made known to it and to others when the flight began";
 constexpr std::string_view bound_why =
@@ -33,16 +34,23 @@ constexpr std::string_view bound_why =
 constexpr std::string_view told_why = "the supervisor tells of that by this name, and plans would be chosen otherwise";
 constexpr std::string_view behind_why = "what is new stands behind what was there, whose place is kept";
 
+using differences::addition_why;
+using differences::Differences;
+using differences::is_listed;
+using differences::its_name;
+using differences::its_place;
+using differences::layout_why;
+using differences::meaning_why;
+using differences::no_place;
+
 using alike::same_address;
+using alike::same_held;
 using alike::same_limit;
 using alike::same_outputs;
 using alike::same_structures;
 using alike::same_use;
 
-constexpr auto its_name = [](const auto& each) { return each.name; };
 constexpr auto parameter_name = [](const Parameter& each) { return each.field.name; };
-constexpr auto its_place = [](const auto& each) { return each.at; };
-constexpr auto no_place = [](const auto&) { return Location{}; };
 
 [[nodiscard]] bool same_texts(const std::vector<EnumerationText>& a, const std::vector<EnumerationText>& b) {
   return std::ranges::equal(
@@ -97,6 +105,22 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
            flown.parameters.at(a.parameter).field.name == fresh.parameters.at(b.parameter).field.name;
   });
 }
+/// What a set takes of parameters, by name and place alone.
+[[nodiscard]] std::vector<Field> places_in(const SubsystemDescriptor& subsystem, const Provides& set) {
+  std::vector<Field> places;
+  for (const ParameterRef& each : set.parameters) {
+    const Parameter& parameter = subsystem.parameters.at(each.parameter);
+    Field& place = places.emplace_back();
+    place.name = parameter.field.name;
+    const std::size_t members = parameter.members.size();
+    if (each.member)
+      place.name += "." + (*each.member < members ? parameter.members[*each.member].field.name
+                                                  : parameter.parts.at(*each.member - members).name);
+    place.at = set.at;
+  }
+  return places;
+}
+
 [[nodiscard]] bool same_report(const SubsystemDescriptor& flown, const HousekeepingStructure& before,
                                const SubsystemDescriptor& fresh, const HousekeepingStructure& now) {
   using Sampled = HousekeepingStructure::SampledSet;
@@ -104,10 +128,6 @@ constexpr auto no_place = [](const auto&) { return Location{}; };
          std::ranges::equal(before.sampled_repeatedly, now.sampled_repeatedly, [&](const Sampled& a, const Sampled& b) {
            return a.repetitions == b.repetitions && same_places(flown, a.parameters, fresh, b.parameters);
          });
-}
-
-[[nodiscard]] bool is_listed(const auto& list, const auto& wanted, const auto& name) {
-  return std::ranges::find(list, wanted, name) != list.end();
 }
 
 /// Of those that another process is to have: what was made of the others by their places in the list stays true.
@@ -140,77 +160,13 @@ void judge_new_names(const SubsystemDescriptor& flown, const SubsystemDescriptor
       found.push_back({each.at, "event " + each.name + " is new: that", told_why});
 }
 
-/// Collects what differs. Each struct is taken apart by all of its members: one that is added has to be decided on here.
-class Comparison {
+/// Each struct is taken apart by all of its members: one that is added has to be decided on here.
+class Comparison : Differences {
  public:
   Comparison(const SubsystemDescriptor& flown, const SubsystemDescriptor& fresh, TakenBy by)
-      : flown_{flown}, fresh_{fresh}, by_{by} {}
-  [[nodiscard]] std::vector<Obstacle> take() { return std::move(found_); }
+      : Differences{by}, flown_{flown}, fresh_{fresh} {}
+  using Differences::take;
 
-  void unless(bool same, Location at, std::string what, std::string_view why) {
-    if (!same) found_.push_back({at, std::move(what), why});
-  }
-  /// Who is there by name in one of the two only, then each pair in order.
-  template <class T>
-  void lists(const std::vector<T>& flown, const std::vector<T>& fresh, const std::string& kind, auto&& name, auto&& at,
-             std::string_view why, auto&& pair) {
-    bool whole = true;
-    const auto told = [&](const T& which, const char* how) {
-      found_.push_back({at(which), kind + name(which) + how, why});
-      whole = false;
-    };
-    for (const T& each : fresh)
-      if (!is_listed(flown, name(each), name)) told(each, " is new");
-    for (const T& each : flown)
-      if (!is_listed(fresh, name(each), name)) told(each, " is gone");
-    if (!whole) return;
-    for (std::size_t i = 0; i < flown.size() && i < fresh.size(); ++i) {
-      if (name(flown[i]) != name(fresh[i])) return told(fresh[i], " has another place in the order");
-      pair(flown[i], fresh[i]);
-    }
-  }
-
-  /// The same of what another process may have more of.
-  template <class T>
-  void growing(const std::vector<T>& flown, const std::vector<T>& fresh, const std::string& kind, auto&& name,
-               auto&& at, std::string_view why, auto&& pair) {
-    for (const T& each : fresh)
-      if (by_ == TakenBy::SameProcess && !is_listed(flown, name(each), name))
-        found_.push_back({at(each), kind + name(each) + " is new", addition_why, true});
-    kept(flown, fresh, kind, name, at, why, pair);
-  }
-  /// Only what was there has to be there, in its order.
-  template <class T>
-  void kept(const std::vector<T>& flown, const std::vector<T>& fresh, const std::string& kind, auto&& name, auto&& at,
-            std::string_view why, auto&& pair) {
-    auto next = fresh.begin();
-    for (const T& each : flown) {
-      const auto same = std::ranges::find(fresh, name(each), name);
-      unless(same != fresh.end(), at(each), kind + name(each) + " is gone", why);
-      if (same == fresh.end()) continue;
-      unless(same >= next, at(*same), kind + name(each) + " has another place in the order", why);
-      if (same < next) continue;
-      pair(each, *same);
-      next = same + 1;
-    }
-  }
-
-  /// But for its range.
-  void field(const Field& flown, const Field& fresh, const std::string& what) {
-    [[maybe_unused]] const auto& [name, type, count, unit, minimum, maximum, enumeration, at, text, text_octets] =
-        fresh;
-    unless(flown.name == name, at, what + ": its name", layout_why);
-    unless(flown.type == type && flown.text == text, at, what + ": its type", layout_why);
-    unless(flown.count == count && flown.text_octets == text_octets, at, what + ": how many there are", layout_why);
-    unless(flown.unit == unit, at, what + ": its unit", meaning_why);
-    unless(flown.enumeration == enumeration, at, what + ": its enumeration", meaning_why);
-  }
-  void fields(const std::vector<Field>& flown, const std::vector<Field>& fresh, const std::string& what,
-              std::string_view why) {
-    lists(
-        flown, fresh, what + ": field ", its_name, [](const Field& each) { return each.at; }, why,
-        [&](const Field& a, const Field& b) { field(a, b, what + ": field " + b.name); });
-  }
   void arguments(const std::vector<Function::Argument>& flown, const std::vector<Function::Argument>& fresh,
                  const std::string& what) {
     lists(
@@ -298,11 +254,13 @@ class Comparison {
         });
   }
   void device(const Device& flown, const Device& fresh) {
-    [[maybe_unused]] const auto& [name, part_of, actuator, input, output, stop, stop_within, enable, at] = fresh;
+    [[maybe_unused]] const auto& [name, part_of, actuator, input, output, stop, stop_within, enable, at, enable_terms] =
+        fresh;
     const std::string what = "device " + name;
     unless(flown.part_of == part_of && flown.actuator == actuator, at, what + ": what it is", code_why);
     unless(flown.stop == stop && flown.stop_within == stop_within, at, what + ": how it stops", guard_why);
-    unless(same_end(flown.enable, enable), at, what + ": its second inhibit", guard_why);
+    unless(same_end(flown.enable, enable) && same_held(flown.enable_terms, enable_terms), at,
+           what + ": its second inhibit", guard_why);
     fields(flown.input, input, what, layout_why);
     lists(
         flown.output, output, what + ": field ", [](const Device::Output& each) { return each.field.name; },
@@ -320,14 +278,24 @@ class Comparison {
     unless(flown.from == from && same_terms(flown.terms, terms) && flown.depth == depth, at, what + ": its terms",
            link_why);
     unless(flown.required == required_ && flown.missing == missing, at, what + ": what is without it", safety_why);
-    fields(flown.fields, fields_, what, link_why);
+    if (terms.lent()) return fields(flown.fields, fields_, what, lent_why);
+    growing(flown.fields, fields_, what + ": field ", its_name, its_place, link_why,
+            [&](const Field& a, const Field& b) { carried(a, b, what + ": field " + b.name); });
+  }
+  /// Of a set that is read by name.
+  void carried(const Field& flown, const Field& fresh, const std::string& what) {
+    const bool same = flown.type == fresh.type && flown.count == fresh.count && flown.text == fresh.text &&
+                      flown.text_octets == fresh.text_octets;
+    unless(same, fresh.at, what + ": its type or length", by_name_why);
+    if (same) field(flown, fresh, what);
   }
   void provided(const Provides& flown, const Provides& fresh, const std::string& whose) {
     [[maybe_unused]] const auto& [name, terms, parameters_, fields_, at] = fresh;
     const std::string what = whose + ": provided set " + name;
     unless(same_terms(flown.terms, terms), at, what + ": its terms", link_why);
-    unless(same_places(flown_, flown.parameters, fresh_, parameters_), at, what + ": its parameters", link_why);
-    fields(flown.fields, fields_, what, link_why);
+    if (terms.lent()) return fields(flown.fields, fields_, what, lent_why);
+    growing(places_in(flown_, flown), places_in(fresh_, fresh), what + ": field ", its_name, its_place, link_why,
+            [](const Field&, const Field&) {});
   }
   void use(const DeviceUse& flown, const DeviceUse& fresh, const std::string& whose) {
     [[maybe_unused]] const auto& [device_, silence, every, watchdog_us, watchdog_reduced_us, settings, endnode,
@@ -423,7 +391,8 @@ class Comparison {
         flown.power_switches, power_switches, "power switch of ", [](const PowerSwitch& each) { return each.device; },
         [](const PowerSwitch& each) { return each.at; }, guard_why,
         [&](const PowerSwitch& a, const PowerSwitch& b) {
-          unless(same_end(a.endnode, b.endnode), b.at, "power switch of " + b.device + ": its endnode", guard_why);
+          unless(same_end(a.endnode, b.endnode) && same_held(a.terms, b.terms), b.at,
+                 "power switch of " + b.device + ": its endnode", guard_why);
         });
     if (found_.empty())  // its devices are known by number
       lists(
@@ -439,8 +408,6 @@ class Comparison {
  private:
   const SubsystemDescriptor& flown_;
   const SubsystemDescriptor& fresh_;
-  TakenBy by_;
-  std::vector<Obstacle> found_;
 };
 
 }  // namespace

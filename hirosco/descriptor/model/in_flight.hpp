@@ -16,7 +16,8 @@
 /// configuration its power, its <Set>s, how long its self test may take and its limit of overruns; of a device in a configuration its
 /// endnode, fall-backs, limits and the values of its settings; ranges and safe values of what a device is told that is no
 /// actuator; the age after which a required set is stale; failure codes that are new; descriptions.
-/// With another process also: parameters, events, functions and enumerations that are new; no function that is essential.
+/// With another process also: parameters, events, functions and enumerations that are new, no function that is essential; fields of sets of links
+/// that are new, but of what is lent (docs/adr/0236).
 /// Everything else is what memory, threads, links, sandbox or guard were made by.
 namespace hirosco::descriptor {
 

@@ -149,9 +149,11 @@ TEST(InFlight, WhatMemoryThreadsLinksAndGuardWereMadeByIsRefusedByName) {
            {R"(<SampledOnce><ParamRef name="GAIN"/>)", R"(<SampledOnce><ParamRef name="SEEN"/>)",
             "housekeeping 11: what it reports"},
            {R"(<Provides name="OUT"><ParamRef name="GAIN"/>)", R"(<Provides name="OUT"><ParamRef name="SEEN"/>)",
-            "provided set OUT: its parameters"},
+            "provided set OUT: field GAIN is gone"},
            {R"(<Field name="X" type="DOUBLE"/></Requires>)", R"(<Field name="Y" type="DOUBLE"/></Requires>)",
-            "required set IN: field Y is new"},
+            "required set IN: field X is gone"},
+           {R"(<Field name="X" type="DOUBLE"/></Requires>)", R"(<Field name="X" type="FLOAT"/></Requires>)",
+            "required set IN: field X: its type or length"},
            {R"(<Requires name="IN" age="3">)", R"(<Requires name="IN" age="3" missing="hold">)",
             "required set IN: what is without it"},
            {R"(<Function name="TURN" states="Operational">)",
@@ -165,7 +167,7 @@ TEST(InFlight, WhatMemoryThreadsLinksAndGuardWereMadeByIsRefusedByName) {
   }
 }
 
-/// Each is behind what was there, but for events and functions, whose order nobody goes by.
+/// Each is behind what was there, but for events, functions and fields of links, whose order nobody goes by.
 const std::initializer_list<Edit> additions = {
     {"</StructRef>", R"(</StructRef><ParamRef name="FRESH" id="8" type="DOUBLE" init="7" minimum="0" maximum="9"/>)",
      "parameter FRESH is new"},
@@ -174,7 +176,13 @@ const std::initializer_list<Edit> additions = {
      "function SPIN is new"},
     {R"(<Enumeration name="SIDES">)",
      R"(<Enumeration name="ENDS"><Text value="0">top</Text></Enumeration><ParamRef name="END" id="7" type="UINT8" enumeration="ENDS"/><Enumeration name="SIDES">)",
-     "enumeration ENDS is new\nparameter END is new"}};
+     "enumeration ENDS is new\nparameter END is new"},
+    {R"(<Provides name="OUT"><ParamRef name="GAIN"/>)",
+     R"(<Provides name="OUT"><ParamRef name="GAIN"/><ParamRef name="SEEN.ANGLE"/>)",
+     "configuration FAST: provided set OUT: field SEEN.ANGLE is new"},
+    {R"(<Field name="X" type="DOUBLE"/></Requires>)",
+     R"(<Field name="Y" type="UINT8" count="3"/><Field name="X" type="DOUBLE"/></Requires>)",
+     "configuration FAST: required set IN: field Y is new"}};
 
 TEST(InFlight, WhatIsAddedNeedsAProgramThatHasIt) {
   for (const Edit& edit : additions) {
@@ -220,9 +228,15 @@ TEST(InFlight, WhatIsNoPureAdditionIsRefusedForAnotherProcess) {
            "service GAZE: request BLINK is new"},
           {R"(<SampledOnce><ParamRef name="GAIN"/>)", R"(<SampledOnce><ParamRef name="SEEN"/>)",
            "housekeeping 11: what it reports"},
-          {R"(<Field name="X" type="DOUBLE"/></Requires>)",
-           R"(<Field name="X" type="DOUBLE"/><Field name="Y" type="DOUBLE"/></Requires>)",
-           "required set IN: field Y is new"},
+          {R"(<Field name="X" type="DOUBLE"/></Requires>)", R"(<Field name="X" type="DOUBLE" count="2"/></Requires>)",
+           "required set IN: field X: its type or length"},
+          {R"(<Field name="X" type="DOUBLE"/></Requires>)", R"(<Field name="Y" type="DOUBLE"/></Requires>)",
+           "required set IN: field X is gone"},
+          {R"(<Provides name="OUT"><ParamRef name="GAIN"/>)", R"(<Provides name="OUT"><ParamRef name="SEEN"/>)",
+           "provided set OUT: field GAIN is gone"},
+          {R"(<Provides name="OUT">)",
+           R"(<Provides name="MORE"><ParamRef name="SEEN"/></Provides><Provides name="OUT">)",
+           "provided set MORE is new"},
           {R"(memory_kB="100000")", R"(memory_kB="90000")", "its resources"},
           {R"(sampling_us="1000")", R"(sampling_us="2000")", "configuration FAST: priority, sampling time or budget"}})
     EXPECT_THAT(
@@ -236,6 +250,47 @@ TEST(InFlight, WhatIsNoPureAdditionIsRefusedForAnotherProcess) {
   for (const HousekeepingStructure& each : subsystem.configurations.front().housekeeping)
     if (each.id == id) return subsystem.parameters.at(each.sampled_once.front().parameter).field.name;
   return "none";
+}
+
+/// Of its provided set by the places that it refers to, and of its required one.
+[[nodiscard]] std::string fields_of_links(const SubsystemDescriptor& subsystem) {
+  const Configuration& one = subsystem.configurations.front();
+  std::string text;
+  for (const ParameterRef& each : one.provides.front().parameters) {
+    const Parameter& parameter = subsystem.parameters.at(each.parameter);
+    text += (text.empty() ? "" : " ") + parameter.field.name;
+    if (each.member) text += "." + parameter.members.at(*each.member).field.name;
+  }
+  text += ",";
+  for (const Field& each : one.requires_.front().fields) text += " " + each.name;
+  return text;
+}
+
+TEST(InFlight, AFieldOfALinkIsAddedAloneToo) {
+  const std::string text =
+      changed(R"(<Provides name="OUT"><ParamRef name="GAIN"/>)",
+              R"(<Provides name="OUT"><ParamRef name="GAIN"/><ParamRef name="STAYS"/>)", flown_text);
+  SubsystemDescriptor flown = read(flown_text);
+  ASSERT_EQ(all(obstacles(flown, read(text), TakenBy::AnotherProcess)), "");
+  take_over(flown, read(text));
+  EXPECT_EQ(fields_of_links(flown), "GAIN STAYS, X");
+  take_over(flown, read(flown_text));
+  EXPECT_EQ(fields_of_links(flown), "GAIN, X");
+}
+
+// A lent sample lies in the memory of producer and consumers as one object.
+TEST(InFlight, WhatIsLentStaysWhoeverIsToFlyByIt) {
+  const std::string lent =
+      changed(R"(<Provides name="OUT"><ParamRef name="GAIN"/></Provides>)",
+              R"(<Provides name="OUT" kind="loaned"><Field name="A" type="UINT32"/></Provides>)", flown_text);
+  const std::string more = changed(R"(<Field name="A" type="UINT32"/>)",
+                                   R"(<Field name="A" type="UINT32"/><Field name="B" type="UINT32"/>)", lent);
+  for (const TakenBy by : {TakenBy::SameProcess, TakenBy::AnotherProcess}) {
+    const auto found = obstacles(read(lent), read(more), by);
+    ASSERT_EQ(all(found), "configuration FAST: provided set OUT: field B is new\n");
+    EXPECT_FALSE(found.front().addition);
+    EXPECT_THAT(found.front().why, HasSubstr("lent"));
+  }
 }
 
 // The parameters of the framework stand behind those of the author: what is added moves them.
@@ -262,6 +317,7 @@ TEST(InFlight, WhatIsAddedIsTakenAndTakenBackWithAllThatRefersToIt) {
   EXPECT_NE(flown.find_function("SPIN"), nullptr);
   EXPECT_EQ(flown.find_event("CRACK")->severity, Severity::High);
   EXPECT_EQ(flown.failures.size(), 1U);
+  EXPECT_EQ(fields_of_links(flown), "GAIN SEEN.ANGLE, Y X");
   EXPECT_EQ(only_value_of(flown, 13), "FRESH");
   EXPECT_EQ(only_value_of(flown, 12), "CYCLE_STATS");
 
@@ -271,6 +327,7 @@ TEST(InFlight, WhatIsAddedIsTakenAndTakenBackWithAllThatRefersToIt) {
   EXPECT_TRUE(flown.failures.empty());
   EXPECT_EQ(flown.find_parameter("FRESH"), nullptr);
   EXPECT_EQ(flown.find_function("SPIN"), nullptr);
+  EXPECT_EQ(fields_of_links(flown), "GAIN, X");
   EXPECT_EQ(only_value_of(flown, 13), "none");
   EXPECT_EQ(only_value_of(flown, 12), "CYCLE_STATS");
 }

@@ -10,6 +10,7 @@ namespace hirosco::descriptor {
 namespace {
 
 using alike::same_outputs;
+using alike::same_reference;
 using alike::same_structures;
 using alike::same_use;
 
@@ -44,7 +45,12 @@ void take_configuration(Configuration& flown, Configuration& fresh) {
   take_structures(flown.housekeeping, fresh.housekeeping);
   flown.initial = std::move(fresh.initial);
   flown.at = fresh.at;
+  for (std::size_t i = 0; i < flown.provides.size(); ++i)
+    if (!std::ranges::equal(flown.provides[i].parameters, fresh.provides[i].parameters, same_reference))
+      flown.provides[i].parameters = std::move(fresh.provides[i].parameters);
   for (std::size_t i = 0; i < flown.requires_.size(); ++i) {
+    if (flown.requires_[i].fields.size() != fresh.requires_[i].fields.size())
+      flown.requires_[i].fields = std::move(fresh.requires_[i].fields);
     flown.requires_[i].age = fresh.requires_[i].age;
     flown.requires_[i].at = fresh.requires_[i].at;
   }
@@ -80,9 +86,6 @@ void take_lists(SubsystemDescriptor& flown, const SubsystemDescriptor& fresh) {
   for (std::size_t i = 0; i < flown.subscribes.size(); ++i)
     for (std::size_t k = 0; k < flown.subscribes[i].foreign.size(); ++k)
       flown.subscribes[i].foreign[k].parameter = fresh.subscribes[i].foreign[k].parameter;
-  for (std::size_t i = 0; i < flown.configurations.size(); ++i)
-    for (std::size_t k = 0; k < flown.configurations[i].provides.size(); ++k)
-      flown.configurations[i].provides[k].parameters = fresh.configurations[i].provides[k].parameters;
 }
 
 }  // namespace

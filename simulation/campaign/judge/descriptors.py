@@ -126,6 +126,8 @@ class Configuration:
     requires: list
     devices: list
     housekeeping: list
+    structures: dict   # id of a housekeeping report: names of what it has, of one sample each
+    least_us: int | None  # of two cycles, where a sample starts one
 
 
 @dataclasses.dataclass
@@ -154,6 +156,7 @@ class Mission:
     commissions: dict = dataclasses.field(default_factory=dict)  # mode: {subsystem: configuration}
     establishes: dict = dataclasses.field(default_factory=dict)  # mode: ids of links
     budget_W: float | None = None
+    losses: dict = dataclasses.field(default_factory=dict)  # id of a link: (what its loss does, for how long us, in which configuration)
 
     def by_apid(self, apid):
         if apid == self.supervisor.apid:
@@ -192,7 +195,7 @@ BUILT_IN = {"CYCLE_STATS": (39, [("UINT32", 1), ("FLOAT", 1), ("FLOAT", 1)]),
             "CYCLE_BUDGET": (38, [("FLOAT", 1), ("FLOAT", 1), ("UINT32", 1)]),
             "CYCLE_SPIN": (35, [("FLOAT", 1), ("FLOAT", 1), ("UINT64", 1)]),
             "LOOP_STATS": (34, [("FLOAT", 8), ("FLOAT", 8), ("UINT64", 8), ("UINT64", 8)]),
-            "RESOURCE_STATS": (37, [("UINT32", n) for n in (1, 1, 1, 1, 1, 1, 8, 8, 1)] + [("UINT16", 1)] * 5 + [("UINT64", 1)] * 2 + [("UINT16", n) for n in (1, 1, 3, 3)] + [("UINT8", 7)] * 2),
+            "RESOURCE_STATS": (37, [("UINT32", n) for n in (1, 1, 1, 1, 1, 1, 8, 8, 1)] + [("UINT16", 1)] * 5 + [("UINT64", 1)] * 2 + [("UINT16", n) for n in (1, 1, 3, 3)] + [("UINT8", 7)] * 2 + [("UINT16", 1)]),
             "HEAP_USES": (33, [("UINT64", 1), ("UINT64", 1), ("BOOL", 1)]),
             "DESCRIPTOR": (36, [("UINT32", 1), ("UINT16", 1)]),
             "LINK_STATS": (41, [("UINT32", 1), ("UINT32", 1)])}
@@ -221,9 +224,11 @@ def read_parameters(root, apid, enumerations):
 def read_configuration(element):
     requires = [Required(r.get("name"), r.get("from", ""), r.get("required", "yes") != "no", int(r.get("age", 3)),
                          r.get("missing", "inhibit") == "inhibit") for r in element.iter("Requires")]
-    devices = [(d.get("name"), int(d.get("watchdog_ms", 10))) for d in element.findall("Device")]
-    reports = [int(h.get("id")) for h in element.findall("HKService")]
-    return Configuration(int(element.get("id")), element.get("name"), int(element.get("sampling_us")), requires, devices, reports)
+    devices = [(d.get("name"), int(d.get("watchdog_ms", 10)), int(d.get("silence", 3))) for d in element.findall("Device")]
+    structures = {int(h.get("id")): [p.get("name") for once in h.findall("SampledOnce") for p in once] for h in element.findall("HKService")}
+    least_us = int(element.get("least_us", 0)) if element.get("started_by") else None
+    return Configuration(int(element.get("id")), element.get("name"), int(element.get("sampling_us")), requires, devices, list(structures),
+                         structures, least_us)
 
 
 def read_subsystem(path, instance=None):
@@ -276,9 +281,12 @@ def read_mission(path):
     power = root.find("Power")
     links = {int(link.get("id")): (link.get("from").split(".")[0], *link.get("to").split("."))
              for link in root.findall("Links/Link")}
+    losses = {int(link.get("id")): (link.get("on_loss", "down"), 1000 * int(link.get("hold_ms", 0)), link.get("fallback"))
+              for link in root.findall("Links/Link")}
     devices = {d.get("name"): (d.get("subsystem"), d.get("device")) for d in root.findall("SimulatedDevice")}
     ground = root.find("Supervisor/Ground").get("subsystem")
     high = next(({step.get("action") for step in plan.findall("Do")} for plan in root.findall("Recovery/Plan")
                  if "high" in (plan.find("When").get("severity") or "").split()), set())
     return Mission(supervisor, members, ground, modes, mode_ids, root.find("Modes").get("initial"), links, devices, high,
-                   path.resolve().parent, commissions, establishes, float(power.get("budget_W")) if power is not None else None)
+                   path.resolve().parent, commissions, establishes, float(power.get("budget_W")) if power is not None else None,
+                   losses)

@@ -13,6 +13,7 @@
 #include "hirosco/data_transfer/memory/memory.hpp"
 #include "hirosco/descriptor/model/mission.hpp"
 #include "hirosco/utilities/os/process_usage.hpp"
+#include "hirosco/utilities/os/stray_thread.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
 #include "supervisor/platform/launch/member_port.hpp"
@@ -113,9 +114,18 @@ class ProcessLauncher {
   virtual void use(const descriptor::MissionSubsystem& /*subsystem*/, const std::string& /*version*/) {}
   /// It is not used any more: its memory is given back.
   virtual void drop(const descriptor::MissionSubsystem& /*subsystem*/, const std::string& /*version*/) {}
-  /// What an address of `fresh` needs that the process of `flown`, which runs, was not let through to when it started; empty: nothing.
-  [[nodiscard]] virtual std::string shut_out(const descriptor::MissionSubsystem& /*flown*/,
+  /// What an address of `fresh` needs that the process of `flown`, which runs, can be let in to no more; empty: nothing.
+  [[nodiscard]] virtual std::string shut_out(std::uint32_t /*process*/, const descriptor::MissionSubsystem& /*flown*/,
                                              const descriptor::MissionSubsystem& /*fresh*/) {
+    return {};
+  }
+  /// Lets a process that runs in to all addresses of `fresh`, beside those that it has (docs/adr/0236). In words: what it does not get, and
+  /// why; then keep_in() with what it flies by takes back what it got. Empty: nothing.
+  [[nodiscard]] virtual std::string let_in(std::uint32_t /*process*/, const descriptor::MissionSubsystem& /*fresh*/) {
+    return {};
+  }
+  /// It keeps the addresses that `now` names, and no others. In words: what it reaches all the same, and why; empty: nothing.
+  [[nodiscard]] virtual std::string keep_in(std::uint32_t /*process*/, const descriptor::MissionSubsystem& /*now*/) {
     return {};
   }
   /// What the sandbox of this subsystem cannot narrow down, in words; empty: nothing (docs/adr/0150).
@@ -132,6 +142,13 @@ class ProcessLauncher {
   [[nodiscard]] virtual std::string isolation_not_asked() const { return {}; }
   /// What it has taken, 0 of what cannot be told of it alone; empty where nothing can, or it has ended. Allocates nothing.
   [[nodiscard]] virtual std::optional<ProcessUsage> usage(std::uint32_t /*process*/) noexcept { return std::nullopt; }
+  /// Whether the computer has this core for us (docs/adr/0234). Where time is simulated each is as good as another.
+  [[nodiscard]] virtual bool grants_core(std::uint16_t /*core*/) noexcept { return true; }
+  /// A thread of it that is not where it may be; empty: none, or nobody can tell. Allocates nothing.
+  [[nodiscard]] virtual std::optional<StrayThread> stray(std::uint32_t /*process*/,
+                                                         const ThreadPlaces& /*places*/) noexcept {
+    return std::nullopt;
+  }
   /// Memory that a process has in RAM, 0 = the supervisor's own; 0 where it has no process of its own or has ended.
   /// Allocates nothing.
   [[nodiscard]] virtual std::uint32_t resident_kb(std::uint32_t /*process*/) noexcept { return 0; }

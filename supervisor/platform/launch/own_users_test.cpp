@@ -175,9 +175,9 @@ TEST_F(OwnUserLaunch, HasTheFoldersOfItsDevicesForItselfOrTheFlightDoesNotBegin)
               ElementsAre("/dev/null", device_memory_folder(address), lamp.place("device").string()))
       << "not the one that all sockets are in";
   auto fresh = subsystem;
-  EXPECT_EQ(launcher.shut_out(subsystem, fresh), "");
+  EXPECT_EQ(launcher.shut_out(launched->process, subsystem, fresh), "");
   fresh.subsystem.configurations[1].devices[0].endnode.address += "-b";
-  EXPECT_EQ(launcher.shut_out(subsystem, fresh), lamp.place("device-b"));
+  EXPECT_EQ(launcher.shut_out(launched->process, subsystem, fresh), lamp.place("device-b"));
   launcher.kill(launched->process);
   static_cast<void>(end_of(launcher, launched->process));
   fs::permissions(lamp.place("device"), fs::perms{0777});

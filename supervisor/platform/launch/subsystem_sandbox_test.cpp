@@ -15,9 +15,12 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "hirosco/data_transfer/device/device_memory_name.hpp"
 #include "hirosco/data_transfer/device/flow_means.hpp"
@@ -26,6 +29,7 @@
 #include "hirosco/utilities/os/file_descriptor.hpp"
 #include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/sanitizer.hpp"
+#include "supervisor/platform/launch/memory_reach.hpp"
 #include "supervisor/platform/storage/testing/test_folder.hpp"
 
 namespace hirosco::supervisor {
@@ -322,6 +326,93 @@ TEST(SubsystemInItsSandbox, OpensTheFramesOfItsDeviceAndNoSecondInhibitNorThoseO
   EXPECT_EQ((*device)->receive(buffer).value().octets, 1U);
   for (auto* flow : {&device, &another}) flow->value().reset();
   for (const FlowAddress& made : {frames, others}) remove_device_memory_folder(made.address);
+}
+
+/// What a hostile member tries on addresses of others, and on the folders that it has beside its own. 0: all refused.
+int reached_of_others(const std::vector<std::string>& others, const std::string& here) {
+  for (const std::string& place : others) {
+    const std::string frames = place + "/frames", mine = here + "/mine";
+    for (const int how : {O_RDWR, O_RDONLY, O_WRONLY | O_CREAT}) {
+      const FileDescriptor file{::open(frames.c_str(), how | O_CLOEXEC, 0600)};
+      if (file) return 11;
+    }
+    if (::rename(place.c_str(), mine.c_str()) == 0 || ::rename(here.c_str(), place.c_str()) == 0) return 12;
+    if (::renameat2(AT_FDCWD, here.c_str(), AT_FDCWD, place.c_str(), RENAME_EXCHANGE) == 0) return 13;
+    if (::link(frames.c_str(), mine.c_str()) == 0 || ::symlink(place.c_str(), mine.c_str()) != 0) return 14;
+    const FileDescriptor by_link{::open((mine + "/frames").c_str(), O_RDWR | O_CLOEXEC)};
+    const FileDescriptor folder{::open(place.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC)};
+    const FileDescriptor below{::openat(folder.get(), "frames", O_RDWR | O_CLOEXEC)};
+    ::unlink(mine.c_str());
+    if (by_link || below) return 15;
+  }
+  return 0;
+}
+
+/// Whether the subsystem's end of that address, opened in this process, is heard by its device.
+bool is_sent(const FlowAddress& at) {
+  SystemFlowFactory flows{""};
+  const auto own = flows.open(at, FlowSide::Subsystem);
+  return own && (*own)->send(std::array{std::byte{7}});
+}
+
+/// Apart (CMakeLists.txt), as above. The process is one and the same from begin to end, and asks for the address of another and for the one
+/// before as hostile ones would (docs/adr/0236).
+TEST(SubsystemInItsSandbox, ComesToANewAddressAndLeavesTheOldOneInTheSameProcessAndToNoOtherWhateverItTries) {
+  const std::string name = "sandboxed." + std::to_string(::getpid());
+  const auto before = with_device(Transfer::SharedMemory, name.c_str()),
+             after = with_device(Transfer::SharedMemory, (name + "-new").c_str());
+  const FlowAddress old_one{Transfer::SharedMemory, name}, new_one{Transfer::SharedMemory, name + "-new"},
+      of_another{Transfer::SharedMemory, name + "-other"};
+  SystemFlowFactory flows{""};
+  MemoryReach reach{""};
+  Sandbox sandbox = make_sandbox(before, {}, {});
+  SpareFolders spares = reach.make_spares(before, sandbox);
+  const PreparedSandbox prepared{sandbox};
+  std::vector<std::unique_ptr<DataFlow>> devices;
+  for (const FlowAddress& at : {old_one, new_one, of_another})
+    devices.push_back(flows.open(at, FlowSide::Device).value());
+  const std::string own = device_memory_folder(old_one.address), fresh = device_memory_folder(new_one.address),
+                    other = device_memory_folder(of_another.address);
+  std::array<int, 2> there{}, back{};
+  ASSERT_EQ(::pipe2(there.data(), O_CLOEXEC), 0);
+  ASSERT_EQ(::pipe2(back.data(), O_CLOEXEC), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (prepared.enter() != 0) ::_exit(99);
+    char turn = 0;
+    // Before it is let in, then with both, then with the new one alone.
+    if (!is_sent(old_one)) ::_exit(1);
+    if (const int reached = reached_of_others({fresh, other}, own); reached != 0) ::_exit(reached);
+    if (::write(there[1], "1", 1) != 1 || ::read(back[0], &turn, 1) != 1) ::_exit(2);
+    if (!is_sent(new_one) || !is_sent(old_one)) ::_exit(3);
+    if (::write(there[1], "2", 1) != 1 || ::read(back[0], &turn, 1) != 1) ::_exit(4);
+    if (!is_sent(new_one)) ::_exit(5);
+    if (is_sent(old_one)) ::_exit(6);
+    if (const int reached = reached_of_others({own, other}, fresh); reached != 0) ::_exit(20 + reached);
+    ::_exit(0);
+  }
+  reach.began(1, child, before, std::move(spares), true);
+  // What it says ends with it.
+  for (const int end : {there[1], back[0]}) ::close(end);
+  char turn = 0;
+  EXPECT_EQ(::read(there[0], &turn, 1), 1);
+  EXPECT_EQ(reach.let_in(1, after, std::nullopt), "");
+  EXPECT_EQ(::write(back[1], "1", 1), 1);
+  EXPECT_EQ(::read(there[0], &turn, 1), 1);
+  EXPECT_EQ(reach.keep_in(1, after), "");
+  EXPECT_EQ(::write(back[1], "2", 1), 1);
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  std::array<std::byte, 8> buffer{};
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    EXPECT_EQ(devices[i]->receive(buffer).value_or(Received{}).octets, i < 2 ? 1U : 0U) << i;
+  EXPECT_TRUE(is_sent(old_one)) << "whoever comes there next finds its device";
+  reach.ended(1);
+  EXPECT_THAT(SpareFolders::of(child).places(), ::testing::IsEmpty());
+  devices.clear();
+  for (const FlowAddress& made : {old_one, new_one, of_another}) remove_device_memory_folder(made.address);
 }
 
 TEST(SubsystemLimits, AreThoseOfItsDescriptor) {

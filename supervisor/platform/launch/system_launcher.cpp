@@ -16,6 +16,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "hirosco/data_transfer/channel/socket_channel.hpp"
 #include "hirosco/subsystem/pages/pages.hpp"
@@ -96,6 +97,7 @@ template <class Page>
                                  "--vital",      std::to_string(vital_number),
                                  "--permit",     std::to_string(permit_number)};
   if (subsystem.subsystem.text) words.insert(words.end(), {"--text", std::to_string(text_number)});
+  if (subsystem.cores.cycle) words.insert(words.end(), {"--core", std::to_string(*subsystem.cores.cycle)});
   for (const auto& [word, text] : descriptor::changes_of(subsystem)) {
     // "NAME=12:FILE"
     const auto file_at = descriptor::needs_other(word) ? text.find(':') + 1 : text.size();
@@ -104,9 +106,40 @@ template <class Page>
   return words;
 }
 
+/// Counts of a process go on where those of the one before it ended (decision 8b).
+void count_on(Mapping& newest, const Mapping& now) {
+  const Mapping before = std::exchange(newest, now);
+  if (before.octets.size() >= sizeof(VitalPage))
+    reinterpret_cast<VitalPage*>(now.octets.data())->counters =
+        reinterpret_cast<const VitalPage*>(before.octets.data())->counters;
+}
+
+/// Of a process that obeys `page` and is about to obey `fresh`. Should this supervisor die before its guard has written on the new page, the
+/// next one finds there what this one has found, permitted apart.
+[[nodiscard]] AdoptedSubsystem found_on(const PermitPage& page, PermitPage& fresh) {
+  AdoptedSubsystem adopted;
+  adopted.epoch = page.epoch.load(std::memory_order_acquire);
+  adopted.permitted = page.permits(adopted.epoch);
+  adopted.stopped = page.stop.load(std::memory_order_acquire) != 0;
+  adopted.powered = page.powered.load(std::memory_order_acquire);
+  fresh.epoch.store(adopted.epoch, std::memory_order_release);
+  fresh.stop.store(adopted.stopped ? 1 : 0, std::memory_order_release);
+  fresh.powered.store(adopted.powered, std::memory_order_release);
+  fresh.newest_stop.store(page.newest_stop.load(std::memory_order_acquire), std::memory_order_release);
+  return adopted;
+}
+
+/// What is wrong, and where the system refuses something how it calls that.
+[[nodiscard]] std::string in_words(const Error& why) {
+  const bool of_system = why.code == ErrorCode::SystemFailure && why.value > 0;
+  return of_system ? fmt::format("{} ({})", why.text, std::strerror(static_cast<int>(why.value)))
+                   : std::string{why.text};
+}
+
 }  // namespace
 
 std::expected<std::string, std::string> SystemLauncher::begin(const descriptor::Mission& mission) {
+  SpareFolders::sweep();
   users_ = mission.users;
   one_user_ = why_one_user(mission, own_users_granted_);
   for (const auto& subsystem : mission.subsystems)
@@ -123,10 +156,17 @@ std::expected<std::string, std::string> SystemLauncher::begin(const descriptor::
                      held.octets() / 1024, 1e3 * seconds(clock.now() - begun));
 }
 
-std::string SystemLauncher::shut_out(const descriptor::MissionSubsystem& flown,
+std::string SystemLauncher::shut_out(std::uint32_t process, const descriptor::MissionSubsystem& flown,
                                      const descriptor::MissionSubsystem& fresh) {
-  const ProcessUser user = user_of_processes();
-  return supervisor::shut_out(sandbox_of(flown, {}, instance_, user), sandbox_of(fresh, {}, instance_, user));
+  Sandbox had = sandbox_of(flown, {}, instance_, user_of_processes());
+  reach_.add_possible(process, fresh, had);
+  return supervisor::shut_out(had, sandbox_of(fresh, {}, instance_, user_of_processes()));
+}
+
+std::optional<OwnGroup> SystemLauncher::own_group_of(const descriptor::MissionSubsystem& subsystem) const {
+  const auto user = user_of_.find(subsystem.subsystem.name);
+  if (user_of_processes() != ProcessUser::ItsOwn || user == user_of_.end()) return std::nullopt;
+  return OwnGroup{user->second, {users_->first, users_->last}};
 }
 
 std::string SystemLauncher::left_open(const descriptor::MissionSubsystem& subsystem) const {
@@ -151,12 +191,7 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   const auto& [program, interpreter, image] = found;
   HIROSCO_TRY_LET(auto vital, make_page<VitalPage>(memory_, "hirosco-vital"));
   HIROSCO_TRY_LET(auto permit, make_page<PermitPage>(memory_, "hirosco-permit"));
-  // Its counts go on where those of the process before it ended (decision 8b).
-  auto& before = vital_[subsystem.subsystem.name];
-  if (before.octets.size() >= sizeof(VitalPage))
-    reinterpret_cast<VitalPage*>(vital.second.octets.data())->counters =
-        reinterpret_cast<const VitalPage*>(before.octets.data())->counters;
-  before = vital.second;
+  count_on(vital_[subsystem.subsystem.name], vital.second);
   // The subsystem reads what gates its actuators; from now on nobody can map it otherwise (hazard SF13).
   HIROSCO_TRY(memory_.seal_writers(permit.first));
   HIROSCO_TRY_LET(auto ends, SocketChannel::make_pair(subsystem.subsystem.resources.channel_kb));
@@ -176,15 +211,17 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
   // Below those of devices, guard and keeper, whatever it asks for.
   start.limits.realtime_priority = descriptor::greatest_cycle_priority;
   start.limits.goes_first = true;  // and not the supervisor
+  // Whatever it starts begins there; its cycle goes from there to its own.
+  if (!subsystem.cores.services.empty()) start.limits.processors = ProcessorSet::of(subsystem.cores.services);
   if (user_of_processes() == ProcessUser::ItsOwn) {
-    const auto user = user_of_.find(subsystem.subsystem.name);
-    if (user == user_of_.end()) return fail(ErrorCode::NotFound, "the mission has no user for it");
-    const OwnGroup own{user->second, {users_->first, users_->last}};
-    if (const auto made = make_own_places(subsystem, own, instance_, PlaceTime::AtStart); !made)
+    const auto own = own_group_of(subsystem);
+    if (!own) return fail(ErrorCode::NotFound, "the mission has no user for it");
+    if (const auto made = make_own_places(subsystem, *own, instance_, PlaceTime::AtStart); !made)
       return fail(ErrorCode::Mismatch, "a folder of its device is open to others, or of another user");
-    start.user = user->second;
+    start.user = own->group;
   }
   std::optional<PreparedSandbox> sandbox;
+  SpareFolders spares;
   if (image != nullptr) start.image = image->descriptor();
   if (image != nullptr && interpreter) start.inherited.push_back({image->descriptor(), script_number});
   if (!sandbox_is_off() && (!interpreter || interpreter->open.empty())) {
@@ -192,7 +229,8 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     const std::filesystem::path file = image != nullptr ? "" : program;
     Sandbox made = start.user ? sandbox_of(subsystem, file, instance_, ProcessUser::ItsOwn)
                               : make_sandbox(subsystem, file, instance_);
-    if (interpreter) let_in(*interpreter, made);
+    if (interpreter) supervisor::let_in(*interpreter, made);
+    spares = reach_.make_spares(subsystem, made);
     sandbox.emplace(std::move(made));
     start.sandbox = &*sandbox;
   }
@@ -216,6 +254,8 @@ Result<LaunchedSubsystem> SystemLauncher::launch(const descriptor::MissionSubsys
     return fail(held.error());
   }
   LaunchedSubsystem& launched = *held;
+  reach_.began(launched.process, running_.find(launched.process)->pid(), subsystem, std::move(spares),
+               sandbox.has_value());
   keep(subsystem.subsystem.name, launched, vital.first, permit.first, errors_read);
   if (interpreter && image != nullptr) launched.not_held = "it is a script, whose interpreter is another file";
   if (interpreter && !sandbox_is_off()) launched.not_isolated = interpreter->open;
@@ -288,19 +328,17 @@ std::expected<AdoptedSubsystem, NotAdopted> SystemLauncher::adopt(const descript
   if (const auto end = process->poll(); end && *end) return nothing_runs();
   auto adopted = pid ? take_over(name, *process, found.mapped())
                      : Result<AdoptedSubsystem>{fail(ErrorCode::Unavailable, "its process id cannot be read")};
+  if (adopted) reach_.goes_on(adopted->launched.process, *pid, subsystem);
   if (adopted) return std::move(*adopted);
   return std::unexpected{end_at_once(slot->second, std::move(*process), adopted.error())};
 }
 
 /// It obeys a permit page that nobody can write any more.
 NotAdopted SystemLauncher::end_at_once(std::size_t slot, Process process, const Error& why) {
-  const bool of_system = why.code == ErrorCode::SystemFailure && why.value > 0;
-  const std::string words =
-      of_system ? fmt::format("{} ({})", why.text, std::strerror(static_cast<int>(why.value))) : std::string{why.text};
   const std::uint32_t number = running_.end_now(std::move(process));
   if (number == 0) store_.forget(slot);
   else kept_[number] = slot;  // another supervisor tries again
-  return {.why = words, .process = number};
+  return {.why = in_words(why), .process = number};
 }
 
 Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, Process& process,
@@ -314,19 +352,8 @@ Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, Proc
   HIROSCO_TRY_LET(const Mapping before, memory_.map(old_permit, Access::ReadOnly));
   HIROSCO_TRY_LET(auto permit, make_page<PermitPage>(memory_, "hirosco-permit"));
   HIROSCO_TRY(memory_.seal_writers(permit.first));
-  const auto& page = *reinterpret_cast<const PermitPage*>(before.octets.data());
-  AdoptedSubsystem adopted;
-  adopted.epoch = page.epoch.load(std::memory_order_acquire);
-  adopted.permitted = page.permits(adopted.epoch);
-  adopted.stopped = page.stop.load(std::memory_order_acquire) != 0;
-  adopted.powered = page.powered.load(std::memory_order_acquire);
-  // Should this supervisor die before its guard has written on the new page, the next one finds there what this one has found, permitted
-  // apart.
-  auto& fresh = *reinterpret_cast<PermitPage*>(permit.second.octets.data());
-  fresh.epoch.store(adopted.epoch, std::memory_order_release);
-  fresh.stop.store(adopted.stopped ? 1 : 0, std::memory_order_release);
-  fresh.powered.store(adopted.powered, std::memory_order_release);
-  fresh.newest_stop.store(page.newest_stop.load(std::memory_order_acquire), std::memory_order_release);
+  AdoptedSubsystem adopted = found_on(*reinterpret_cast<const PermitPage*>(before.octets.data()),
+                                      *reinterpret_cast<PermitPage*>(permit.second.octets.data()));
   vital_[name] = vital_page;
   HIROSCO_TRY_LET(adopted.launched,
                   hold(process, std::move(of(KeptRole::Channel)), std::move(vital_page), std::move(permit.second)));
@@ -340,6 +367,7 @@ Result<AdoptedSubsystem> SystemLauncher::take_over(const std::string& name, Proc
 std::optional<ProcessEnd> SystemLauncher::ended(std::uint32_t process) {
   if (running_.find(process) == nullptr) return ProcessEnd{};
   const auto end = running_.ended(process);
+  if (end) reach_.ended(process);
   if (const auto slot = kept_.find(process); end && slot != kept_.end()) {
     store_.forget(slot->second);
     kept_.erase(slot);

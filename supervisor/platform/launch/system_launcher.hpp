@@ -14,6 +14,7 @@
 #include "hirosco/utilities/os/process.hpp"
 #include "supervisor/keeper/kept_store.hpp"
 #include "supervisor/platform/launch/flight_launcher.hpp"
+#include "supervisor/platform/launch/memory_reach.hpp"
 #include "supervisor/platform/launch/programs_in_use.hpp"
 #include "supervisor/platform/launch/running_processes.hpp"
 #include "supervisor/platform/launch/standard_error.hpp"
@@ -48,8 +49,14 @@ class SystemLauncher final : public FlightLauncher {
   void use(const descriptor::MissionSubsystem& subsystem, const std::string& version) override {
     programs_.use(subsystem, version);
   }
-  [[nodiscard]] std::string shut_out(const descriptor::MissionSubsystem& flown,
+  [[nodiscard]] std::string shut_out(std::uint32_t process, const descriptor::MissionSubsystem& flown,
                                      const descriptor::MissionSubsystem& fresh) override;
+  [[nodiscard]] std::string let_in(std::uint32_t process, const descriptor::MissionSubsystem& fresh) override {
+    return reach_.let_in(process, fresh, own_group_of(fresh));
+  }
+  [[nodiscard]] std::string keep_in(std::uint32_t process, const descriptor::MissionSubsystem& now) override {
+    return reach_.keep_in(process, now);
+  }
   [[nodiscard]] std::string left_open(const descriptor::MissionSubsystem& subsystem) const override;
   void drop(const descriptor::MissionSubsystem& subsystem, const std::string& version) override {
     programs_.drop(subsystem, version);
@@ -66,6 +73,10 @@ class SystemLauncher final : public FlightLauncher {
   }
   [[nodiscard]] std::uint32_t resident_kb(std::uint32_t process) noexcept override {
     return running_.resident_kb(process);
+  }
+  [[nodiscard]] std::optional<StrayThread> stray(std::uint32_t process, const ThreadPlaces& places) noexcept override {
+    const Process* const found = running_.find(process);
+    return found != nullptr ? stray_thread(found->pid(), places) : std::nullopt;
   }
   void kill_all() override { running_.kill_all(); }
   [[nodiscard]] bool any_running() override { return running_.any(); }
@@ -85,12 +96,16 @@ class SystemLauncher final : public FlightLauncher {
     return users_ && one_user_.empty() ? ProcessUser::ItsOwn : ProcessUser::WhoeverFlies;
   }
 
+  /// Empty: it is of whoever flies, or the mission has no user for it.
+  [[nodiscard]] std::optional<OwnGroup> own_group_of(const descriptor::MissionSubsystem& subsystem) const;
+
   bool own_users_granted_;
   std::optional<descriptor::UserNumbers> users_{};  ///< that the mission asks for
   std::map<std::string, std::uint32_t, std::less<>>
       user_of_;  ///< by name, whatever a mission says that is read in flight
   std::string one_user_{};  ///< why they are not given, in words; empty: they are, or none are asked for
   const std::string instance_{flight_instance()};  ///< part of where the frames of devices are
+  MemoryReach reach_{instance_};
   SealedMemory memory_;
   StandardError errors_;
   RunningProcesses running_;

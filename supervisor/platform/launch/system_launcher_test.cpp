@@ -256,8 +256,8 @@ TEST_F(ManifestStart, FindsTheFolderOfItsDeviceAndOfItsFallBackInPlaceWhoeverCom
 
 TEST_F(ManifestStart, ShutsOutOfTheFramesOfADeviceThatItsDescriptorDidNotName) {
   const auto lamp = in_memory(mission.subsystems[0], "lamp"), other = in_memory(mission.subsystems[0], "other");
-  EXPECT_EQ(launcher.shut_out(lamp, lamp), "");
-  EXPECT_EQ(launcher.shut_out(lamp, other), "/dev/shm/hirosco/other");
+  EXPECT_EQ(launcher.shut_out(0, lamp, lamp), "");
+  EXPECT_EQ(launcher.shut_out(0, lamp, other), "/dev/shm/hirosco/other");
 }
 
 TEST_F(ManifestStart, ThatFailsForWantOfADescriptorAtWhicheverStepLeavesNoProcessBehind) {

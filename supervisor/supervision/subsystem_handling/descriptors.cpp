@@ -155,7 +155,7 @@ void Descriptors::compare(const descriptor::MissionSubsystem& flown, descriptor:
     for (const auto& obstacle : descriptor::obstacles_in_force(flown.subsystem, fresh.subsystem, configuration->id))
       add_problem(problems, file_, obstacle.at,
                   fmt::format("{}: {} cannot change now", flown.subsystem.name, obstacle.what), obstacle.why);
-  if (const std::string shut = craft_.launcher.shut_out(flown, fresh); !shut.empty())
+  if (const std::string shut = craft_.launcher.shut_out(member->process(), flown, fresh); !shut.empty())
     add_problem(problems, file_, {}, fmt::format("{} cannot reach {}", flown.subsystem.name, shut),
                 "its sandbox was made when its process started");
 }
@@ -188,8 +188,34 @@ void Descriptors::judged() {
                       .code = not_in_flight,
                       .message = craft_.name_of(apid) + " does not take it: " + asked.why,
                       .hint = {}}});
+  // Before anybody takes it: who has an address that it does not reach could not be configured.
+  if (const DescriptorProblems problems = let_in(); !problems.empty()) return refuse(problems);
   phase_ = Phase::Taking;
   ask(DescriptorService::take_text, {}, {});
+}
+
+DescriptorProblems Descriptors::let_in() {
+  DescriptorProblems problems;
+  for (const auto& [apid, fresh] : fresh_) {
+    const Member& member = *craft_.member(apid);
+    if (!member.alive()) continue;
+    if (const std::string shut = craft_.launcher.let_in(member.process(), fresh); !shut.empty())
+      add_problem(problems, file_, {}, fmt::format("{} cannot be let in to {}", craft_.name_of(apid), shut),
+                  "end who uses it and remove it, or begin a new flight");
+  }
+  return problems;
+}
+
+/// What nobody flies by any more is out of reach, whether that is what was there before or what was not taken.
+void Descriptors::let_go() {
+  for (const descriptor::MissionSubsystem* flown : flying(file_)) {
+    const Member& member = *craft_.member(flown->subsystem.id);
+    if (!member.alive()) continue;
+    if (const std::string kept = craft_.launcher.keep_in(member.process(), *flown); !kept.empty())
+      craft_.tell(fmt::format("{} reaches what its descriptor does not name, until its process ends: {}",
+                              craft_.name_of(member.apid()), kept),
+                  member.apid());
+  }
 }
 
 /// Who has it, or may have it, must not be the only one.
@@ -234,6 +260,7 @@ void Descriptors::refuse(const DescriptorProblems& problems) {
 
 void Descriptors::finish() {
   hold(false);
+  let_go();
   phase_ = Phase::Idle;
   asked_.clear();
   ++round_;
@@ -242,6 +269,7 @@ void Descriptors::finish() {
 
 void Descriptors::give_up(FailureCode code, const char* words, std::int64_t number) {
   hold(false);
+  let_go();
   phase_ = Phase::Idle;
   asked_.clear();
   ++round_;

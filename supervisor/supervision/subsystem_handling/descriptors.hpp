@@ -63,6 +63,9 @@ class Descriptors final : public Watch {
                DescriptorProblems& problems) const;
   void ask(std::uint8_t subtype, Octets data, const MemoryHandle& text);
   void judged();
+  /// Everybody who runs, to what it is about to take (docs/adr/0236).
+  [[nodiscard]] DescriptorProblems let_in();
+  void let_go();
   void taken();
   void take_over();
   void refuse(const DescriptorProblems& problems);

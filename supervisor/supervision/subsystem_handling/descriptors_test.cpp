@@ -26,6 +26,25 @@ struct DescriptorsTest : PartsTest {
   PlayedDesk desk;
   Descriptors descriptors{{craft, parts.own, desk, parts.under_way, parts.stored, &readings}};
 
+  // ProcessLauncher
+  std::string refused_place;  ///< that nobody is let in to
+  std::vector<std::string> reach;  ///< what it was asked for, in order
+  std::string let_in(std::uint32_t process, const descriptor::MissionSubsystem& fresh) override {
+    reach.push_back("in " + std::to_string(process) + " " + *fresh.subsystem.text);
+    return refused_place;
+  }
+  std::string keep_in(std::uint32_t process, const descriptor::MissionSubsystem& now) override {
+    reach.push_back("go " + std::to_string(process) + " " + *now.subsystem.text);
+    return {};
+  }
+  /// Of ARM and HAND.
+  [[nodiscard]] std::vector<std::string> both(const std::string& word, const std::string& text) const {
+    std::vector<std::string> made;
+    for (const std::uint16_t apid : {arm, hand})
+      made.push_back(word + " " + std::to_string(played.at(apid).process) + " " + text);
+    return made;
+  }
+
   void SetUp() override {
     PartsTest::SetUp();
     for (auto& member : craft.mission.subsystems) {
@@ -157,6 +176,36 @@ TEST_F(DescriptorsTest, WhereAllRefuseToTakeItNothingChanges) {
   answer(false, false);
   EXPECT_EQ(most(arm), Number{10});
   EXPECT_THAT(killed, IsEmpty());
+}
+
+TEST_F(DescriptorsTest, WhoIsAskedIsLetInBeforeAnybodyTakesItAndLeavesTheRestWhenItIsInForce) {
+  is_read(wider());
+  EXPECT_THAT(reach, IsEmpty()) << "not everybody has agreed";
+  answer(true);
+  EXPECT_EQ(reach, both("in", "new"));
+  reach.clear();
+  answer(true);
+  EXPECT_EQ(reach, both("go", "new"));
+}
+
+TEST_F(DescriptorsTest, WhereOneIsNotLetInNobodyTakesItAndAllReachWhatTheyDid) {
+  refused_place = "/dev/shm/hirosco/arm-b: another subsystem was let in there";
+  is_read(wider());
+  answer(true);
+  EXPECT_EQ(desk.sent.size(), 2U) << "nobody is told to take it";
+  EXPECT_EQ(text_of(arm), "old");
+  EXPECT_TRUE(was_told("ARM cannot be let in to /dev/shm/hirosco/arm-b: another subsystem was let in there"));
+  auto wanted = both("in", "new");
+  for (const std::string& each : both("go", "old")) wanted.push_back(each);
+  EXPECT_EQ(reach, wanted);
+}
+
+TEST_F(DescriptorsTest, WhereNobodyTakesItAllReachWhatTheyDid) {
+  is_read(wider());
+  answer(true);
+  reach.clear();
+  answer(false, false);
+  EXPECT_EQ(reach, both("go", "old"));
 }
 
 TEST_F(DescriptorsTest, AreReadInOfflineAndPreOperationalOnly) {

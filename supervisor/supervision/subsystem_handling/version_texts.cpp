@@ -10,6 +10,7 @@
 #include "hirosco/descriptor/read/brought_files.hpp"
 #include "supervisor/keeper/kept.hpp"
 #include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
+#include "supervisor/supervision/realtime_links/unprovided_fields.hpp"
 
 namespace hirosco::supervisor {
 
@@ -161,6 +162,9 @@ void VersionTexts::go_back(const Member& subject, const std::string& leaving, co
   craft_.tell(fmt::format("{} flies by the text before: who reads {} needs that text in it again", now.subsystem.name,
                           now.subsystem.file.string()),
               subject.apid());
+  for (const std::string& each : unprovided_fields(craft_.mission, now.subsystem))
+    craft_.tell(each + ", which it provides no more: LINK is refused until who reads it is another version, too",
+                subject.apid());
 }
 
 /// As it was declared: what was set by then may be another when it is gone back to.

@@ -328,6 +328,17 @@ TEST_F(VersionTextsTest, AFileThatIsNotReadInTimeIsGivenUpAndWhatComesLateIsNobo
   EXPECT_EQ(readings.asked.size(), 2U);
 }
 
+TEST_F(VersionTextsTest, WhoReadsOfALinkWhatWentWithTheVersionIsNamed) {
+  on_trial();
+  descriptor::Requires wanted;
+  wanted.name = "ARM_STATE";
+  wanted.fields.emplace_back().name = "SPEED";
+  craft.mission.subsystems[1].subsystem.configurations.front().requires_ = {wanted};
+  ASSERT_EQ(replacement.take_back(arm, {}).kind, Came::Running);
+  process_ends();
+  EXPECT_TRUE(was_told("HAND reads SPEED of ARM.ARM_STATE (link 1), which it provides no more"));
+}
+
 /// ARM's LIMIT is persistent, from 0 to 10; the version knows it up to 100.
 struct VersionTextsAndValues : VersionTextsTest {
   void SetUp() override {
