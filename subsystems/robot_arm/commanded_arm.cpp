@@ -12,6 +12,7 @@ using robot_arm::ForceSensor;
 using robot_arm::Guidance;
 using robot_arm::Homing;
 using robot_arm::Lead;
+using robot_arm::Trouble;
 using robot_arm::UrdfArm;
 using robot_arm::Yielding;
 
@@ -199,9 +200,10 @@ void CommandedArm::bind_lead() {
   events_.each_of_lead([this](EventPort& event) { use_event(event); });
   on_function("FOLLOW", [this]() -> Outcome {
     if (const Outcome may = rules_.may_move(now()); may.kind == Outcome::Kind::Refused) return may;
-    const Outcome begun = lead_.follow();
-    if (begun.kind != Outcome::Kind::Refused) contact_watch_.arm(Yielding::Before::Stands);
-    return begun;
+    if (const auto none = lead_.follow(guidance_.setpoints()))
+      return refused(Trouble::not_led, none->text, none->number);
+    contact_watch_.arm(Yielding::Before::Stands);
+    return ok();
   });
 }
 

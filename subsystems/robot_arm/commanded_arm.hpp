@@ -47,13 +47,13 @@ class CommandedArm : public robotics::MovingSubsystem {
   robot_arm::UrdfArm known_;
   robot_arm::Drives drives_{parameters_.current};
   robot_arm::LimitWatch limits_{{known_, drives_, parameters_}};
-  robot_arm::OnBoardModel model_{{known_, drives_, parameters_}};
-  robot_arm::ForceSensor force_sensor_{{known_, drives_, model_, parameters_}};
+  robot_arm::OnBoardModel model_{{known_, drives_, parameters_, limits_.work()}};
+  robot_arm::ForceSensor force_sensor_{{drives_, parameters_.contact}};
   robot_arm::Obstacles obstacles_{{parameters_.clearance_limit_m, parameters_.clearance_m, parameters_.keep_out}};
   robot_arm::AbortPath abort_path_{{known_, obstacles_}};
   robot_arm::Posture posture_{known_};
   robot_arm::Guidance guidance_{{known_, drives_, obstacles_, parameters_, abort_path_, posture_}};
-  robot_arm::Lead lead_{{known_, guidance_}};
+  robot_arm::Lead lead_{known_};
   robot_arm::TorqueControl control_{{known_, drives_, limits_, model_, guidance_, parameters_}};
   robot_arm::Homing homing_{{known_, drives_, control_, parameters_}};
   robot_arm::MotionRules rules_{{guidance_, control_, lead_, homing_}};

@@ -36,13 +36,13 @@ bool ForceSensor::declared(const descriptor::SubsystemDescriptor& subsystem) {
 
 void ForceSensor::arm(bool stands) noexcept {
   contact_cycles_ = 0;
-  const double limit = parts_.parameters.contact.load().limit;
+  const double limit = parts_.contact.load().limit;
   const WristRange range = range_.load();
   borne_force_ = stands && valid_ ? borne_of(force_, limit * range.force_n) : Vector3{Vector3::Zero()};
   borne_moment_ = stands && valid_ ? borne_of(moment_, limit * range.moment_n_m) : Vector3{Vector3::Zero()};
 }
 
-std::optional<std::uint32_t> ForceSensor::update() noexcept {
+std::optional<std::uint32_t> ForceSensor::update(const Hanging& hanging) noexcept {
   if (!parts_.drives.tells_force()) return std::nullopt;
   const TipForce says = parts_.drives.force();
   const Vector3 force{says.force_n[0], says.force_n[1], says.force_n[2]};
@@ -51,13 +51,8 @@ std::optional<std::uint32_t> ForceSensor::update() noexcept {
   force_.setZero();
   moment_.setZero();
   if (valid_) {
-    const auto gravity = parts_.parameters.gravity_m_s2.load();
-    const Payload payload = parts_.model.payload();
-    const robotics::Matrix3 turned = parts_.model.dynamics().frame_pose(parts_.known.tip()).rotation;
-    const Vector3 weight = payload.mass_kg * Vector3{gravity[0], gravity[1], gravity[2]};
-    const Vector3 lever = turned * payload.place_m;
-    force_ = turned * force - weight;
-    moment_ = turned * moment - lever.cross(weight);
+    force_ = hanging.tip * force - hanging.weight_n;
+    moment_ = hanging.tip * moment - hanging.lever_m.cross(hanging.weight_n);
   }
   told_.store({{force_.x(), force_.y(), force_.z()},
                {moment_.x(), moment_.y(), moment_.z()},
@@ -71,7 +66,7 @@ std::optional<std::uint32_t> ForceSensor::update() noexcept {
 }
 
 std::optional<ForceSensor::Contact> ForceSensor::meet(bool floats) noexcept {
-  const ContactValues watch = parts_.parameters.contact.load();
+  const ContactValues watch = parts_.contact.load();
   if (!valid_ || watch.reaction == 0) return std::nullopt;
   const WristRange range = range_.load();
   let_go_of(borne_force_, force_, watch.limit * range.force_n);

@@ -8,22 +8,25 @@
 #include "hirosco/descriptor/model/subsystem.hpp"
 #include "hirosco/parameter/parameter.hpp"
 #include "subsystems/robot_arm/drives.hpp"
-#include "subsystems/robot_arm/on_board_model.hpp"
-#include "subsystems/robot_arm/parameters.hpp"
+#include "subsystems/robot_arm/robot_arm_data.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
 namespace hirosco::robot_arm {
 
-/// The sensor of force and moment at the tip of an arm whose device tells them (docs/adr/0179): a measure of contact beside what the joints feel,
+/// The sensor of force and moment at the tip of an arm, on whatever base, whose device tells them (docs/adr/0179): a measure of contact beside what the joints feel,
 /// as long as it tells something. What PAYLOAD weighs is taken out; what it takes to accelerate it is not.
 /// Realtime: bounded, no allocation. Thread: the cycle, and the service loop while there is none.
 class ForceSensor {
  public:
   struct Parts {
-    const UrdfArm& known;
     const Drives& drives;
-    OnBoardModel& model;
-    const Parameters& parameters;  ///< of a contact: REACTION, LIMIT
+    const Parameter<ContactValues>& contact;  ///< REACTION, LIMIT
+  };
+  /// What hangs there, as the arm stands.
+  struct Hanging {
+    robotics::Matrix3 tip;  ///< its axes
+    Vector3 lever_m{Vector3::Zero()};  ///< from its origin to what hangs
+    Vector3 weight_n{Vector3::Zero()};
   };
   /// What it felt, beyond what stood there when a motion began.
   struct Contact {
@@ -45,7 +48,7 @@ class ForceSensor {
   /// comes to that counts.
   void arm(bool stands) noexcept;
   /// Each cycle, behind the model: tells WRIST. It has just been lost: how old what it told last is, ms.
-  [[nodiscard]] std::optional<std::uint32_t> update() noexcept;
+  [[nodiscard]] std::optional<std::uint32_t> update(const Hanging& hanging) noexcept;
   /// Each cycle in which the arm is driven: what it met, once for each time. Who `floats` meets nobody.
   [[nodiscard]] std::optional<Contact> meet(bool floats) noexcept;
 
@@ -56,7 +59,7 @@ class ForceSensor {
   bool valid_{false};
   bool was_valid_{false};
   Vector3 force_{Vector3::Zero()},
-      moment_{Vector3::Zero()};  ///< from outside, about the tip's origin, in the axes of the base
+      moment_{Vector3::Zero()};  ///< from outside, about the tip's origin, in the axes in which the tip's are told
   Vector3 borne_force_{Vector3::Zero()}, borne_moment_{Vector3::Zero()};
   std::uint32_t contact_cycles_{0};
 };

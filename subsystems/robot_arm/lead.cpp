@@ -44,7 +44,7 @@ Result<> Lead::begin(const descriptor::Configuration& configuration, double cycl
   if (by_ == By::Nobody) return ok();
   if (wants(positions_set) && wants(speeds_set))
     return fail(ErrorCode::Mismatch, "JOINT_POSITIONS and JOINT_SPEEDS lead: one in a configuration");
-  const std::size_t joints = parts_.known.joints();
+  const std::size_t joints = known_.joints();
   if (by_ == By::Positions && positions_.value().position.size() != joints)
     return fail(ErrorCode::Mismatch, "POSITION of JOINT_POSITIONS has another length than the robot has joints",
                 static_cast<std::int64_t>(positions_.value().position.size()));
@@ -53,37 +53,35 @@ Result<> Lead::begin(const descriptor::Configuration& configuration, double cycl
   if (speeds != joints)
     return fail(ErrorCode::Mismatch, "VELOCITY of whoever leads has another length than the robot has joints",
                 static_cast<std::int64_t>(speeds));
-  following_.emplace(parts_.known.bounds(), cycle_s);
+  following_.emplace(known_.bounds(), cycle_s);
   return ok();
 }
 
-Outcome Lead::follow() noexcept {
-  if (by_ == By::Nobody) return refused(Trouble::not_led, "nobody leads in this configuration");
-  if (const auto end = unfit(limits_.load().begin))
-    return refused(Trouble::not_led, words_of(end->why),
-                   end->joint != 0 ? std::int64_t{end->joint} : static_cast<std::int64_t>(end->value));
-  Setpoints& setpoints = parts_.guidance.setpoints();
+std::optional<Lead::NotLed> Lead::follow(Setpoints& setpoints) noexcept {
+  if (by_ == By::Nobody) return NotLed{"nobody leads in this configuration"};
+  if (const auto end = unfit(limits_.load().begin, setpoints.now()))
+    return NotLed{words_of(end->why),
+                  end->joint != 0 ? std::int64_t{end->joint} : static_cast<std::int64_t>(end->value)};
   following_->begin(setpoints.now().position);
   setpoints.take(following_->now());
   phase_ = Phase::Follows;
-  return ok();
+  return std::nullopt;
 }
 
 // --- in each cycle -------------------------------------------------------------------------------------------------------
 
-void Lead::tell() noexcept {
+void Lead::tell(const Setpoints& setpoints) noexcept {
   // HOLD, or whatever else brought the arm to rest, has ended it.
-  if (parts_.guidance.setpoints().kind() != Setpoints::Kind::Follow) phase_ = Phase::Off;
+  if (setpoints.kind() != Setpoints::Kind::Follow) phase_ = Phase::Off;
   if (by_ == By::Nobody) return;
-  told_.store({static_cast<std::uint8_t>(phase_), port().age_cycles(), apart()});
+  told_.store({static_cast<std::uint8_t>(phase_), port().age_cycles(), apart(setpoints.now())});
 }
 
-std::optional<Lead::End> Lead::advance() noexcept {
+std::optional<Lead::End> Lead::advance(Setpoints& setpoints) noexcept {
   if (phase_ == Phase::Off) return std::nullopt;
   std::optional<End> end;
-  if (phase_ == Phase::Follows) end = unfit(limits_.load().distance);
+  if (phase_ == Phase::Follows) end = unfit(limits_.load().distance, setpoints.now());
   if (end) phase_ = Phase::Stops;
-  Setpoints& setpoints = parts_.guidance.setpoints();
   following_->keep_power(setpoints.power());
   setpoints.take(next());
   if (phase_ == Phase::Stops && following_->at_rest()) {
@@ -104,29 +102,29 @@ const Setpoint& Lead::next() noexcept {
   return following_->go_to(vector_of(positions_.value().position), vector_of(positions_.value().velocity));
 }
 
-double Lead::apart() const noexcept {
+double Lead::apart(const Setpoint& now) const noexcept {
   if (by_ != By::Positions) return 0;
-  return robot_arm::apart(vector_of(positions_.value().position), parts_.guidance.setpoints().now().position);
+  return robot_arm::apart(vector_of(positions_.value().position), now.position);
 }
 
-std::optional<Lead::End> Lead::unfit(double most_apart) const noexcept {
+std::optional<Lead::End> Lead::unfit(double most_apart, const Setpoint& now) const noexcept {
   if (!port().valid()) return End{.why = Why::Lost, .value = static_cast<double>(port().age_cycles())};
   const std::uint8_t active = by_ == By::Positions ? positions_.value().active : speeds_.value().active;
   if (active == 0) return End{.why = Why::LetGo};
-  for (std::size_t joint = 0; joint < parts_.known.joints(); ++joint)
-    if (const auto end = unfit_joint(joint, most_apart)) return end;
+  for (std::size_t joint = 0; joint < known_.joints(); ++joint)
+    if (const auto end = unfit_joint(joint, most_apart, now)) return end;
   return std::nullopt;
 }
 
 /// Written so that what is no number is unfit first.
-std::optional<Lead::End> Lead::unfit_joint(std::size_t joint, double most_apart) const noexcept {
-  const JointBounds& its = parts_.known.bounds()[joint];
+std::optional<Lead::End> Lead::unfit_joint(std::size_t joint, double most_apart, const Setpoint& now) const noexcept {
+  const JointBounds& its = known_.bounds()[joint];
   const auto number = static_cast<std::uint8_t>(joint + 1);
   const double velocity = by_ == By::Positions ? positions_.value().velocity[joint] : speeds_.value().velocity[joint];
   if (!std::isfinite(velocity)) return End{.why = Why::NoNumber, .joint = number};
   if (by_ == By::Positions) {
     const double place = positions_.value().position[joint];
-    const double here = parts_.guidance.setpoints().now().position[static_cast<Eigen::Index>(joint)];
+    const double here = now.position[static_cast<Eigen::Index>(joint)];
     if (!std::isfinite(place)) return End{.why = Why::NoNumber, .joint = number};
     if (place < its.lowest - past_range) return End{Why::OutOfRange, number, place, its.lowest};
     if (place > its.highest + past_range) return End{Why::OutOfRange, number, place, its.highest};

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/robot_arm/on_board_model.hpp"
 
-#include <cmath>
-
 namespace hirosco::robot_arm {
 namespace {
 
@@ -44,17 +42,10 @@ void OnBoardModel::update() noexcept {
   updated_ = true;
 }
 
-/// With which force something acts on the tool, and how much work joints give, and the tool does against it. A joint that brakes takes work: that is none that it gives, and none of
-/// what another gives (docs/adr/0184).
+/// With which force something acts on the tool.
 void OnBoardModel::tell_work() noexcept {
-  const Measured& measured = parts_.drives.measured();
   lever_.update(*dynamics_, parts_.known.tip(), pose_of(parts_.parameters.tool_place.load()).position);
-  const Vector3 force = lever_.force(observer_->external() - brakes_);
-  parts_.parameters.tool_force_n.store({force.x(), force.y(), force.z()});
-  parts_.parameters.tool_power_w.store(std::abs(force.dot(lever_.velocity(measured.velocity))));
-  // In this way what is no number stays none, and is beyond every limit.
-  const JointVector work_w = measured.torque.cwiseProduct(measured.velocity);
-  parts_.parameters.joint_power_w.store(0.5 * (work_w + work_w.cwiseAbs()).sum());
+  parts_.work.tell(lever_.force(observer_->external() - brakes_), lever_.velocity(parts_.drives.measured().velocity));
 }
 
 void OnBoardModel::forget_external() noexcept {
@@ -65,6 +56,13 @@ void OnBoardModel::forget_external() noexcept {
 Payload OnBoardModel::payload() const noexcept {
   const auto values = parts_.parameters.payload.load();
   return {values.mass_kg, {values.place_m[0], values.place_m[1], values.place_m[2]}};
+}
+
+ForceSensor::Hanging OnBoardModel::hanging() const noexcept {
+  const auto gravity = parts_.parameters.gravity_m_s2.load();
+  const Payload its = payload();
+  const robotics::Matrix3 turned = dynamics_->frame_pose(parts_.known.tip()).rotation;
+  return {turned, turned * its.place_m, its.mass_kg * Vector3{gravity[0], gravity[1], gravity[2]}};
 }
 
 JointVector OnBoardModel::held(const Payload& payload) noexcept {

@@ -8,7 +8,9 @@
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
 #include "subsystems/robot_arm/control/tool_lever.hpp"
 #include "subsystems/robot_arm/drives.hpp"
+#include "subsystems/robot_arm/force_sensor.hpp"
 #include "subsystems/robot_arm/parameters.hpp"
+#include "subsystems/robot_arm/tool_work.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
 namespace hirosco::robot_arm {
@@ -23,7 +25,8 @@ class OnBoardModel {
   struct Parts {
     const UrdfArm& known;
     const Drives& drives;
-    Parameters& parameters;  ///< TOOL, EXTERNAL_TORQUE, TOOL_FORCE, JOINT_POWER and TOOL_POWER tell what it finds
+    Parameters& parameters;  ///< TOOL and EXTERNAL_TORQUE tell what it finds
+    ToolWork& work;  ///< what acts on the tool, and how fast that is
   };
   explicit OnBoardModel(const Parts& parts) noexcept : parts_{parts} {}
 
@@ -44,6 +47,8 @@ class OnBoardModel {
   [[nodiscard]] const JointVector& external() const noexcept { return observer_->external(); }
   [[nodiscard]] const ToolLever& lever() const noexcept { return lever_; }
   [[nodiscard]] Payload payload() const noexcept;
+  /// At the tip, for a sensor there.
+  [[nodiscard]] ForceSensor::Hanging hanging() const noexcept;
   /// What each joint would hold in the posture of update() if this hung at the tool.
   [[nodiscard]] JointVector held(const Payload& payload) noexcept;
 

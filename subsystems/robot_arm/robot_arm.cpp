@@ -104,8 +104,8 @@ void RobotArm::measure(const Cycle& cycle) noexcept {
   parameters_.active.store(0);
   moving_ = false;
   model_.update();
-  if (const auto age_ms = force_sensor_.update()) raise(events_.force_sensor_lost, *age_ms);
-  lead_.tell();
+  if (const auto age_ms = force_sensor_.update(model_.hanging())) raise(events_.force_sensor_lost, *age_ms);
+  lead_.tell(guidance_.setpoints());
 }
 
 /// Takes the present position as the reference.
@@ -123,7 +123,7 @@ void RobotArm::control() noexcept {
 
 void RobotArm::advance() noexcept {
   guidance_.keep_power(model_.held(model_.payload()));
-  if (const auto end = lead_.advance()) tell(*end);
+  if (const auto end = lead_.advance(guidance_.setpoints())) tell(*end);
   const bool drove = torque_mode_.drives();
   torque_mode_.advance();
   if (drove && !torque_mode_.drives()) force_sensor_.arm(true);

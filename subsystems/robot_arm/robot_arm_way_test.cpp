@@ -47,7 +47,7 @@ struct Grazed {
         start{at},
         height_m{tool.z()},
         azimuth{std::atan2(tool.y(), tool.x())} {
-    clearance.set_limit(0.02);
+    clearance.set_limit(0.01);
   }
   robotics::Vector3 put(double radius_m, double turn) {
     const robotics::Vector3 there{radius_m * std::cos(azimuth + turn), radius_m * std::sin(azimuth + turn), height_m};

@@ -356,6 +356,24 @@ TEST(Servicer, BrakesItsArmInAnEclipseAndTakesNobodysSupplyAway) {
 }
 
 /// Who measures dies in motion: the arm goes on, nothing more is granted, and who measures comes back.
+TEST(Servicer, NamesItsArmWhereItsOutletGivesMoreThanItClaimsForTenSeconds) {
+  ServicerCraft craft{{.mission = mission, .mode = "track"}};
+  craft.run(12);
+  EXPECT_FALSE(craft.flight().story().has("POWER_EXCEEDED")) << craft.flight().story().text();
+  auto& unit = craft.flight().device<SimulatedDevice>("power");
+  ASSERT_TRUE(unit.fault("payload_load 300"));
+  craft.run(9);
+  EXPECT_FALSE(craft.flight().story().has("POWER_EXCEEDED"));
+  craft.run(3);
+  EXPECT_TRUE(craft.flight().story().has("power: 300 W are drawn by MCS, 280 W may be: POWER.LOADS.PAYLOAD"))
+      << craft.flight().story().text();
+  EXPECT_EQ(craft.flight().story().count("SUPERVISOR low POWER_EXCEEDED"), 1U);
+  EXPECT_EQ(craft.flight().state("MCS"), State::Operational) << "no plan of this mission is for it";
+  ASSERT_TRUE(unit.fault("payload_load 260"));
+  craft.run(2);
+  EXPECT_TRUE(craft.flight().story().has("MCS again no more than claimed"));
+}
+
 TEST(Servicer, GoesOnWithoutAMeasurementAndGrantsNothingMore) {
   ServicerCraft craft{{.mission = mission, .mode = "track"}};
   craft.begin("MOVE_TOOL", {away_m, 0.0, 0.0, within_s});

@@ -19,6 +19,15 @@ void ToolLever::update(const robotics::Dynamics& dynamics, robotics::FrameId tip
     const Vector3 turning = jacobian.col(i).head<3>();
     place_.col(i) = jacobian.col(i).tail<3>() + turning.cross(lever);
   }
+  weigh();
+}
+
+void ToolLever::update(const Rows& place) noexcept {
+  place_ = place;
+  weigh();
+}
+
+void ToolLever::weigh() noexcept {
   robotics::Matrix3 square;
   square.noalias() = place_.lazyProduct(place_.transpose());
   square.diagonal().array() += shortest_lever_m * shortest_lever_m;

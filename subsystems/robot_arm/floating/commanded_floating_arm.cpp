@@ -3,6 +3,9 @@
 #include "subsystems/robot_arm/floating/commanded_floating_arm.hpp"
 
 #include <array>
+#include <cmath>
+#include <initializer_list>
+#include <span>
 #include <string_view>
 
 #include "subsystems/robot_arm/control/standing.hpp"
@@ -34,13 +37,15 @@ Result<> CommandedFloatingArm::check_lengths() noexcept {
   for (const std::size_t length :
        {current.position.size(), current.velocity.size(), current.torque.size(),
         parameters_.desired_velocity.load().size(),
-        offers("SET_CONTACT") ? parameters_.external_torque.load().size() : joints, drives_.says().position.size(),
+        offers("SET_CONTACT") ? parameters_.external_torque.load().size() : joints,
+        offers("IMPEDANCE_J") ? parameters_.joint_stiffness.load().size() : joints,
+        offers("TORQUE_J") ? parameters_.desired_torque.load().size() : joints, drives_.says().position.size(),
         drives_.says().velocity.size(), drives_.says().torque.size(), drives_.puts_out().size(),
-        of_joints("MOVE_JOINT"), of_joints("JOG_J")})
+        of_joints("MOVE_JOINT"), of_joints("JOG_J"), of_joints("IMPEDANCE_J"), of_joints("TORQUE_J")})
     if (length != joints)
       return fail(ErrorCode::Mismatch,
-                  "an array of CUR, DES_VELOCITY, EXTERNAL_TORQUE, MOVE_JOINT, JOG_J or ARM is not as long as the "
-                  "robot has joints",
+                  "an array of CUR, DES_VELOCITY, EXTERNAL_TORQUE, JOINT_STIFFNESS, DES_TORQUE, MOVE_JOINT, JOG_J, "
+                  "IMPEDANCE_J, TORQUE_J or ARM is not as long as the robot has joints",
                   static_cast<std::int64_t>(length));
   if (robot_arm::AbortPath::declared(own_descriptor()) && !abort_path_.has_length(joints))
     return fail(ErrorCode::Mismatch, "JOINTS of ABORT_PATH has another length than the robot has joints");
@@ -73,8 +78,8 @@ void CommandedFloatingArm::hold() noexcept {
   const bool held = guidance_.holds();
   if (guidance_.floats()) contact_.arm(robot_arm::JointContact::Before::Counts);  // whoever led it, too
   end_motion(pus::FailureCode::Aborted);
-  if (held) guidance_.stand();
-  else guidance_.stop(rates);
+  if (!held) guidance_.stop(rates);
+  else if (!guidance_.soft()) guidance_.stand();  // springs keep to what they have
 }
 
 /// From a stand alone: who moves on the way there would go on.
@@ -85,6 +90,19 @@ Outcome CommandedFloatingArm::let_go() noexcept {
     return refused(pus::FailureCode::Busy, "it moves yet and would go on: wait, joint",
                    static_cast<std::int64_t>(*joint + 1));
   guidance_.let_go();
+  return ok();
+}
+
+/// What would swing faster than its law may is refused, and what was in force stays.
+Outcome CommandedFloatingArm::soften(robot_arm::LawKind kind, const robot_arm::Impedance& impedance) noexcept {
+  if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
+  const double swings = laws_.swings_rad_s(kind, craft_.law(), impedance, craft_.model());
+  // Written so that what is no number is too stiff.
+  if (!(swings <= laws_.fastest_swing_rad_s()))
+    return refused(Trouble::too_stiff, "it would swing with, rad/s", std::llround(swings));
+  laws_.set(impedance);
+  laws_.jump();
+  guidance_.hold_by(kind);
   return ok();
 }
 
@@ -150,6 +168,11 @@ void CommandedFloatingArm::bind_functions() {
   bind_ways_out();
   bind_tip();
   bind_contact();
+  bind_work();
+  bind_laws();
+  bind_lead();
+  if (robot_arm::Posture::declared(own_descriptor()))
+    posture_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
   on_function("KEEP_OUT", [this](const robot_arm::KeepOut& numbers) { return obstacles_.keep_out(numbers); });
   on_function("BRAKE", [this]() -> Outcome {
     end_motion(pus::FailureCode::Aborted);
@@ -201,6 +224,95 @@ void CommandedFloatingArm::bind_contact() {
   on_function("SET_CONTACT", [this](std::uint8_t reaction, double limit) -> Outcome {
     contact_.set(reaction, limit);
     return ok();
+  });
+}
+
+/// An arm whose device tells no force at its tip has what its joints feel, and nothing besides.
+void CommandedFloatingArm::bind_force_sensor() {
+  if (!robot_arm::ForceSensor::declared(own_descriptor())) return;
+  drives_.take_force();
+  force_sensor_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
+  use_event(wrist_contact_);
+  use_event(force_sensor_lost_);
+}
+
+/// Whose descriptor has no limits of force and power has none in force.
+void CommandedFloatingArm::bind_work() {
+  if (!offers("SET_FORCE_LIMIT") && !offers("SET_POWER_LIMIT")) {
+    for (Parameter<double>* limit :
+         {&parameters_.tool_force_limit_n, &parameters_.power_limit_w, &parameters_.tool_power_limit_w})
+      limit->store(HUGE_VAL);
+    return;
+  }
+  parameters_.each_of_work([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
+  for (EventPort* event : std::initializer_list<EventPort*>{&force_exceeded_, &power_exceeded_, &tool_power_exceeded_})
+    use_event(*event);
+  contact_.feel();
+  work_.offer();
+  const auto outcome = [](const std::optional<robot_arm::ToolWork::Above>& above) -> Outcome {
+    if (above) return refused(Trouble::load_above_limit, above->what, std::llround(above->is));
+    return ok();
+  };
+  if (offers("SET_FORCE_LIMIT"))
+    on_function("SET_FORCE_LIMIT",
+                [this, outcome](double force_n) { return outcome(work_.work().set_force_limit(force_n)); });
+  if (offers("SET_POWER_LIMIT"))
+    on_function("SET_POWER_LIMIT", [this, outcome](double power_w, double tool_w) {
+      return outcome(work_.work().set_power_limits(power_w, tool_w));
+    });
+}
+
+void CommandedFloatingArm::bind_laws() {
+  using robot_arm::LawKind;
+  if (offers("IMPEDANCE_J") || offers("IMPEDANCE_L") || offers("TORQUE_J"))
+    parameters_.each_of_laws([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
+  if (offers("IMPEDANCE_J"))
+    on_function("IMPEDANCE_J", [this](const FunctionValues& values, Call) -> Outcome {
+      if (craft_.tracks()) return refused(Trouble::another_law, joints_alone);
+      robot_arm::Impedance impedance = laws_.impedance();
+      impedance.joint_n_m_rad = robot_arm::vector_of(std::span{values}.first(known_.joints()));
+      impedance.damping_ratio = values[known_.joints()];
+      return soften(LawKind::JointImpedance, impedance);
+    });
+  if (offers("IMPEDANCE_L"))
+    on_function("IMPEDANCE_L", [this](double stiffness_n_m, double turning_n_m, double damping) -> Outcome {
+      if (craft_.law() == ToolLaw::AttitudeHold)
+        return refused(Trouble::another_law, "springs of the tool leave no base unturned");
+      robot_arm::Impedance impedance = laws_.impedance();
+      impedance.tool_n_m = stiffness_n_m;
+      impedance.tool_n_m_rad = turning_n_m;
+      impedance.damping_ratio = damping;
+      return soften(LawKind::ToolImpedance, impedance);
+    });
+  if (offers("POSITION_CONTROL"))
+    on_function("POSITION_CONTROL", [this]() -> Outcome {
+      if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
+      guidance_.hold_by(LawKind::Position);
+      return ok();
+    });
+  if (!offers("TORQUE_J")) return;
+  parameters_.each_of_drive([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
+  on_function("TORQUE_J", [this](const FunctionValues& values, Call call) -> Outcome {
+    return jog(guidance_.driven(), [&] { return guidance_.drive(values); }, call);
+  });
+}
+
+/// An arm of whose configurations none has a set that leads follows nobody, and knows nothing of it.
+void CommandedFloatingArm::bind_lead() {
+  using robot_arm::Lead;
+  const bool by_positions = Lead::declared(own_descriptor(), Lead::positions_set);
+  const bool by_speeds = Lead::declared(own_descriptor(), Lead::speeds_set);
+  if (!by_positions && !by_speeds) return;
+  if (by_positions) require_link(Lead::positions_set, lead_.positions());
+  if (by_speeds) require_link(Lead::speeds_set, lead_.speeds());
+  lead_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
+  for (EventPort* event : std::initializer_list<EventPort*>{&lead_lost_, &lead_let_go_, &lead_unfit_})
+    use_event(*event);
+  on_function("FOLLOW", [this]() -> Outcome {
+    if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
+    const Outcome begun = guidance_.follow(lead_);
+    if (begun.kind != Outcome::Kind::Refused) contact_.arm(robot_arm::JointContact::Before::Stands);
+    return begun;
   });
 }
 

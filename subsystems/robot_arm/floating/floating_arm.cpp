@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "robotics/motion/sampled_rates.hpp"
-#include "subsystems/robot_arm/floating/float_law.hpp"
 #include "subsystems/robot_arm/floating/floating_trouble.hpp"
 
 namespace hirosco {
@@ -22,7 +21,7 @@ using Trouble = robot_arm::FloatingTrouble;
 
 namespace {
 
-constexpr std::string_view hold_configuration = "ATTITUDE_HOLD";
+constexpr std::string_view hold_configuration = "ATTITUDE_HOLD", pose_set = "POSE";
 /// On a way out a joint has its velocity in a second, half as hard as what stops it (StopRamp), and that acceleration in a tenth of it.
 constexpr double velocity_within_s = 1, ramp_share = 0.1;
 
@@ -32,8 +31,9 @@ std::unique_ptr<Subsystem> make_floating_arm() { return std::make_unique<Floatin
 
 Result<Step> FloatingArm::software_init() {
   parameters_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
+  bind_force_sensor();
   use_device(UrdfArm::device, drives_.port(), {robotics::urdf::model_setting, robotics::urdf::tip_setting});
-  require_link("POSE", craft_.pose_port());
+  require_link(pose_set, craft_.pose_port());
   for (EventPort* event :
        std::initializer_list<EventPort*>{&motion_done_, &conditioning_low_, &base_held_, &limit_exceeded_,
                                          &hard_exceeded_, &range_end_near_, &too_near_})
@@ -48,10 +48,13 @@ Result<Step> FloatingArm::software_init() {
 /// Who requires the pose of the base tracks by it, and by the name of the configuration leaves the base unturned.
 Result<> FloatingArm::configure(const descriptor::Configuration& configuration) {
   HIROSCO_TRY(check_lengths());
+  HIROSCO_TRY(posture_.check(own_descriptor()));
   const double cycle_s = seconds(configuration.sampling);
   HIROSCO_TRY(robotics::check_cycle(cycle_s));
   known_.limit_motions_by_velocity(velocity_within_s, ramp_share);
-  craft_.begin(configuration.requires_.empty()            ? ToolLaw::FixedBase
+  const bool tracks = std::ranges::find(configuration.requires_, pose_set, &descriptor::Requires::name) !=
+                      configuration.requires_.end();
+  craft_.begin(!tracks                                    ? ToolLaw::FixedBase
                : configuration.name == hold_configuration ? ToolLaw::AttitudeHold
                                                           : ToolLaw::InertialTrack,
                cycle_s);
@@ -63,8 +66,12 @@ Result<> FloatingArm::configure(const descriptor::Configuration& configuration) 
   ahead_.begin(cycle_s);
   tip_.begin();
   contact_.begin(cycle_s);
-  law_change_.begin(known_.model().joint_count(), cycle_s);
-  fastest_rad_s_ = robotics::fastest_rad_s(cycle_s);
+  HIROSCO_TRY(lead_.begin(configuration, cycle_s));
+  if (tracks && lead_.leads())
+    return fail(ErrorCode::Mismatch, "JOINT_POSITIONS lead, POSE is kept to: one in a configuration");
+  work_.begin(cycle_s);
+  work_.arm();
+  laws_.begin(known_.model().joint_count(), cycle_s);
   static_cast<void>(obstacles_.keep_out(parameters_.keep_out.load()));
   return ok();
 }
@@ -86,7 +93,7 @@ Result<> FloatingArm::safe_operational(const Cycle& cycle) noexcept {
   guidance_.engage();
   if (motion_) advance();  // CHECK_ABORT moves nothing
   control(false);
-  watch();
+  watch(false);
   return ok();
 }
 
@@ -94,6 +101,7 @@ Result<> FloatingArm::operational(const Cycle& cycle) noexcept {
   measure(cycle);
   if (cycle.first) {
     watch_.arm();
+    work_.arm();
     braked_ = false;
   }
   if (cycle.first || !cycle.active) {
@@ -105,10 +113,10 @@ Result<> FloatingArm::operational(const Cycle& cycle) noexcept {
     watch_contact();
   }
   control(cycle.active && !braked_);
-  watch();
+  watch(cycle.active && !braked_);
   if (cycle.active && !braked_ && !may_act()) braked_ = true;
   if (braked_) inhibit_actuators();
-  moving_ = cycle.active && !watch_.tripped() && !braked_;
+  moving_ = cycle.active && !tripped() && !braked_;
   parameters_.active.store(moving_ ? 1 : 0);
   return ok();
 }
@@ -127,42 +135,45 @@ void FloatingArm::measure(const Cycle& cycle) noexcept {
   moving_ = false;
   craft_.update();
   contact_.update(driven);
+  // Nothing weighs there; what the tip's axes are the tool's tell, as it is turned in them.
+  const robotics::Matrix3 tip = craft_.tool().rotation * carried_.tool().rotation.transpose();
+  if (const auto age_ms = force_sensor_.update({.tip = tip})) raise(force_sensor_lost_, *age_ms);
+  work_.measure();
+  lead_.tell(guidance_.setpoints());
 }
 
 void FloatingArm::control(bool moves) noexcept {
   JointVector rates = guidance_.wanted_rates();
+  if (!guidance_.gives_way()) rates *= work_.pace().share(rates);
   const auto end = guidance_.may_end_range() ? ahead_.end(rates) : std::nullopt;
   if (end) {
     rates.setZero();
     if (moves) stop_before(*end);
   }
   watch_clearance(rates, moves);
-  drives_.put_out(robot_arm::joints_of(torque_of(rates)));
+  const robot_arm::FloatingLaws::Now now{.kind = guidance_.law(),
+                                         .rates = rates,
+                                         .goal = guidance_.goal(),
+                                         .driven = guidance_.torques(),
+                                         .axes = craft_.law(),
+                                         .followed_per_s = craft_.followed_per_s(),
+                                         .float_damping_per_s = parameters_.float_damping.load(),
+                                         .lever = work_.lever(),
+                                         .work = work_.limits()};
+  drives_.put_out(robot_arm::joints_of(laws_.torque(craft_.model(), drives_.measured(), known_.bounds(), now)));
+  const robot_arm::Impedance& impedance = laws_.impedance();
+  parameters_.law.store(
+      {static_cast<std::uint8_t>(now.kind), impedance.tool_n_m, impedance.tool_n_m_rad, impedance.damping_ratio});
+  parameters_.joint_stiffness.store(robot_arm::joints_of(impedance.joint_n_m_rad));
   parameters_.desired_velocity.store(robot_arm::joints_of(rates));
   guidance_.tell(braked_);
-}
-
-/// Whoever leads it is not held back by more than the law of velocities, which a payload makes slower, would.
-JointVector FloatingArm::torque_of(const JointVector& rates) noexcept {
-  const double per_s = craft_.followed_per_s();
-  const robot_arm::Measured& measured = drives_.measured();
-  const robot_arm::Bounds bounds = known_.bounds();
-  const bool floats = guidance_.floats();
-  JointVector torque;
-  if (floats) {
-    float_aims_.remember(measured.position);
-    torque = robot_arm::float_torque(craft_.model(), measured, float_aims_, bounds,
-                                     std::min(parameters_.float_damping.load(), per_s), fastest_rad_s_);
-  } else {
-    float_aims_.let_go();  // who floats next begins where it is then
-    torque = robot_arm::joint_torque(craft_.model(), rates, measured.velocity, bounds, per_s);
-  }
-  return law_change_.without_a_step(torque, floats, bounds);
 }
 
 // --- what comes of it, told ----------------------------------------------------------------------------------------------
 
 void FloatingArm::advance() noexcept {
+  if (guidance_.follows())
+    if (const auto end = lead_.advance(guidance_.setpoints())) tell(*end);
   const FloatingGuidance::News news = guidance_.advance();
   if (const auto gone = guidance_.end_retreat()) raise(retracted_, *gone);
   switch (news) {
@@ -181,6 +192,14 @@ void FloatingArm::advance() noexcept {
       return;
     case FloatingGuidance::News::Judged: finish_call(); return;
   }
+}
+
+/// From this cycle on it slows down, and stands: each end of following that whoever leads has brought about is told once.
+void FloatingArm::tell(const robot_arm::Lead::End& end) noexcept {
+  using Why = robot_arm::Lead::Why;
+  if (end.why == Why::Lost) raise(lead_lost_, static_cast<std::uint32_t>(end.value));
+  else if (end.why == Why::LetGo) raise(lead_let_go_);
+  else raise(lead_unfit_, end.joint, end.value, end.limit, static_cast<std::uint8_t>(end.why));
 }
 
 /// What else than its own sensors keeps it from moving.
@@ -216,14 +235,16 @@ void FloatingArm::watch_clearance(const JointVector& rates, bool moves) noexcept
   obstacles_.pass(here);
   if (guidance_.stops()) return;
   using Doing = robot_arm::FloatingAhead::Doing;
-  const auto ahead = ahead_.near(rates, guidance_.holds() ? Doing::Holds : Doing::Goes);
+  const bool led = guidance_.gives_way();  // whoever pushes, or the springs that pull it there
+  const auto ahead = ahead_.near(rates, guidance_.holds() && !led ? Doing::Holds : Doing::Goes);
   if (!ahead) return;
   raise(too_near_, ahead->distance_m, PairNames{std::string_view{ahead->names}});
-  const bool held = guidance_.holds(), led = guidance_.floats();
+  const bool held = guidance_.holds() && !led;
   end_motion(Trouble::too_near, robot_arm::millimetres(ahead->distance_m), ahead->names);
   if (held) {
     braked_ = true;
   } else if (led) {
+    guidance_.hold_by(robot_arm::LawKind::Position);
     guidance_.halt();
     contact_.stand_apart();  // whoever leads it pushes on meanwhile
   } else {
@@ -235,11 +256,15 @@ void FloatingArm::watch_clearance(const JointVector& rates, bool moves) noexcept
 void FloatingArm::watch_contact() noexcept {
   if (guidance_.floats()) return;
   const auto met = contact_.meet();
-  if (!met) return;
+  const auto felt = force_sensor_.meet(false);
+  if (!met && !felt) return;
   using Reaction = robot_arm::JointContact::Reaction;
   const Reaction by = contact_.reaction();
-  raise(contact_met_, static_cast<std::uint8_t>(met->joint + 1), met->torque, met->limit,
-        static_cast<std::uint8_t>(by));
+  if (met)
+    raise(contact_met_, static_cast<std::uint8_t>(met->joint + 1), met->torque, met->limit,
+          static_cast<std::uint8_t>(by));
+  if (felt) raise(wrist_contact_, felt->force_n, felt->moment_n_m, static_cast<std::uint8_t>(by));
+  if (!contact_.is_another(felt.has_value())) return;
   const bool stood = guidance_.holds() && !motion_;
   const bool backs_off = guidance_.retracts();
   if (stood && by != Reaction::Float) return;
@@ -256,16 +281,28 @@ void FloatingArm::tell_ill_conditioned(double conditioning) noexcept {
 }
 
 /// Each limit is told once until the next entry into Operational; it stays in force when the actuators are inhibited.
-void FloatingArm::watch() noexcept {
+void FloatingArm::watch(bool free) noexcept {
+  watch_work(free);
   const auto shares = parameters_.limits.load();
   const auto found = watch_.update(
       drives_.measured(), nullptr, known_.bounds(),
       {.speed_share = shares.speed, .torque_share = shares.torque, .torque_hard_share = shares.torque_hard});
-  if (watch_.tripped()) inhibit_actuators();
+  if (tripped()) inhibit_actuators();
   if (!found) return;
   end_motion(Trouble::limit_tripped, static_cast<std::int64_t>(found->joint + 1));
   raise(found->what == robot_arm::Excess::TorqueHard ? hard_exceeded_ : limit_exceeded_,
         static_cast<std::uint8_t>(found->joint + 1), found->value, found->limit);
+}
+
+void FloatingArm::watch_work(bool free) noexcept {
+  const auto found = work_.watch(free);
+  if (!found) return;
+  using robot_arm::Work;
+  end_motion(Trouble::limit_tripped);
+  raise(found->what == Work::ToolForce ? force_exceeded_
+        : found->what == Work::Power   ? power_exceeded_
+                                       : tool_power_exceeded_,
+        found->value, found->limit);
 }
 
 }  // namespace hirosco

@@ -5,10 +5,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "subsystems/robot_arm/control/walls.hpp"
 #include "subsystems/robot_arm/control/watch.hpp"
 #include "subsystems/robot_arm/floating/commanded_floating_arm.hpp"
-#include "subsystems/robot_arm/floating/law_change.hpp"
 
 namespace hirosco {
 
@@ -27,8 +25,10 @@ class FloatingArm final : public CommandedFloatingArm {
   void measure(const Cycle& cycle) noexcept;
   void advance() noexcept;
   void control(bool moves) noexcept;
-  [[nodiscard]] robot_arm::JointVector torque_of(const robot_arm::JointVector& rates) noexcept;
-  void watch() noexcept;
+  void watch(bool free) noexcept;
+  void watch_work(bool free) noexcept;
+  void tell(const robot_arm::Lead::End& end) noexcept;
+  [[nodiscard]] bool tripped() const noexcept { return watch_.tripped() || work_.tripped(); }
   void watch_contact() noexcept;
   [[nodiscard]] bool may_act() noexcept;
   void stop_before(const robot_arm::EndAhead& end) noexcept;
@@ -47,9 +47,6 @@ class FloatingArm final : public CommandedFloatingArm {
   Event<double, PairNames> too_near_{"TOO_NEAR"};  ///< m, and who
 
   robot_arm::Watch watch_;
-  robot_arm::FloatAims float_aims_;
-  robot_arm::LawChange law_change_;
-  double fastest_rad_s_{0};  ///< that the cycle leaves to what keeps joints in their ranges
 };
 
 [[nodiscard]] std::unique_ptr<Subsystem> make_floating_arm();

@@ -14,20 +14,21 @@ void FloatingBeforehand::begin(double cycle_s) {
   end();
 }
 
-std::optional<FloatingReason> FloatingBeforehand::judge(const JointVector& goal, double duration_s) noexcept {
+std::optional<FloatingReason> FloatingBeforehand::judge(const JointVector& from, const JointVector& goal,
+                                                        double duration_s) noexcept {
   const Bounds bounds = parts_.known.bounds();
   const JointVector& here = parts_.drives.measured().position;
   for (std::size_t i = 0; i < bounds.size(); ++i) {
     const auto joint = static_cast<Eigen::Index>(i);
     if (!(goal[joint] >= bounds[i].lowest && goal[joint] <= bounds[i].highest))
       return FloatingReason{FloatingTrouble::out_of_range, "joint", static_cast<std::int64_t>(i + 1)};
-    const double fastest = fastest_of_course * std::abs(goal[joint] - here[joint]) / duration_s;
+    const double fastest = fastest_of_course * std::abs(goal[joint] - from[joint]) / duration_s;
     if (!(fastest <= bounds[i].motion.velocity))
       return FloatingReason{FloatingTrouble::too_fast, "joint", static_cast<std::int64_t>(i + 1)};
   }
   if (const auto there = parts_.obstacles.nearer(here, goal); there.distance_m != HUGE_VAL)
     return FloatingReason{FloatingTrouble::too_near, there.names, millimetres(there.distance_m)};
-  joints_.begin(here, goal, cycle_s_);
+  joints_.begin(from, goal, cycle_s_);
   of_ = Of::AllJoints;
   return std::nullopt;
 }

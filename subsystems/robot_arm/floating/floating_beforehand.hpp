@@ -32,7 +32,8 @@ class FloatingBeforehand {
 
   // --- each is under way then; step() goes on with it ---------------------------------------------------------------------
   /// To go there in so long. Or why not, as far as is known at once.
-  [[nodiscard]] std::optional<FloatingReason> judge(const JointVector& goal, double duration_s) noexcept;
+  [[nodiscard]] std::optional<FloatingReason> judge(const JointVector& from, const JointVector& goal,
+                                                    double duration_s) noexcept;
   void judge(const ToolWay::Plan& plan) noexcept;
   [[nodiscard]] bool under_way() const noexcept { return of_ != Of::Nothing; }
   /// Nobody waits for it any more.

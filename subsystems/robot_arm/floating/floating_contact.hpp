@@ -9,6 +9,7 @@
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/floating/floating_craft.hpp"
 #include "subsystems/robot_arm/floating/floating_parameters.hpp"
+#include "subsystems/robot_arm/force_sensor.hpp"
 #include "subsystems/robot_arm/joint_contact.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
@@ -26,12 +27,17 @@ class FloatingContact {
     const UrdfArm& known;
     const Drives& drives;
     FloatingCraft& craft;
+    ForceSensor& wrist;  ///< counts anew as joints do
     FloatingParameters& parameters;  ///< EXTERNAL_TORQUE tells what it finds
   };
   explicit FloatingContact(const Parts& parts) noexcept : parts_{parts} {}
 
-  /// The descriptor has SET_CONTACT: without it nothing is felt.
-  void offer() noexcept { offered_ = true; }
+  /// The descriptor has SET_CONTACT: without it nobody is met.
+  void offer() noexcept { offered_ = feels_ = true; }
+  /// Somebody else wants to know what acts on the joints. Without either nothing is felt.
+  void feel() noexcept { feels_ = true; }
+  /// N m or N of each joint; 0 while brakes have them.
+  [[nodiscard]] const JointVector& external() const noexcept { return observer_->external(); }
   /// In configure().  Realtime: allocates. Thread: the service loop.
   void begin(double cycle_s);
   /// Each cycle, behind the craft's. `driven`: drives have the joints; what brakes hold is nobody's push.
@@ -45,6 +51,8 @@ class FloatingContact {
   void stand_apart() noexcept;
   /// Each cycle in which the arm is driven: what it met, once for each time; nothing mostly.
   [[nodiscard]] std::optional<JointContact::Contact> meet() noexcept;
+  /// Of who was met, by joints (false) or by the sensor at the wrist: he is to be answered, and is not whom the other one has told of just before.
+  [[nodiscard]] bool is_another(bool at_wrist) noexcept;
   /// To whatever is met now.
   [[nodiscard]] JointContact::Reaction reaction() const noexcept;
   /// SET_CONTACT: counts anew.
@@ -54,8 +62,10 @@ class FloatingContact {
   Parts parts_;
   std::optional<MomentumObserver> observer_;
   JointContact felt_;
-  bool offered_{false};
+  bool offered_{false}, feels_{false};
   bool stands_apart_{false};
+  std::uint32_t since_answered_{0};  ///< cycles, of the last one
+  bool felt_at_wrist_{false};  ///< that one, first
 };
 
 }  // namespace hirosco::robot_arm

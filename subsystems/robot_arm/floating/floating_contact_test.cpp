@@ -73,7 +73,9 @@ struct FloatingLaw : FloatingObserver {
   void led(int cycles, const JointVector& push) {
     for (int i = 0; i < cycles; ++i) {
       aims.remember(plant.measured().position);
-      const JointVector drive = robot_arm::float_torque(known, plant.measured(), aims, bounds, 5, 80) + push;
+      const auto aim = [&](Eigen::Index joint) { return aims.of(joint); };
+      const JointVector walls = robot_arm::wall_torque(known, plant.measured(), aim, bounds, 80);
+      const JointVector drive = robot_arm::float_torque(known, plant.measured(), walls, bounds, 5) + push;
       ASSERT_NO_FATAL_FAILURE(observe(1, drive));
       farthest = std::max(farthest, plant.measured().position[4]);
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hirosco::robot_arm {
 namespace {
@@ -23,12 +24,15 @@ void FloatingGuidance::begin(double cycle_s) {
   joints_.keep();
   out_.begin(cycle_s);
   jog_.begin(cycle_s);
+  drive_.begin(cycle_s);
+  held_by_ = LawKind::Position;
   end_motion();
   parts_.parameters.progress.store(0);
 }
 
 void FloatingGuidance::engage() noexcept {
   if (!out_.only_judges()) end_motion();
+  held_by_ = LawKind::Position;
   kept_.let_base_go();
   come_to_hold();
   out_.forget_way();
@@ -52,6 +56,8 @@ void FloatingGuidance::end_motion() noexcept {
   before_.end();
   out_.end();
   jog_.end();
+  drive_.end();
+  stands_behind_drive_ = false;
 }
 
 void FloatingGuidance::stop(const JointVector& rates, double span_s) noexcept {
@@ -75,36 +81,43 @@ void FloatingGuidance::retract(double distance) noexcept {
 void FloatingGuidance::let_go() noexcept {
   end_motion();
   phase_ = Phase::Floats;
+  held_by_ = LawKind::Position;
   kept_.let_base_go();
+}
+
+void FloatingGuidance::hold_by(LawKind kind) noexcept {
+  if (kind != held_by_) stand();
+  held_by_ = kind;
 }
 
 // --- in each cycle -------------------------------------------------------------------------------------------------------
 
 FloatingGuidance::News FloatingGuidance::advance() noexcept {
   kept_.measure(cycle_s_);
+  const double most_w = parts_.parameters.power_limit_w.load();
+  jog_.keep_power(most_w);
+  out_.keep_power(most_w);
   if (!out_.goes()) out_.record();
   if (phase_ == Phase::Holds) {
     kept_.rest();
     if (out_.under_way()) return go_out();
     return before_.under_way() ? judge() : News::None;
   }
-  if (phase_ == Phase::Stops) {
-    stop_.go_on(cycle_s_);
-    if (stop_.over()) come_to_hold();
-    else stand();
-    return News::None;
-  }
+  if (stops()) return come_to_rest();
   if (phase_ == Phase::GoesOut) {
     // It is to be nowhere else: ERR tells of no way that nobody goes.
     kept_.keep();
     return go_out();
   }
-  if (floats()) {
+  if (floats() || driven()) {
     stand();
     out_.forget_way();
+    if (floats() || drive_.step()) return News::None;
+    halt();
+    stands_behind_drive_ = true;
     return News::None;
   }
-  if (jogs_joints() || jogs_tool()) return jog_on();
+  if (jogs_joints() || jogs_tool() || follows()) return jog_on();
   moved_s_ += cycle_s_;
   const Course at = course(moved_s_, duration_s_);
   parts_.parameters.progress.store(at.share);
@@ -114,6 +127,16 @@ FloatingGuidance::News FloatingGuidance::advance() noexcept {
       return News::IllConditioned;
   }
   return moved_s_ >= duration_s_ ? arrive() : News::None;
+}
+
+FloatingGuidance::News FloatingGuidance::come_to_rest() noexcept {
+  stop_.go_on(cycle_s_);
+  if (!stop_.over()) {
+    stand();
+    return News::None;
+  }
+  come_to_hold();
+  return std::exchange(stands_behind_drive_, false) ? News::Reached : News::None;
 }
 
 /// A step in a cycle, while it stands. Its course has begun with the telecommand, and is so flat there that it is joined where it has come to by then: of 26 mm in a
@@ -139,14 +162,17 @@ FloatingGuidance::News FloatingGuidance::judge() noexcept {
 // --- jogged --------------------------------------------------------------------------------------------------------------
 
 FloatingGuidance::News FloatingGuidance::jog_on() noexcept {
-  jog_.advance();
-  if (jog_.of_tool()) kept_.lead(jog_.turning(), jog_.moving(), cycle_s_);
-  if (!jog_.over()) return News::None;
-  joints_.keep(jog_.of_joints() ? jog_.now().position : parts_.drives.measured().position);
-  if (jog_.of_joints()) kept_.keep();
+  const bool followed = follows();
+  if (!followed) jog_.advance();
+  if (jog_.of_tool())
+    kept_.lead(jog_.turning(), jog_.moving(), cycle_s_, soft() ? KeptTool::Leash::Goes : KeptTool::Leash::Waits);
+  if (followed ? !jog_.setpoints().at_rest() : !jog_.over()) return News::None;
+  const bool of_joints = followed || jog_.of_joints();
+  joints_.keep(of_joints ? jog_.now().position : parts_.drives.measured().position);
+  if (of_joints) kept_.keep();
   jog_.end();
   phase_ = Phase::Holds;
-  return News::Reached;
+  return followed ? News::None : News::Reached;
 }
 
 // --- out -----------------------------------------------------------------------------------------------------------------
@@ -173,10 +199,11 @@ FloatingGuidance::News FloatingGuidance::go_out() noexcept {
 
 // --- at its end ----------------------------------------------------------------------------------------------------------
 
-/// The end of a path is not yet the goal: a motion is done when it is measured there.
+/// The end of a path is not yet the goal: a motion is done when it is measured there; of who gives way, when that is where springs are to have it.
 FloatingGuidance::News FloatingGuidance::arrive() noexcept {
   const bool of_tool = phase_ == Phase::ToolMoves;
-  const bool there = of_tool ? kept_.error_m() <= parts_.parameters.goal_tolerance_m.load() : joints_.there();
+  const bool there =
+      soft() || (of_tool ? kept_.error_m() <= parts_.parameters.goal_tolerance_m.load() : joints_.there());
   settled_s_ = there ? settled_s_ + cycle_s_ : 0;
   const bool reached = settled_s_ >= settled_enough_s;
   if (!reached && !(moved_s_ > duration_s_ + patience_s)) return News::None;
@@ -203,11 +230,11 @@ JointVector FloatingGuidance::wanted_rates() const noexcept {
   JointVector rates;
   if (phase_ == Phase::Stops) {
     rates = stop_.rates();
-  } else if (floats()) {
+  } else if (gives_way()) {
     rates = parts_.drives.measured().velocity;
   } else if (phase_ == Phase::GoesOut) {
     rates = joints_.rates(out_.now());
-  } else if (jogs_joints()) {
+  } else if (jogs_joints() || follows()) {
     rates = joints_.rates(jog_.now());
   } else if (keeps_tool()) {
     rates = kept_.rates(parts_.known.bounds());
@@ -216,6 +243,11 @@ JointVector FloatingGuidance::wanted_rates() const noexcept {
   }
   slow_down(rates, parts_.known.bounds());
   return rates;
+}
+
+SoftGoal FloatingGuidance::goal() const noexcept {
+  if (jogs_joints() || follows()) return {jog_.now(), kept_.goal()};
+  return {joints_.setpoint(phase_ == Phase::JointsMove ? course(moved_s_, duration_s_) : Course{}), kept_.goal()};
 }
 
 void FloatingGuidance::tell(bool braked) noexcept {

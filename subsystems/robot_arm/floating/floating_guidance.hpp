@@ -8,14 +8,18 @@
 #include "subsystems/robot_arm/drives.hpp"
 #include "subsystems/robot_arm/floating/floating_beforehand.hpp"
 #include "subsystems/robot_arm/floating/floating_craft.hpp"
+#include "subsystems/robot_arm/floating/floating_doing.hpp"
+#include "subsystems/robot_arm/floating/floating_drive.hpp"
 #include "subsystems/robot_arm/floating/floating_jog.hpp"
 #include "subsystems/robot_arm/floating/floating_parameters.hpp"
 #include "subsystems/robot_arm/floating/floating_trouble.hpp"
 #include "subsystems/robot_arm/floating/floating_way_out.hpp"
 #include "subsystems/robot_arm/floating/kept_joints.hpp"
 #include "subsystems/robot_arm/floating/kept_tool.hpp"
+#include "subsystems/robot_arm/floating/soft_law.hpp"
 #include "subsystems/robot_arm/floating/stop_ramp.hpp"
 #include "subsystems/robot_arm/obstacles.hpp"
+#include "subsystems/robot_arm/posture.hpp"
 #include "subsystems/robot_arm/urdf_arm.hpp"
 
 namespace hirosco::robot_arm {
@@ -23,7 +27,7 @@ namespace hirosco::robot_arm {
 /// Where joints and tool of a craft that floats are to be from cycle to cycle, how fast the joints go for that, and how far a motion is, one at a
 /// time. It reports nothing: it says what is to be told. What telecommands ask of it is FloatingMotions'.
 /// Realtime: bounded, but begin(). Thread: the cycle, and the service loop while there is none.
-class FloatingGuidance {
+class FloatingGuidance : public FloatingDoing {
  public:
   struct Parts {
     const UrdfArm& known;
@@ -32,8 +36,8 @@ class FloatingGuidance {
     Obstacles& obstacles;  ///< no goal of joints is near them, and no way of the tool
     FloatingParameters& parameters;  ///< PROGRESS, PHASE and ERR tell how far it is
     AbortPath& abort_path;
+    const Posture& posture;
   };
-  enum class Phase : std::uint8_t { Holds, JointsMove, ToolMoves, Braked, Stops, GoesOut, JointsJog, ToolJogs, Floats };
   /// What a cycle has brought to the motion.
   enum class News : std::uint8_t {
     None,
@@ -49,7 +53,8 @@ class FloatingGuidance {
         out_{{parts.known, parts.drives, parts.abort_path}},
         jog_{{parts.known, parts.drives, parts.craft, parts.parameters}},
         kept_{{parts.craft, parts.parameters}},
-        joints_{parts.drives} {}
+        joints_{parts.drives},
+        drive_{{parts.known, parts.drives, parts.craft, parts.obstacles, parts.parameters}} {}
 
   /// In configure(), when drives and craft have begun.  Realtime: allocates. Thread: the service loop.
   void begin(double cycle_s);
@@ -68,10 +73,10 @@ class FloatingGuidance {
   void retract(double distance) noexcept;
   /// Whoever leads it has it: it is to be where it is, and came by no way.
   void let_go() noexcept;
-  [[nodiscard]] bool floats() const noexcept { return phase_ == Phase::Floats; }
-
-  [[nodiscard]] bool jogs_joints() const noexcept { return phase_ == Phase::JointsJog; }
-  [[nodiscard]] bool jogs_tool() const noexcept { return phase_ == Phase::ToolJogs; }
+  /// Where it stands it is held so from now on, until it is told to or engages: hard (Position), or by springs. They begin where it is; springs of the same kind go on from where they are.
+  void hold_by(LawKind kind) noexcept;
+  /// Of who follows: Lead has them then.
+  [[nodiscard]] Setpoints& setpoints() noexcept { return jog_.setpoints(); }
 
   /// What is at the tip from now on, of ways that are judged. The craft has it already.
   void carry(const robotics::Pose& tool_in_tip, const Payload& payload) noexcept {
@@ -90,33 +95,34 @@ class FloatingGuidance {
   [[nodiscard]] const FloatingReason& why() const noexcept { return why_; }
   /// It has come to the end of its way back: how far that was, rad or m. Once.
   [[nodiscard]] std::optional<double> end_retreat() noexcept { return out_.end_retreat(); }
-  /// rad/s or m/s of each joint, none faster than it may be.
+  /// rad/s or m/s of each joint, none faster than it may be; of who gives way as they are.
   [[nodiscard]] JointVector wanted_rates() const noexcept;
+  /// Of springs.
+  [[nodiscard]] SoftGoal goal() const noexcept;
+  /// Of torques.
+  [[nodiscard]] const Driven& torques() const noexcept { return drive_.driven(); }
   /// A law of the tool has them, or they come to rest: of paths of joints both ends are in range, and so is what is between.
-  [[nodiscard]] bool may_end_range() const noexcept { return keeps_tool() || stops(); }
+  [[nodiscard]] bool may_end_range() const noexcept { return (keeps_tool() && !gives_way()) || stops(); }
   /// PHASE and ERR. `braked`: the brakes hold it.
   void tell(bool braked) noexcept;
-  [[nodiscard]] bool holds() const noexcept { return phase_ == Phase::Holds; }
-  /// By stop(), not yet at rest.
-  [[nodiscard]] bool stops() const noexcept { return phase_ == Phase::Stops; }
   [[nodiscard]] bool retracts() const noexcept { return out_.retracts(); }
-  /// By its joints or whoever leads it, so that nothing is kept of what a law of the tool keeps.
-  [[nodiscard]] bool keeps_nothing() const noexcept { return phase_ == Phase::GoesOut || floats(); }
 
  protected:
   void start(Phase phase, double duration_s) noexcept;
 
   Parts parts_;
-  Phase phase_{Phase::Holds};
   FloatingBeforehand before_;
   FloatingWayOut out_;
   FloatingJog jog_;
   KeptTool kept_;
+  KeptJoints joints_;
+  FloatingDrive drive_;
 
  private:
   void come_to_hold() noexcept;
   [[nodiscard]] News go_out() noexcept;
   [[nodiscard]] News jog_on() noexcept;
+  [[nodiscard]] News come_to_rest() noexcept;
   [[nodiscard]] News judge() noexcept;
   [[nodiscard]] News arrive() noexcept;
   [[nodiscard]] bool keeps_tool() const noexcept;
@@ -124,7 +130,7 @@ class FloatingGuidance {
   double cycle_s_{0.001};
   double moved_s_{0}, duration_s_{0}, settled_s_{0};
   StopRamp stop_;
-  KeptJoints joints_;
+  bool stands_behind_drive_{false};  ///< whoever drove it waits for that
   FloatingReason why_;
 };
 

@@ -27,9 +27,9 @@ void FloatingJog::begin(double cycle_s) {
   end();
 }
 
-Outcome FloatingJog::joints(const FunctionValues& values) noexcept {
+Outcome FloatingJog::joints(const FunctionValues& values, const JointVector& from) noexcept {
   const std::size_t joints = parts_.known.joints();
-  if (of_ != Of::AllJoints) setpoints_->rest(parts_.drives.measured().position);
+  if (of_ != Of::AllJoints) setpoints_->rest(from);
   of_ = Of::AllJoints;
   setpoints_->jog(vector_of(std::span{values}.first(joints)));
   left_s_ = values[joints];

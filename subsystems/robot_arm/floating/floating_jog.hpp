@@ -33,15 +33,24 @@ class FloatingJog {
 
   /// In configure().  Realtime: allocates. Thread: the service loop.
   void begin(double cycle_s);
-  void end() noexcept { of_ = Of::Nobody; }
+  void end() noexcept {
+    of_ = Of::Nobody;
+    if (setpoints_ && setpoints_->kind() == Setpoints::Kind::Follow) setpoints_->rest(setpoints_->now().position);
+  }
+  /// For whoever leads joints in its place (Lead); he begins where they rest.
+  [[nodiscard]] Setpoints& setpoints() noexcept { return *setpoints_; }
 
   // --- functions: from now on for so long, from the velocities that it has ------------------------------------------------
-  /// Numbers in the order of the descriptor.
-  [[nodiscard]] Outcome joints(const FunctionValues& values) noexcept;
+  /// Numbers in the order of the descriptor; who does not jog them yet begins there.
+  [[nodiscard]] Outcome joints(const FunctionValues& values, const JointVector& from) noexcept;
   /// m/s and rad/s, in the axes of the tool's goal.
   [[nodiscard]] Outcome tool(const std::array<double, 3>& moving_m_s, const std::array<double, 3>& turning_rad_s,
                              double span_s) noexcept;
 
+  /// Joints go no faster from now on than their power permits.
+  void keep_power(double limit_w) noexcept {
+    setpoints_->keep_power(JointVector::Zero(static_cast<Eigen::Index>(parts_.known.joints())), limit_w);
+  }
   /// Each cycle.
   void advance() noexcept;
   [[nodiscard]] bool of_joints() const noexcept { return of_ == Of::AllJoints; }

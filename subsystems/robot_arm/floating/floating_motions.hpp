@@ -6,6 +6,7 @@
 
 #include "hirosco/subsystem/author/handler.hpp"
 #include "subsystems/robot_arm/floating/floating_guidance.hpp"
+#include "subsystems/robot_arm/lead.hpp"
 
 namespace hirosco::robot_arm {
 
@@ -25,10 +26,19 @@ class FloatingMotions final : public FloatingGuidance {
   [[nodiscard]] Outcome jog_tool(const std::array<double, 3>& moving_m_s, const std::array<double, 3>& turning_rad_s,
                                  double span_s) noexcept;
 
+  /// By these torques for so long; then it stands. Who drives it on goes on from the torques that it has.
+  [[nodiscard]] Outcome drive(const FunctionValues& values) noexcept;
+
+  /// After whoever leads its joints, from where they are to be.
+  [[nodiscard]] Outcome follow(Lead& lead) noexcept;
+
   /// Out, by its joints in whatever law. Who comes to rest by stop() begins once it stands, unless end_motion() comes before.
   [[nodiscard]] Outcome leave(FloatingWayOut::By by, double number) noexcept;
   /// The stored path alone is judged; nothing moves.
   [[nodiscard]] Outcome check_abort() noexcept;
+
+ private:
+  [[nodiscard]] JointVector from() const noexcept;
 };
 
 }  // namespace hirosco::robot_arm

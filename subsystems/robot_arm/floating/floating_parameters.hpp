@@ -68,6 +68,26 @@ struct FloatingParameters {
     publish("RETRACT_DISTANCE", retract_distance);
   }
 
+  /// Likewise for each of an arm whose force and power have limits; of one that is held by springs; and of one that is driven by torques.
+  template <class Publish>
+  void each_of_work(const Publish& publish) {
+    publish("TOOL_FORCE", tool_force_n);
+    publish("JOINT_POWER", joint_power_w);
+    publish("TOOL_POWER", tool_power_w);
+    publish("TOOL_FORCE_LIMIT", tool_force_limit_n);
+    publish("POWER_LIMIT", power_limit_w);
+    publish("TOOL_POWER_LIMIT", tool_power_limit_w);
+  }
+  template <class Publish>
+  void each_of_laws(const Publish& publish) {
+    publish("LAW", law);
+    publish("JOINT_STIFFNESS", joint_stiffness);
+  }
+  template <class Publish>
+  void each_of_drive(const Publish& publish) {
+    publish("DES_TORQUE", desired_torque);
+  }
+
   Parameter<CurrentValues> current;
   Parameter<PoseValues> tool, base;
   Parameter<ErrorValues> error;
@@ -83,6 +103,10 @@ struct FloatingParameters {
   Parameter<ToolValues> tool_place;
   Parameter<PayloadValues> payload;
   Parameter<double> tool_radius_m;
+  Parameter<std::array<double, 3>> tool_force_n;
+  Parameter<double> joint_power_w, tool_power_w, tool_force_limit_n, power_limit_w, tool_power_limit_w;
+  Parameter<LawValues> law;
+  Parameter<Joints> joint_stiffness, desired_torque;
 };
 
 }  // namespace hirosco::robot_arm

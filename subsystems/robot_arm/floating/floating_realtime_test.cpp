@@ -4,7 +4,7 @@
 
 #include "hirosco/utilities/allocation_guard.hpp"
 #include "subsystems/robot_arm/control/momentum_observer.hpp"
-#include "subsystems/robot_arm/floating/float_law.hpp"
+#include "subsystems/robot_arm/floating/floating_laws.hpp"
 #include "subsystems/robot_arm/floating/range_ends.hpp"
 #include "subsystems/robot_arm/floating/tool_law.hpp"
 #include "subsystems/robot_arm/floating/tool_way.hpp"
@@ -24,7 +24,12 @@ TEST(FloatingControl, UsesNoHeapInACycle) {
   FloatingModel floating{model, tip};
   ToolWay way{model, tip};
   MomentumObserver observer{7, period_s, 50};
-  FloatAims aims;
+  FloatingLaws laws;
+  laws.begin(7, period_s);
+  laws.set({.joint_n_m_rad = 10 * JointVector::Ones(7), .tool_n_m = 100, .tool_n_m_rad = 10});
+  ToolLever lever;
+  TorqueDrive drive;
+  drive.begin(7);
   const JointVector zeros = JointVector::Zero(7);
   Measured measured{vector_of(std::array{0.10, 0.75, -0.30, -1.25, -0.05, 1.85, 0.0}), zeros, zeros};
   const robotics::Matrix3 upright = robotics::Matrix3::Identity();
@@ -42,9 +47,18 @@ TEST(FloatingControl, UsesNoHeapInACycle) {
       measured.velocity = rates;
       measured.torque = joint_torque(floating, rates, zeros, bounds, per_s);
       observer.update(measured, floating.inertia(), floating.bias(measured.velocity), zeros);
-      if (i == 10) observer.reset(), aims.let_go();
-      aims.remember(measured.position);
-      EXPECT_TRUE(float_torque(floating, measured, aims, bounds, 5, robotics::fastest_rad_s(period_s)).allFinite());
+      if (i == 10) observer.reset(), laws.jump();
+      lever.update(ToolLever::Rows{floating.tool_of_free().bottomRows<3>()});
+      FloatingLaws::Now now;
+      now.kind = static_cast<LawKind>(i % 5);
+      now.rates = rates;
+      now.goal = {{measured.position, rates, zeros}, goal};
+      now.driven = drive.step(measured, {zeros, floating.inertia().diagonal()}, bounds, 0.8, period_s);
+      now.axes = law;
+      now.lever = &lever;
+      now.work = {.force_n = 10, .power_w = 10, .tool_power_w = 1};
+      EXPECT_TRUE(laws.torque(floating, measured, bounds, now).allFinite());
+      EXPECT_GT(laws.swings_rad_s(LawKind::ToolImpedance, law, laws.impedance(), floating), 0);
       measured.position += period_s * rates;
     }
     way.carry({upright, {0, 0, 0.1}}, {20, {0, 0, 0.1}});

@@ -35,6 +35,7 @@ Outcome FloatingTip::take(const robotics::Pose& tool, const Payload& payload, co
   FloatingCraft& craft = parts_.craft;
   if (!craft.begun()) return refused(pus::FailureCode::NotPermittedNow);
   if (parts_.guidance.floats()) return refused(FloatingTrouble::led, "HOLD first");
+  if (parts_.guidance.soft()) return refused(FloatingTrouble::soft, "POSITION_CONTROL first");
   if (now.called || !parts_.guidance.holds()) return refused(pus::FailureCode::Busy);
   craft.carry(tool, payload);
   if (const double left = craft.model().conditioning();

@@ -23,6 +23,10 @@ enum class FloatingTrouble : std::uint16_t {
   too_slow = 0x800B,  ///< longer than it may take, to go there or to judge it
   contact = 0x800C,
   led = 0x800D,  ///< it gives way to whoever leads it: HOLD first
+  load_above_limit = 0x800E,  ///< there is more already than the limit would be
+  too_stiff = 0x800F,  ///< what it moves would swing faster on these springs than its law may; rad/s
+  soft = 0x8010,  ///< springs hold it that this is not for: POSITION_CONTROL first
+  not_led = 0x8011,  ///< nobody leads, or to what is no way for it
 };
 
 /// In words that live as long as the program, or as the shapes of whose names they are.

@@ -56,6 +56,10 @@ class FloatingWayOut {
   };
   /// Each cycle while it is under way and the arm stands, or is led by it.
   [[nodiscard]] At step() noexcept;
+  /// Joints go no faster from now on than their power permits.
+  void keep_power(double limit_w) noexcept {
+    setpoints_->keep_power(JointVector::Zero(static_cast<Eigen::Index>(parts_.known.joints())), limit_w);
+  }
   /// Nobody waits for it any more.
   void end() noexcept { retreats_ = false, abort_.end(), waiting_.reset(); }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "subsystems/robot_arm/control/preferred_posture.hpp"
 #include "subsystems/robot_arm/floating/floating_model.hpp"
 
 namespace hirosco::robot_arm {
@@ -33,11 +34,16 @@ struct ToolGoal {
 /// By which rotation, rad, `is` is behind `wanted`, in the axes in which both stand.
 [[nodiscard]] Vector3 rotation_between(const robotics::Matrix3& is, const robotics::Matrix3& wanted) noexcept;
 
+/// To where joints go, rad/s or m/s, that a tool leaves free while it goes with this share of its full speed (docs/adr/0235): none by more than a quarter of its velocity.
+[[nodiscard]] JointVector drawn_to(const PreferredPosture& preferred, const JointVector& position, Bounds bounds,
+                                   double share) noexcept;
+
 /// Joint velocities by damped least squares, weighted near the ends of ranges (range_ends.hpp). `base_kept`: the attitude that AttitudeHold keeps,
-/// `base`: the one that is.
+/// `base`: the one that is. `drawn`: with which joints go besides, as far as that moves nothing of it; none: they go no farther than they have to.
 /// Realtime: wait-free.
 [[nodiscard]] JointVector tool_rates(ToolLaw law, const FloatingModel& model, Bounds bounds, const ToolGoal& goal,
-                                     const robotics::Matrix3& base, const robotics::Matrix3& base_kept) noexcept;
+                                     const robotics::Matrix3& base, const robotics::Matrix3& base_kept,
+                                     const JointVector* drawn = nullptr) noexcept;
 
 /// All slower by one factor, so that none is faster than its own. What is no number becomes a stop.
 void slow_down(JointVector& rates, Bounds bounds) noexcept;
@@ -54,5 +60,9 @@ struct Course {
 [[nodiscard]] Course course(double t_s, double duration_s) noexcept;
 /// The fastest rate of a course.
 inline constexpr double fastest_of_course = 1.875;
+/// As a share of that.
+[[nodiscard]] inline double pace(const Course& at, double duration_s) noexcept {
+  return at.per_s * duration_s / fastest_of_course;
+}
 
 }  // namespace hirosco::robot_arm

@@ -39,9 +39,13 @@ bool ToolWay::go_on(Bounds bounds) noexcept {
 /// All that is left to the next place of the course, in the time of a step: who is behind a little is not behind at the next one.
 JointVector ToolWay::rates(Bounds bounds, double step_s) const noexcept {
   ToolGoal goal{plan_.tool, Vector3::Zero()};
-  goal.pose.position += course(taken_ * step_s, plan_.duration_s).share * plan_.offset_m;
-  JointVector rates =
-      tool_rates(plan_.law, model_, bounds, goal, base_.orientation().toRotationMatrix(), plan_.base_kept);
+  const Course at = course(taken_ * step_s, plan_.duration_s);
+  goal.pose.position += at.share * plan_.offset_m;
+  JointVector drawn;
+  const bool draws = plan_.preferred.draws();
+  if (draws) drawn = step_s * drawn_to(plan_.preferred, posture_, bounds, pace(at, plan_.duration_s));
+  JointVector rates = tool_rates(plan_.law, model_, bounds, goal, base_.orientation().toRotationMatrix(),
+                                 plan_.base_kept, draws ? &drawn : nullptr);
   rates *= 1 / step_s;  // the law closes in a second what is left
   slow_down(rates, bounds);
   return rates;

@@ -24,6 +24,7 @@ class ToolWay {
     Vector3 offset_m{Vector3::Zero()};
     double duration_s{1};
     double cycle_s{0.001};  ///< of who will go it
+    PreferredPosture preferred{};  ///< to where joints go that the tool leaves free
   };
   /// `model` must outlive this.  Realtime: allocates.
   ToolWay(const robotics::Model& model, robotics::FrameId tip) : model_{model, tip} {}

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
@@ -70,10 +74,16 @@ struct FlownFree : hirosco::testing::Driven {
   robotics::Model model = model_of(floating_folder + "floating_arm.urdf");
   FreePlant plant{model};
   double fastest{0};
+  double steepest{0};  ///< N m or N, that a commanded torque has stepped by in a cycle
+  JointVector commanded{JointVector::Zero(7)};
 
-  FlownFree() : Driven{make_floating_arm(), floating_descriptor(), "mcs-arm"} {}
+  explicit FlownFree(const std::string& descriptor_text = floating_descriptor())
+      : Driven{make_floating_arm(), descriptor_text, "mcs-arm"} {}
   std::vector<double> play(std::span<const double> torques) override {
-    if (mode == DeviceMode::Active) plant.step(vector_of(torques), 0.001);
+    const JointVector now = vector_of(torques);
+    steepest = std::max(steepest, (now - commanded).cwiseAbs().maxCoeff());
+    commanded = now;
+    if (mode == DeviceMode::Active) plant.step(now, 0.001);
     else plant.place(plant.measured().position);
     const Measured& measured = plant.measured();
     fastest = std::max(fastest, measured.velocity.cwiseAbs().maxCoeff());
@@ -84,6 +94,41 @@ struct FlownFree : hirosco::testing::Driven {
   }
   [[nodiscard]] double off(const JointVector& where) const {
     return (plant.measured().position - where).cwiseAbs().maxCoeff();
+  }
+};
+
+/// A flight of it.
+struct FreeArm : ::testing::Test {
+  const std::string done = "1 3 7";
+  FlownFree flown;
+  const JointVector ready = vector_of(std::array{0.10, 0.75, -0.30, -1.25, -0.05, 1.85, 0.0});
+
+  void begin() {
+    flown.plant.place(ready);
+    flown.operate();
+  }
+  hirosco::testing::Sent ask(const char* function, std::initializer_list<double> numbers = {}) {
+    const auto request = flown.rig.call(function, numbers);
+    flown.cycle(3);
+    return request;
+  }
+  std::string asked(const char* function, std::initializer_list<double> numbers = {}) {
+    const auto request = ask(function, numbers);
+    flown.finish(request);
+    return flown.rig.outcome(request);
+  }
+  /// SET_CONTACT; 0: nobody is met.
+  void react_by(std::uint8_t reaction, double limit = 0.3) {
+    const auto request = flown.rig.call_with("SET_CONTACT", {Value{Number{reaction}}, Value{limit}});
+    flown.cycle(5);
+    ASSERT_EQ(flown.rig.outcome(request), done);
+  }
+  [[nodiscard]] double speed() const { return flown.plant.measured().velocity.cwiseAbs().maxCoeff(); }
+  /// As it stands now, by the model of a craft without momentum.
+  [[nodiscard]] FloatingModel now() const {
+    FloatingModel its{flown.model, flown.model.find_frame("tool").value()};
+    EXPECT_TRUE(its.update({}, flown.plant.measured().position));
+    return its;
   }
 };
 
