@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <sstream>
+#include <stdexcept>
+#include <string>
 
 #include "robotics/shapes/collision.hpp"
 #include "robotics/shapes/swept.hpp"
@@ -27,8 +31,14 @@ using robot_arm::testing::Flown;
 
 constexpr int cycles_between_places = 10;
 constexpr int longest_cycles = 70'000;
-/// How near links may come: what is free by 20 mm is so by less than that by hulls.
-constexpr double limit_m = 0.01;
+/// How near links may come: as `hirosco new robot` delivers it, and the subsystem's own descriptor has it (new_robot_test). What is free by 20 mm on the meshes has to be so by more than that on hulls.
+[[nodiscard]] double delivered_limit_m() {
+  std::ifstream file{HIROSCO_SOURCE_DIR "/templates/robot/newpart.xml"};
+  const std::string text{std::istreambuf_iterator<char>{file}, {}};
+  const auto at = text.find("init=\"", text.find("name=\"CLEARANCE_LIMIT\""));
+  if (at == std::string::npos) throw std::runtime_error{"templates/robot/newpart.xml says no CLEARANCE_LIMIT"};
+  return std::stod(text.substr(at + 6));
+}
 
 [[nodiscard]] JointVector read(std::istream& in, std::size_t joints) {
   std::vector<double> numbers(joints);
@@ -50,8 +60,6 @@ void say(const JointVector& position) {
   replace_all(text, "init=\"0 0 -9.81\"", "init=\"0 0 0\"");
   replace_all(text, "minimum=\"-3.15\" maximum=\"3.15\"", "minimum=\"-7\" maximum=\"7\"");
   replace_all(text, "minimum=\"-150\" maximum=\"150\"", "minimum=\"-3000\" maximum=\"3000\"");
-  replace_all(text, "unit=\"m\" init=\"0.02\" minimum=\"0.005\"",
-              fmt::format("unit=\"m\" init=\"{}\" minimum=\"0.005\"", limit_m));
   replace_all(text, "name=\"TIP\" value=\"tool\"", "name=\"TIP\" value=\"" + tip + "\"");
   if (const auto at = text.find("<Setting name=\"MODEL_FILE\""); !fixed.empty() && at != std::string::npos)
     text.insert(at, "<Setting name=\"FIXED\" value=\"" + fixed + "\"/>");
@@ -170,7 +178,7 @@ int main(int argc, char** argv) {
       for (const double each : apart) fmt::print("{} ", each);
       fmt::print("\n");
     } else if (what == "time") {
-      clearance.set_limit(limit_m);
+      clearance.set_limit(delivered_limit_m());
       const JointVector from = read(in, joints), goal = read(in, joints);
       fmt::print("time {}\n", fmt::join(microseconds(clearance, from, goal), " "));
     } else if (what == "move" || what == "jog") {

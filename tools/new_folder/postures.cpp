@@ -28,7 +28,7 @@ constexpr double goal_share = 0.2, goal_farthest = 0.3;
 constexpr double bent_share = 0.6;
 /// Where a joint turns on and on, and where postures and pages end.
 constexpr double turn_rad = 3.14;
-/// CLEARANCE_LIMIT of what is made is 0.02: whoever would come to rest just there is refused.
+/// CLEARANCE_LIMIT of what is made is 0.01, and whoever would come to rest just there is refused; twice that, and some, may be asked for.
 constexpr double clear_m = 0.025;
 /// Between two looks at a way, rad or m of the joint that goes farthest.
 constexpr double look_each = 0.03;
