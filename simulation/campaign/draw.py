@@ -4,7 +4,7 @@
 import pathlib, random, sys
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent / "judge"), str(pathlib.Path(__file__).resolve().parent)]
-import losses, retrieval  # noqa: E401, E402
+import exchanges, losses, retrieval  # noqa: E401, E402
 from descriptors import ERROR, OFFLINE, OPERATIONAL, POST, SAFE, STATES  # noqa: E402
 from of_mission import OfMission  # noqa: E402
 from plan_lines import BEGIN_S, DEVICE_FAULTS, FINALE_S, WAY_TO, PlanLines  # noqa: E402
@@ -231,6 +231,7 @@ class Draw:
         self.ask_again()
         self.reboot()
         self.stop_beside()
+        exchanges.add(self.plan, self.flight_seed, BEGIN_S, FINALE_S)
         if self.index % SILENCED_EVERY == SILENCED_AT:
             self.strike_silenced()
         elif losses.loses(self.flight_seed):

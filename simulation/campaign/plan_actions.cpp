@@ -28,6 +28,7 @@ bool PlanActions::do_action(const std::vector<std::string>& words) {
     return octets && parts_.traffic.send_packet(subject, *octets);
   }
   if (verb == "flood") return flood(words);
+  if (verb == "edit") return edit(words);
   if (verb == "log") return disk_fault(words);
   if (verb == "safe") {
     parts_.craft.stop_beside_flight();
@@ -103,6 +104,15 @@ bool PlanActions::telecommand(const std::vector<std::string>& words) {
                                       .subtype = static_cast<std::uint8_t>(numbers[2]),
                                       .ack = static_cast<std::uint8_t>(numbers[3])},
                                      *data);
+}
+
+/// edit MEMBER HOW: what its file says from now on
+bool PlanActions::edit(const std::vector<std::string>& words) {
+  if (words.size() != 3) return false;
+  const auto edit = parts_.texts.edit(words[1], words[2]);
+  if (!edit) return false;
+  parts_.trace.say("wrote {} {:08x} {}", words[1], edit->crc, edit->sound ? "sound" : "faulty");
+  return true;
 }
 
 /// flood ORIGIN valid|damaged COUNT: all in one instant

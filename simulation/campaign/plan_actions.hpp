@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simulation/campaign/campaign_log.hpp"
+#include "simulation/campaign/edited_texts.hpp"
 #include "simulation/campaign/flight_traffic.hpp"
 #include "simulation/campaign/plan.hpp"
 #include "simulation/campaign/planted_defects.hpp"
@@ -23,6 +24,7 @@ class PlanActions {
     Disk& disk;
     WorldTrace& trace;
     FlightTraffic& traffic;
+    EditedTexts& texts;
   };
   explicit PlanActions(const Parts& parts) : parts_{parts} {}
 
@@ -39,6 +41,7 @@ class PlanActions {
   [[nodiscard]] bool supervisor_fault(const std::vector<std::string>& words);
   [[nodiscard]] bool disk_fault(const std::vector<std::string>& words);
   [[nodiscard]] bool telecommand(const std::vector<std::string>& words);
+  [[nodiscard]] bool edit(const std::vector<std::string>& words);
   [[nodiscard]] bool flood(const std::vector<std::string>& words);
 
   Parts parts_;

@@ -41,6 +41,14 @@ class PlanLines:
         data = name.encode().ljust(16, b"\0") + bytes([len(arguments), *(octet for pair in enumerate(arguments, 1) for octet in pair)])
         self.telecommand(time, "ground", subsystem, name, data)
 
+    def exchange(self, time, member, name, *arguments):
+        """REREAD, REPLACE, CONFIRM or TAKE_BACK of a member."""
+        data = name.encode().ljust(16, b"\0") + bytes([1 + len(arguments), 1]) + struct.pack(">H", member.apid)
+        for place, given in enumerate(arguments, 2):
+            words = given.encode() if isinstance(given, str) else b""
+            data += bytes([place]) + struct.pack(">H", len(words) if isinstance(given, str) else given) + words
+        self.add(time, f"tc ground {self.mission.supervisor.apid} 8 1 15 {data.hex()}  # {member.name} {name} {' '.join(map(str, arguments))}".rstrip())
+
     def drive(self, time, state, mode=None):
         """Ground brings all who act into a state, step by step, 30 ms each, as they are in `mode`. Where it has no links, those of the usual one are asked
         for: a configuration without them refuses them."""

@@ -3,11 +3,18 @@
 #include "simulation/campaign/planned_flight.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "simulation/spacecraft/flight_origin.hpp"
 
 namespace hirosco::campaign {
+namespace {
+
+/// Of each member's program, beside the mission's own: what REPLACE puts in its place.
+constexpr std::array<std::string_view, 2> flown_versions{"2", "3"};
+
+}  // namespace
 
 void PlannedFlight::Observer::told(OnboardTime, std::string_view line) {
   const double now_s = craft != nullptr ? seconds(craft->now() - start_of_flight) : 0.0;
@@ -19,12 +26,18 @@ PlannedFlight::PlannedFlight(const descriptor::Mission& mission, simulation::Mod
     : mission_{mission},
       plan_{std::move(plan)},
       defect_{defect ? std::move(defect) : std::make_unique<PlantedDefect>()},
-      modules_{std::move(modules)} {
+      modules_{std::move(modules)},
+      texts_{mission_, descriptor::file_system()} {
   if (!plan_.mode.empty()) mission_.start_mode = plan_.mode;
   if (plan_.ends.empty()) plan_.ends = {mission_.start_mode.empty() ? mission_.initial_mode : mission_.start_mode};
   defect_->mission = &mission_;
   if (defect_->edit) defect_->edit(mission_);
   if (defect_->devices) defect_->devices(modules_.devices);
+  // Other versions are the same program again: what is seen of them is which one runs.
+  for (const auto& member : mission_.subsystems)
+    for (const std::string_view version : flown_versions)
+      if (const auto own = modules_.subsystems.find(member.executable); own != modules_.subsystems.end())
+        modules_.subsystems.emplace(fmt::format("{}@{}", member.executable, version), own->second);
   disk_.keeps = defect_->keeps;
   craft_ = std::make_unique<simulation::Spacecraft>(simulation::Spacecraft::Parts{
       .mission = mission_,
@@ -37,6 +50,9 @@ PlannedFlight::PlannedFlight(const descriptor::Mission& mission, simulation::Mod
       .make_log_readings = [this](const Clock& clock) { return readings_on(disk_, clock); },
       .open_database = [this](supervisor::DatabaseStrategy) { return database_on(disk_); },
       .wrap_channel = defect_->wrap_channel,
+      .mistake_version = defect_->mistake_version,
+      .links = defect_->links,
+      .files = texts_.source(defect_->reads),
       .revives_after = revives_after()});
   defect_->craft = craft_.get();
   observer_.craft = craft_.get();
@@ -50,7 +66,8 @@ PlannedFlight::PlannedFlight(const descriptor::Mission& mission, simulation::Mod
                                       .defect = *defect_,
                                       .disk = disk_,
                                       .trace = *trace_,
-                                      .traffic = *traffic_});
+                                      .traffic = *traffic_,
+                                      .texts = texts_});
 }
 
 /// A keeper stands behind the supervisors of flights that lose one; without it those of the others fly as they always have.

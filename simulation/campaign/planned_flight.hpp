@@ -9,6 +9,7 @@
 
 #include "hirosco/descriptor/model/mission.hpp"
 #include "simulation/campaign/campaign_log.hpp"
+#include "simulation/campaign/edited_texts.hpp"
 #include "simulation/campaign/finale.hpp"
 #include "simulation/campaign/flight_traffic.hpp"
 #include "simulation/campaign/pinged_time.hpp"
@@ -48,6 +49,7 @@ class PlannedFlight {
   FlightPlan plan_;
   std::unique_ptr<PlantedDefect> defect_;
   simulation::Modules modules_;
+  EditedTexts texts_;
   Disk disk_;
   std::unique_ptr<supervisor::Database> unused_{database_on(disk_)};
   Observer observer_;

@@ -256,10 +256,41 @@ void i17(PlantedDefect& defect) {
              }});
 }
 
+/// Whoever is to fall back or to go down when it has held on for its time does neither.
+void i18(PlantedDefect& defect) {
+  defect.edit = [](descriptor::Mission& mission) {
+    for (auto& link : mission.links) {
+      if (link.on_loss == descriptor::OnLoss::Fallback) link.on_loss = descriptor::OnLoss::Ignore;
+      link.hold += std::chrono::minutes{1};
+    }
+  };
+}
+
+/// Each five-hundredth sample of a queue is swallowed.
+void i19(PlantedDefect& defect) {
+  static constexpr std::uint64_t every = 500;
+  defect.tampered_links.assign(defect.links.begin(), defect.links.end());
+  for (const LinkMechanism*& mechanism : defect.tampered_links)
+    if (mechanism->kind() == LinkKind::Queued)
+      mechanism = defect.lossy_queue.emplace_back(std::make_unique<LossyQueue>(*mechanism, every)).get();
+  defect.links = defect.tampered_links;
+}
+
+/// Of a descriptor that was edited is read what nobody wrote.
+void i20(PlantedDefect& defect) {
+  defect.reads = [](std::string text) { return std::move(text) + "<!-- and more -->\n"; };
+}
+
+/// In place of one version another one is started.
+void i21(PlantedDefect& defect) {
+  defect.mistake_version = [](const std::string& version) { return version == "2" ? std::string{"3"} : version; };
+}
+
 const std::map<std::string_view, MakeDefect>& planted_defects() {
   static const std::map<std::string_view, MakeDefect> all{
-      {"I1", i1},   {"I2", i2},   {"I3", i3},   {"I4", i4},   {"I5", i5},   {"I6", i6},   {"I8", i8},   {"I9", i9},
-      {"I10", i10}, {"I11", i11}, {"I12", i12}, {"I13", i13}, {"I14", i14}, {"I15", i15}, {"I16", i16}, {"I17", i17}};
+      {"I1", i1},   {"I2", i2},   {"I3", i3},   {"I4", i4},   {"I5", i5},   {"I6", i6},   {"I8", i8},
+      {"I9", i9},   {"I10", i10}, {"I11", i11}, {"I12", i12}, {"I13", i13}, {"I14", i14}, {"I15", i15},
+      {"I16", i16}, {"I17", i17}, {"I18", i18}, {"I19", i19}, {"I20", i20}, {"I21", i21}};
   return all;
 }
 

@@ -19,6 +19,11 @@ struct PlantedDefect {
   std::function<void(simulation::DeviceCatalogue&)> devices{};
   std::function<std::unique_ptr<Channel>(std::string_view, std::unique_ptr<Channel>)> wrap_channel{};
   std::function<bool(const supervisor::LogRecord&)> keeps{};
+  std::function<std::string(std::string)> reads{};  ///< what is read in place of a descriptor that was edited
+  simulation::MistakeVersion mistake_version{};
+  LinkMechanisms links{local_link_mechanisms()};
+  std::vector<std::unique_ptr<LinkMechanism>> lossy_queue{};  ///< what of `links` stands in for another
+  std::vector<const LinkMechanism*> tampered_links{};
   std::function<void(const std::vector<std::string>&)> after_action{};
   std::function<void()> each_instant{};
   std::uint32_t clock_percent{100};  ///< what the devices' clocks should be, in percent of what they are

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "hirosco/data_transfer/channel/channel.hpp"
 #include "hirosco/data_transfer/device/data_flow.hpp"
 #include "hirosco/data_transfer/device/device_frame.hpp"
+#include "hirosco/data_transfer/link/link.hpp"
 
 /// What stands between two parts and changes what they say to each other.
 namespace hirosco::campaign {
@@ -41,6 +43,50 @@ class TamperedChannel final : public Channel {
  private:
   std::unique_ptr<Channel> channel_;
   Hooks hooks_;
+};
+
+/// A queue whose producer's end lets so many samples through and swallows the next one: nobody counts it.
+class LossyQueue final : public LinkMechanism {
+ public:
+  LossyQueue(const LinkMechanism& queue, std::uint64_t every) : queue_{queue}, every_{every} {}
+  [[nodiscard]] LinkMethod method() const noexcept override { return queue_.method(); }
+  [[nodiscard]] LinkKind kind() const noexcept override { return queue_.kind(); }
+  [[nodiscard]] bool wakes() const noexcept override { return queue_.wakes(); }
+  [[nodiscard]] Result<MemoryHandle> establish(MemoryProvider& provider, const LinkLayout& layout) const override {
+    return queue_.establish(provider, layout);
+  }
+  [[nodiscard]] Result<std::unique_ptr<LinkWriter>> produce(MemoryProvider& provider, const MemoryHandle& shared,
+                                                            const LinkLayout& layout) const override {
+    auto writer = queue_.produce(provider, shared, layout);
+    if (!writer) return writer;
+    return std::make_unique<Writer>(std::move(*writer), every_);
+  }
+  [[nodiscard]] Result<std::unique_ptr<LinkReader>> consume(MemoryProvider& provider, const MemoryHandle& shared,
+                                                            const LinkLayout& layout) const override {
+    return queue_.consume(provider, shared, layout);
+  }
+  [[nodiscard]] Result<std::unique_ptr<LinkView>> look(MemoryProvider& provider,
+                                                       const MemoryHandle& shared) const override {
+    return queue_.look(provider, shared);
+  }
+
+ private:
+  class Writer final : public LinkWriter {
+   public:
+    Writer(std::unique_ptr<LinkWriter> writer, std::uint64_t every) : writer_{std::move(writer)}, every_{every} {}
+    void write(Octets payload, TimePoint sampled_at, LinkStatus status) noexcept override {
+      if (++written_ % every_ != 0) writer_->write(payload, sampled_at, status);
+    }
+    void set_status(LinkStatus status) noexcept override { writer_->set_status(status); }
+
+   private:
+    std::unique_ptr<LinkWriter> writer_;
+    std::uint64_t every_;
+    std::uint64_t written_{0};
+  };
+
+  const LinkMechanism& queue_;
+  std::uint64_t every_;
 };
 
 /// The device's side of its flow: changes each command before the device reads it.

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/campaign/world_trace.hpp"
 
+#include <span>
 #include <utility>
+
+#include "hirosco/utilities/crc32.hpp"
 
 namespace hirosco::campaign {
 namespace {
@@ -60,6 +63,7 @@ void WorldTrace::look_at(Member& member) {
     if (seen[i] != member.seen[i] && (page != nullptr || i == 0)) say("{} {} {}", words[i], member.name, seen[i]);
   member.seen = seen;
   if (page == nullptr) return;
+  look_at_program(member);
   for (std::size_t i = 0; i < member.links.size(); ++i) {
     const std::uint32_t link = page->incoming[i].link.load();
     if (link != member.links[i]) say("incoming {} {} {}", member.name, i, link);
@@ -79,6 +83,20 @@ void WorldTrace::look_at(Member& member) {
     say("still {} since={}", member.name,
         std::chrono::duration_cast<std::chrono::microseconds>(member.moved - start_of_flight).count());
   }
+}
+
+/// Which version runs, and by which text of its descriptor: what its process itself has of it.
+void WorldTrace::look_at_program(Member& member) {
+  const std::string_view version = craft_.version(member.name);
+  if (const std::string_view named = version.empty() ? "-" : version; named != member.version) {
+    say("version {} {}", member.name, named);
+    member.version = named;
+  }
+  const GenericSubsystem* subsystem = craft_.subsystem(member.name);
+  const std::string* text = subsystem != nullptr ? subsystem->descriptor().text.get() : nullptr;
+  if (text == nullptr || text == member.text) return;
+  member.text = text;
+  say("text {} {:08x}", member.name, crc32(std::as_bytes(std::span{*text})));
 }
 
 void WorldTrace::look_at(Device& device) {

@@ -37,6 +37,8 @@ class WorldTrace {
     std::string name;
     std::array<std::uint64_t, 5> seen{};  ///< alive, state, configuration, inhibited, cycling
     std::array<std::uint32_t, told_incoming_links> links{};
+    std::string version{"-"};
+    const std::string* text{nullptr};  ///< that it flies by
     std::uint64_t cycles{0};
     std::uint64_t period_ns{0};
     TimePoint moved{};
@@ -52,6 +54,7 @@ class WorldTrace {
 
   [[nodiscard]] std::int64_t now_us() const;
   void look_at(Member& member);
+  void look_at_program(Member& member);
   void look_at(Device& device);
   void look_at_links();
   void count_cycles();

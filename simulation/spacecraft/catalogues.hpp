@@ -30,6 +30,7 @@ struct SubsystemMaker {
   /// Of what can hold the mission's ground link: here it is made on the simulated ground.
   std::function<std::unique_ptr<Subsystem>(OpenGroundTransport)> make_on_transport;
 };
+/// Another version of one stands there as NAME@VERSION, as in a manifest (docs/adr/0089).
 using SubsystemCatalogue = std::map<std::string, SubsystemMaker, std::less<>>;
 /// Makes the simulated device of an executable, at the device's side of an endnode.
 using MakeDevice =

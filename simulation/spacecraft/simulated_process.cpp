@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <utility>
 
 namespace hirosco::simulation {
 namespace {
@@ -16,9 +17,10 @@ template <class Page>
 
 }  // namespace
 
-SimulatedProcess::SimulatedProcess(const descriptor::MissionSubsystem& described, std::unique_ptr<Subsystem> author,
-                                   Platform platform)
+SimulatedProcess::SimulatedProcess(const descriptor::MissionSubsystem& described, std::string version,
+                                   std::unique_ptr<Subsystem> author, Platform platform)
     : described_{described},
+      version_{std::move(version)},
       author_{std::move(author)},
       clock_{platform.clock},
       channels_{described.subsystem.resources.channel_kb.value_or(ChannelPair::default_capacity)},

@@ -42,12 +42,15 @@ class SimulatedProcess {
  public:
   static constexpr TimePoint never = TimePoint::max();
 
-  SimulatedProcess(const descriptor::MissionSubsystem& described, std::unique_ptr<Subsystem> author, Platform platform);
+  /// `version`: of its program; empty: the mission's own.
+  SimulatedProcess(const descriptor::MissionSubsystem& described, std::string version,
+                   std::unique_ptr<Subsystem> author, Platform platform);
   SimulatedProcess(const SimulatedProcess&) = delete;
   SimulatedProcess& operator=(const SimulatedProcess&) = delete;
 
   [[nodiscard]] const std::string& name() const noexcept { return described_.subsystem.name; }
   [[nodiscard]] std::uint16_t id() const noexcept { return described_.subsystem.id; }
+  [[nodiscard]] const std::string& version() const noexcept { return version_; }
   [[nodiscard]] bool lives() const noexcept { return !end_; }
   /// Empty while it lives.
   [[nodiscard]] const std::optional<supervisor::ProcessEnd>& end() const noexcept { return end_; }
@@ -111,6 +114,7 @@ class SimulatedProcess {
   [[nodiscard]] TimePoint own_loop_due(std::size_t loop) const noexcept;
 
   descriptor::MissionSubsystem described_;  ///< outlives the supervisor that started it
+  std::string version_;
   std::unique_ptr<Subsystem> author_;
   ProcessClock clock_;
   ChannelPair channels_;

@@ -43,6 +43,10 @@ class SimulatedGrip final : public supervisor::ProcessGrip {
   const Clock& clock_;
 };
 
+[[nodiscard]] std::string listed_as(const descriptor::MissionSubsystem& described, const std::string& version) {
+  return version.empty() ? described.executable : described.executable + "@" + version;
+}
+
 }  // namespace
 
 SimulatedProcess* SimulatedProcesses::find(std::string_view name) noexcept {
@@ -60,7 +64,8 @@ void SimulatedProcesses::kill(std::string_view name) {
 }
 
 Result<supervisor::LaunchedSubsystem> SimulatedProcesses::launch(const descriptor::MissionSubsystem& described) {
-  const auto maker = parts_.subsystems.find(described.executable);
+  const std::string version = version_of(described);
+  const auto maker = parts_.subsystems.find(listed_as(described, version));
   if (maker == parts_.subsystems.end() || !maker->second.make)
     return fail(ErrorCode::NotFound, "no such subsystem in this program");
   const bool holds_ground_link = described.subsystem.name == parts_.mission.ground.subsystem;
@@ -70,7 +75,7 @@ Result<supervisor::LaunchedSubsystem> SimulatedProcesses::launch(const descripto
   const SimulatedProcess* before = nullptr;
   for (const auto& earlier : processes_)
     if (earlier->id() == described.subsystem.id) before = earlier.get();
-  processes_.push_back(std::make_unique<SimulatedProcess>(described, std::move(author), parts_.platform));
+  processes_.push_back(std::make_unique<SimulatedProcess>(described, version, std::move(author), parts_.platform));
   SimulatedProcess& process = *processes_.back();
   if (before != nullptr) process.count_on_from(*before);
   supervisor::LaunchedSubsystem launched;
@@ -112,6 +117,23 @@ std::expected<supervisor::AdoptedSubsystem, supervisor::NotAdopted> SimulatedPro
   adopted.launched.process = static_cast<std::uint32_t>(found - processes_.begin() + 1);
   adopted.launched.grip = std::make_shared<SimulatedGrip>(process, parts_.platform.clock);
   return adopted;
+}
+
+std::expected<bool, supervisor::StartRefusal> SimulatedProcesses::prepare(const descriptor::MissionSubsystem& described,
+                                                                          const std::string& version) {
+  const std::string name = listed_as(described, version);
+  if (parts_.subsystems.contains(name)) return true;
+  return std::unexpected{supervisor::StartRefusal{{ErrorCode::NotFound, "no such version in this program"},
+                                                  name + " is no subsystem of this program"}};
+}
+
+void SimulatedProcesses::use(const descriptor::MissionSubsystem& described, const std::string& version) {
+  versions_[described.subsystem.id] = parts_.mistake_version ? parts_.mistake_version(version) : version;
+}
+
+std::string SimulatedProcesses::version_of(const descriptor::MissionSubsystem& described) const {
+  const auto found = versions_.find(described.subsystem.id);
+  return found != versions_.end() ? found->second : std::string{};
 }
 
 std::optional<supervisor::ProcessEnd> SimulatedProcesses::ended(std::uint32_t process) {

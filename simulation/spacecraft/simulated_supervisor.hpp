@@ -39,7 +39,9 @@ class SimulatedSupervisor {
   [[nodiscard]] supervisor::Guard& guard() noexcept { return *guard_; }
   [[nodiscard]] bool finished() const noexcept { return supervisor_ && supervisor_->finished(); }
   /// There is one, and it does not hang.
-  [[nodiscard]] bool supervises() const noexcept { return supervisor_ && clock_.now() >= hangs_until_; }
+  [[nodiscard]] bool supervises() const noexcept {
+    return supervisor_ && !stands_still_ && clock_.now() >= hangs_until_;
+  }
 
   /// When supervisor, guard or what stands in for them is due.
   [[nodiscard]] TimePoint next_wake() const noexcept;
@@ -59,6 +61,8 @@ class SimulatedSupervisor {
   /// It ends at this very moment, in the middle of its step: of what it does from here on until that returns nothing reaches pages
   /// or the journal.
   void die_here();
+  /// In the middle of its step, as long as this is so: what is due beside it goes on.
+  void stand_still(bool still) noexcept { stands_still_ = still; }
   [[nodiscard]] bool is_dying() const noexcept { return last_moment_ != nullptr; }
   /// `hirosco safe`: the guard stops everything at once, or the next one where there is none now; the supervisor hears of it in its next
   /// step.
@@ -70,7 +74,9 @@ class SimulatedSupervisor {
   void make(std::uint32_t first_epoch);
   void revive(TimePoint now);
   void step_supervisor(TimePoint now);
-  [[nodiscard]] TimePoint supervisor_due() const noexcept { return std::max(supervisor_wake_, hangs_until_); }
+  [[nodiscard]] TimePoint supervisor_due() const noexcept {
+    return stands_still_ ? never : std::max(supervisor_wake_, hangs_until_);
+  }
   /// When the keeper ends it, as it hangs; `never`: it does not, or not as long.
   [[nodiscard]] TimePoint ended_at() const noexcept;
 
@@ -79,6 +85,7 @@ class SimulatedSupervisor {
   std::optional<TimePoint> revive_at_;  ///< there is no supervisor now
   std::uint32_t next_first_epoch_{1};
   std::unique_ptr<LastMoment> last_moment_;  ///< of one that dies in the middle of its step; null: none does
+  bool stands_still_{false};  ///< in the middle of its step
   int deaths_{0};
   std::optional<supervisor::Guard> guard_;
   std::unique_ptr<supervisor::Supervisor> supervisor_;

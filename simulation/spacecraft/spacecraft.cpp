@@ -18,6 +18,7 @@ namespace {
 
 Spacecraft::Spacecraft(const Parts& parts)
     : mission_{parts.mission},
+      links_{parts.links},
       clock_{clock_at_start()},
       stores_{{.clock = clock_,
                .log = parts.log,
@@ -32,7 +33,8 @@ Spacecraft::Spacecraft(const Parts& parts)
                   .platform = platform([this, &observer = parts.observer](
                                            std::string_view text) { observer.told(clock_.onboard(), text); },
                                        parts.realtime),
-                  .wrap_channel = parts.wrap_channel}},
+                  .wrap_channel = parts.wrap_channel,
+                  .mistake_version = parts.mistake_version}},
       devices_{{.mission = parts.mission,
                 .makers = parts.devices,
                 .flows = flows_,
@@ -64,7 +66,7 @@ Platform Spacecraft::platform(std::function<void(std::string_view)> explain, boo
           .flows = flows_,
           .realtime = realtime,
           .explain = std::move(explain),
-          .links = local_link_mechanisms()};
+          .links = links_};
 }
 
 // --- virtual time ------------------------------------------------------------------------------------------------------
@@ -87,7 +89,8 @@ bool Spacecraft::advance(TimePoint end) {
   if (supervision_.finished()) return false;
   const TimePoint due = std::min({supervision_.next_wake(), devices_.next_wake(), loops_.next_wake()});
   if (due > end) {
-    clock_.set(end);
+    clock_.set(
+        std::max(end, clock_.now()));  // it may be over already: a supervisor hung for longer, in the midst of its step
     return false;
   }
   const TimePoint now = std::max(due, clock_.now());
@@ -96,6 +99,13 @@ bool Spacecraft::advance(TimePoint end) {
   loops_.step(now);
   supervision_.step(now);
   return true;
+}
+
+void Spacecraft::supervisor_hangs_here(Duration span) {
+  supervision_.stand_still(true);
+  run(span);
+  supervision_.stand_still(false);
+  supervision_.die_here();
 }
 
 CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view function,
@@ -109,6 +119,11 @@ CommandOutcome Spacecraft::command(std::string_view subsystem, std::string_view 
 }
 
 // --- subsystems by name --------------------------------------------------------------------------------------------------
+
+std::string_view Spacecraft::version(std::string_view name) const noexcept {
+  const SimulatedProcess* process = processes_.find(name);
+  return process != nullptr ? std::string_view{process->version()} : std::string_view{};
+}
 
 const GenericSubsystem* Spacecraft::subsystem(std::string_view name) const noexcept {
   const SimulatedProcess* process = processes_.find(name);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "hirosco/data_transfer/device/local_flows.hpp"
+#include "hirosco/data_transfer/link/link.hpp"
 #include "hirosco/data_transfer/memory/heap_memory.hpp"
 #include "simulation/spacecraft/named_commands.hpp"
 #include "simulation/spacecraft/simulated_loops.hpp"
@@ -39,6 +40,8 @@ class Spacecraft final {
     std::function<std::unique_ptr<supervisor::LogReadings>(const Clock&)> make_log_readings{};
     supervisor::DatabaseOpener open_database{};  ///< for SET_DATABASE; empty: one in memory
     WrapChannel wrap_channel{};  ///< for faults of channels
+    MistakeVersion mistake_version{};  ///< for faults of who starts processes
+    LinkMechanisms links{local_link_mechanisms()};  ///< others, for faults of links
     /// Of persistent parameters, from earlier flights and for later ones; null: of this flight alone.
     supervisor::ValueStore* values{nullptr};
     /// What is read again of descriptors.
@@ -93,6 +96,9 @@ class Spacecraft final {
   /// It ends at this very moment, in the middle of its step: of what it does from here on until that returns nothing reaches pages
   /// or the journal; whoever stands between it and its channels (`wrap_channel`) keeps back what it sends.
   void supervisor_dies_here() { supervision_.die_here(); }
+  /// The same, but that it stands still before for `span`, beside its guard, as one that spins in the middle of its step: the world goes on
+  /// within this call. For the keeper's patience: it is ended by that.
+  void supervisor_hangs_here(Duration span);
   [[nodiscard]] bool supervisor_is_dying() const noexcept { return supervision_.is_dying(); }
   /// `hirosco safe`: the guard stops everything at once, or the next one where there is none now; the supervisor hears of it in its next
   /// step.
@@ -101,6 +107,8 @@ class Spacecraft final {
   // --- subsystems by name: where none of it lives, nothing is there, and nothing happens ----------------------------------
   /// Whether its process is there.
   [[nodiscard]] bool alive(std::string_view name) const noexcept { return processes_.find(name) != nullptr; }
+  /// Of the program that it runs; empty: the mission's own.
+  [[nodiscard]] std::string_view version(std::string_view name) const noexcept;
   [[nodiscard]] const GenericSubsystem* subsystem(std::string_view name) const noexcept;
   [[nodiscard]] const VitalPage* vital(std::string_view name) const noexcept;
   [[nodiscard]] PermitPage* permit(std::string_view name) noexcept;
@@ -124,6 +132,7 @@ class Spacecraft final {
   bool advance(TimePoint end);
 
   const descriptor::Mission& mission_;
+  LinkMechanisms links_;
   ManualClock clock_;
   HeapMemory memory_;
   LocalFlows flows_;

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The HIROSCO developers
 # SPDX-License-Identifier: Apache-2.0
 """A slice of the campaign has no violation, the same seed gives the same octets, a failing plan shrinks to what it needs,
-and each planted defect is found. campaign_test.py [some_flights|flights|typed|authors|defects|tools] [DEFECT...]"""
+and each planted defect is found. campaign_test.py [some_flights|flights|typed|authors|couplings|defects|tools] [DEFECT...]"""
 import collections, contextlib, os, pathlib, subprocess, sys, tempfile, unittest.mock
 from concurrent.futures import ThreadPoolExecutor
 
@@ -15,7 +15,9 @@ from shrink import shrink, split  # noqa: E402
 
 MISSION = str(HERE.parents[1] / "missions" / "rokviss")
 # The planted defects bear the name of the invariant that they break.
+COUPLINGS = str(HERE.parent / "couplings")
 DEFECTS = ["I1", "I2", "I3", "I4", "I5", "I6", "I8", "I9", "I10", "I11", "I12", "I13", "I14", "I15", "I16", "I17"]
+OF_COUPLINGS = ["I18", "I19", "I20", "I21"]  # what rokviss has nothing of
 MOST_FLIGHTS = 40          # until a planted defect is found
 SLICE = 20
 SOME = 3                   # of these, in every check: each has calls, faults and an end of its own
@@ -136,9 +138,18 @@ def authors():
     check(campaign.run() == 0, "4 flights of a mission that was written by the guide hold every invariant")
 
 
+def couplings():
+    """Each kind of link and each loss of one, descriptors that are read again and versions of programs: a slice of these holds, too."""
+    campaign = Campaign(parse([COUPLINGS, "--flights", str(SOME), "--shrink", "0"]))
+    check(campaign.run() == 0, f"{SOME} flights of a mission with each kind of link hold every invariant")
+    drawn = collections.Counter(word for index in range(20) for line in campaign.plan(index).splitlines()
+                                for word in line.split() if word in ("edit", "REREAD", "REPLACE", "CONFIRM", "TAKE_BACK"))
+    check(len(drawn) == 5, f"twenty plans have {', '.join(f'{number} {word}' for word, number in sorted(drawn.items()))}")
+
+
 def find(defect):
     """How many flights it took, 0 when it was not found."""
-    campaign = Campaign(parse([MISSION, "--defect", defect]))
+    campaign = Campaign(parse([COUPLINGS if defect in OF_COUPLINGS else MISSION, "--defect", defect]))
     for index in range(MOST_FLIGHTS):
         result = campaign.pilot.fly(campaign.plan(index))
         if any(violation[0] == defect for violation in result["violations"]):
@@ -148,7 +159,7 @@ def find(defect):
 
 def defects(wanted):
     names = subprocess.run([fly_plan()], capture_output=True, text=True).stdout.split()
-    check(set(names) == set(DEFECTS), "every invariant has a planted defect")
+    check(set(names) == {*DEFECTS, *OF_COUPLINGS}, "every invariant has a planted defect")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         for defect, found in zip(wanted, pool.map(find, wanted)):
             check(found, f"what is planted against {defect} is found" + (f" in flight {found}" if found else ""))
@@ -209,8 +220,10 @@ if __name__ == "__main__":
         typed()
     if what in ("authors", "all"):
         authors()
+    if what in ("couplings", "all"):
+        couplings()
     if what in ("defects", "all"):
-        defects(sys.argv[2:] or DEFECTS)
+        defects(sys.argv[2:] or DEFECTS + OF_COUPLINGS)
     if what in ("tools", "all"):
         tools()
     sys.exit(1 if problems else 0)

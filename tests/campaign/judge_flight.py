@@ -11,6 +11,7 @@ from record import DELETED, START_NS, Record  # noqa: E402
 MISSION = read_mission(HERE.parents[1] / "missions" / "rokviss")
 SUPERVISOR, COMMUNICATION, ROBOT, JOYSTICK = 1, 2, 10, 11
 NAMES = {COMMUNICATION: "COMMUNICATION", ROBOT: "MANIPULATOR", JOYSTICK: "JOYSTICK"}
+COUPLED = ("telepresence", "quick")  # modes
 MS, S = 1000, 1_000_000
 
 
@@ -21,18 +22,24 @@ def call(function, *arguments):
 
 
 class Written:
-    """A coupled craft in Operational from 50 ms on, to 5 s; what is added decides what the judge says of it."""
+    """A craft as its mission couples it, in Operational from 50 ms on, to 5 s; what is added decides what the judge says of it."""
 
     def __init__(self, mission=MISSION):
         self.mission = mission
         self.trace, self.log, self.gone, self.numbers, self.counts = [], [], [], 0, collections.Counter()
-        self.at(0, "device robot MANIPULATOR period_ns=500000", "device joystick JOYSTICK period_ns=500000")
-        for apid, name in NAMES.items():
+        mode = next(mode for mode in COUPLED if mode in mission.modes)
+        for device, (owner, _) in mission.devices.items():
+            self.at(0, f"device {device} {owner} period_ns=500000")
+        for member in mission.members:
+            name = member.name
+            configuration = next((c for c in member.configurations.values() if c.name == mission.commissions[mode].get(name)), None)
+            if configuration is None:
+                continue
             self.at(0, f"alive {name} 1")
             self.at(40 * MS, f"state {name} {PRE}").at(45 * MS, f"state {name} {SAFE}")
-            self.at(50 * MS, f"state {name} {OPERATIONAL}", f"configuration {name} {1 if apid == COMMUNICATION else 2}",
-                    f"cycling {name} 1", f"period {name} {10_000_000 if apid == COMMUNICATION else 500_000}")
-        self.at(50 * MS, "links 1 2")
+            self.at(50 * MS, f"state {name} {OPERATIONAL}", f"configuration {name} {configuration.id}", f"cycling {name} 1",
+                    f"period {name} {1000 * configuration.sampling_us}")
+        self.at(50 * MS, " ".join(["links", *map(str, mission.establishes[mode])]))
         self.at(5 * S, "end")
 
     # --- the trace ---------------------------------------------------------------------------------------------------

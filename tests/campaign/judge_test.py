@@ -7,10 +7,12 @@ import inspect, sys, tempfile
 
 from judge_flight import MISSION, S, Written
 from judge_cases import CASES
-import judge, packet_rules, record, retrieval_rules, rules, succession_rules
-import judge_cases_packets, judge_cases_permits, judge_cases_retrieval, judge_cases_stays, judge_cases_stops, judge_cases_succession, judge_cases_world  # noqa: F401  (cases register themselves)
+import coupling_rules, exchange_rules, judge, packet_rules, record, retrieval_rules, rules, succession_rules
+import judge_cases_couplings, judge_cases_exchanges, judge_cases_packets, judge_cases_permits, judge_cases_retrieval, judge_cases_stays, judge_cases_stops, judge_cases_succession, judge_cases_world  # noqa: F401  (cases register themselves)
 
-RULES = {rule.__name__: rule for table in (rules.WORLD, packet_rules.PACKETS, retrieval_rules.RETRIEVALS, succession_rules.SUCCESSIONS) for each in table.values() for rule in each}
+MODULES = (rules, packet_rules, retrieval_rules, succession_rules, coupling_rules, exchange_rules)
+RULES = {rule.__name__: rule for table in (rules.WORLD, packet_rules.PACKETS, retrieval_rules.RETRIEVALS, succession_rules.SUCCESSIONS,
+                                             coupling_rules.COUPLINGS, exchange_rules.EXCHANGES) for each in table.values() for rule in each}
 
 # --- who counts as struck --------------------------------------------------------------------------------------------------
 SPANS = [
@@ -67,7 +69,7 @@ def lines_of(module):
 
 
 def main():
-    problems, reached = [], {module.__file__: set() for module in (rules, packet_rules, retrieval_rules, succession_rules, record)}
+    problems, reached = [], {module.__file__: set() for module in (*MODULES, record)}
 
     def trace(frame, what, _):
         if frame.f_code.co_filename not in reached:
@@ -92,7 +94,7 @@ def main():
         wants = {bool(each.found) for each in CASES if each.rule == rule}
         if wants != {True, False}:
             problems.append(f"{rule} has no case that is found, or none that is not")
-    for module in (rules, packet_rules, retrieval_rules, succession_rules):
+    for module in MODULES:
         for line in sorted(lines_of(module) - reached[module.__file__]):
             problems.append(f"no case reaches {module.__name__}.py:{line}: {inspect.getsource(module).splitlines()[line - 1].strip()}")
     endless = Written().without("end")

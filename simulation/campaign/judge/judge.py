@@ -5,7 +5,9 @@
 {"violations": [[invariant, seconds, text]], "commands": {cell: n}, "faults": {cell: n}}. Exit code 1 with violations."""
 import collections, json, sys
 
+from coupling_rules import COUPLINGS
 from descriptors import STATES, read_mission
+from exchange_rules import EXCHANGES
 from packet_rules import PACKETS
 from record import Record
 from retrieval_rules import RETRIEVALS
@@ -59,7 +61,7 @@ def judge(mission, folder):
     flight = Record(mission, folder)
     victims = flight.victims()
     violations = []
-    for name, rules in sorted({**WORLD, **PACKETS, **RETRIEVALS, **SUCCESSIONS}.items()):
+    for name, rules in sorted({**WORLD, **PACKETS, **RETRIEVALS, **SUCCESSIONS, **COUPLINGS, **EXCHANGES}.items()):
         for rule in rules:
             for place, (time, text) in enumerate(rule(flight, victims)):
                 if place == MOST_TOLD:

@@ -4,6 +4,7 @@
 import collections, struct
 
 from descriptors import ERROR, OPERATIONAL, POST, SAFE, STATES
+from exchange_rules import is_exchanged
 from record import meets
 from rules import ground_link_works
 
@@ -77,7 +78,8 @@ def given_up(flight, victims):
         # Whoever shuts the craft down ends what was on its way just then, or comes meanwhile; what was asked long before had its end.
         on_its_way = flight.finished() <= min(record.time, asked.time + LAST_SECOND_US)
         gone = victims[name] + victims["SUCCESSION"]
-        if not on_its_way and not meets(gone, asked.time - LAST_SECOND_US, record.time):
+        exchanged = asked.peer != flight.mission.supervisor.apid and is_exchanged(flight, name, record.time)
+        if not on_its_way and not exchanged and not meets(gone, asked.time - LAST_SECOND_US, record.time):
             yield record.time, f"TC[{asked.telecommand.service},{asked.telecommand.subtype}] to {name} was given up though nothing was done to it"
 
 

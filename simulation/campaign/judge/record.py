@@ -118,6 +118,8 @@ class Record:
         self.active, self.torque, self.still = table(), table(), table()
         self.inhibited, self.period_ns = table(), table()
         self.device_period_ns = {}
+        self.version, self.text = {name: Series("-") for name in self.members}, {name: Series(None) for name in self.members}
+        self.wrote = []    # (time, member, CRC-32, whether it is sound) of each edit of a descriptor
         self.links = Series(frozenset())
         self.supervised = Series(1)
         self.cycles = []   # (time, {name: cycles})
@@ -146,6 +148,10 @@ class Record:
             if what == "alive" and rest[1] == "0":
                 for other in (self.state, self.cycling):
                     other[rest[0]].set(time, 0)
+        elif what in ("version", "text"):
+            getattr(self, what)[rest[0]].set(time, rest[1])
+        elif what == "wrote":
+            self.wrote.append((time, rest[0], rest[1], rest[2] == "sound"))
         elif what == "device":
             self.device_period_ns[rest[0]] = int(rest[2].split("=")[1])
         elif what == "links":

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Invariants on what happened in the world: who died, what moved, which states and links there were, how time passed."""
 from descriptors import EDGES, ERROR, OFFLINE, OPERATIONAL, STATES, reachable_unseen
+from exchange_rules import is_exchanged
 from record import AFTERMATH_US, meets
 
 CYCLES_TO_SAFE = 5             # actuators of a network, in cycles of whoever acts
-WATCHDOG_US = 12_000           # and two periods: of the device itself, when its member says nothing any more
+WATCHDOG_US = 2_000            # beyond what is declared, and two periods: of the device itself, when its member says nothing any more
 # A device's world is ahead of the craft by less than a cycle, and behind by less than two where no command comes any more (WorldClock):
 # a span that begins with one and ends with the other misses less than three.
 DEVICE_CYCLES = 3
@@ -23,15 +24,20 @@ def i1_only_victims_die(flight, victims):
         for time, value in list(zip(flight.alive[name].times, flight.alive[name].values))[1:]:
             if value or time >= flight.finished():
                 continue
-            if not any(start <= time for start, _ in victims[name]):
+            if not any(start <= time for start, _ in victims[name]) and not is_exchanged(flight, name, time):
                 yield time, f"{name} died though nothing was done to it"
+
+
+def watchdog_us(flight, name, time):
+    """Of the devices of its configuration, the longest."""
+    configuration = flight.mission.by_name(name).configurations.get(flight.configuration[name].at(time))
+    return WATCHDOG_US + 1000 * max([milliseconds for _, milliseconds, _ in configuration.devices] if configuration else [], default=10)
 
 
 def i4_actuators_are_off_outside_operational(flight, victims):
     for device, (member, _) in flight.mission.devices.items():
         for start, end in flight.active[device].spans(flight.end):
             period_us = max(flight.period_ns[member].at(start) // 1000, flight.device_period_ns[device] // 1000)
-            watchdog_us = WATCHDOG_US + 2 * period_us
             late = STATE_LAG_US + CYCLES_TO_SAFE * period_us
             for first, last in flight.state[member].spans(flight.end, lambda state: state != OPERATIONAL):
                 first, last = max(first + late, start + STATE_LAG_US), min(last, end)
@@ -39,7 +45,8 @@ def i4_actuators_are_off_outside_operational(flight, victims):
                     yield first, f"{device} acts while {member} is {STATES[flight.state[member].at(first)]}"
             for name in (member, device):
                 for first, last in victims[name]:
-                    if flight.alive[member].at(first + 1) == 0 and end > first + watchdog_us and start < first:
+                    longest = watchdog_us(flight, member, first) + 2 * period_us
+                    if flight.alive[member].at(first + 1) == 0 and end > first + longest and start < first:
                         yield first, f"{device} acts {(end - first) // 1000} ms after the death of {member}"
 
 
@@ -94,14 +101,25 @@ def unattended(victims):
     return victims["SUPERVISOR"] + victims["SUCCESSION"]
 
 
-def networks(flight, time):
-    """Members that links join at this instant."""
-    groups = [{name} for name in flight.members]
-    for link in flight.links.at(time):
-        producer, consumer, _ = flight.mission.links[link]
-        joined = [group for group in groups if producer in group or consumer in group]
-        groups = [group for group in groups if group not in joined] + [set().union(*joined)]
-    return groups
+def taken_down_with(flight, struck, time):
+    """Whom links join to it at this instant. A consumer goes on where each of its links from who goes down says so (docs/adr/0077)."""
+    up = [(*flight.mission.links[link][:2], flight.mission.losses[link][0]) for link in flight.links.at(time)]
+    found = [struck]
+    for lost in found:
+        for producer, consumer, _ in up:
+            other = consumer if producer == lost else producer if consumer == lost else lost
+            words = {word for source, to, word in up if (source, to) == (lost, other)}
+            if other not in found and (not words or "down" in words):
+                found.append(other)
+    return set(found)
+
+
+def was_too_short(flight, name, device, time):
+    """It was plugged again before its member could miss it, which takes as many of its cycles as its descriptor says."""
+    again = next((at for at, words in flight.did if at >= time and words == ["fault", device, "plug"]), flight.end)
+    configuration = flight.mission.by_name(name).configurations.get(flight.configuration[name].at(time))
+    cycles = max([silence for _, _, silence in configuration.devices] if configuration else [], default=3)
+    return again - time <= (cycles + 2) * flight.period_ns[name].at(time) // 1000
 
 
 def told_at(flight, name, time):
@@ -128,7 +146,9 @@ def i4_a_network_goes_down_with_its_member(flight, victims):
             continue
         if words[0] == "fault" and (flight.state[struck].at(time) != OPERATIONAL or "shut_down_network" not in flight.mission.high_plan):
             continue
-        group = next(group for group in networks(flight, time - 1) if struck in group)
+        if words[0] == "fault" and was_too_short(flight, struck, words[1], time):
+            continue
+        group = taken_down_with(flight, struck, time - 1)
         until = (told_at(flight, struck, time) if words[0] == "fault" else time) + OFFLINE_US
         if until > min(flight.finished(), flight.mark("calm") or flight.end):
             continue
@@ -205,7 +225,7 @@ def i5_no_stale_sample_is_used(flight, victims):
                         stale = max(start, first) + limit_us
                         # Who stands still itself notices nothing: then its device lets go.
                         stood = [begun for begun, ended in flight.still[member.name].spans(flight.end) if begun <= stale and first <= ended]
-                        stale = max([stale] + [begun + WATCHDOG_US + 2 * period_us for begun in stood])
+                        stale = max([stale] + [begun + watchdog_us(flight, member.name, begun) + 2 * period_us for begun in stood])
                         if stale < min(end, last) and not meets(victims[member.name], first, stale):
                             yield stale, f"{device} acts on samples of {wanted.source}, which stands still since {first / 1e6:.4f}"
 
@@ -308,10 +328,18 @@ def i13_cycles_keep_time(flight, victims):
                 begun = time, counts[name], period_ns
                 continue
             expected = (time - begun[0]) * 1000 / period_ns
+            if not is_device and started_by_samples(flight, name, time):
+                continue
             if abs(counts[name] - begun[1] - expected) > (DEVICE_CYCLES if is_device else 1) + 0.01:
                 yield time, (f"{name} made {counts[name] - begun[1]} cycles in {(time - begun[0]) / 1000:.0f} ms, "
                              f"{expected:.0f} expected")
                 break
+
+
+def started_by_samples(flight, name, time):
+    """As many cycles as samples come, of which the trace has none."""
+    configuration = flight.mission.by_name(name).configurations.get(flight.configuration[name].at(time))
+    return configuration is not None and configuration.least_us is not None
 
 
 def steady(flight, name, start, end):
