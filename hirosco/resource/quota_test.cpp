@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -38,6 +39,14 @@ TEST(Quota, TakesBackWithTheEndOfWhoHoldsItAndRemembersTheMost) {
   }
   EXPECT_EQ(files.used(), 0u);
   EXPECT_EQ(files.high(), 5u);
+}
+
+TEST(Quota, MayEndBeforeWhatIsHeldOfIt) {
+  auto ports = std::make_unique<Quota>("held", 2);
+  auto held = ports->take();
+  ASSERT_TRUE(held);
+  ports.reset();
+  EXPECT_TRUE(*held) << "what is given back now goes nowhere; a sanitizer would say where it went before";
 }
 
 TEST(Quota, IsNeverOverdrawnByThreadsThatTakeAtOnce) {

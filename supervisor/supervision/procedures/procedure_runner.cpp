@@ -76,27 +76,31 @@ struct ProcedureRunner::Run : std::enable_shared_from_this<Run> {
 
 void ProcedureRunner::start(Procedure procedure) {
   cancel();
-  run_ = std::make_shared<Run>(means_, std::move(procedure));
-  const auto run = run_;  // its end may start another here
+  const auto run = std::make_shared<Run>(means_, std::move(procedure));
+  run_ = run;  // its end may start another here
   run->fence();
   run->count_fences();
   run->begin_stage();
 }
 
 void ProcedureRunner::cancel() {
-  if (run_ != nullptr) run_->over = true;
+  if (const auto run = run_.lock()) run->over = true;
   run_.reset();
 }
 
-bool ProcedureRunner::running() const noexcept { return run_ != nullptr && !run_->over; }
+bool ProcedureRunner::running() const noexcept {
+  const auto run = run_.lock();
+  return run && !run->over;
+}
 
 std::string ProcedureRunner::waiting_for() const {
   std::string text;
-  if (!running()) return text;
-  for (std::size_t i = 0; i < run_->open.size(); ++i) {
-    if (!run_->open[i]) continue;
+  const auto run = run_.lock();
+  if (!run || run->over) return text;
+  for (std::size_t i = 0; i < run->open.size(); ++i) {
+    if (!run->open[i]) continue;
     if (!text.empty()) text += ", ";
-    text += run_->name_of(run_->procedure.stages[run_->stage][i], ": ");
+    text += run->name_of(run->procedure.stages[run->stage][i], ": ");
   }
   return text;
 }

@@ -49,7 +49,8 @@ class ProcedureRunner {
  private:
   struct Run;
   Means means_;
-  std::shared_ptr<Run> run_;
+  std::weak_ptr<Run>
+      run_;  ///< kept by the answers that are still to come alone: who is told of its end may have this runner
 };
 
 }  // namespace hirosco::supervisor
