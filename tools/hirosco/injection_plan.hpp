@@ -13,8 +13,8 @@ namespace hirosco::tools {
 /// One `hirosco simulate --at "SECONDS DEVICE LINE"`.
 struct Injection {
   Duration after{};    ///< since the begin of the flight
-  std::string device;  ///< or "kill"
-  std::string line;    ///< what the device is told, or who is killed
+  std::string device;  ///< or "kill", or "tc"
+  std::string line;    ///< what the device is told, who is killed, or the telecommand by its names
 };
 
 /// By their times, whatever their order in `texts`; those of one time stay in it. In words: which of them is none, or would come when a

@@ -1,19 +1,29 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdio>
+#include <expected>
 #include <memory>
 #include <optional>
+#include <span>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "hirosco/pus/packet/packet.hpp"
 #include "hirosco/pus/words/describe.hpp"
+#include "hirosco/pus/words/given_words.hpp"
 #include "simulation/spacecraft/flight_origin.hpp"
 #include "simulation/spacecraft/modules.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/injection_plan.hpp"
+#include "tools/hirosco/named_request.hpp"
 #include "tools/hirosco/readiness.hpp"
 
 namespace hirosco::tools {
@@ -88,6 +98,58 @@ class Trace {
   TimePoint written_{1s};
 };
 
+[[nodiscard]] std::expected<NamedRequest, std::string> request_in(const Injection& injection,
+                                                                  const descriptor::Mission& mission) {
+  const auto line = pus::words_of_line(injection.line);
+  if (!line) return std::unexpected(fmt::format("--at '... tc {}': a quote is not closed", injection.line));
+  std::vector<std::string> words;
+  for (const auto& word : *line) words.push_back(word.text);
+  words.resize(std::max<std::size_t>(words.size(), 2));
+  return named_request(mission, words[0], words[1], std::span{words}.subspan(2));
+}
+
+/// In words: whom or what of it the mission does not have.
+[[nodiscard]] std::optional<std::string> unknown_in(const Injection& injection, const descriptor::Mission& mission) {
+  std::vector<std::string> names;
+  if (injection.device == "tc") {
+    const auto request = request_in(injection, mission);
+    return request ? std::nullopt : std::optional{request.error()};
+  }
+  if (injection.device == "kill") {
+    if (mission.find_subsystem(injection.line) != nullptr) return std::nullopt;
+    for (const auto& member : mission.subsystems) names.push_back(member.subsystem.name);
+    return fmt::format("no subsystem '{}' to kill; the mission has {}", injection.line, fmt::join(names, " "));
+  }
+  for (const auto& device : mission.devices) names.push_back(device.name);
+  if (std::ranges::find(names, injection.device) != names.end()) return std::nullopt;
+  return fmt::format("no device '{}'; the mission has {}", injection.device,
+                     names.empty() ? "no simulated device" : fmt::format("{}", fmt::join(names, " ")));
+}
+
+/// Ground of this flight: what becomes of its telecommands stands in the log.
+class Ground {
+ public:
+  explicit Ground(simulation::Spacecraft& craft) : craft_{craft} {}
+  /// False: it did not go up, as nobody on board listened.
+  [[nodiscard]] bool send(const NamedRequest& named) {
+    std::array<std::byte, pus::max_telecommand_octets> buffer;
+    const auto packet = pus::write_telecommand(buffer,
+                                               {.apid = named.subsystem->id,
+                                                .sequence_count = count_++,
+                                                .ack = pus::ack_all,
+                                                .service = named.request.service,
+                                                .subtype = named.request.subtype,
+                                                .source = source},
+                                               named.data);
+    return packet && craft_.ground().send(*packet);
+  }
+
+ private:
+  static constexpr std::uint16_t source = 0x4000;  // a station's, as that of `hirosco tc`
+  simulation::Spacecraft& craft_;
+  std::uint16_t count_{0};
+};
+
 }  // namespace
 
 int simulate(const SimulateOptions& options) {
@@ -104,21 +166,11 @@ int simulate(const SimulateOptions& options) {
     fmt::print(stderr, "hirosco simulate: {}\n", injections.error());
     return exit_usage;
   }
-  for (const Injection& injection : *injections) {
-    if (injection.device != "kill" && std::ranges::find(mission->devices, injection.device,
-                                                        &descriptor::SimulatedDevice::name) == mission->devices.end()) {
-      fmt::print(stderr, "hirosco simulate: no device '{}'; the mission has", injection.device);
-      for (const auto& device : mission->devices) fmt::print(stderr, " {}", device.name);
-      fmt::print(stderr, "{}\n", mission->devices.empty() ? " no simulated device" : "");
+  for (const Injection& injection : *injections)
+    if (const auto why_not = unknown_in(injection, *mission)) {
+      fmt::print(stderr, "hirosco simulate: {}\n", *why_not);
       return exit_usage;
     }
-    if (injection.device == "kill" && mission->find_subsystem(injection.line) == nullptr) {
-      fmt::print(stderr, "hirosco simulate: no subsystem '{}' to kill; the mission has", injection.line);
-      for (const auto& member : mission->subsystems) fmt::print(stderr, " {}", member.subsystem.name);
-      fmt::print(stderr, "\n");
-      return exit_usage;
-    }
-  }
   std::optional<Trace> trace;
   if (!options.trace.empty() && !trace.emplace(*mission).open(options.trace)) {
     fmt::print(stderr, "hirosco simulate: cannot write {}\n", options.trace);
@@ -145,11 +197,17 @@ int simulate(const SimulateOptions& options) {
     else if (craft.now() < until) craft.run(until - craft.now());
   };
   const TimePoint begin = craft.now();
+  Ground ground{craft};
   bool all_taken = true;
   for (const Injection& injection : *injections) {
     fly_until(begin + injection.after);
     if (injection.device == "kill") craft.kill(injection.line);
-    else if (auto* device = craft.device(injection.device); device == nullptr || !device->fault(injection.line)) {
+    else if (injection.device == "tc") {
+      if (ground.send(request_in(injection, *mission).value())) continue;
+      fmt::print(stderr, "hirosco simulate: '{}' did not go up after {} s: no ground link was open\n", injection.line,
+                 seconds(injection.after));
+      all_taken = false;
+    } else if (auto* device = craft.device(injection.device); device == nullptr || !device->fault(injection.line)) {
       fmt::print(stderr, "hirosco simulate: device '{}' does not take '{}'\n", injection.device, injection.line);
       all_taken = false;
     }

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What arm.py drives: 6 joints in the air, in the place of your vendor's library. Put its calls here, none of which may wait."""
 JOINTS = 6
+MOST = 150.0                                                   # N m, the greatest `maximum` of TORQUE in <Output>: a command with more is answered, and not done
+ROTOR = 0.5                                                    # kg m2, behind the gear; the links of this stand-in carry nothing
 
 class Drives:
     def __init__(self):
@@ -14,8 +16,10 @@ class Drives:
     def clear(self):                                           # what still holds is there again by the next step
         self.fault = False
     def step(self, torque, cycle):                             # for a real one: write the torques, read the rest
-        self.torque = torque if self.enabled else self.torque
-        self.speed = [v + t * cycle / 0.5 if self.enabled else max(abs(v) - 20 * cycle, 0) * (1 if v > 0 else -1) for v, t in zip(self.speed, self.torque)]
+        before = self.speed
+        self.speed = [v + t * cycle / ROTOR if self.enabled else max(abs(v) - 20 * cycle, 0) * (1 if v > 0 else -1) for v, t in zip(before, torque)]
+        # What a joint gives to its link, as a sensor there tells it: what turns the rotor is not in it.
+        self.torque = [t - ROTOR * (after - v) / cycle if self.enabled else 0.0 for t, v, after in zip(torque, before, self.speed)]
         self.angle = [q + v * cycle for q, v in zip(self.angle, self.speed)]
         if max(map(abs, self.speed)) > 3:                      # too fast: they fault, and stop by themselves
             self.fault = True
