@@ -25,6 +25,7 @@
 #include "supervisor/supervision/modes/under_way.hpp"
 #include "supervisor/supervision/own_subsystem.hpp"
 #include "supervisor/supervision/realtime_links/link_commands.hpp"
+#include "supervisor/supervision/resource_management/power_draws.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
 #include "supervisor/supervision/resource_management/resource_handling.hpp"
 #include "supervisor/supervision/status/housekeeping.hpp"
@@ -110,13 +111,14 @@ struct SupervisorParts final : OwnSubsystem::Author {
       own,
       traffic,
       ground_route,
-      {&traffic, &commanded, &stored, &replies, &subscriptions, &reception, &power, &own_telecommands, &links}};
+      {&traffic, &commanded, &stored, &replies, &subscriptions, &reception, &power, &draws, &own_telecommands, &links}};
   Retrieval retrieval;
   Reception reception{{craft, own, telecommands, telemetry, reactions, ground_loss, unanswered, traffic, subscriptions,
                        stored, adoption}};
   // real-time links, resource management
   LinkCommands links{craft, own, own_telecommands, graph};
   PowerHandling power{craft, own, reactions};
+  PowerDraws draws{craft, own, reactions, power.ledger()};
   ResourceHandling resources{craft, own};
   // modes and procedures
   Waiting waiting;
@@ -143,10 +145,10 @@ struct SupervisorParts final : OwnSubsystem::Author {
   Adoption adoption{{craft, own, processes, own_telecommands, telecommands, links, modes, commissioning, reactions,
                      safe_all, shutdown, losses, memory}};
   Memory memory;
-  std::array<Watch*, 20> watches{&adoption,    &stored,      &processes,     &replacement,  &descriptors,
-                                 &ground_link, &ground_loss, &restoration,   &losses,       &housekeeping,
-                                 &power,       &links,       &log_watch,     &telecommands, &own_telecommands,
-                                 &replies,     &resources,   &subscriptions, &waiting,      &retrieval};
+  std::array<Watch*, 21> watches{
+      &adoption,     &stored,           &processes,    &replacement, &descriptors,   &ground_link, &ground_loss,
+      &restoration,  &losses,           &housekeeping, &power,       &draws,         &links,       &log_watch,
+      &telecommands, &own_telecommands, &replies,      &resources,   &subscriptions, &waiting,     &retrieval};
 };
 
 }  // namespace hirosco::supervisor

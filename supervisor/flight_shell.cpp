@@ -19,6 +19,7 @@
 #include <system_error>
 
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
+#include "hirosco/descriptor/model/cores.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/utilities/memory_reserve.hpp"
 #include "hirosco/utilities/os/clock.hpp"
@@ -482,6 +483,9 @@ int fly(int argc, char** argv, const MakeDeployment& deploy) {
   for (const auto& problem : reading.problems) errors.say(descriptor::render(problem, source, false));
   if (!reading.value) return exit_finding;
   keeper.add_kept_texts(*reading.value);
+  // Where the cycles are that name none; without one named all are together, whichever it is.
+  if (const auto last = ProcessorSet::of_this_thread().last(); last && descriptor::names_cores(*reading.value))
+    reading.value->shared_core = static_cast<std::uint16_t>(*last);
   if (!options.mode.empty())
     if (const auto why_not = descriptor::start_in(*reading.value, options.mode)) {
       errors.say(fmt::format("{}: {}\n", argv[0], *why_not));

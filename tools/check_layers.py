@@ -6,7 +6,7 @@ import pathlib, re, sys
 libraries = ["utilities", "resource", "xml", "parameter", "data_transfer", "descriptor", "pus", "subsystem"]  # lowest first
 may = {"hirosco": ["hirosco"], "robotics": ["hirosco", "robotics"], "subsystems": ["hirosco", "robotics"], "supervisor": ["hirosco", "supervisor"],
        "simulation": ["hirosco", "simulation"], "ground": ["hirosco", "ground"]}  # the other folders: everything; nobody but missions and tests a mission
-shells = ("hirosco/utilities/os/", "hirosco/data_transfer/device/device_socket", "hirosco/data_transfer/device/framed_stream", "hirosco/data_transfer/device/private_folder", "hirosco/data_transfer/device/private_memory_folder", "hirosco/data_transfer/device/side_lock",
+shells = ("hirosco/utilities/os/", "hirosco/data_transfer/device/device_socket", "hirosco/data_transfer/device/exchanged_folder", "hirosco/data_transfer/device/framed_stream", "hirosco/data_transfer/device/private_folder", "hirosco/data_transfer/device/private_memory_folder", "hirosco/data_transfer/device/side_lock",
           "hirosco/data_transfer/channel/socket_channel", "hirosco/data_transfer/channel/stream_channel", "hirosco/data_transfer/address/",
           "hirosco/data_transfer/link/udp_link",
           "hirosco/data_transfer/memory/sealed_memory", "supervisor/guard/guard_shell", "supervisor/flight_shell.cpp", "supervisor/keeper/", "supervisor/platform/", "tools/",

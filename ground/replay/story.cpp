@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ground/model/json.hpp"
+#include "ground/replay/missed_cycles.hpp"
 #include "hirosco/descriptor/model/framework_events.hpp"
 #include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "hirosco/pus/packet/failure_code.hpp"
@@ -126,7 +127,9 @@ struct Asked {
   return mode != nullptr ? std::optional{mode->name} : std::nullopt;
 }
 
-[[nodiscard]] std::string advice(const std::string& lost_device, const std::optional<std::string>& up) {
+[[nodiscard]] std::string advice(const std::string& lost_device, std::uint32_t missed,
+                                 const std::optional<std::string>& up) {
+  if (!lost_device.empty() && missed != 0) return advice_for_missed(lost_device, missed, up);
   return (lost_device.empty() ? "Look into it" : "Mend or plug in the device " + lost_device) +
          (up ? ", then bring " + *up + " up." : ".");
 }
@@ -167,6 +170,14 @@ struct Asked {
   const std::string set = event.name.substr(0, event.name.size() - late.size());
   // One that was taken away has no age.
   return *age > 0 ? fmt::format("{} (the newest is {:.0f} cycles old)", set, *age) : set;
+}
+
+/// Beside a device that was lost: who did not run heard it late, and it let go by itself. How many cycles that were.
+[[nodiscard]] std::uint32_t tell_missed(const Catalogue& catalogue, Archive& archive, const StoredEvent& lost,
+                                        std::vector<Line>& lines) {
+  const std::uint32_t missed = missed_around(catalogue, archive, lost.subsystem, lost.t);
+  if (missed != 0) lines.push_back({{}, Severity::Info, "missed", {}, missed_words(lost.subsystem, missed)});
+  return missed;
 }
 
 class Teller {
@@ -437,6 +448,7 @@ class Teller {
   }
 
   [[nodiscard]] json finished() {
+    const auto missed = lost_device(cause_).empty() ? 0U : tell_missed(catalogue_, archive_, cause_, lines_);
     const auto values = json::parse(cause_.values, nullptr, false);
     std::vector<std::string> stopped;
     for (const auto& [name, state] : finally_) stopped.push_back(name);
@@ -451,7 +463,7 @@ class Teller {
     return {{"t", json_time(begin_)},
             {"title", std::move(title)},
             {"detail", detail},
-            {"advice", advice(lost_device(cause_), up)},
+            {"advice", advice(lost_device(cause_), missed, up)},
             {"plan", plan()},
             {"mode", mode_.empty() ? catalogue_.mission().start_mode : mode_},
             {"mode_up", up ? json(*up) : json(nullptr)},

@@ -59,6 +59,7 @@ const font_files = outputs.filter(({name}) => name.endsWith('.woff2')).map(({nam
 // Octets and log lines alone are in the other typeface: it comes when they are seen.
 const wanted_at_once = font_files.filter((name) => name.startsWith('inter'));
 writeFileSync(join(out, 'index.html'), readFileSync(join(sources, 'page/index.html'), 'utf8')
+    .replace(/<!--.*-->\n/g, '')  // as of scripts and styles: whose it is stands beside it
     .replace('style.css', entry('page/style.css')).replace('main.js', entry('page/main.js'))
     .replace('</head>', `${wanted_at_once.map((name) => `  <link rel="preload" as="font" type="font/woff2" crossorigin href="${name}">\n`).join('')}` +
         [...[...of_page].filter((name) => name !== entry('page/main.js')), ...of_robot.map(said)].map((name) => `  <link rel="modulepreload" href="${name}">\n`).join('') + '</head>'));

@@ -141,6 +141,10 @@ struct Case {
        4,
        {.rest = R"(<limit lower="-1" upper="1" velocity="1" effort="1"/><dynamics damping="1" K="7000"/>)"}},
       {"U0507", 4, {.rest = R"(<limit upper="1" velocity="1" effort="1"/>)"}},
+      {"U0509", 4, {.rest = R"(<limit lower="-170" upper="90" velocity="1" effort="1"/>)"}},
+      {"U0509",
+       4,
+       {.joint = R"(name="j" type="prismatic")", .rest = R"(<limit lower="0" upper="400" velocity="1" effort="1"/>)"}},
   };
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "hirosco/xml/reader.hpp"
 #include "robotics/urdf/robot.hpp"
 
 /// Of the reader: collects what is wrong.
@@ -24,10 +25,16 @@ inline constexpr double smallest_multiplier = 1e-9;
 /// 'text', shortened, so that a message is one line.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
+/// What to do about a file that is no XML, or none that is taken.
+[[nodiscard]] const char* hint_of(xml::Refusal refusal, std::string_view reason);
+
 /// One finite decimal number of at most `largest_number`, white space around it.
 [[nodiscard]] std::optional<double> number(std::string_view text);
 /// Three of them.
 [[nodiscard]] std::optional<Vector3> three(std::string_view text);
+
+/// "joint 'lift' slides to 400 m"; empty: a robot may well have these limits.
+[[nodiscard]] std::string beyond_reason(const Joint& joint);
 
 class Findings {
  public:

@@ -433,6 +433,8 @@ class RobotReader : private ElementReader {
     if (*limits.lower > *limits.upper)
       findings_.error(place(found->at), "U0304",
                       "the lower limit of joint " + in_quotes(joint.name) + " is above the upper one", "exchange them");
+    if (std::string far = beyond_reason(joint); !far.empty())
+      findings_.warning(place(found->at), "U0509", std::move(far), "the file has metres and radians: check the unit");
   }
 };
 
@@ -463,10 +465,8 @@ descriptor::Reading<Robot> read(const std::filesystem::path& file, std::string_v
   Findings findings{file};
   const auto tree = xml::read_tree(text);
   if (!tree) {
-    findings.error(
-        place(tree.error().at), code_of(tree.error().refusal), tree.error().reason,
-        "only plain XML in UTF-8 of at most 4 MiB is read; a file of another encoding is converted first, for "
-        "example by iconv -f ISO-8859-1 -t UTF-8");
+    findings.error(place(tree.error().at), code_of(tree.error().refusal), tree.error().reason,
+                   hint_of(tree.error().refusal, tree.error().reason));
     return std::move(findings).with({});
   }
   Robot robot = RobotReader{findings}.read(*tree);

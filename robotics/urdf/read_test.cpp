@@ -133,6 +133,17 @@ TEST(UrdfReader, TakesAsciiWhateverEncodingIsDeclaredAndSaysWhatToDoWithOthers) 
   EXPECT_THAT(both.problems[0].hint, HasSubstr("iconv"));
 }
 
+TEST(UrdfReader, OfATagThatIsNotClosedItSaysNothingOfEncodings) {
+  std::string text{gripper};
+  const auto end = text.find("</link>");
+  text.erase(end, std::string_view{"</link>"}.size());
+  const auto reading = read("a.urdf", text);
+  ASSERT_EQ(reading.problems.size(), 1U);
+  EXPECT_EQ(reading.problems[0].code, "U0002");
+  EXPECT_THAT(reading.problems[0].hint, HasSubstr("close each tag"));
+  EXPECT_THAT(reading.problems[0].hint, ::testing::Not(HasSubstr("UTF-8")));
+}
+
 TEST(UrdfReader, NamesWhatItPassesOverOnceForEachKindAndHowOften) {
   std::string text{gripper};
   text.insert(text.find("  <link name=\"palm\""), R"(<gazebo reference="palm"/><gazebo/>

@@ -47,4 +47,24 @@ std::string in_quotes(std::string_view text) {
   return "'" + result + (text.size() > most ? "...'" : "'");
 }
 
+const char* hint_of(xml::Refusal refusal, std::string_view reason) {
+  // Octets that are no UTF-8 are an encoding; all else that is not well-formed is a tag or a mark too much or too few.
+  const bool octets = reason.find("UTF-8") != std::string_view::npos || reason.find("NUL") != std::string_view::npos;
+  if (refusal == xml::Refusal::NotWellFormed && !octets)
+    return "close each tag that is opened, in its turn: <link ...> by </link>, or <link .../>; quotation marks stand "
+           "around each value";
+  return "only plain XML in UTF-8 of at most 4 MiB is read; a file of another encoding is converted first, for "
+         "example by iconv -f ISO-8859-1 -t UTF-8";
+}
+
+std::string beyond_reason(const Joint& joint) {
+  constexpr double farthest = 100;  // m, and rad: millimetres and degrees come to more soon
+  const double far = std::max(std::abs(joint.limits.lower.value_or(0)), std::abs(joint.limits.upper.value_or(0)));
+  if (!(far > farthest)) return {};
+  std::string number = std::to_string(far);
+  number.erase(number.find('.'));
+  const bool slides = joint.type == JointType::Prismatic;
+  return "joint " + in_quotes(joint.name) + (slides ? " slides to " : " turns to ") + number + (slides ? " m" : " rad");
+}
+
 }  // namespace hirosco::robotics::urdf

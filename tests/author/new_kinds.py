@@ -48,7 +48,7 @@ def real_arm(here):
     return [line for line in "".join(blocks).splitlines() if not line.startswith("hirosco run")], driver.split()
 
 
-# What drives.py is: six joints that carry next to nothing, behind rotors of 0.5 kg m2, which is what is assumed of 150 N m.
+# What drives.py is: six joints that carry next to nothing, behind rotors of 0.5 kg m2, which is what is assumed of 150 N m, its MOST.
 OF_THE_DRIVER = "<robot name='light'><link name='base'/>" + "".join(f"""
 <joint name='j{i}' type='revolute'><origin xyz='0 0 0.05'/><parent link='{'base' if i == 1 else f'l{i - 1}'}'/><child link='l{i}'/>
 <axis xyz='{('1 0 0', '0 1 0', '0 0 1')[i % 3]}'/><limit lower='-2' upper='2' velocity='2' effort='150'/></joint>

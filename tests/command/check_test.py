@@ -5,6 +5,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -95,6 +96,16 @@ class Check(unittest.TestCase):
         urdf = "subsystems/robot_arm/robot_arm.urdf"
         shutil.copy(REPOSITORY / urdf, self.folder / urdf)
         self.expect(self.mission("six_joints"), 0)
+        # What the world refuses of a file the reader of this project tells, at the file's own place; a likely mistake of units is a warning.
+        text = (self.folder / urdf).read_text()
+        line = next(n for n, each in enumerate(text.splitlines(), 1) if "<limit " in each)
+        (self.folder / urdf).write_text(re.sub(r'(<limit [^>]*upper=")[^"]*', r"\g<1>0,4", text, count=1))
+        told = self.expect(self.mission("six_joints"), 1, "error: U0106: ")
+        self.assertIn(f"robot_arm.urdf:{line}:", told)
+        self.assertNotIn("E0407", told)
+        (self.folder / urdf).write_text(re.sub(r'(<limit [^>]*upper=")[^"]*', r"\g<1>170", text, count=1))
+        self.assertIn(f"robot_arm.urdf:{line}:", self.expect(self.mission("six_joints"), 0, "warning: U0509: ", " turns to 170 rad"))
+        (self.folder / urdf).write_text(text)
         obstacle = '<Setting name="obstacle_post" value="{}"/>\n    <Setting name="friction"'
         good, wrong, within = "cylinder 0.05,1.6 0.5,-0.15,0.8", "cylinder 0.05 0.5,-0.15,0.8", "sphere 0.1 0,0.13,0.3"
         self.expect(self.mission("six_joints", old='<Setting name="friction"', new=obstacle.format(good)), 0)

@@ -139,6 +139,20 @@ class Doctor(unittest.TestCase):
         self.assertRegex(done.stdout, r"(?m)^missing +folders +/proc: .*\n +for: .*\n +\$ sudo install -d")
         self.assertRegex(done.stdout.splitlines()[-1], r"^hirosco \S+: \d+ missing: ROKVISS does not fly here with its figures$")
 
+    @unittest.skipUnless(os.getuid() == 0, "needs root, to become somebody else")
+    def test_who_lacks_rights_alone_flies_and_where_no_mission_was_named_it_is_said_whose_is_judged(self):
+        def last(*words):
+            done = subprocess.run(["prlimit", "--rtprio=0", "--memlock=65536", *AS_NOBODY, HIROSCO, "doctor", *words], cwd=self.folder, capture_output=True,
+                                  text=True, check=False, env={**os.environ, "XDG_RUNTIME_DIR": str(self.folder)})
+            return [line[15:31].strip() for line in done.stdout.splitlines() if line.startswith("missing")], done.stdout.splitlines()[-1]
+        missing, named = last("hello")
+        self.assertIn("real-time rights", missing)
+        if sorted(missing) == ["locked memory", "real-time rights"]:  # where somebody flies a port is taken, too
+            self.assertRegex(named, r"^hirosco \S+: 2 missing: HELLO flies here, with cycles later than its figures say$")
+        else:
+            self.assertRegex(named, r": HELLO does not fly here with its figures$")
+        self.assertRegex(last()[1], r": ROKVISS .*; no mission was named, of yours says it: hirosco doctor FILE$")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -19,7 +19,7 @@ PROGRAMS = {
                        "(started by 'hirosco ground', 'hirosco why' and 'hirosco run')"),
     "hirosco-screen": ("--log", "FILE", "--keper", "--keeper", "--keeper PID, --log FILE (started by 'hirosco run MISSION' on a terminal)"),
     "hirosco-hello": ("--set", "PARAMETER=VALUES", "--adress", "--address",
-                      "--descriptor FILE, --channel FD, --vital FD, --permit FD, --text FD, --as NAME:ID, --set PARAMETER=VALUES, --address DEVICE=ADDRESS, "
+                      "--descriptor FILE, --channel FD, --vital FD, --permit FD, --text FD, --core NUMBER, --as NAME:ID, --set PARAMETER=VALUES, --address DEVICE=ADDRESS, "
                       "--enable DEVICE=ADDRESS, --power DEVICE=ADDRESS, --fall-back DEVICE=ADDRESS=ADDRESS, --setting DEVICE:NAME=VALUE, --commands NAME=ID:FILE, --subscribes NAME=ID:FILE (the supervisor passes them: hirosco run MISSION)"),
 }
 

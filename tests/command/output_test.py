@@ -80,7 +80,9 @@ class Output(unittest.TestCase):
         self.assertEqual(self.hirosco("simulate", ROKVISS, "--for", "0.1s", "--seed=18446744073709551615")[0], 0)
 
     def test_a_fault_for_nobody_is_named(self):
-        for line, text in (("0.1 kill NOBODY", "no subsystem 'NOBODY'"), ("0.1 nobody unplug", "no device 'nobody'")):
+        for line, text in (("0.1 kill NOBODY", "no subsystem 'NOBODY'"), ("0.1 nobody unplug", "no device 'nobody'"),
+                           ("0.1 tc NOBODY PING", "no subsystem 'NOBODY'"), ("0.1 tc MANIPULATOR", "which function? MANIPULATOR has"),
+                           ("0.1 tc MANIPULATOR PING 'x", "a quote is not closed")):
             self.refused(USAGE, text, "simulate", ROKVISS, "--for", "0.2s", "--at", line)
 
     def test_a_fault_that_would_come_when_the_flight_is_over_is_named_and_none_is_flown(self):
@@ -95,6 +97,17 @@ class Output(unittest.TestCase):
         in_turn = flown(*faults[0], *faults[1])
         self.assertEqual(in_turn, flown(*faults[1], *faults[0]))
         self.assertNotEqual(in_turn, flown(*faults[0]), "the hand has moved something before")
+
+    def test_a_telecommand_from_ground_is_carried_out_or_refused_as_any_other(self):
+        done = subprocess.run([HIROSCO, "simulate", ROKVISS, "--for", "4s", "--mode", "standalone", "--at", "2 tc manipulator move_to -0.9 1.8 1",
+                               "--at", "2.1 tc MANIPULATOR CONFIGURE 1"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        sent = [line for line in done.stdout.splitlines() if " TM[1," in line or " ground -> MANIPULATOR" in line]
+        self.assertRegex("\n".join(sent), r"(?s)   2\.0\d+ [^\n]*MOVE_TO.* TM\[1,1\][^\n]* #0\n.*   2\.1\d+ [^\n]*CONFIGURE.* TM\[1,2\][^\n]* #1: not permitted in this "
+                         r"mode\n.*   3\.\d+ [^\n]* TM\[1,7\][^\n]* #0")
+        done = subprocess.run([HIROSCO, "simulate", ROKVISS, "--for", "0.5s", "--at", "0 tc MANIPULATOR PING"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("'MANIPULATOR PING' did not go up after 0 s: no ground link was open", done.stderr)
 
     def test_a_fault_beyond_its_length_is_named(self):
         self.refused(USAGE, "at most 255 characters, not 100000", "fault", "robot", "x" * 100_000, "--mission", ROKVISS)

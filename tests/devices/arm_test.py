@@ -4,6 +4,8 @@
 """The driver of an arm in Python that the guide has copied (simulation/devices/reference/arm.py): what it says of its drives is what they do, in every
 order of enabling, stopping and clearing. Time is the test's."""
 import itertools
+import pathlib
+import re
 import struct
 import sys
 import unittest
@@ -87,9 +89,17 @@ class Driver(unittest.TestCase):
         flown = Flown()
         flown.tell(1, OFF)
         flown.tell(2, ACTIVE, torque=1.0, seconds=0.02)
-        for wrong in (float("nan"), float("inf"), 81.0, -81.0):
+        for wrong in (float("nan"), float("inf"), arm.MOST + 1, -arm.MOST - 1):
             flown.tell(2, ACTIVE, torque=wrong)
             self.assertEqual(flown.arm.wanted, 6 * [1.0])
+        flown.tell(2, ACTIVE, torque=arm.MOST)
+        self.assertEqual(flown.arm.wanted, 6 * [arm.MOST], "what it may have it does")
+
+    def test_it_does_what_an_arm_of_hirosco_new_robot_may_ask_for(self):
+        import drives  # where somebody who copies it puts his own number
+        text = (pathlib.Path(__file__).resolve().parents[2] / "subsystems/robot_arm/robot_arm.urdf").read_text()
+        self.assertEqual(drives.MOST, max(map(float, re.findall(r' effort="([^"]+)"', text))))
+        self.assertNotIn("MOST =", (FOLDER / "arm.py").read_text())
 
     def test_it_is_as_small_as_it_is_said_to_be(self):
         self.assertLessEqual(len((FOLDER / "arm.py").read_text().splitlines()), 86)

@@ -380,6 +380,24 @@ class Kept(WithFolder):
                     second.end()
                     arm.kill()
 
+    def test_a_second_inhibit_that_nobody_hears_is_said_once_with_what_to_do(self):
+        """A driver answers to the name by which it was asked, in its own folder: asked from another one it never does."""
+        below = self.folder / "driver/below"
+        below.mkdir(parents=True)
+        frames = f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}"
+        with subprocess.Popen([reference.PYTHON, "-B", FOLDER / "arm.py", frames, "arm-enable"], cwd=self.folder / "driver") as arm:
+            self.addCleanup(arm.kill)
+            end = time.monotonic() + PATIENCE
+            while not self.is_somebodys(str(self.folder / "driver/arm-enable")):
+                self.assertLess(time.monotonic(), end, "it has no second inhibit")
+            done = subprocess.run([reference.PYTHON, "-B", HERE / "duties_test.py", "udp", frames, "--takes", "48", "--gives", "144", "--enable", "unix",
+                                   "../arm-enable", "--rest", "0.5"], cwd=below, capture_output=True, text=True, check=False)
+            arm.kill()
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertIn("nothing at all answers at unix ../arm-enable, its second inhibit", done.stderr)
+        self.assertIn("type this in the same folder", done.stderr)
+        self.assertNotIn("BROKEN", done.stdout)
+
     @staticmethod
     def is_somebodys(file):
         """Of the file of a socket that nobody has connecting is refused."""

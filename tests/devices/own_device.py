@@ -131,6 +131,7 @@ class Enable(threading.Thread):
     def __init__(self, kind, address):
         super().__init__(daemon=True)
         self.wire, self.epoch, self.on, self.output, self.answers = wire_to(kind, address, of_supervisor=True), 0, 0, None, 0
+        self.place = f"{kind} {address}"
         self.over = threading.Event()
         self.start()
 
@@ -187,7 +188,7 @@ class Own:
         end = time.monotonic() + PATIENCE
         while True:
             frame = self.wire.receive(max(0, end - time.monotonic()))
-            assert frame is not None, "duty 1: a command is not answered"
+            assert frame is not None, f"duty 1: a command is not answered within {PATIENCE} s; is it started, and by this address? Where other work has the processors (`uptime`), try again"
             answer = self.status(frame)
             if answer["sequence"] == self.sequence or answer["flags"] & OLD_EPOCH:
                 return answer
@@ -210,6 +211,18 @@ class Own:
         if self.enable:
             self.enable.epoch, self.enable.on = epoch, 1
             time.sleep(0.05)
+
+    def heard_of_enable(self):
+        """Once, before any duty: what never answers is not there, and no duty would say so."""
+        if not self.enable:
+            return
+        self.name(self.epoch)
+        end = time.monotonic() + self.rest
+        while not self.enable.answers:
+            assert time.monotonic() < end, (f"nothing at all answers at {self.enable.place}, its second inhibit: is the driver started with this name? "
+                                            "A UNIX socket is a file of the folder in which it was started: type this in the same folder; "
+                                            "of a flight with --instance NAME the name ends with .NAME")
+            time.sleep(0.002)
 
     def output(self, *wanted):
         if not self.enable:
@@ -332,6 +345,11 @@ def tried(connect, **about):
     """The duties that it breaks, told one a line."""
     broken = []
     own = Own(connect(), **about)
+    try:
+        own.heard_of_enable()
+    except AssertionError:
+        own.wire.close()
+        raise
     print(f"the highest epoch that it has accepted is {own.epoch}; a flight in another folder has to begin above it (log/MISSION.epoch)")
     for duty in Own.DUTIES:
         try:

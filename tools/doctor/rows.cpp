@@ -274,4 +274,6 @@ constexpr std::array table{
 
 std::span<const Row> rows() { return table; }
 
+bool of_time(const Row& row) { return row.judge == priority || row.judge == locked_memory; }
+
 }  // namespace hirosco::tools::doctor

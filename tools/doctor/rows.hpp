@@ -31,6 +31,8 @@ struct Row {
   Finding (*judge)(const System&);
 };
 
+/// Where it is missing a mission flies all the same, with cycles that may come later.
+[[nodiscard]] bool of_time(const Row& row);
 /// All of them, in the order in which they are told.
 [[nodiscard]] std::span<const Row> rows();
 

@@ -195,6 +195,13 @@ TEST(Doctor, HasACaseForEachRowThatSaysWhatIsWrong) {
   }
 }
 
+TEST(Doctor, KnowsWithoutWhichAMissionFliesAllTheSame) {
+  std::set<std::string> of_rights;
+  for (const Row& row : rows())
+    if (of_time(row)) of_rights.insert(row.name);
+  EXPECT_EQ(of_rights, (std::set<std::string>{"locked memory", "real-time rights"}));
+}
+
 TEST(Doctor, TakesNinjaForMakeAndSaysHowItIsNamed) {
   System system = good();
   EXPECT_EQ(found("build tools", system).found, "compiler, cmake, make, gtest");

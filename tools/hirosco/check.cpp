@@ -9,11 +9,13 @@
 #include <string>
 #include <tuple>
 
+#include "hirosco/descriptor/model/cores.hpp"
 #include "hirosco/descriptor/model/response_time.hpp"
 #include "hirosco/descriptor/read/read.hpp"
 #include "hirosco/xml/reader.hpp"
 #include "supervisor/supervision/event_handling/planned_reactions.hpp"
 #include "tools/hirosco/commands.hpp"
+#include "tools/hirosco/core_places.hpp"
 #include "tools/hirosco/json_line.hpp"
 #include "tools/hirosco/permits.hpp"
 #include "tools/hirosco/readiness.hpp"
@@ -63,9 +65,10 @@ void show_cycle(const descriptor::CycleResponse& cycle) {
   const std::string budget =
       cycle.budget() > Duration{} ? fmt::format("{} us", cycle.budget() / 1us) : "no budget declared";
   const std::string spin = cycle.spin() > Duration{} ? fmt::format(" after {} us of spin", cycle.spin() / 1us) : "";
-  fmt::print("  {} {} {}: {}{}, priority {}, ends at most {} us after it is due, due again after {} us\n",
-             cycle.loop != nullptr ? "loop" : "cycle", cycle.subsystem, cycle.name(), budget, spin, cycle.priority(),
-             cycle.longest ? fmt::format("{}", *cycle.longest / 1us) : "?", cycle.period() / 1us);
+  const std::string core = cycle.core ? fmt::format(" on core {}", *cycle.core) : "";
+  fmt::print("  {} {} {}{}: {}{}, priority {}, ends at most {} us after it is due, due again after {} us\n",
+             cycle.loop != nullptr ? "loop" : "cycle", cycle.subsystem, cycle.name(), core, budget, spin,
+             cycle.priority(), cycle.longest ? fmt::format("{}", *cycle.longest / 1us) : "?", cycle.period() / 1us);
 }
 
 /// Which file it may be, and which are versions of it.
@@ -84,12 +87,22 @@ void show_mission(const descriptor::Mission& mission) {
     show_subsystem(member.subsystem);
     if (mission.manifest) show_program(member.executable, *mission.manifest);
     if (!member.starts) fmt::print("  is not started with the flight\n");
+    if (member.cores.cycle)
+      fmt::print("  its cycle goes on core {}{}\n", *member.cores.cycle, member.cores.alone ? ", alone" : "");
+    if (!member.cores.services.empty())
+      fmt::print("  its service loop goes on {}\n", to_string(ProcessorSet::of(member.cores.services)));
   }
   for (const auto& link : mission.links)
     fmt::print("link {}: {}.{} -> {}.{}\n", link.id, link.from, link.provides, link.to, link.requires_);
   for (const auto& mode : mission.modes) {
-    fmt::print("mode {} ({}): cycles take {:.0f} % of their processor\n", mode.name, mode.id,
-               100 * descriptor::cycle_share(mission, mode));
+    if (descriptor::names_cores(mission)) {
+      fmt::print("mode {} ({}):\n", mode.name, mode.id);
+      for (const auto& [core, share] : descriptor::core_shares(mission, mode))
+        fmt::print("  cycles take {:.0f} % of {}\n", 100 * share, descriptor::core_words(core));
+    } else {
+      fmt::print("mode {} ({}): cycles take {:.0f} % of their processor\n", mode.name, mode.id,
+                 100 * descriptor::cycle_share(mission, mode));
+    }
     const auto in_it = descriptor::cycle_responses(mission, mode);
     for (const auto& cycle : in_it) show_cycle(cycle);
     const auto around = descriptor::cycle_responses_around(mission, mode);
@@ -195,11 +208,15 @@ void check_file(const std::filesystem::path& file, const CheckOptions& options, 
   findings.add(permit_problems(*reading.value));
   for (const auto& member : reading.value->subsystems) findings.add(script_problems(member.subsystem, source));
   auto missing = unready(*reading.value, FlownAs::Processes);
+  for (auto& problem : core_problems(*reading.value, ProcessorSet::of_this_thread()))
+    missing.push_back(std::move(problem));
   for (auto& problem : missing)
-    if ((problem.code == "E0401" || problem.code == "E0364" || problem.code == "E0365" || problem.code == "E0368") &&
+    if ((problem.code == "E0401" || problem.code == "E0423" || problem.code == "E0364" || problem.code == "E0365" ||
+         problem.code == "E0368") &&
         !options.fly)
       problem.grade = descriptor::Grade::Warning;
   findings.add(std::move(missing));
+  findings.add(unlikely(*reading.value));
   findings.add(unisolated(*reading.value));
   if (!options.fly) return;
   findings.add(unloadable(*reading.value));

@@ -48,16 +48,23 @@ int look_after(const DoctorOptions& options) {
   for (const auto& problem : unready(*mission, FlownAs::Processes))
     system.not_ready.push_back(fmt::format("{} {}", problem.code, problem.message));
   std::map<Verdict, int> counts;
+  int slower = 0;  // of those, what keeps nothing from flying
   for (const Row& row : doctor::rows()) {
     const Finding finding = row.judge(system);
     ++counts[finding.verdict];
+    if (finding.verdict == Verdict::Missing && doctor::of_time(row)) ++slower;
     (options.json ? print_json : print_text)(row, finding);
   }
   const int missing = counts[Verdict::Missing];
-  if (!options.json)
-    fmt::print("hirosco {}: {}\n", version,
-               missing == 0 ? fmt::format("{} flies here with its figures", mission->name)
-                            : fmt::format("{} missing: {} does not fly here with its figures", missing, mission->name));
+  if (!options.json) {
+    const std::string_view how = missing == 0        ? "flies here with its figures"
+                                 : missing == slower ? "flies here, with cycles later than its figures say"
+                                                     : "does not fly here with its figures";
+    const std::string lacks = missing == 0 ? "" : fmt::format("{} missing: ", missing);
+    const std::string_view whose =
+        options.mission.empty() ? "; no mission was named, of yours says it: hirosco doctor FILE" : "";
+    fmt::print("hirosco {}: {}{} {}{}\n", version, lacks, mission->name, how, whose);
+  }
   return missing == 0 ? exit_ok : exit_finding;
 }
 

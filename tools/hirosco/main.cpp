@@ -157,9 +157,10 @@ int read_and_do(int argc, char** argv) {
   simulate_command->add_option(
       "--trace", simulate_options.trace,
       "Write the truth of the simulated world as CSV, at cycle rate; each 10 ms while there is no cycle");
-  simulate_command->add_option(
-      "--at", simulate_options.at,
-      "Injection \"SECONDS DEVICE LINE\" or \"SECONDS kill SUBSYSTEM\", before the end, in any order");
+  simulate_command->add_option("--at", simulate_options.at,
+                               "Injection \"SECONDS DEVICE LINE\", \"SECONDS kill SUBSYSTEM\" or \"SECONDS tc "
+                               "SUBSYSTEM FUNCTION [VALUE...]\" from "
+                               "ground, before the end, in any order");
   simulate_command->add_option(
       "--values", simulate_options.values,
       "Folder of persistent parameters' values, read and written; by default there are none before");

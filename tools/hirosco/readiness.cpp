@@ -6,22 +6,43 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <iterator>
+#include <map>
+#include <set>
 #include <string>
 
 #include "hirosco/data_transfer/device/local_flows.hpp"
 #include "hirosco/data_transfer/device/system_flow_factory.hpp"
 #include "hirosco/utilities/os/installation.hpp"
+#include "robotics/urdf/robot.hpp"
 #include "simulation/devices/device_arguments.hpp"
 #include "simulation/spacecraft/modules.hpp"
 #include "supervisor/platform/launch/interpreter.hpp"
 #include "supervisor/platform/launch/own_users.hpp"
 #include "supervisor/platform/launch/program_image.hpp"
+#include "tools/hirosco/core_places.hpp"
 
 namespace hirosco::tools {
 namespace {
 
 using descriptor::Diagnostic;
+
+/// All that is said of the URDF files among these.
+struct UrdfFindings {
+  std::vector<Diagnostic> problems, warnings;
+};
+[[nodiscard]] UrdfFindings urdf_findings(const std::map<std::string, std::string>& files) {
+  UrdfFindings findings;
+  for (const auto& [name, file] : files) {
+    if (!file.ends_with(".urdf")) continue;
+    auto reading = robotics::urdf::read(file, descriptor::file_system());
+    std::ranges::move(reading.problems, std::back_inserter(findings.problems));
+    std::ranges::move(reading.warnings, std::back_inserter(findings.warnings));
+  }
+  return findings;
+}
 
 class Lacking {
  public:
@@ -102,7 +123,10 @@ class Lacking {
     if (!wanted) return none(wanted.error());
     wanted->settings.in_world_of = other;
     const auto played = make(flows, wanted->address(), wanted->settings);
-    if (const auto plugged = played->plug(); !plugged) return none(plugged.error().text);
+    if (const auto plugged = played->plug(); !plugged) {
+      if (misread(wanted->settings.files)) return;
+      return none(plugged.error().text);
+    }
     for (const auto& [name, value, at] : device.settings) {
       if (name == simulation::world_setting) continue;
       const auto taken = played->fault(name + " " + value);
@@ -116,6 +140,16 @@ class Lacking {
   [[nodiscard]] std::vector<Diagnostic> take() { return std::move(found_); }
 
  private:
+  /// What the reader of this project says of a robot that a world did not take: with its place in that file, and what to do.
+  [[nodiscard]] bool misread(const std::map<std::string, std::string>& files) {
+    auto problems = urdf_findings(files).problems;
+    // Of one that is not there the mission's place says more.
+    std::erase_if(problems, [](const Diagnostic& problem) { return problem.code == "U0001"; });
+    const bool any = !problems.empty();
+    std::ranges::move(problems, std::back_inserter(found_));
+    return any;
+  }
+
   /// With its settings, as far as it takes them. Null: it cannot be.
   [[nodiscard]] std::unique_ptr<simulation::SimulatedDevice> made(const descriptor::SimulatedDevice& device,
                                                                   const simulation::MakeDevice& make,
@@ -170,6 +204,19 @@ std::vector<Diagnostic> unready(const descriptor::Mission& mission, FlownAs flow
   return findings.take();
 }
 
+std::vector<Diagnostic> unlikely(const descriptor::Mission& mission) {
+  std::vector<Diagnostic> found;
+  std::set<std::string> looked_at;
+  for (const auto& device : mission.devices) {
+    auto wanted = simulation::device_arguments(mission, device);
+    if (!wanted) continue;  // told already
+    std::erase_if(wanted->settings.files, [&](const auto& file) { return !looked_at.insert(file.second).second; });
+    for (auto& warning : urdf_findings(wanted->settings.files).warnings)
+      if (warning.code == "U0509") found.push_back(std::move(warning));
+  }
+  return found;
+}
+
 std::vector<Diagnostic> unloadable(const descriptor::Mission& mission) {
   const auto modules = simulation::load_modules(mission);
   Lacking findings{mission, FlownAs::Simulation};
@@ -220,7 +267,9 @@ std::vector<Diagnostic> unisolated(const descriptor::Mission& mission) {
 }
 
 bool ready(const descriptor::Mission& mission, FlownAs flown_as) {
-  const auto found = unready(mission, flown_as);
+  auto found = unready(mission, flown_as);
+  if (flown_as != FlownAs::Simulation)
+    std::ranges::move(core_problems(mission, ProcessorSet::of_this_thread()), std::back_inserter(found));
   const bool colour = ::isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
   for (const auto& problem : found)
     fmt::print(stderr, "{}", descriptor::render(problem, descriptor::file_system(), colour));

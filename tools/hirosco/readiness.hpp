@@ -20,6 +20,10 @@ enum class FlownAs : std::uint8_t {
 /// that this program has are asked themselves, so that no descriptor library knows what a device is.
 [[nodiscard]] std::vector<descriptor::Diagnostic> unready(const descriptor::Mission& mission, FlownAs flown_as);
 
+/// What of robots' files that simulated devices are given is likely to be a wrong unit (U0509): warnings. What else their reader warns of was said
+/// when the folder was made.
+[[nodiscard]] std::vector<descriptor::Diagnostic> unlikely(const descriptor::Mission& mission);
+
 /// Modules that are here and that `hirosco simulate` would not take (E0404): built against another version, damaged, or without what they are
 /// linked with. A program without a module flies all the same.
 [[nodiscard]] std::vector<descriptor::Diagnostic> unloadable(const descriptor::Mission& mission);

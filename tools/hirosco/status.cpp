@@ -41,11 +41,10 @@ void print_newest_json(const descriptor::SubsystemDescriptor& subsystem, Listene
                                 {"values", std::move(values)}}));
 }
 
-/// Where a person reads it: no wider than 80 columns, and in letters that the terminal has.
+/// Whole, as the cause stands at its end: a terminal that is narrower breaks it. In letters that the terminal has.
 void print_line(std::string_view text, std::string_view look) {
-  constexpr std::size_t columns = 80;
   const bool shown = ::isatty(STDOUT_FILENO) != 0;
-  std::string line = terminal::cut(text, columns);
+  std::string line = terminal::cut(text, std::string::npos);
   if (shown && !terminal::takes_unicode(std::getenv("LC_ALL"), std::getenv("LC_CTYPE"), std::getenv("LANG")))
     line = terminal::ascii(line);
   const bool coloured = shown && !look.empty() && std::getenv("NO_COLOR") == nullptr;

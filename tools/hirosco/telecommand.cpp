@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The HIROSCO developers
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,91 +13,16 @@
 #include "hirosco/pus/requests.hpp"
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/pus/words/describe.hpp"
-#include "hirosco/pus/words/given_words.hpp"
-#include "hirosco/utilities/lower_case.hpp"
-#include "supervisor/platform/storage/database.hpp"
 #include "tools/hirosco/commands.hpp"
 #include "tools/hirosco/confirmation.hpp"
 #include "tools/hirosco/ground_connection.hpp"
 #include "tools/hirosco/instance.hpp"
 #include "tools/hirosco/json_line.hpp"
+#include "tools/hirosco/named_request.hpp"
 #include "tools/terminal/permitted.hpp"
 
 namespace hirosco::tools {
 namespace {
-
-/// What the mission knows by name: a state, mode or configuration.
-[[nodiscard]] std::optional<Number> number_named(const std::string& text, const std::string& function,
-                                                 const descriptor::Mission& mission,
-                                                 const descriptor::SubsystemDescriptor& subsystem) {
-  const std::string wanted = lower_case(text);
-  if (function == "SET_STATE")
-    for (const auto& row : EnumTexts<descriptor::State>::table)
-      if (lower_case(std::string{row.text}) == wanted) return static_cast<std::uint8_t>(row.value);
-  if (function == "CONFIGURE")
-    for (const auto& configuration : subsystem.configurations)
-      if (lower_case(configuration.name) == wanted) return configuration.id;
-  if (function == "SET_MODE" || function == "ENTER_MODE")
-    for (const auto& mode : mission.modes)
-      if (lower_case(mode.name) == wanted) return mode.id;
-  if (function == "SET_DATABASE")
-    for (const int number : {0, 1, 2})
-      if (to_text(static_cast<supervisor::DatabaseStrategy>(number)) == wanted) return Number{number};
-  return std::nullopt;
-}
-
-[[nodiscard]] const descriptor::SubsystemDescriptor* find_subsystem(const descriptor::Mission& mission,
-                                                                    const std::string& name) {
-  const std::string wanted = lower_case(name);
-  if (wanted == lower_case(mission.supervisor.name)) return &mission.supervisor;
-  for (const auto& member : mission.subsystems)
-    if (lower_case(member.subsystem.name) == wanted) return &member.subsystem;
-  std::vector<std::string> names{mission.supervisor.name};
-  for (const auto& member : mission.subsystems) names.push_back(member.subsystem.name);
-  if (name.empty()) fmt::print(stderr, "hirosco tc: of which subsystem? the mission has");
-  else
-    fmt::print(stderr, "hirosco tc: no subsystem '{}'{}; mission {} has", name, did_you_mean(name, names),
-               mission.name);
-  fmt::print(stderr, " {}\n", fmt::join(names, ", "));
-  return nullptr;
-}
-
-void print_usage(const descriptor::Function& function) { fmt::print(stderr, "  {}\n", pus::usage_text(function)); }
-
-struct Encoded {
-  descriptor::Function request;
-  std::vector<std::byte> data;
-};
-
-[[nodiscard]] std::optional<Encoded> encode(const TelecommandOptions& options, const descriptor::Mission& mission,
-                                            const descriptor::SubsystemDescriptor& subsystem) {
-  const std::vector<descriptor::Function> functions = pus::requests_of(subsystem);
-  const auto function = std::ranges::find_if(
-      functions, [&](const auto& f) { return lower_case(f.name) == lower_case(options.function); });
-  if (function == functions.end()) {
-    std::vector<std::string> names;
-    for (const auto& known : functions) names.push_back(known.name);
-    if (options.function.empty()) fmt::print(stderr, "hirosco tc: which function? {} has\n", subsystem.name);
-    else
-      fmt::print(stderr, "hirosco tc: {} has no function '{}'{}; it has\n", subsystem.name, options.function,
-                 did_you_mean(options.function, names));
-    for (const auto& known : functions) print_usage(known);
-    return std::nullopt;
-  }
-  const auto values = pus::values_given(*function, options.arguments, [&](const std::string& word) {
-    return number_named(word, function->name, mission, subsystem);
-  });
-  if (!values) {
-    fmt::print(stderr, "hirosco tc: argument '{}' does not fit; usage:\n", options.arguments[values.error()]);
-    print_usage(*function);
-    return std::nullopt;
-  }
-  auto data = pus::encode_request(*function, *values);
-  if (data) return Encoded{*function, std::move(*data)};
-  fmt::print(stderr, "hirosco tc: {}; usage:\n", data.error().text);
-  print_usage(*function);
-  return std::nullopt;
-}
 
 /// Printable, and without what would end a JSON string.
 [[nodiscard]] std::string words_of(const pus::Reason& reason) {
@@ -122,7 +46,7 @@ struct Encoded {
 
 /// Where a request that was refused by mode or state would be permitted, or to whom; empty: refused for another reason.
 [[nodiscard]] std::string way_out(const pus::TelemetryView& report, const descriptor::Mission& mission,
-                                  const descriptor::SubsystemDescriptor& subsystem, const Encoded& encoded) {
+                                  const descriptor::SubsystemDescriptor& subsystem, const NamedRequest& encoded) {
   OctetReader reader{report.source_data()};
   static_cast<void>(reader.get<std::uint32_t>());
   const auto code = static_cast<pus::FailureCode>(reader.get<std::uint16_t>());
@@ -153,8 +77,10 @@ struct Encoded {
   std::string detail;
   if (subtype == 5 || subtype == 6) detail = fmt::format(" {}", reader.get<std::uint16_t>());
   if (failure) {
-    detail += ": " + failure_text(reader.get<std::uint16_t>(), subsystem);
+    const auto code = reader.get<std::uint16_t>();
+    detail += ": " + failure_text(code, subsystem);
     if (const auto reason = pus::reason_in(reader.rest())) detail += ": " + words_of(*reason);
+    else if (const std::string by = terminal::ended_by(code); !by.empty()) detail += ", " + by;
   }
   if (json) {
     nlohmann::ordered_json object{{"report", fmt::format("1,{}", subtype)},
@@ -210,10 +136,12 @@ int telecommand(const TelecommandOptions& options) {
   const auto place = find_ground_link("tc", options.connection);
   if (!place) return place.error();
   const descriptor::Mission& mission = place->mission;
-  const auto* subsystem = find_subsystem(mission, options.subsystem);
-  if (subsystem == nullptr) return exit_usage;
-  const auto encoded = encode(options, mission, *subsystem);
-  if (!encoded) return exit_usage;
+  const auto encoded = named_request(mission, options.subsystem, options.function, options.arguments);
+  if (!encoded) {
+    fmt::print(stderr, "hirosco tc: {}\n", encoded.error());
+    return exit_usage;
+  }
+  const descriptor::SubsystemDescriptor* const subsystem = encoded->subsystem;
   const descriptor::Function& request = encoded->request;
   const bool person = ::isatty(STDIN_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0;
   if (!may_be_sent(request.confirm, options.yes, person, [&] { return ask(*subsystem, request); })) {

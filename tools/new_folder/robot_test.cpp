@@ -244,6 +244,12 @@ TEST(NewRobot, ProposesAToolThatNearlyAllJointsMove) {
   EXPECT_THAT(found.problems[0].hint, HasSubstr("--tip flange; ends that move are: wheel, flange, finger"));
 }
 
+TEST(NewRobot, ItsReadmeGivesEachNumberItsOwnUnitAndALineForAStraightMotion) {
+  const std::string page = in_repository("templates/robot/README.md");
+  EXPECT_THAT(page, HasSubstr("@acceleration@ @acceleration_unit@ and @jerk@ @jerk_unit@"));
+  EXPECT_THAT(page, HasSubstr("hirosco tc newpart MOVE_L X,Y,Z W,QX,QY,QZ 0.1 0.5"));
+}
+
 TEST(NewRobot, EveryCodeIsExplained) {
   const std::string page = in_repository("docs/urdf-errors.md");
   for (const char* code : {"U0601", "U0602", "U0603", "U0604", "U0605", "U0606", "U0607", "U0608", "U0609", "U0610",

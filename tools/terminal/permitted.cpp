@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "hirosco/pus/packet/failure_code.hpp"
 #include "supervisor/supervision/data_handling/permission_table.hpp"
 #include "tools/terminal/verdict.hpp"
 
@@ -63,6 +64,11 @@ std::string permitted_to_others(const descriptor::Mission& mission, const descri
   std::string text;
   for (const std::string_view name : names) text.append(text.empty() ? "" : ", ").append(name);
   return text;
+}
+
+std::string ended_by(std::uint16_t failure_code) {
+  if (failure_code != static_cast<std::uint16_t>(pus::FailureCode::Aborted)) return {};
+  return "ended by another request, a stop, a plan or the loss of a device: hirosco why";
 }
 
 }  // namespace hirosco::terminal

@@ -22,4 +22,7 @@ namespace hirosco::terminal {
 /// "while it is Safe-Operational or Operational", "in any state": bit n set is State n.
 [[nodiscard]] std::string while_in(std::uint16_t states);
 
+/// Who ends a request that was aborted without a reason of its own, and where that stands; empty: this code is another one.
+[[nodiscard]] std::string ended_by(std::uint16_t failure_code);
+
 }  // namespace hirosco::terminal

@@ -56,5 +56,10 @@ TEST_F(PermittedTest, SaysWhomAModePermitsWhatTheGroundMayNowhereAsk) {
   EXPECT_EQ(permitted_to_others(mission, arm, "FLY"), "");
 }
 
+TEST_F(PermittedTest, SaysOfWhatWasAbortedAloneWhoMayHaveEndedIt) {
+  EXPECT_EQ(ended_by(0x0204), "ended by another request, a stop, a plan or the loss of a device: hirosco why");
+  EXPECT_EQ(ended_by(0x0202), "");
+}
+
 }  // namespace
 }  // namespace hirosco::terminal

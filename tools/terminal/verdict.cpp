@@ -12,7 +12,7 @@ namespace hirosco::terminal {
 namespace {
 
 /// By bit of Inhibition; the page has the same words (ground/web/page/stop_story.js).
-constexpr std::array<std::string_view, 7> inhibitions{"stopped by SAFE ALL or by the supervisor",
+constexpr std::array<std::string_view, 7> inhibitions{"stopped by the supervisor or SAFE ALL",
                                                       "a link that it requires is missing",
                                                       "its device is lost",
                                                       "its own protection tripped",
@@ -69,8 +69,10 @@ std::string state_words(std::string_view state) {
 
 std::string inhibition_words(std::uint32_t inhibited) {
   std::string words;
-  for (std::size_t bit = 0; bit < inhibitions.size(); ++bit)
+  for (std::size_t bit = 1; bit < inhibitions.size(); ++bit)
     if ((inhibited >> bit & 1) != 0) words += fmt::format("{}{}", words.empty() ? "" : ", ", inhibitions[bit]);
+  // Last: whoever has a reason of his own is stopped by the supervisor because of it.
+  if ((inhibited & 1) != 0) words += fmt::format("{}{}", words.empty() ? "" : ", ", inhibitions[0]);
   return words;
 }
 

@@ -78,6 +78,14 @@ TEST(VerdictTest, EveryReasonOfAnInhibitionMakesItUnwellAndHasWords) {
   }
 }
 
+/// Who trips by itself is stopped by the plan for that a moment later: nobody has said SAFE ALL.
+TEST(VerdictTest, SaysFirstWhatWasItsOwnAndOfTheSupervisorsStopThatItCameThen) {
+  EXPECT_EQ(inhibition_words(1U | 8U), "its own protection tripped, stopped by the supervisor or SAFE ALL");
+  EXPECT_EQ(inhibition_words(1U | 2U | 4U),
+            "a link that it requires is missing, its device is lost, stopped by the supervisor or SAFE ALL");
+  EXPECT_EQ(inhibition_words(1U), "stopped by the supervisor or SAFE ALL");
+}
+
 TEST(VerdictTest, SaysTheWordsThatThePageSays) {
   std::string page;
   for (const auto& entry : std::filesystem::recursive_directory_iterator{HIROSCO_SOURCE_DIR "/ground/web/page"}) {
@@ -85,7 +93,7 @@ TEST(VerdictTest, SaysTheWordsThatThePageSays) {
     std::ifstream file{entry.path()};
     page.append(std::istreambuf_iterator<char>{file}, {});
   }
-  for (unsigned bit = 0; bit < 7; ++bit) EXPECT_THAT(page, HasSubstr(inhibition_words(1U << bit)));
+  for (unsigned bit = 0; bit < 7; ++bit) EXPECT_THAT(page, HasSubstr("'" + inhibition_words(1U << bit) + "'"));
 }
 
 TEST(VerdictTest, WhoDoesNotRunALinkThatIsDownAndWhoStaysInTheInitialModeAreUnwell) {

@@ -71,17 +71,19 @@ effect(() => {
 });
 
 const reasons = {
-  stop: 'stopped by SAFE ALL or by the supervisor', link: 'a link that it requires is missing', device: 'its device is lost',
+  stop: 'stopped by the supervisor or SAFE ALL', link: 'a link that it requires is missing', device: 'its device is lost',
   author: 'its own protection tripped', failure: 'its cycle failed', supervisor: 'the supervisor does not answer',
   awaited: 'a device or producer has not answered yet',
 };
 /// Why the actuators of a subsystem are inhibited, in words; empty when they are not.
 export function inhibited_text(now) {
-  const bits = Array.isArray(now?.inhibited) ? now.inhibited : [];
+  const bits = [now?.inhibited ?? []].flat();
   const protection = () => {
-    const event = events.value.find((one) => one.subsystem === now.name && (one.severity === 'high' || one.severity === 'medium'));
+    const event = events.value.find((one) => one.subsystem === now.name && /high|medium/.test(one.severity));
     return event ? `${reasons.author}: ${event.name.toLowerCase().replaceAll('_', ' ')}` : reasons.author;
   };
+  // Last: whoever has a reason of his own is stopped by the supervisor because of it.
+  bits.sort((a, b) => (a === 'stop') - (b === 'stop'));
   return bits.map((bit) => bit === 'author' ? protection() : reasons[bit] ?? bit).join(', ');
 }
 

@@ -196,21 +196,6 @@ double cycle_share(const SubsystemDescriptor& subsystem, const Configuration* in
       share += static_cast<double>(loop.budget.count()) / static_cast<double>(loop.period.count());
   return share;
 }
-double cycle_share(const Mission& mission, const Mode& mode) noexcept {
-  double share = 0;
-  for (const MissionSubsystem& member : mission.subsystems) {
-    const SubsystemDescriptor& subsystem = member.subsystem;
-    const auto step = std::ranges::find(mode.commission, subsystem.name, &CommissionStep::subsystem);
-    share += cycle_share(subsystem,
-                         step == mode.commission.end() ? nullptr : subsystem.find_configuration(step->configuration));
-  }
-  return share;
-}
-double cycle_share(const Mission& mission) noexcept {
-  double share = 0;
-  for (const Mode& mode : mission.modes) share = std::max(share, cycle_share(mission, mode));
-  return share;
-}
 
 std::vector<std::string_view> actuators_without_enable(const SubsystemDescriptor& subsystem) {
   std::vector<std::string_view> names;

@@ -60,6 +60,16 @@ struct Redirected {
   std::string to;  ///< as the mission does
 };
 
+/// Processors of the computer, by the system's numbers from 0, that a subsystem has in this mission (docs/adr/0234).
+struct Cores {
+  /// Of its cycle and its loops of services with a priority; empty: the one that all such share (docs/adr/0007).
+  std::optional<std::uint16_t> cycle{};
+  bool alone{false};  ///< of the flights of this computer nobody else may use it, but for simulated devices of its own
+  std::vector<std::uint16_t> services{};  ///< of all its other threads; empty: whatever the flight may use
+};
+/// The system's numbers end here.
+inline constexpr std::uint16_t greatest_core = 1023;
+
 struct MissionSubsystem {
   std::string executable;  ///< name of the program, looked up beside the running one and then in PATH
   bool starts{true};  ///< with the flight; else when the ground asks for it
@@ -75,6 +85,7 @@ struct MissionSubsystem {
   std::optional<std::uint32_t> user{};
   bool carries_ground{false};  ///< the ground link
   std::vector<LinkMethod> link_methods{};  ///< how links of the mission that begin or end here may travel
+  Cores cores{};
 };
 
 /// What makes an instance of the descriptor in its file the subsystem of the mission, as words for its process: pairs
@@ -99,6 +110,7 @@ struct SimulatedDevice {
   std::uint64_t seed{1};
   std::vector<Setting> settings;
   Location at;
+  std::optional<std::uint16_t> core{};  ///< empty: the one that all cycles share, too
 };
 
 /// What becomes of the consumer of a link whose set it has lost (docs/adr/0077).
@@ -236,6 +248,14 @@ struct MeasuredPower {
   ReportedAt at{};
 };
 
+/// What members draw is measured, and held against what they claim (docs/adr/0237).
+struct PowerDraw {
+  MeasuredPower measured;
+  std::vector<std::uint16_t> of;  ///< their APIDs: one, or all that one outlet feeds
+  double beyond_w{0};  ///< may be drawn besides what they claim
+  Duration longer_than{};  ///< an excess is told when it has lasted so long
+};
+
 struct Mission {
   std::string name;
   std::filesystem::path file;
@@ -245,12 +265,15 @@ struct Mission {
   std::optional<double> power_budget_w;  ///< for the configurations in use; empty = not limited
   std::optional<MeasuredPower> power_measured{};  ///< of that budget; none: it is all there, whatever shines
   double power_least_w{0};  ///< is granted whatever is measured, and where nothing is
+  std::vector<PowerDraw> power_draws{};
   std::optional<Manifest> manifest{};  ///< none: whatever has the name of an executable is started (adr 0089)
   /// Outside this computer, where devices may be reached (docs/adr/0112); empty: nowhere.
   std::vector<DeviceNetwork> device_networks{};
   bool isolation_required{false};  ///< no subsystem is started where this computer cannot isolate it (adr 0081)
   std::optional<UserNumbers> users{};  ///< of subsystems' processes; none: all are of the user who flies (adr 0177)
   Amounts budget{};  ///< of all subsystems together; what is empty is not limited
+  /// Of all cycles that name none, as this flight has it on this computer; empty: not known, as in simulated time.
+  std::optional<std::uint16_t> shared_core{};
   std::vector<MissionSubsystem> subsystems;
   std::vector<SimulatedDevice> devices;
   std::vector<MissionLink> links;
@@ -285,13 +308,13 @@ struct Mission {
 /// Of a flight, in place of the mission's own start mode. In words: why not.
 [[nodiscard]] std::optional<std::string> start_in(Mission& mission, std::string_view mode);
 
-/// Share of the one processor of all cycles (docs/adr/0007) that a subsystem declares: the budget of this configuration, of none null, and
+/// Share of the core that its cycle goes on (docs/adr/0007, 0234) that a subsystem declares: the budget of this configuration, of none null, and
 /// those of its loops of services that have a priority there.
 [[nodiscard]] double cycle_share(const SubsystemDescriptor& subsystem, const Configuration* in_force) noexcept;
-/// The same of the configurations of a mode.
-[[nodiscard]] double cycle_share(const Mission& mission, const Mode& mode) noexcept;
+/// The same of the configurations of a mode, of the core that has most to do (cores.hpp has each).
+[[nodiscard]] double cycle_share(const Mission& mission, const Mode& mode);
 /// The greatest of all modes.
-[[nodiscard]] double cycle_share(const Mission& mission) noexcept;
+[[nodiscard]] double cycle_share(const Mission& mission);
 
 }  // namespace hirosco::descriptor
 

@@ -154,6 +154,18 @@ struct Endnode {
   Location at;
 };
 
+/// What is said of an endnode that the supervisor's side holds besides where it is (docs/adr/0237).
+struct HeldTerms {
+  std::vector<Endnode> fall_backs;  ///< other ways to the same inhibit or switch, in their order
+  Duration silence{};  ///< oldest answer that counts, with real-time scheduling; 0: answers have no age limit
+  Duration silence_reduced{};
+  bool goes_on{false};  ///< of a second inhibit: who loses one way and has another is not stopped
+};
+/// Who goes on by another way has to be there before the device lets go by itself, 50 or 100 ms after the last command: less than that by three
+/// steps of the guard.
+inline constexpr Duration longest_silence_to_go_on = std::chrono::milliseconds{35};
+inline constexpr Duration longest_silence_to_go_on_reduced = std::chrono::milliseconds{85};
+
 /// What a device does by itself when its command is taken away: the inhibit falls, or its frames stay out. Its own duty; the guard compares it with
 /// what the device says after a stop of everything (docs/adr/0213).
 enum class StopKind : std::uint8_t {
@@ -179,6 +191,7 @@ struct Device {
   /// Second inhibit of an actuator, held by the supervisor's side and never handed to the subsystem; empty = none.
   std::optional<Endnode> enable;
   Location at;
+  HeldTerms enable_terms{};
 };
 
 /// Most endnodes of one device.
@@ -191,6 +204,7 @@ struct PowerSwitch {
   std::string device;
   Endnode endnode;
   Location at;
+  HeldTerms terms{};
 };
 
 /// Most that the fields of a device take in each direction, as a frame is carried by every data flow.

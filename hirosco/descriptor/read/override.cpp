@@ -139,26 +139,47 @@ namespace {
   return ok();
 }
 
-/// In each configuration that falls back to it.
-[[nodiscard]] Result<> move_fall_back(SubsystemDescriptor& subsystem, std::size_t device, std::string_view text) {
+/// Of the endnode and its fall-backs, the one with this address. \return whether there was one.
+[[nodiscard]] Result<bool> move_among(const Endnode& preferred, std::vector<Endnode>& fall_backs, std::string_view from,
+                                      std::string_view to) {
+  bool moved = false;
+  for (Endnode& other : fall_backs) {
+    if (other.address != from) continue;
+    const auto there = [&](const Endnode& end) { return end.transfer == other.transfer && end.address == to; };
+    if (there(preferred) || std::ranges::any_of(fall_backs, there))
+      return fail(ErrorCode::Mismatch, "the device has that address already");
+    other.address = to;
+    moved = true;
+  }
+  return moved;
+}
+
+/// In each configuration that falls back to it, and of what the supervisor's side holds.
+[[nodiscard]] Result<> move_fall_back(SubsystemDescriptor& subsystem, std::string_view name, std::string_view text) {
   const auto equals = text.find('=');
   if (equals == 0 || equals == text.npos || equals + 1 == text.size())
     return fail(ErrorCode::InvalidArgument, "DEVICE=ADDRESS=ADDRESS is wanted");
   const std::string_view from = text.substr(0, equals), to = text.substr(equals + 1);
   bool moved = false;
+  const auto among = [&](const Endnode& preferred, std::vector<Endnode>& fall_backs) -> Result<> {
+    HIROSCO_TRY_LET(const bool found, move_among(preferred, fall_backs, from, to));
+    moved = moved || found;
+    return ok();
+  };
   for (Configuration& configuration : subsystem.configurations)
     for (DeviceUse& use : configuration.devices) {
-      if (use.device != device) continue;
-      for (Endnode& other : use.fall_backs) {
-        if (other.address != from) continue;
-        const auto there = [&](const Endnode& end) { return end.transfer == other.transfer && end.address == to; };
-        if (there(use.endnode) || std::ranges::any_of(use.fall_backs, there))
-          return fail(ErrorCode::Mismatch, "the device has that address already");
-        other.address = to;
-        moved = true;
-      }
+      if (subsystem.devices[use.device].name != name) continue;
+      HIROSCO_TRY(among(use.endnode, use.fall_backs));
     }
-  return moved ? ok() : fail(ErrorCode::NotFound, "no configuration falls back to this address");
+  for (Device& device : subsystem.devices) {
+    if (!device.enable || device.name != name) continue;
+    HIROSCO_TRY(among(*device.enable, device.enable_terms.fall_backs));
+  }
+  for (PowerSwitch& power : subsystem.power_switches) {
+    if (power.device != name) continue;
+    HIROSCO_TRY(among(power.endnode, power.terms.fall_backs));
+  }
+  return moved ? ok() : fail(ErrorCode::NotFound, "nothing of it falls back to this address");
 }
 
 }  // namespace
@@ -173,6 +194,7 @@ Result<> apply_change(SubsystemDescriptor& subsystem, std::string_view word, std
     return fail(ErrorCode::InvalidArgument, "DEVICE=ADDRESS is wanted");
   const std::string_view name = text.substr(0, equals), rest = text.substr(equals + 1);
   if (word == "--power") return move_power(subsystem, name, rest);
+  if (word == "--fall-back") return move_fall_back(subsystem, name, rest);
   const auto device = std::ranges::find(subsystem.devices, name, &Device::name);
   if (device == subsystem.devices.end())
     return fail(ErrorCode::NotFound, "no such device; one of several endnodes is DEVICE.ENDNODE");
@@ -182,7 +204,6 @@ Result<> apply_change(SubsystemDescriptor& subsystem, std::string_view word, std
     return ok();
   }
   const auto index = static_cast<std::size_t>(device - subsystem.devices.begin());
-  if (word == "--fall-back") return move_fall_back(subsystem, index, rest);
   for (Configuration& configuration : subsystem.configurations)
     for (DeviceUse& use : configuration.devices)
       if (use.device == index) use.endnode.address = rest;

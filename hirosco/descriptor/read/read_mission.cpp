@@ -165,6 +165,7 @@ void MissionReader::read(const xml::Element& root) {
   }
   for (const auto* element : isolations) read_isolation(*element, draft_);
   read_simulated_devices(devices, draft_);
+  check_cores(root, draft_);
   for (const auto* element : links) links_.read_links(*element);
   for (const auto* element : modes) modes_.read_modes(*element);
   for (const auto* element : recoveries) plans_.read_recovery(*element);

@@ -110,7 +110,7 @@ std::expected<std::vector<std::optional<Value>>, ScriptProblem> values_of(const 
   auto values = values_given(request, line.words);
   if (!values)
     return wrong(line, line.words_at[values.error()], line.words[values.error()],
-                 "'" + line.words[values.error()] + "' does not fit", usage_text(request));
+                 misfit_text(request, line.words, values.error()), usage_text(request));
   descriptor::Function as_function = request;
   as_function.service = 8;
   if (const auto whole = encode_request(as_function, *values); !whole)

@@ -13,6 +13,20 @@
 namespace hirosco::pus {
 namespace {
 
+/// Which argument a word is for, and what it says of it.
+struct Meant {
+  std::size_t argument{0};  ///< past the end: none is left for it
+  std::string text;
+};
+/// `next` counts the words without a name.
+[[nodiscard]] Meant meant(const descriptor::Function& request, const std::string& word, std::size_t& next) {
+  const auto known = std::ranges::find_if(request.arguments, [&](const Argument& argument) {
+    return lower_case(argument.field.name) == lower_case(word.substr(0, word.find('=')));
+  });
+  if (word.find('=') == std::string::npos || known == request.arguments.end()) return {next++, word};
+  return {static_cast<std::size_t>(known - request.arguments.begin()), word.substr(word.find('=') + 1)};
+}
+
 /// Empty: they do not fit.
 [[nodiscard]] std::vector<std::optional<Value>> values_of(const std::string& word, const Argument& argument,
                                                           const NamedNumber& named) {
@@ -83,21 +97,31 @@ std::expected<std::vector<std::optional<Value>>, std::size_t> values_given(const
   for (const Argument& argument : request.arguments) given.emplace_back(value_count(argument), std::nullopt);
   std::size_t next = 0;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string& word = words[i];
-    const auto known = std::ranges::find_if(request.arguments, [&](const Argument& argument) {
-      return lower_case(argument.field.name) == lower_case(word.substr(0, word.find('=')));
-    });
-    const bool by_name = word.find('=') != std::string::npos && known != request.arguments.end();
-    const std::size_t index = by_name ? static_cast<std::size_t>(known - request.arguments.begin()) : next++;
-    auto values = index < given.size()
-                      ? values_of(by_name ? word.substr(word.find('=') + 1) : word, request.arguments[index], named)
-                      : std::vector<std::optional<Value>>{};
+    const auto [index, text] = meant(request, words[i], next);
+    auto values =
+        index < given.size() ? values_of(text, request.arguments[index], named) : std::vector<std::optional<Value>>{};
     if (values.empty()) return std::unexpected{i};
     given[index] = std::move(values);
   }
   std::vector<std::optional<Value>> values;
   for (auto& of_argument : given) std::ranges::move(of_argument, std::back_inserter(values));
   return values;
+}
+
+std::string misfit_text(const descriptor::Function& request, std::span<const std::string> words, std::size_t place) {
+  std::size_t next = 0;
+  Meant found;
+  for (std::size_t i = 0; i <= place && i < words.size(); ++i) found = meant(request, words[i], next);
+  if (found.argument >= request.arguments.size()) {
+    const std::size_t count = request.arguments.size();
+    return "'" + found.text + "' is one too many: " + request.name + " takes " + std::to_string(count) +
+           (count == 1 ? " argument" : " arguments") + ", numbers of one with commas and no blank between them";
+  }
+  const Argument& argument = request.arguments[found.argument];
+  std::string text = "'" + found.text + "' is no " + argument.field.name + ", ";
+  if (const std::size_t count = value_count(argument); count > 1)
+    return text + "which takes " + std::to_string(count) + " numbers with commas between them: " + range_text(argument);
+  return text + "which may be " + range_text(argument);
 }
 
 std::string usage_text(const descriptor::Function& request) {

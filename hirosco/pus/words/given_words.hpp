@@ -32,6 +32,10 @@ using NamedNumber = std::function<std::optional<Number>(const std::string& word)
 [[nodiscard]] std::expected<std::vector<std::optional<Value>>, std::size_t> values_given(
     const descriptor::Function& request, std::span<const std::string> words, const NamedNumber& named = {});
 
+/// "'0.1' is no ORIENTATION, which takes 4 numbers with commas between them: 4 of -1..1": of the word at the place that values_given() told.
+[[nodiscard]] std::string misfit_text(const descriptor::Function& request, std::span<const std::string> words,
+                                      std::size_t place);
+
 /// "MOVE_J GOAL[-3..3 rad] SPEED[0..1]": what a request takes.
 [[nodiscard]] std::string usage_text(const descriptor::Function& request);
 

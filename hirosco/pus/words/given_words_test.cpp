@@ -52,6 +52,17 @@ TEST_F(GivenWords, StandInOrderOrByNameAndWhatIsNotGivenIsNothing) {
   EXPECT_FALSE((*less)[2]);
 }
 
+TEST_F(GivenWords, SayOfWhichArgumentOneIsNotAndWhatThatMayBe) {
+  move.arguments[0].field.minimum = -3;
+  move.arguments[0].field.maximum = 3;
+  const auto said = [&](const Texts& words) { return misfit_text(move, words, values_given(move, words).error()); };
+  EXPECT_EQ(said({"0.1"}), "'0.1' is no GOAL, which takes 2 numbers with commas between them: 2 of -3..3");
+  EXPECT_EQ(said({"1,2", "fast=maybe"}), "'maybe' is no FAST, which may be 0..255");
+  EXPECT_EQ(said({"fast=1", "1;2"}), "'1;2' is no GOAL, which takes 2 numbers with commas between them: 2 of -3..3");
+  EXPECT_EQ(said({"1,2", "1", "7"}),
+            "'7' is one too many: MOVE takes 2 arguments, numbers of one with commas and no blank between them");
+}
+
 TEST_F(GivenWords, TellWhichDoesNotFit) {
   EXPECT_EQ(values_given(move, std::vector<std::string>{"1,2,3"}).error(), 0U);
   EXPECT_EQ(values_given(move, std::vector<std::string>{"1,2", "fast=maybe"}).error(), 1U);

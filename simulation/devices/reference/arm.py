@@ -4,10 +4,10 @@
 """arm.py HOST:PORT HOST:PORT|NAME: frames and second inhibit of a six-joint arm, by UDP or by a UNIX socket NAME (docs/guide/your_robot.md). drives.py is yours to replace."""
 import binascii, os, select, socket, struct, sys, time
 
-from drives import JOINTS, Drives
+from drives import JOINTS, MOST, Drives
 
 OFF, ACTIVE, TRIPPED, OLD_EPOCH, MOVING, BRAKING, HOLDING = 0, 1, 1, 2, 1, 2, 3
-CYCLE, FRESH, MOST = 0.002, 0.05, 80.0                         # s, s, N m
+CYCLE, FRESH = 0.002, 0.05                                     # s
 HEAD, SECOND = struct.Struct("<HBBIIHHI"), struct.Struct("<HBBHII")
 
 def check(octets):

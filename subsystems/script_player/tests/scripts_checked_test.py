@@ -34,7 +34,7 @@ class Checked(unittest.TestCase):
         code, said = self.check("# first\nHELLO MOVE_TO 0.5\nHELLO MOVE_TOO 0.5\n  HELLO MOVE_TO far\nwaits 5 6\nuntil HELLO SPEED > 1 within 2\n")
         self.assertNotEqual(code, 0)
         for place in ("too_far.script:3:7: error: E0421: 'PLAYER' may not ask HELLO for 'MOVE_TOO'", "did you mean 'MOVE_TO'?",
-                      "too_far.script:4:17: error: E0421: 'far' does not fit", "MOVE_TO GOAL[-3.2..3.2 rad]",
+                      "too_far.script:4:17: error: E0421: 'far' is no GOAL, which may be -3.2..3.2 rad", "MOVE_TO GOAL[-3.2..3.2 rad]",
                       "too_far.script:5:1: error: E0421: 'PLAYER' commands no subsystem 'waits'",
                       "too_far.script:6:13: error: E0421: 'PLAYER' may not read 'SPEED' of HELLO"):
             self.assertIn(place, said)

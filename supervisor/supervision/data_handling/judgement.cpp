@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "hirosco/descriptor/model/cores.hpp"
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "supervisor/supervision/resource_management/power_handling.hpp"
 
@@ -71,7 +72,8 @@ std::vector<descriptor::InForce> Judgement::in_force() const {
   for (const Member& member : craft_.members) {
     if (!member.alive()) continue;
     const descriptor::SubsystemDescriptor& subsystem = member.descriptor();
-    all.push_back({&subsystem, subsystem.find_configuration(member.configuration())});
+    all.push_back({&subsystem, subsystem.find_configuration(member.configuration()),
+                   descriptor::core_of(craft_.mission, member.described())});
   }
   return all;
 }

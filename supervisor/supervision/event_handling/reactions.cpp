@@ -150,7 +150,9 @@ void Reactions::react_to_own(std::string_view event, Severity severity) {
   if (craft_.shutting_down || std::ranges::none_of(reaction.steps, acts)) return;
   craft_.tell("plan " + std::string{reaction.plan} + ": all subsystems because of " + std::string{event},
               supervisor_apid);
-  if (means_.under_way.cancel("plan " + std::string{reaction.plan}) == Cancelled::ForGood) craft_.fail();
+  if (means_.under_way.cancel("plan " + std::string{reaction.plan} + " because of " + std::string{event}) ==
+      Cancelled::ForGood)
+    craft_.fail();
   for (const PlanStart& start : answer_to_own(reaction, event, severity)) runs_.begin(start);
 }
 

@@ -29,6 +29,9 @@ namespace {
   constexpr std::size_t most = pus::FailureNotice::max_reason_text_octets - tail.size();
   std::string text =
       fmt::format("mode {} not reached", mode.substr(0, most - std::string_view{"mode  not reached"}.size()));
+  // Of a plan it is what that answered.
+  constexpr std::string_view because = " because of ";
+  if (const auto cause = why.find(because); cause != std::string_view::npos) why.remove_prefix(cause + because.size());
   // What it is about; the answer to the step that failed is in the log.
   std::string_view whom = why.substr(0, why.find_first_of(":;"));
   const std::size_t room = most - std::min(most, text.size() + std::string_view{": "}.size());

@@ -316,6 +316,8 @@ TEST_F(ModeChangeTest, WhoAskedIsToldWhichModeWasNotReachedBecauseOfWhomAndWhatT
   };
   EXPECT_EQ(told(6, "SAFE_ALL"), "mode mmmmmm not reached: SAFE_ALL; hirosco log");
   EXPECT_EQ(told(9, "CORONAGRAPH SafeOperational: timeout"), "mode mmmmmmmmm not reached: CORONAGRAPH; hirosco log");
+  EXPECT_EQ(told(9, "plan network-down because of SIX ARM_LOST"),
+            "mode mmmmmmmmm not reached: SIX ARM_LOST; hirosco log");
   EXPECT_EQ(told(34, "ARM Operational: timeout"), "mode " + std::string(34, 'm') + " not reached; hirosco log");
   for (std::size_t letters = 1; letters <= 64; ++letters) {
     const std::string words = told(letters, "one of several reasons; and another one");

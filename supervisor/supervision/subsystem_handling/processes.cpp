@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "hirosco/data_transfer/device/flow_means.hpp"
 #include "hirosco/descriptor/model/supervisor_events.hpp"
 #include "supervisor/supervision/data_handling/own_telecommands.hpp"
 #include "supervisor/supervision/data_handling/persistent_values/stored_values.hpp"
@@ -31,13 +32,68 @@ constexpr Duration closed_channel_limit = 1s;
 /// The signal that ends whoever is not gone on with.
 constexpr int killed = 9;
 
-[[nodiscard]] std::string inhibit_words(const descriptor::SubsystemDescriptor& subsystem, const GuardFinding& finding) {
-  const auto& devices = subsystem.devices;
-  const std::string_view device =
-      finding.device < devices.size() ? devices[finding.device].name : std::string_view{"?"};
-  const bool silent = finding.kind == GuardFinding::Kind::InhibitSilent;
-  return fmt::format(": the second inhibit of its device {} {}: that it has heard a stop would be known of nobody",
-                     device, silent ? "does not answer" : "is of another version, build both from one hirosco");
+/// What the guard found of a device, as it is told and planned for.
+struct DeviceFinding {
+  std::string words;  ///< behind the name of its subsystem
+  std::string_view event;
+  Severity severity{Severity::Medium};
+};
+
+[[nodiscard]] std::string_view device_of(const descriptor::SubsystemDescriptor& subsystem, std::uint16_t place) {
+  return place < subsystem.devices.size() ? std::string_view{subsystem.devices[place].name} : "?";
+}
+
+/// Where it was looked for.
+[[nodiscard]] std::string inhibit_address(const descriptor::SubsystemDescriptor& subsystem, std::uint16_t place) {
+  if (place >= subsystem.devices.size() || !subsystem.devices[place].enable) return "?";
+  const descriptor::Endnode& enable = *subsystem.devices[place].enable;
+  const FlowMeans* means = find_flow_means(enable.transfer);
+  const bool name = means != nullptr && means->form == AddressForm::Name;
+  return fmt::format("{} {}{}", to_text(enable.transfer), enable.address,
+                     name ? " (.NAME behind it where the flight has --instance NAME)" : "");
+}
+
+[[nodiscard]] std::string_view switched_by(const descriptor::SubsystemDescriptor& subsystem, std::uint16_t place) {
+  const auto& switches = subsystem.power_switches;
+  return place < switches.size() ? std::string_view{switches[place].device} : "?";
+}
+
+[[nodiscard]] std::optional<DeviceFinding> device_finding(const descriptor::SubsystemDescriptor& subsystem,
+                                                          const GuardFinding& finding) {
+  using enum GuardFinding::Kind;
+  const std::string_view device = device_of(subsystem, finding.device);
+  const std::string_view switched = switched_by(subsystem, finding.device);
+  const auto silent = [&](const std::string& how, std::string_view todo) {
+    return DeviceFinding{
+        fmt::format(": the second inhibit of its device {} {}: that it has heard a stop would be known "
+                    "of nobody{}",
+                    device, how, todo),
+        "INHIBIT_SILENT"};
+  };
+  switch (finding.kind) {
+    case InhibitSilent:
+      return silent("does not answer at " + inhibit_address(subsystem, finding.device),
+                    ", and without it the device never moves; its driver has to listen there");
+    case InhibitOfOtherVersion: return silent("is of another version, build both from one hirosco", "");
+    case InhibitLost:
+      return DeviceFinding{
+          fmt::format(": the second inhibit of its device {} has not answered in time: it is stopped; look at "
+                      "its line and at who answers there, then let it go again",
+                      device),
+          "INHIBIT_LOST"};
+    case InhibitFellBack:
+      return DeviceFinding{fmt::format(": the second inhibit of its device {} goes on by another way", device),
+                           "INHIBIT_FALL_BACK", Severity::Low};
+    case PowerSilent:
+      return DeviceFinding{fmt::format(": the power switch of its device {} has not answered in time: whether that has "
+                                       "power is not known; look at its lines",
+                                       switched),
+                           "POWER_SILENT"};
+    case PowerFellBack:
+      return DeviceFinding{fmt::format(": the power switch of its device {} answers by another way", switched),
+                           "POWER_FALL_BACK", Severity::Low};
+    default: return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -284,6 +340,11 @@ void Processes::hear_of(Member& subject, const GuardFinding& finding) {
   const auto tell = [&](std::string_view line) {
     craft_.tell(subject.descriptor().name + std::string{line}, subject.apid());
   };
+  if (const auto found = device_finding(subject.descriptor(), finding)) {
+    tell(found->words);
+    parts_.own.announce(found->event, {static_cast<double>(subject.apid()), static_cast<double>(finding.device + 1)});
+    return parts_.reactions.react(subject, found->event, found->severity);
+  }
   switch (finding.kind) {
     case CycleHangs: tell(" hangs: its cycle stands still"); break;
     case ServiceHangs: tell(" hangs: its service loop stands still"); break;
@@ -295,12 +356,6 @@ void Processes::hear_of(Member& subject, const GuardFinding& finding) {
       return tell(" moves again");
     case Killed: return tell(" was ended: it did not come back or had not stopped in time");
     case Ended: return parts_.reception.give_up(subject);  // what it left unsaid is read when its process has gone
-    case InhibitSilent:
-    case InhibitOfOtherVersion:
-      tell(inhibit_words(subject.descriptor(), finding));
-      parts_.own.announce("INHIBIT_SILENT",
-                          {static_cast<double>(subject.apid()), static_cast<double>(finding.device + 1)});
-      return parts_.reactions.react(subject, "INHIBIT_SILENT", Severity::Medium);
     default: return;
   }
   parts_.own.announce("HANG", {static_cast<double>(subject.apid())});

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -19,6 +21,12 @@ void read_power(const xml::Element& element, MissionDraft& draft);
 void read_resources(const xml::Element& element, Mission& mission, Problems& problems);
 /// And whether what they say they take fits into it.
 void check_resources(const xml::Element& element, const Mission& mission, Problems& problems);
+/// Which cores a subsystem has.
+void read_cores(Attributes& attributes, MissionSubsystem& member, Problems& problems);
+/// And a simulated device.
+[[nodiscard]] std::optional<std::uint16_t> read_core(Attributes& attributes);
+/// Nobody claims a core that is another's alone. Behind all subsystems and simulated devices of the mission, whose element this is.
+void check_cores(const xml::Element& root, MissionDraft& draft);
 /// Whether subsystems fly where this computer cannot isolate them, and as which users. Behind all subsystems and their devices.
 void read_isolation(const xml::Element& element, MissionDraft& draft);
 /// What may be started.
