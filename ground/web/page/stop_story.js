@@ -77,9 +77,9 @@ const reasons = {
 };
 /// Why the actuators of a subsystem are inhibited, in words; empty when they are not.
 export function inhibited_text(now) {
-  const bits = [now?.inhibited ?? []].flat();
+  const bits = Array.isArray(now?.inhibited) ? [...now.inhibited] : [];
   const protection = () => {
-    const event = events.value.find((one) => one.subsystem === now.name && /high|medium/.test(one.severity));
+    const event = events.value.find((one) => one.subsystem === now.name && (one.severity === 'high' || one.severity === 'medium'));
     return event ? `${reasons.author}: ${event.name.toLowerCase().replaceAll('_', ' ')}` : reasons.author;
   };
   // Last: whoever has a reason of his own is stopped by the supervisor because of it.
