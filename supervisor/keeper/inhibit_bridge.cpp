@@ -36,7 +36,12 @@ InhibitBridge::~InhibitBridge() {
 }
 
 void InhibitBridge::watch(int supervisor) {
-  supervisor_.store(supervisor);
+  // While it lives: of one that has ended nobody with real time opens anything (docs/adr/0240).
+  ProcessThreads threads = ProcessThreads::of(supervisor);
+  {
+    const LockGuard lock{mutex_};
+    std::swap(supervisor_, threads);
+  }
   if (thread_.joinable()) return;
   if (auto thread = Thread::start("inhibits", [this] { run(); }, bridge_stack_octets)) thread_ = std::move(*thread);
 }
@@ -110,7 +115,10 @@ void InhibitBridge::run() {
 void InhibitBridge::go_between(std::uint32_t lost) {
   const SystemClock clock;
   // What it holds of endnodes it gives back last of all.
-  if (const int process = supervisor_.load(); page_.starts.load() == lost) hurry_end(process);
+  if (page_.starts.load() == lost) {
+    const LockGuard lock{mutex_};
+    hurry_end(supervisor_);
+  }
   const TimePoint began = clock.now();
   await(lost + 1);
   open(began);

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "hirosco/data_transfer/device/data_flow.hpp"
+#include "hirosco/utilities/os/mutex.hpp"
+#include "hirosco/utilities/os/process_threads.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "supervisor/keeper/kept.hpp"
 
@@ -31,7 +33,7 @@ class InhibitBridge {
   InhibitBridge(const InhibitBridge&) = delete;
   InhibitBridge& operator=(const InhibitBridge&) = delete;
 
-  /// A supervisor was started: the end of its guard's thread begins it, before the system tells of the end of the process, which on a busy
+  /// A supervisor was started, a child of the caller: the end of its guard's thread begins it, before the system tells of the end of the process, which on a busy
   /// computer comes when the devices have stopped (docs/adr/0135). Does nothing where no thread can be had: the devices stop.
   void watch(int supervisor);
   /// That supervisor has ended, as its process handle tells.
@@ -65,7 +67,8 @@ class InhibitBridge {
   std::optional<TimePoint> until_;
   std::uint32_t start_{0};  ///< the supervisor that is waited for, or has taken over
   std::atomic<std::uint32_t> told_{0};  ///< the newest start whose end is known
-  std::atomic<int> supervisor_{0};  ///< its process
+  Mutex mutex_;
+  ProcessThreads supervisor_ HIROSCO_GUARDED_BY(mutex_);  ///< of the newest one
   std::atomic<bool> forbidden_{false};
   std::atomic<bool> ending_{false};
   Thread thread_;

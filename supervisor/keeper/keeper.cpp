@@ -261,9 +261,12 @@ class Flight {
     if (page_.starts.load() < 2) return;
     each_child([&](int pid) {
       const bool ours = std::ranges::find(devices_, pid, &Process::pid) != devices_.end();
-      int status = 0;
-      if (ours || pid == plan_.beside || pid == supervisor_->pid() || ::waitpid(pid, &status, WNOHANG) != pid) return;
-      const int how = WIFSIGNALED(status) ? static_cast<int>(ended_by_signal) + WTERMSIG(status) : WEXITSTATUS(status);
+      if (ours || pid == plan_.beside || pid == supervisor_->pid()) return;
+      siginfo_t info{};
+      const bool seen = ::waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0;
+      if (!seen || info.si_pid == 0 || collect(pid) != Collection::Begun) return;
+      const int signalled = info.si_code == CLD_EXITED ? 0 : static_cast<int>(ended_by_signal);
+      const int how = signalled + info.si_status;
       page_.tell_end(static_cast<std::uint32_t>(pid), static_cast<std::uint32_t>(how));
     });
   }
@@ -345,6 +348,8 @@ int keep(KeeperPlan plan) {
   LineWriter errors{STDERR_FILENO};
   ::prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
   const ServiceNotice notice = ServiceNotice::take();  // before anybody is started
+  // Before it has real time, and while a thread can be refused in words.
+  if (const auto begun = begin_collecting(); !begun) return refused(errors, begun.error().text, begun.error().value);
   Shared shared;
   if (const int code = prepare(shared, errors); code != 0) return code;
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/process_threads.hpp"
 #include "hirosco/utilities/os/processor_set.hpp"
 #include "hirosco/utilities/os/sandbox.hpp"
 #include "hirosco/utilities/result.hpp"
@@ -80,7 +81,8 @@ class Process {
   [[nodiscard]] int pid() const noexcept { return pid_; }
   /// Readable once the process has ended: for WaitSet, or to hand to another process.
   [[nodiscard]] const FileDescriptor& handle() const noexcept { return handle_; }
-  /// Its end, or nothing while it runs; does not block, and repeats its answer.
+  /// Its end, or nothing while it runs; does not block, and repeats its answer. A child is collected by
+  /// it, or stays a zombie where collect() does not go.
   [[nodiscard]] Result<std::optional<ExitStatus>> poll() noexcept;
   /// Never hits another process that got the same pid later; NotFound when it has ended.
   [[nodiscard]] Result<> send_signal(int signal) noexcept;
@@ -95,8 +97,23 @@ class Process {
   std::optional<ExitStatus> ended_;
 };
 
+/// What became of a child that was to be collected.
+enum class Collection : std::uint8_t {
+  Begun,  ///< it is, or is in a moment
+  UnderWay,  ///< it was begun before, or is done
+  NotNow,  ///< too many are under way, or no thread is to be had: to be tried again
+};
+
+/// Takes a child that has ended, or is about to, from the system, by which its number is free again. Whoever has real time leaves that to a
+/// thread that has none: the system may hold whoever does it for as long as another one of this processor, who has just looked at the
+/// child, does not come to go on (docs/adr/0240). Until then it can be seen in /proc, and does nothing.
+/// Realtime: bounded; else blocks until it has ended. Thread: any.
+[[nodiscard]] Collection collect(int pid) noexcept;
+/// Whoever has real time and children calls this before he has either: later the thread may not be to be had.
+[[nodiscard]] Result<> begin_collecting() noexcept;
+
 /// Of a process that is ending: its threads come before all ordinary ones and after everything of real time, so that on a busy computer, too,
-/// it gives back soon what it holds. Where that is not permitted it takes its time. Realtime: no.
-void hurry_end(int pid) noexcept;
+/// it gives back soon what it holds; but those in the background, who come after everybody. Where that is not permitted it takes its time. Realtime: system calls, bounded.
+void hurry_end(ProcessThreads& threads) noexcept;
 
 }  // namespace hirosco

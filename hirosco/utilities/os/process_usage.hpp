@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
+#include "hirosco/utilities/os/process_threads.hpp"
 #include "hirosco/utilities/result.hpp"
 #include "hirosco/utilities/time.hpp"
 
@@ -15,32 +16,36 @@ namespace hirosco {
 /// What a process has taken of its computer; of threads of one process 0 is what cannot be told apart.
 struct ProcessUsage {
   std::uint32_t memory_kb{0};  ///< that it may write and shares with nobody, in RAM or not: what its limit counts
+  std::uint32_t resident_kb{0};  ///< in RAM, whosever it is
   std::uint32_t shared_memory_kb{0};  ///< in RAM
   std::uint32_t threads{0};
   std::uint32_t descriptors{0};  ///< 0 where they cannot be counted: of another process
   Duration processor{};  ///< of all its threads since its start
   std::uint32_t processes{
       1};  ///< itself, and of another process those that it has started and that have not ended, where the system tells; a hundred are enough
+  std::uint32_t look{
+      0};  ///< how often it was looked at, where somebody else does that; 0: not yet, and only its processor time is known
   static constexpr std::uint16_t no_core = 0xFFFF;
   std::uint16_t cycle_core{no_core};  ///< on which its cycle is alone, where whoever asks knows that
 };
 
-/// Looks at one process again and again.  Realtime: system calls, bounded, no heap. Thread: one at a time.
+/// Looks at one process again and again. Realtime: of ourselves system calls, bounded, no heap; of others no (docs/adr/0240).
+/// Thread: one at a time.
 class ProcessMeter {
  public:
   /// Of ourselves; NotFound: the system does not tell.
-  [[nodiscard]] static Result<ProcessMeter> own();
+  [[nodiscard]] static Result<ProcessMeter> own() noexcept;
   /// Of another one, whose number is not used anew as long as its parent has not taken its end.
-  [[nodiscard]] static Result<ProcessMeter> of(int pid);
+  [[nodiscard]] static Result<ProcessMeter> of(int pid) noexcept;
   /// Empty: it has ended.
   [[nodiscard]] std::optional<ProcessUsage> look() noexcept;
 
  private:
   enum class Whose : std::uint8_t { Own, Others };
-  ProcessMeter(FileDescriptor status, FileDescriptor tasks, Whose whose, int clock) noexcept
-      : status_{std::move(status)}, tasks_{std::move(tasks)}, whose_{whose}, clock_{clock} {}
+  ProcessMeter(FileDescriptor status, ProcessThreads threads, Whose whose, int clock) noexcept
+      : status_{std::move(status)}, threads_{std::move(threads)}, whose_{whose}, clock_{clock} {}
   FileDescriptor status_;
-  FileDescriptor tasks_;  ///< folder of another's threads
+  ProcessThreads threads_;  ///< of another one
   Whose whose_;
   int clock_;  ///< of its processor time
 };

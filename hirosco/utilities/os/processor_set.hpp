@@ -38,6 +38,7 @@ class ProcessorSet {
   [[nodiscard]] std::optional<unsigned> last() const noexcept;
   /// One that is not among `others`; the lowest.
   [[nodiscard]] std::optional<unsigned> beyond(const ProcessorSet& others) const noexcept;
+  friend bool operator==(const ProcessorSet&, const ProcessorSet&) = default;
 
  private:
   static constexpr unsigned word_bits = 8 * sizeof(unsigned long);

@@ -16,6 +16,7 @@ struct ThreadPlaces {
   ProcessorSet all;  ///< each of them
   std::optional<unsigned> cycle{};  ///< and the one of this name alone there
   static constexpr std::string_view cycle_name = "cycle";
+  friend bool operator==(const ThreadPlaces&, const ThreadPlaces&) = default;
 };
 
 /// A thread that may use a processor that is none of its own.
@@ -25,7 +26,7 @@ struct StrayThread {
 };
 
 /// Of a process of this computer, whose number is not used anew meanwhile; empty: none, or it has ended. A process of more threads than
-/// 256 is looked at as far as that. Realtime: system calls, bounded, no heap.
+/// 256 is looked at as far as that. Realtime: no (docs/adr/0240); no heap.
 [[nodiscard]] std::optional<StrayThread> stray_thread(int process, const ThreadPlaces& places) noexcept;
 
 }  // namespace hirosco

@@ -54,6 +54,9 @@ class Thread {
 [[nodiscard]] Result<> set_shared_priority(int priority) noexcept;
 /// Returns the calling thread to ordinary scheduling.
 [[nodiscard]] Result<> set_ordinary_scheduling() noexcept;
+/// The same, for a thread that is in no hurry: it displaces nobody when it wakes, and hurry_end() leaves it so. What the system has no word
+/// for is ordinary scheduling.
+[[nodiscard]] Result<> set_background_scheduling() noexcept;
 /// For a thread that may not have SCHED_FIFO: asks the ordinary scheduler for short slices, so that it is served sooner
 /// after it wakes on a busy computer; needs no right. Unavailable where the system has no such wish (Linux from 6.12 on
 /// heeds it, earlier ones accept and ignore it).

@@ -33,6 +33,8 @@ struct LoopTime {
 class ProcessGrip {
  public:
   virtual ~ProcessGrip() = default;
+  /// Learns which threads it has now, by which loop_time() and take_loops_realtime() go until the next time. Realtime: no.
+  virtual void find_threads() noexcept {}
   /// All its threads lose real-time priority: who waited for the processor gets it.
   virtual void take_realtime() noexcept = 0;
   /// The same, but its cycle keeps what it has.
@@ -48,10 +50,10 @@ class ProcessGrip {
 /// What the supervisor holds of a started subsystem.
 struct LaunchedSubsystem {
   std::unique_ptr<MemberPort> port;  ///< for the boxes of the supervisor
-  Mapping vital;                     ///< for the guard, which needs nothing of the port; read
-  Mapping permit;                    ///< the same; written
-  std::uint32_t process{0};          ///< names it to the launcher
-  std::shared_ptr<ProcessGrip> grip; ///< null where a process cannot be gripped
+  Mapping vital;  ///< for the guard, which needs nothing of the port; read
+  Mapping permit;  ///< the same; written
+  std::uint32_t process{0};  ///< names it to the launcher
+  std::shared_ptr<ProcessGrip> grip;  ///< null where a process cannot be gripped
   std::string_view not_held{};  ///< what of it the mission's manifest does not hold; empty: all, or there is none
   std::string_view
       not_kept{};  ///< why it would end with this supervisor, where the keeper holds others; empty: it is held, or nobody is
@@ -140,11 +142,12 @@ class ProcessLauncher {
   [[nodiscard]] virtual std::vector<std::string> isolation_lacks() const { return {}; }
   /// What would isolate them more and the mission does not ask for, in words; empty: nothing (docs/adr/0177).
   [[nodiscard]] virtual std::string isolation_not_asked() const { return {}; }
-  /// What it has taken, 0 of what cannot be told of it alone; empty where nothing can, or it has ended. Allocates nothing.
+  /// What it has taken, as it was seen last, and it is looked at again; 0 of what cannot be told of it alone; empty where nothing can, it
+  /// was not seen yet, or has ended. Allocates nothing.
   [[nodiscard]] virtual std::optional<ProcessUsage> usage(std::uint32_t /*process*/) noexcept { return std::nullopt; }
   /// Whether the computer has this core for us (docs/adr/0234). Where time is simulated each is as good as another.
   [[nodiscard]] virtual bool grants_core(std::uint16_t /*core*/) noexcept { return true; }
-  /// A thread of it that is not where it may be; empty: none, or nobody can tell. Allocates nothing.
+  /// A thread of it that is not where it may be, as it was seen last; empty: none, or nobody can tell. Allocates nothing.
   [[nodiscard]] virtual std::optional<StrayThread> stray(std::uint32_t /*process*/,
                                                          const ThreadPlaces& /*places*/) noexcept {
     return std::nullopt;

@@ -86,13 +86,18 @@ void burn(Duration span) {
   while (std::chrono::seconds{had.tv_sec} + Duration{had.tv_nsec} < span);
 }
 
-/// A thread of real time where that is permitted, which has had 100 ms.
-Thread burnt_in_realtime(const char* name) {
+std::atomic<bool> goes_on{false};
+
+/// A thread of real time where that is permitted, which has had 50 ms and goes on to 200 once it gets SIGUSR1.
+Thread burns_in_realtime(const char* name) {
+  ::signal(SIGUSR1, [](int) { goes_on = true; });
   std::atomic<bool> done{false};
   auto thread = Thread::start(name, [&done] {
     static_cast<void>(set_shared_priority(1));
-    burn(100ms);
+    burn(50ms);
     done = true;
+    while (!goes_on) ::usleep(1000);
+    burn(200ms);
     for (;;) ::pause();
   });
   while (!done) ::usleep(1000);
@@ -102,14 +107,34 @@ Thread burnt_in_realtime(const char* name) {
 TEST(ProcessGrip, ProcessorTimeIsThatOfAllThreadsAndLoopsOfRealTimeAreAllButTheCycle) {
   const bool permitted = realtime_permitted();
   for (const char* const name : {"worker", "cycle", "cycle) R 1", "cycles"}) {
-    const GrippedChild child{[name] { return burnt_in_realtime(name); }};
+    const GrippedChild child{[name] { return burns_in_realtime(name); }};
+    EXPECT_EQ(child.grip().loop_time().realtime, 0ms) << "nobody has looked yet";
+    child.grip().find_threads();
+    EXPECT_EQ(child.grip().loop_time().realtime / 40ms, 0) << "what it had before it was found is of no window";
+    ::kill(child.pid(), SIGUSR1);
+    while (child.grip().processor_time() < 200ms) ::sched_yield();
     child.stand();
-    EXPECT_GE(child.grip().processor_time(), 100ms);
     const LoopTime time = child.grip().loop_time();
     EXPECT_EQ(time.service / 50ms, 0) << "its first thread only waited";
     const bool counts = permitted && std::string_view{name} != "cycle";
     EXPECT_EQ(time.realtime / 50ms > 0, counts) << name;
   }
+}
+
+TEST(ProcessGrip, WithoutADescriptorToLookByItKeepsWhatItKnows) {
+  const GrippedChild child{[] { return burns_in_realtime("worker"); }};
+  child.grip().find_threads();
+  ::kill(child.pid(), SIGUSR1);
+  while (child.grip().processor_time() < 200ms) ::sched_yield();
+  child.stand();
+  const LoopTime before = child.grip().loop_time();
+  rlimit limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
+  const rlimit none{.rlim_cur = 0, .rlim_max = limit.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  child.grip().find_threads();
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
+  EXPECT_EQ(child.grip().loop_time().realtime, before.realtime);
 }
 
 TEST(ProcessGrip, WhatALoopCallsItselfDeceivesNobody) {
@@ -118,6 +143,7 @@ TEST(ProcessGrip, WhatALoopCallsItselfDeceivesNobody) {
     return Thread{};
   }};
   child.stand();
+  child.grip().find_threads();
   EXPECT_FALSE(child.grip().loop_time().runnable);
 }
 

@@ -2,16 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/platform/launch/running_processes.hpp"
 
-#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <unistd.h>
 
-#include <array>
-#include <charconv>
 #include <iterator>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include "hirosco/utilities/os/clock.hpp"
@@ -22,17 +16,11 @@ namespace {
 /// How long one that cannot be gone on with may take to go before it is told as one that hangs.
 constexpr int longest_end_ms = 50;
 
-[[nodiscard]] FileDescriptor open_statm(const std::string& process) {
-  return FileDescriptor{::open(("/proc/" + process + "/statm").c_str(), O_RDONLY | O_CLOEXEC)};
-}
-
 }  // namespace
 
-std::uint32_t RunningProcesses::add(Process process) {
+std::uint32_t RunningProcesses::add(Process process, FileDescriptor handle, std::shared_ptr<ProcessGrip> grip) {
   const std::uint32_t number = next_++;
-  memory_use_[number] = open_statm(std::to_string(process.pid()));
-  if (!memory_use_[0]) memory_use_[0] = open_statm("self");
-  if (auto meter = ProcessMeter::of(process.pid())) meters_.emplace(number, std::move(*meter));
+  watch_.add(number, process.pid(), std::move(handle), std::move(grip));
   processes_.emplace(number, std::move(process));
   return number;
 }
@@ -72,8 +60,7 @@ std::optional<ProcessEnd> RunningProcesses::ended(std::uint32_t number) {
   }
   found->second.kill_with_its_own();  // whoever it has left behind holds its devices
   processes_.erase(found);
-  memory_use_.erase(number);
-  meters_.erase(number);
+  watch_.remove(number);
   return end;
 }
 
@@ -93,24 +80,10 @@ bool RunningProcesses::any() {
   return !processes_.empty();
 }
 
-std::optional<ProcessUsage> RunningProcesses::usage(std::uint32_t number) noexcept {
-  const auto found = meters_.find(number);
-  return found != meters_.end() ? found->second.look() : std::nullopt;
-}
-
-std::uint32_t RunningProcesses::resident_kb(std::uint32_t number) const noexcept {
-  const auto found = memory_use_.find(number);
-  if (found == memory_use_.end()) return 0;
-  std::array<char, 128> text;
-  const auto octets = ::pread(found->second.get(), text.data(), text.size(), 0);
-  if (octets <= 0) return 0;
-  // "size resident shared ...", in pages.
-  const std::string_view line{text.data(), static_cast<std::size_t>(octets)};
-  const auto blank = line.find(' ');
-  std::uint64_t pages = 0;
-  if (blank != std::string_view::npos) std::from_chars(line.data() + blank + 1, line.data() + line.size(), pages);
-  static const auto page_octets = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  return static_cast<std::uint32_t>(pages * page_octets / 1024);
+std::uint32_t RunningProcesses::resident_kb(std::uint32_t number) noexcept {
+  if (number != 0) return watch_.usage(number).value_or(ProcessUsage{}).resident_kb;
+  const auto own = own_ ? own_->look() : std::nullopt;
+  return own ? own->resident_kb : 0;
 }
 
 }  // namespace hirosco::supervisor

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 
 #include "hirosco/utilities/os/file_descriptor.hpp"
@@ -12,6 +13,7 @@
 #include "hirosco/utilities/time.hpp"
 #include "supervisor/keeper/kept.hpp"
 #include "supervisor/platform/launch/launcher.hpp"
+#include "supervisor/platform/launch/process_watch.hpp"
 
 namespace hirosco::supervisor {
 
@@ -21,8 +23,10 @@ class RunningProcesses {
  public:
   /// The keeper's page tells how those ended whose parent was a supervisor before; null: nobody does.
   void ends_told_by(const KeeperPage* page) noexcept { page_ = page; }
-  /// \return its number. What it takes is measured from now on.
-  std::uint32_t add(Process process);
+  /// \param handle Another one of its, for who looks at it from now on.
+  /// \param grip Learns of its threads by that; may be null.
+  /// \return its number.
+  std::uint32_t add(Process process, FileDescriptor handle, std::shared_ptr<ProcessGrip> grip);
   /// It is killed, with its group. \return 0, or by which number it is still to be seen to its end.
   std::uint32_t end_now(Process process);
   /// Nullptr: it has been seen to end, or is none of them.
@@ -34,15 +38,15 @@ class RunningProcesses {
   void kill_all();
   [[nodiscard]] bool any();
 
-  /// Empty: it has ended, or is not measured. Allocates nothing.
-  [[nodiscard]] std::optional<ProcessUsage> usage(std::uint32_t number) noexcept;
-  /// Memory that it has in RAM, 0 = we ourselves; 0 where it has ended. Allocates nothing.
-  [[nodiscard]] std::uint32_t resident_kb(std::uint32_t number) const noexcept;
+  /// As its looks say (ProcessWatch).
+  [[nodiscard]] ProcessWatch& watch() noexcept { return watch_; }
+  /// Memory that it has in RAM as it was seen last, 0 = we ourselves; 0 where it has ended. Allocates nothing.
+  [[nodiscard]] std::uint32_t resident_kb(std::uint32_t number) noexcept;
 
  private:
   std::map<std::uint32_t, Process> processes_;
-  std::map<std::uint32_t, FileDescriptor> memory_use_;  ///< statm of each process, and our own
-  std::map<std::uint32_t, ProcessMeter> meters_;
+  Result<ProcessMeter> own_{ProcessMeter::own()};
+  ProcessWatch watch_;
   const KeeperPage* page_{nullptr};
   std::map<std::uint32_t, TimePoint> end_asked_;  ///< of processes that have ended, and nobody has said how
   std::uint32_t next_{1};

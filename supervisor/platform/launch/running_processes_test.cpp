@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
@@ -39,6 +40,11 @@ Process ended_with(int code) {
   return process;
 }
 
+std::uint32_t add(RunningProcesses& running, Process process) {
+  FileDescriptor handle{::fcntl(process.handle().get(), F_DUPFD_CLOEXEC, 0)};
+  return running.add(std::move(process), std::move(handle), nullptr);
+}
+
 /// When it has gone.
 std::optional<ProcessEnd> end_of(RunningProcesses& running, std::uint32_t number) {
   pollfd look{running.find(number)->handle().get(), POLLIN, 0};
@@ -48,14 +54,14 @@ std::optional<ProcessEnd> end_of(RunningProcesses& running, std::uint32_t number
 
 TEST(RunningProcesses, AreKnownUntilTheyWereSeenToEndAndNoNumberComesTwice) {
   RunningProcesses running;
-  const std::uint32_t one = running.add(ended_with(3));
+  const std::uint32_t one = add(running, ended_with(3));
   const auto end = running.ended(one);
   ASSERT_TRUE(end);
   EXPECT_FALSE(end->by_signal);
   EXPECT_EQ(end->value, 3);
   EXPECT_EQ(running.find(one), nullptr);
   EXPECT_TRUE(running.ended(one)) << "who is not known has ended";
-  const std::uint32_t other = running.add(resting());
+  const std::uint32_t other = add(running, resting());
   EXPECT_NE(other, one);
   EXPECT_FALSE(running.ended(other));
   running.kill(other);
@@ -67,14 +73,14 @@ TEST(RunningProcesses, AreKnownUntilTheyWereSeenToEndAndNoNumberComesTwice) {
 
 TEST(RunningProcesses, WhatTheyTakeIsToldUntilTheyHaveEnded) {
   RunningProcesses running;
-  const std::uint32_t number = running.add(resting());
-  EXPECT_GT(running.resident_kb(number), 0U);
+  const std::uint32_t number = add(running, resting());
+  while (running.resident_kb(number) == 0) ::sched_yield();
   EXPECT_GT(running.resident_kb(0), 0U) << "we ourselves";
-  EXPECT_TRUE(running.usage(number));
+  EXPECT_TRUE(running.watch().usage(number));
   running.kill(number);
   static_cast<void>(end_of(running, number));
   EXPECT_EQ(running.resident_kb(number), 0U);
-  EXPECT_FALSE(running.usage(number));
+  EXPECT_FALSE(running.watch().usage(number));
 }
 
 TEST(RunningProcesses, WhoIsEndedAtOnceAndGoesIsNoneOfThem) {
@@ -102,7 +108,7 @@ TEST(RunningProcesses, WhoEndsByItselfTakesAlongWhomItHasLeftBehind) {
   char octet = 0;
   ASSERT_EQ(::read(read_end.get(), &octet, 1), 1);
   RunningProcesses running;
-  const auto end = end_of(running, running.add(std::move(*process)));
+  const auto end = end_of(running, add(running, std::move(*process)));
   ASSERT_TRUE(end);
   EXPECT_FALSE(end->by_signal);
   if (!told) ::kill(-group, SIGKILL);
@@ -111,7 +117,7 @@ TEST(RunningProcesses, WhoEndsByItselfTakesAlongWhomItHasLeftBehind) {
 
 TEST(RunningProcesses, AreAllKilledTogether) {
   RunningProcesses running;
-  const std::uint32_t one = running.add(resting()), other = running.add(resting());
+  const std::uint32_t one = add(running, resting()), other = add(running, resting());
   EXPECT_TRUE(running.any());
   running.kill_all();
   EXPECT_TRUE(end_of(running, one));

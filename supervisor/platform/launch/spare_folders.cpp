@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -18,6 +19,7 @@
 #include <utility>
 
 #include "hirosco/data_transfer/device/exchanged_folder.hpp"
+#include "hirosco/utilities/os/process.hpp"
 
 namespace hirosco::supervisor {
 namespace {
@@ -45,6 +47,14 @@ constexpr unsigned most_spares = 1000;
 [[nodiscard]] bool is_own_folder(const std::string& folder) noexcept {
   struct stat found{};
   return ::lstat(folder.c_str(), &found) == 0 && S_ISDIR(found.st_mode) && found.st_uid == ::geteuid();
+}
+
+/// Whether it is there to be collected or not.
+[[nodiscard]] bool has_ended(int pid) noexcept {
+  const auto process = Process::adopt(pid);
+  if (!process) return process.error().value == ESRCH;
+  pollfd end{process->handle().get(), POLLIN, 0};
+  return ::poll(&end, 1, 0) > 0;
 }
 
 /// What the process has left in it stays, and it with that.
@@ -120,7 +130,7 @@ void SpareFolders::sweep() {
   for (const std::string& name : names_in_memory_root()) {
     const auto pid = pid_in(name);
     const std::string place = fmt::format("{}/{}", memory_root, name);
-    if (pid && is_own_folder(place) && ::access(fmt::format("/proc/{}", *pid).c_str(), F_OK) != 0) clear_spare(place);
+    if (pid && is_own_folder(place) && has_ended(*pid)) clear_spare(place);
   }
 }
 

@@ -36,10 +36,10 @@ constexpr int script_number = 6;
 constexpr int text_number = 7;
 
 /// The supervisor's end of a channel. The keeper has a duplicate, so that closing it alone would not end what is at the other end;
-/// a supervisor that is killed closes nothing.
+/// a supervisor that is killed closes nothing. No subsystem sends it any memory.
 class OwnedEnd final : public Channel {
  public:
-  explicit OwnedEnd(FileDescriptor socket) noexcept : channel_{std::move(socket)} {}
+  explicit OwnedEnd(FileDescriptor socket) noexcept : channel_{std::move(socket), SocketChannel::Memory::Dropped} {}
   ~OwnedEnd() override { ::shutdown(channel_.wait_descriptor(), SHUT_RDWR); }
   Result<> send(const Message& message) override { return channel_.send(message); }
   std::size_t send_all(std::span<const Message> messages) override { return channel_.send_all(messages); }
@@ -139,6 +139,7 @@ void count_on(Mapping& newest, const Mapping& now) {
 }  // namespace
 
 std::expected<std::string, std::string> SystemLauncher::begin(const descriptor::Mission& mission) {
+  if (!running_.watch().looks()) return std::unexpected{"no thread is to be had that looks at processes"};
   SpareFolders::sweep();
   users_ = mission.users;
   one_user_ = why_one_user(mission, own_users_granted_);
@@ -268,13 +269,15 @@ Result<LaunchedSubsystem> SystemLauncher::hold(Process& process, FileDescriptor 
   if (const auto reached = process.send_signal(0); !reached && reached.error().code == ErrorCode::NotPermitted)
     return fail(ErrorCode::NotPermitted, "it is a user whom the supervisor may not end");
   HIROSCO_TRY_LET(auto grip, grip_of(process));
+  FileDescriptor handle{::fcntl(process.handle().get(), F_DUPFD_CLOEXEC, 0)};
+  if (!handle) return fail(ErrorCode::SystemFailure, "look at a process", errno);
   LaunchedSubsystem launched;
   launched.vital = std::move(vital);
   launched.permit = std::move(permit);
   launched.port = std::make_unique<LocalMemberPort>(std::make_unique<OwnedEnd>(std::move(channel)), launched.vital,
                                                     launched.permit);
-  launched.grip = std::move(grip);
-  launched.process = running_.add(std::move(process));
+  launched.grip = grip;
+  launched.process = running_.add(std::move(process), std::move(handle), std::move(grip));
   return launched;
 }
 

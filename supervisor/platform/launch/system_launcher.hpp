@@ -69,14 +69,13 @@ class SystemLauncher final : public FlightLauncher {
   [[nodiscard]] std::vector<std::string> isolation_lacks() const override;
   [[nodiscard]] std::string isolation_not_asked() const override;
   [[nodiscard]] std::optional<ProcessUsage> usage(std::uint32_t process) noexcept override {
-    return running_.usage(process);
+    return running_.watch().usage(process);
   }
   [[nodiscard]] std::uint32_t resident_kb(std::uint32_t process) noexcept override {
     return running_.resident_kb(process);
   }
   [[nodiscard]] std::optional<StrayThread> stray(std::uint32_t process, const ThreadPlaces& places) noexcept override {
-    const Process* const found = running_.find(process);
-    return found != nullptr ? stray_thread(found->pid(), places) : std::nullopt;
+    return running_.watch().stray(process, places);
   }
   void kill_all() override { running_.kill_all(); }
   [[nodiscard]] bool any_running() override { return running_.any(); }

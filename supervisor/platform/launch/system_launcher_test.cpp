@@ -85,6 +85,7 @@ int take_realtime_from_another() {
   const Scheduling service_before = scheduling_of(child), cycle_before = scheduling_of(cycle);
   constexpr Scheduling ordinary{SCHED_OTHER, 0};
   int wrong = 0;
+  (*grip)->find_threads();
   (*grip)->take_loops_realtime();
   if (scheduling_of(child) != ordinary) wrong = 3;
   if (scheduling_of(cycle) != cycle_before) wrong = 4;
@@ -140,6 +141,7 @@ TEST(ProcessGrip, TellsWhatTheServiceLoopHasHadAndWhetherItCouldRun) {
     ASSERT_TRUE(process);
     const auto grip = grip_of(*process).value();
     while (grip->processor_time() < 50ms) ::sched_yield();
+    grip->find_threads();
     const LoopTime time = grip->loop_time();
     if (name == nullptr) {
       EXPECT_TRUE(time.runnable);

@@ -112,7 +112,10 @@ std::optional<ResourceHandling::Excess> ResourceHandling::excess_of(const Member
   // flies wants none, a debugger may be what began it.
   const bool settled = state && *state != descriptor::State::Offline && !is_transient(*state);
   const bool may_start = built_with_sanitizer || sandbox_is_unwanted();
-  if (usage.processes > 1 && settled && !may_start) return Excess{Resource::Processes, usage.processes, 1};
+  // A look may be of a moment before that: it is the next one that counts.
+  if (usage.processes <= 1 || !settled || may_start) seen.others = 0;
+  else if (seen.others == 0) seen.others = usage.look + 1;
+  else if (usage.look >= seen.others) return Excess{Resource::Processes, usage.processes, 1};
   const auto limit = amount_of(most, Resource::Processor);
   const auto percent = seen.processor.look(usage.processor, craft_.now);
   if (!limit || !percent) return std::nullopt;

@@ -43,6 +43,8 @@ class ResourceHandling final : public Watch {
     std::uint32_t process{0};
     ProcessorShare processor{};
     int too_much{0};
+    std::uint32_t others{
+        0};  ///< the look by which it had others beside it when it was settled for the first time; 0: it has none
     bool ended{false};  ///< told: it is on its way out
     bool settled{false};  ///< this process has come to Pre-Operational: each thread is where it is to be
   };

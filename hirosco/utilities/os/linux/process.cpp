@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/utilities/os/process.hpp"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <linux/close_range.h>
 #include <poll.h>
@@ -177,10 +176,6 @@ void offer_to_go_first() noexcept {
   return got == static_cast<ssize_t>(sizeof error) ? error : 0;
 }
 
-void reap(pid_t pid) noexcept {
-  while (::waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {}
-}
-
 [[nodiscard]] ErrorCode failure_of(int error) noexcept {
   switch (error) {
     case ENOENT:
@@ -232,14 +227,14 @@ Result<Process> Process::spawn(const ProcessStart& start) {
   (void)::setpgid(pid, pid);
   write_end.reset();
   if (const int error = reported_error(read_end.get()); error != 0) {
-    reap(pid);
+    (void)collect(pid);
     return fail(failure_of(error), "start executable", error);
   }
   // Safe against reuse of the pid: the child is not reaped before we say so.
   auto process = adopt(pid);
   if (!process) {
     (void)::kill(pid, SIGKILL);
-    reap(pid);
+    (void)collect(pid);
   }
   return process;
 }
@@ -262,10 +257,11 @@ Result<std::optional<ExitStatus>> Process::poll() noexcept {
   siginfo_t info{};
   int outcome = 0;
   do {
-    outcome = ::waitid(P_PIDFD, static_cast<id_t>(handle_.get()), &info, WEXITED | WNOHANG);
+    outcome = ::waitid(P_PIDFD, static_cast<id_t>(handle_.get()), &info, WEXITED | WNOHANG | WNOWAIT);
   } while (outcome != 0 && errno == EINTR);
   if (outcome == 0) {
     if (info.si_pid == 0) return std::nullopt;
+    (void)collect(pid_);
     ended_ =
         ExitStatus{info.si_code == CLD_EXITED ? ExitStatus::Kind::Exited : ExitStatus::Kind::Signalled, info.si_status};
     return ended_;
@@ -296,19 +292,12 @@ void Process::kill_with_its_own() noexcept {
   static_cast<void>(send_signal(SIGKILL));
 }
 
-void hurry_end(int pid) noexcept {
-  std::array<char, 32> path{};
-  std::snprintf(path.data(), path.size(), "/proc/%d/task", pid);
-  DIR* threads = ::opendir(path.data());
-  if (threads == nullptr) return;
+void hurry_end(ProcessThreads& threads) noexcept {
   const sched_param lowest{.sched_priority = ::sched_get_priority_min(SCHED_FIFO)};
-  while (const dirent* entry = ::readdir(threads)) {
-    const std::string_view name{entry->d_name};
-    int thread = 0;
-    if (std::from_chars(name.data(), name.data() + name.size(), thread).ec != std::errc{}) continue;
-    (void)::sched_setscheduler(thread, SCHED_FIFO, &lowest);
-  }
-  ::closedir(threads);
+  threads.each([&](int thread) {
+    const int policy = ::sched_getscheduler(thread) & ~SCHED_RESET_ON_FORK;
+    if (policy != SCHED_BATCH) (void)::sched_setscheduler(thread, SCHED_FIFO, &lowest);
+  });
 }
 
 }  // namespace hirosco

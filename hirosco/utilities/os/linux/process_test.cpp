@@ -4,7 +4,9 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sched.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,7 +17,9 @@
 #include <csignal>
 #include <filesystem>
 #include <utility>
+#include <vector>
 
+#include "hirosco/utilities/os/processor_set.hpp"
 #include "hirosco/utilities/os/thread.hpp"
 #include "hirosco/utilities/os/wait_set.hpp"
 
@@ -65,6 +69,68 @@ TEST(Process, TellsItsExitCode) {
   EXPECT_EQ(end_of(*process), (ExitStatus{ExitStatus::Kind::Exited, 7}));
   EXPECT_EQ(process->poll()->value(), (ExitStatus{ExitStatus::Kind::Exited, 7})) << "the answer is repeated";
   EXPECT_FALSE(process->poll()->value().success());
+}
+
+/// Whether a child that has ended is still there.
+[[nodiscard]] bool is_to_be_collected(int pid) {
+  siginfo_t info{};
+  return ::waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0;
+}
+
+/// In a process of its own, on one processor; 0: all is as it should be, 9: no real time for this user.
+int end_with_realtime() {
+  if (!pin_to_cpu(*ProcessorSet::of_this_thread().last()) || !begin_collecting()) return 1;
+  if (!set_fifo_priority(1)) return 9;
+  std::vector<int> ended;
+  for (int i = 0; i < 100; ++i) {
+    auto process = Process::spawn(shell("exit 7"));
+    if (!process || end_of(*process) != ExitStatus{ExitStatus::Kind::Exited, 7}) return 2;
+    // Nobody without real time has had this processor since: whoever was to collect it did not.
+    if (!is_to_be_collected(process->pid())) return 3;
+    if (collect(process->pid()) != Collection::UnderWay) return 4;
+    if (process->poll()->value().value != 7) return 5;
+    ended.push_back(process->pid());
+  }
+  if (!set_ordinary_scheduling()) return 6;
+  for (const int pid : ended)
+    while (is_to_be_collected(pid)) ::sched_yield();
+  return collect(ended.front()) == Collection::UnderWay ? 0 : 7;
+}
+
+TEST(Process, IsCollectedByAnotherThreadWhereWhoAsksHasRealTime) {
+  const pid_t user = ::fork();
+  if (user == 0) ::_exit(end_with_realtime());
+  int status = 0;
+  ASSERT_EQ(::waitpid(user, &status, 0), user);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), realtime_permitted() ? 0 : 9);
+}
+
+TEST(Process, TellsItsEndToWhoHasRealTimeThoughNoThreadIsToBeHad) {
+  const pid_t user = ::fork();
+  if (user == 0) {
+    if (!set_fifo_priority(1)) ::_exit(9);
+    auto process = Process::spawn(shell("exit 7"));
+    const rlimit none{.rlim_cur = 0, .rlim_max = 0};
+    if (::setrlimit(RLIMIT_AS, &none) != 0) ::_exit(1);
+    // The C library may have kept room for some.
+    for (const std::size_t stack : {std::size_t{0}, std::size_t{1} << 20, std::size_t{1} << 16})
+      while (auto thread = Thread::start(
+                 "rests",
+                 [] {
+                   for (;;) ::pause();
+                 },
+                 stack))
+        thread->leave_behind();
+    pollfd end{process->handle().get(), POLLIN, 0};
+    ::poll(&end, 1, -1);
+    const auto told = process->poll();
+    ::_exit(told && *told && (*told)->value == 7 && collect(process->pid()) == Collection::NotNow ? 0 : 2);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(user, &status, 0), user);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), realtime_permitted() ? 0 : 9);
 }
 
 TEST(Process, IsRefusedWhatIsBeyondItsLimits) {
@@ -252,11 +318,12 @@ TEST(Process, RefusesDescriptorsWithoutMeaning) {
 
 TEST(Process, OneThatIsHurriedComesBeforeOrdinaryOnesAndNobodyMindsOneThatIsGone) {
   auto process = Process::spawn({.executable = "/bin/sleep", .arguments = {"60"}}).value();
-  hurry_end(process.pid());
+  ProcessThreads threads = ProcessThreads::of(process.pid());
+  hurry_end(threads);
   EXPECT_EQ(::sched_getscheduler(process.pid()), realtime_permitted() ? SCHED_FIFO : SCHED_OTHER);
   ASSERT_TRUE(process.send_signal(SIGKILL));
   static_cast<void>(end_of(process));
-  hurry_end(process.pid());
+  hurry_end(threads);
 }
 
 TEST(Process, AnAdoptedProcessOfOthersEndsAsUnknown) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hirosco/utilities/os/process_usage.hpp"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <malloc.h>
 #include <sys/stat.h>
@@ -13,9 +12,9 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cstdio>
 #include <limits>
 #include <span>
-#include <string>
 #include <string_view>
 #include <utility>
 
@@ -50,13 +49,8 @@ constexpr std::uint32_t most_children = 100;
 }
 
 /// Of one thread, at most `most`. The system tells their numbers, each with a blank behind it.
-[[nodiscard]] std::uint32_t children_of(int tasks, const char* thread, std::uint32_t most) noexcept {
-  constexpr std::string_view file = "/children";
-  std::array<char, 32 + file.size()> path{};
-  const std::string_view name{thread};
-  if (name.size() + file.size() >= path.size()) return 0;
-  std::ranges::copy(file, std::ranges::copy(name, path.begin()).out);
-  const FileDescriptor children{::openat(tasks, path.data(), O_RDONLY | O_CLOEXEC)};
+[[nodiscard]] std::uint32_t children_of(const ProcessThreads& threads, int thread, std::uint32_t most) noexcept {
+  const FileDescriptor children = threads.open(thread, "children");
   if (!children) return 0;
   std::uint32_t count = 0, process = 0;  // a number may begin in one piece and end in the next
   std::array<char, 512> text;
@@ -68,23 +62,16 @@ constexpr std::uint32_t most_children = 100;
   return count;
 }
 
-/// Of all threads. Not by readdir(), which takes from the heap.
-[[nodiscard]] std::uint32_t children_in(int tasks) noexcept {
-  if (tasks < 0 || ::lseek(tasks, 0, SEEK_SET) != 0) return 0;
+[[nodiscard]] std::uint32_t children_of_all(ProcessThreads& threads) noexcept {
   std::uint32_t count = 0;
-  alignas(dirent64) std::array<char, 2048> entries;
-  for (ssize_t octets = 0; (octets = ::getdents64(tasks, entries.data(), entries.size())) > 0;)
-    for (ssize_t at = 0; at < octets;) {
-      const auto* const entry = reinterpret_cast<const dirent64*>(entries.data() + at);
-      if (entry->d_name[0] != '.') count += children_of(tasks, entry->d_name, most_children - count);
-      if (count >= most_children) return count;
-      at += entry->d_reclen;
-    }
+  threads.each([&](int thread) {
+    if (count < most_children) count += children_of(threads, thread, most_children - count);
+  });
   return count;
 }
 
-[[nodiscard]] Result<FileDescriptor> open_status(const std::string& process) {
-  FileDescriptor status{::open(("/proc/" + process + "/status").c_str(), O_RDONLY | O_CLOEXEC)};
+[[nodiscard]] Result<FileDescriptor> open_status(const char* path) noexcept {
+  FileDescriptor status{::open(path, O_RDONLY | O_CLOEXEC)};
   if (!status) return fail(ErrorCode::NotFound, "status of a process", errno);
   return status;
 }
@@ -110,18 +97,19 @@ void give_back_what_is_free() noexcept {
 #endif
 }
 
-Result<ProcessMeter> ProcessMeter::own() {
-  HIROSCO_TRY_LET(FileDescriptor status, open_status("self"));
-  return ProcessMeter{std::move(status), FileDescriptor{}, Whose::Own, CLOCK_PROCESS_CPUTIME_ID};
+Result<ProcessMeter> ProcessMeter::own() noexcept {
+  HIROSCO_TRY_LET(FileDescriptor status, open_status("/proc/self/status"));
+  return ProcessMeter{std::move(status), {}, Whose::Own, CLOCK_PROCESS_CPUTIME_ID};
 }
 
-Result<ProcessMeter> ProcessMeter::of(int pid) {
-  HIROSCO_TRY_LET(FileDescriptor status, open_status(std::to_string(pid)));
-  FileDescriptor tasks{::open(("/proc/" + std::to_string(pid) + "/task").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+Result<ProcessMeter> ProcessMeter::of(int pid) noexcept {
+  std::array<char, 40> path{};
+  std::snprintf(path.data(), path.size(), "/proc/%d/status", pid);
+  HIROSCO_TRY_LET(FileDescriptor status, open_status(path.data()));
   clockid_t clock{};
   if (const int error = ::clock_getcpuclockid(pid, &clock); error != 0)
     return fail(ErrorCode::NotFound, "processor time of a process", error);
-  return ProcessMeter{std::move(status), std::move(tasks), Whose::Others, clock};
+  return ProcessMeter{std::move(status), ProcessThreads::of(pid), Whose::Others, clock};
 }
 
 std::optional<ProcessUsage> ProcessMeter::look() noexcept {
@@ -132,10 +120,11 @@ std::optional<ProcessUsage> ProcessMeter::look() noexcept {
   ProcessUsage usage;
   const std::uint32_t data_kb = number_in_status(status, "VmData");
   usage.memory_kb = data_kb + std::min(number_in_status(status, "VmStk"), most_counted - data_kb);
+  usage.resident_kb = number_in_status(status, "VmRSS");
   usage.shared_memory_kb = number_in_status(status, "RssShmem");
   usage.threads = number_in_status(status, "Threads");
   if (whose_ == Whose::Own) usage.descriptors = own_descriptors();
-  else usage.processes = 1 + children_in(tasks_.get());
+  else usage.processes = 1 + children_of_all(threads_);
   timespec time{};
   if (::clock_gettime(clock_, &time) == 0) usage.processor = std::chrono::seconds{time.tv_sec} + Duration{time.tv_nsec};
   return usage;

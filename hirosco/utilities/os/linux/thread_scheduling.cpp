@@ -46,18 +46,21 @@ Result<> set_priority(int policy, int priority) noexcept {
   return ok();
 }
 
+Result<> set_without_priority(int policy) noexcept {
+  const sched_param parameters{};
+  const int flag = ::sched_getscheduler(0) & SCHED_RESET_ON_FORK;  // only a privileged thread may clear it
+  if (::sched_setscheduler(0, policy | flag, &parameters) != 0)
+    return fail(ErrorCode::SystemFailure, "ordinary scheduling", errno);
+  return ok();
+}
+
 }  // namespace
 
 Result<> set_fifo_priority(int priority) noexcept { return set_priority(SCHED_FIFO, priority); }
 Result<> set_shared_priority(int priority) noexcept { return set_priority(SCHED_RR, priority); }
 
-Result<> set_ordinary_scheduling() noexcept {
-  const sched_param parameters{};
-  const int flag = ::sched_getscheduler(0) & SCHED_RESET_ON_FORK;  // only a privileged thread may clear it
-  if (::sched_setscheduler(0, SCHED_OTHER | flag, &parameters) != 0)
-    return fail(ErrorCode::SystemFailure, "ordinary scheduling", errno);
-  return ok();
-}
+Result<> set_ordinary_scheduling() noexcept { return set_without_priority(SCHED_OTHER); }
+Result<> set_background_scheduling() noexcept { return set_without_priority(SCHED_BATCH); }
 
 Result<> ask_for_short_slices() noexcept {
   SchedulingWish wish;

@@ -23,6 +23,8 @@ Result<> set_priority(int policy, int priority) noexcept {
 Result<> set_fifo_priority(int priority) noexcept { return set_priority(SCHED_FIFO, priority); }
 Result<> set_shared_priority(int priority) noexcept { return set_priority(SCHED_RR, priority); }
 
+Result<> set_background_scheduling() noexcept { return set_ordinary_scheduling(); }
+
 Result<> set_ordinary_scheduling() noexcept {
   const sched_param parameters{};
   if (const int error = pthread_setschedparam(pthread_self(), SCHED_OTHER, &parameters); error != 0)
