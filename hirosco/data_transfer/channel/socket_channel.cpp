@@ -8,7 +8,6 @@
 #include <sys/socket.h>
 #include <sys/uio.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -19,6 +18,9 @@
 namespace hirosco {
 namespace {
 
+/// A packet of up to so many octets is copied behind its envelope: of two parts the system wants a list, which it has to fetch and check.
+/// A longer one costs less as it is.
+constexpr std::size_t copied_octets = 248;
 /// Room for more descriptors than a message may carry, so that a surplus is seen; the kernel closes what does not fit.
 constexpr std::size_t noticed_descriptors = 4;
 
@@ -40,13 +42,15 @@ class Datagram {
   [[nodiscard]] Result<> fill(const Message& message, msghdr& header) noexcept {
     if (message.packet.size() > max_packet_octets)
       return fail(ErrorCode::InvalidArgument, "octets of packet", static_cast<std::int64_t>(message.packet.size()));
-    OctetWriter writer{envelope_};
+    OctetWriter writer{beginning_};
     envelope::write(writer, message);
-    parts_ = {iovec{envelope_.data(), envelope_.size()},
+    const bool copied = message.packet.size() <= copied_octets;
+    if (copied) writer.put(message.packet);
+    parts_ = {iovec{beginning_.data(), writer.size()},
               iovec{const_cast<std::byte*>(message.packet.data()), message.packet.size()}};
     header = {};
     header.msg_iov = parts_.data();
-    header.msg_iovlen = parts_.size();
+    header.msg_iovlen = copied ? 1 : parts_.size();
     if (!message.memory) return ok();
     const int descriptor = SealedMemory::descriptor(message.memory);
     if (descriptor < 0) return fail(ErrorCode::InvalidArgument, "memory handle cannot leave this process");
@@ -65,19 +69,20 @@ class Datagram {
     std::memcpy(CMSG_DATA(control), &descriptor, sizeof descriptor);
   }
 
-  std::array<std::byte, envelope::octets> envelope_;
+  std::array<std::byte, envelope::octets + copied_octets> beginning_;
   std::array<iovec, 2> parts_;
   alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(sizeof(int))> control_;
 };
 
+/// What one look at a socket has brought.
 struct Arrived {
-  FileDescriptor first;
-  std::size_t count{0};
+  ssize_t octets{0};  ///< below 0: errno says why none
+  bool cut{false};  ///< more than there was room for
+  FileDescriptor first;  ///< of the descriptors; the others are closed
+  std::size_t descriptors{0};
 };
 
-/// Takes the descriptors that came; all but the first are closed.
-Arrived take_descriptors(msghdr& header) noexcept {
-  Arrived arrived;
+void take_descriptors(msghdr& header, Arrived& arrived) noexcept {
   for (cmsghdr* control = CMSG_FIRSTHDR(&header); control != nullptr; control = CMSG_NXTHDR(&header, control)) {
     if (control->cmsg_level != SOL_SOCKET || control->cmsg_type != SCM_RIGHTS) continue;
     const std::size_t count = (control->cmsg_len - CMSG_LEN(0)) / sizeof(int);
@@ -85,9 +90,33 @@ Arrived take_descriptors(msghdr& header) noexcept {
       int number = -1;
       std::memcpy(&number, CMSG_DATA(control) + i * sizeof number, sizeof number);
       FileDescriptor descriptor{number};
-      if (arrived.count++ == 0) arrived.first = std::move(descriptor);
+      if (arrived.descriptors++ == 0) arrived.first = std::move(descriptor);
     }
   }
+}
+
+/// One message in one piece: of two parts the system would want a list, as in Datagram.
+[[nodiscard]] Arrived receive_with_descriptors(int socket, MutableOctets room) noexcept {
+  iovec part{room.data(), room.size()};
+  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(noticed_descriptors * sizeof(int))> control{};
+  msghdr header{};
+  header.msg_iov = &part;
+  header.msg_iovlen = 1;
+  header.msg_control = control.data();
+  header.msg_controllen = control.size();
+  Arrived arrived;
+  arrived.octets = ::recvmsg(socket, &header, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+  if (arrived.octets < 0) return arrived;
+  arrived.cut = (header.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) != 0;
+  take_descriptors(header, arrived);
+  return arrived;
+}
+
+/// Without a header, which the system would have to fetch and to give back; descriptors that came along are closed by it.
+[[nodiscard]] Arrived receive_octets(int socket, MutableOctets room) noexcept {
+  Arrived arrived;
+  arrived.octets = ::recv(socket, room.data(), room.size(), MSG_DONTWAIT | MSG_TRUNC);  // how many there were
+  arrived.cut = arrived.octets > static_cast<ssize_t>(room.size());
   return arrived;
 }
 
@@ -138,7 +167,12 @@ Result<> SocketChannel::send(const Message& message) {
   Datagram datagram;
   msghdr header;
   if (const auto filled = datagram.fill(message, header); !filled) return filled;
-  if (::sendmsg(socket_.get(), &header, MSG_DONTWAIT | MSG_NOSIGNAL) < 0) return fail(send_error(errno));
+  constexpr int flags = MSG_DONTWAIT | MSG_NOSIGNAL;
+  // Octets in one piece need no header, which the system would have to fetch as well.
+  const bool plain = header.msg_iovlen == 1 && header.msg_controllen == 0;
+  const ssize_t sent = plain ? ::send(socket_.get(), header.msg_iov->iov_base, header.msg_iov->iov_len, flags)
+                             : ::sendmsg(socket_.get(), &header, flags);
+  if (sent < 0) return fail(send_error(errno));
   return ok();
 }
 
@@ -161,33 +195,28 @@ std::size_t SocketChannel::send_all(std::span<const Message> messages) {
 }
 
 Result<Channel::Found> SocketChannel::receive(MessageBuffer& buffer) {
-  std::array<std::byte, envelope::octets> head;
-  std::array<iovec, 2> parts{iovec{head.data(), head.size()}, iovec{buffer.octets.data(), buffer.octets.size()}};
-  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(noticed_descriptors * sizeof(int))> control{};
-  msghdr header{};
-  header.msg_iov = parts.data();
-  header.msg_iovlen = parts.size();
-  header.msg_control = control.data();
-  header.msg_controllen = control.size();
-  const ssize_t octets = ::recvmsg(socket_.get(), &header, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
-  if (octets < 0 && (errno == EAGAIN || errno == EINTR)) return Found{};
-  if (octets < 0) {
+  std::array<std::byte, envelope::octets + max_packet_octets> whole;
+  Arrived arrived =
+      memory_ == Memory::Taken ? receive_with_descriptors(socket_.get(), whole) : receive_octets(socket_.get(), whole);
+  if (arrived.octets < 0 && (errno == EAGAIN || errno == EINTR)) return Found{};
+  if (arrived.octets < 0) {
     return errno == ECONNRESET ? fail(ErrorCode::Unavailable, "peer of control channel is gone", errno)
                                : fail(ErrorCode::SystemFailure, "receive on control channel", errno);
   }
-  Arrived arrived = take_descriptors(header);
-  if (octets == 0 && hung_up(socket_.get())) return fail(ErrorCode::Unavailable, "peer of control channel is gone");
-  if ((header.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) != 0)
-    return fail(ErrorCode::Malformed, "message is too long", octets);
-  if (arrived.count > 1) return fail(ErrorCode::Malformed, "message carries several descriptors");
-  OctetReader reader{Octets{head}.first(std::min(static_cast<std::size_t>(octets), head.size()))};
+  if (arrived.octets == 0 && hung_up(socket_.get()))
+    return fail(ErrorCode::Unavailable, "peer of control channel is gone");
+  if (arrived.cut) return fail(ErrorCode::Malformed, "message is too long", arrived.octets);
+  if (arrived.descriptors > 1) return fail(ErrorCode::Malformed, "message carries several descriptors");
+  OctetReader reader{Octets{whole}.first(static_cast<std::size_t>(arrived.octets))};
   auto message = envelope::read(reader);
   if (!message) {
     if (message.error().code == ErrorCode::Mismatch)
       foreign_version_ = static_cast<std::uint8_t>(message.error().value);
     return fail(message.error());
   }
-  message->packet = Octets{buffer.octets}.first(static_cast<std::size_t>(octets) - envelope::octets);
+  const Octets packet = reader.rest();
+  copy_octets(packet, buffer.octets);
+  message->packet = Octets{buffer.octets}.first(packet.size());
   if (arrived.first) message->memory = SealedMemory::adopt(std::move(arrived.first));
   return Found{Flow::New, std::move(*message)};
 }

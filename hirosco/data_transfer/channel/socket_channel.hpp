@@ -19,7 +19,12 @@ class SocketChannel final : public Channel {
  public:
   static constexpr std::size_t most_at_once = 32;
 
-  explicit SocketChannel(FileDescriptor socket) noexcept : socket_{std::move(socket)} {}
+  /// What becomes of memory that the peer sends beside its packets. Dropped: the system lets go of it, however much there is of it, and the
+  /// packets are read; for who uses none, and reads many.
+  enum class Memory : std::uint8_t { Taken, Dropped };
+
+  explicit SocketChannel(FileDescriptor socket, Memory memory = Memory::Taken) noexcept
+      : socket_{std::move(socket)}, memory_{memory} {}
   /// Both ends, closed on exec unless they are inherited on purpose. `kb`: how much of the system's memory may wait each way; left out: as
   /// the system has it. ResourceExhausted, with what it grants in octets: it grants less.
   [[nodiscard]] static Result<std::pair<FileDescriptor, FileDescriptor>> make_pair(
@@ -38,6 +43,7 @@ class SocketChannel final : public Channel {
 
  private:
   FileDescriptor socket_;
+  Memory memory_;
   std::optional<std::uint8_t> foreign_version_;
 };
 

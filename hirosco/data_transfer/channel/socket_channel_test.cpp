@@ -131,6 +131,27 @@ class SocketChannelAbuse : public ::testing::Test {
                                    std::byte{0xAA}};
 };
 
+/// Both ways to read, of what differs between them.
+TEST_F(SocketChannelAbuse, WhoTakesNoMemoryReadsThePacketsOfAPeerThatSendsAnyAndKeepsNoDescriptor) {
+  auto ends = SocketChannel::make_pair().value();
+  peer_ = std::move(ends.first);
+  SocketChannel taking_none{std::move(ends.second), SocketChannel::Memory::Dropped};
+  const auto before = open_descriptors();
+  for (const int descriptors : {0, 1, 3, 16}) {
+    send_raw(good, descriptors);
+    const auto found = taking_none.receive(buffer_);
+    ASSERT_TRUE(found) << descriptors;
+    EXPECT_EQ(found->message.epoch, 5u);
+    EXPECT_TRUE(std::ranges::equal(found->message.packet, std::array{std::byte{0xAA}}));
+    EXPECT_FALSE(found->message.memory);
+  }
+  EXPECT_EQ(open_descriptors(), before);
+  const std::vector<std::byte> too_long(envelope::octets + max_packet_octets + 1, std::byte{1});
+  send_raw(too_long);
+  EXPECT_EQ(taking_none.receive(buffer_).error().code, ErrorCode::Malformed);
+  EXPECT_EQ(taking_none.receive(buffer_).value().flow, Flow::None) << "it is gone";
+}
+
 TEST_F(SocketChannelAbuse, EnvelopeIsBigEndianAndEightOctetsLong) {
   send_raw(good);
   const auto found = channel_->receive(buffer_).value();

@@ -139,7 +139,7 @@ void count_on(Mapping& newest, const Mapping& now) {
 }  // namespace
 
 std::expected<std::string, std::string> SystemLauncher::begin(const descriptor::Mission& mission) {
-  if (!running_.watch().looks()) return std::unexpected{"no thread is to be had that looks at processes"};
+  if (!begin_collecting() || !running_.watch().looks()) return std::unexpected{"no thread to watch processes by"};
   SpareFolders::sweep();
   users_ = mission.users;
   one_user_ = why_one_user(mission, own_users_granted_);

@@ -34,7 +34,9 @@ LogRecord& LogBatch::add(std::size_t packet_octets) {
   assert(!full());
   LogRecord& record = records_[used_++];
   record.lost = 0;
+  kept_octets_ -= record.packet.capacity();
   record.packet.resize(packet_octets);
+  kept_octets_ += record.packet.capacity();
   octets_ += packet_octets;
   return record;
 }
@@ -42,6 +44,10 @@ LogRecord& LogBatch::add(std::size_t packet_octets) {
 void LogBatch::clear() noexcept {
   used_ = 0;
   octets_ = 0;
+  // Each place would keep the room of the longest packet that it ever had.
+  if (kept_octets_ <= most_kept_octets) return;
+  for (LogRecord& record : records_) record.packet = std::vector<std::byte>{};
+  kept_octets_ = 0;
 }
 
 LogQueue::Ring::Ring(std::size_t records, std::size_t octets)
@@ -109,7 +115,9 @@ std::uint64_t LogQueue::push(const LogEntry& entry, OnboardTime stored, TimePoin
     ++refused_;
     return 0;
   }
-  Ring& ring = may_be_lost(entry) ? telemetry_ : vital_;
+  const bool vital = !may_be_lost(entry);
+  if (vital && !entry.may_wait) newest_urgent_ = number;
+  Ring& ring = vital ? vital_ : telemetry_;
   ring.push({.number = number,
              .stored = stored,
              .monotonic = monotonic,

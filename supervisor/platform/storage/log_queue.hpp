@@ -21,16 +21,18 @@ struct LogEntry {
   std::uint16_t peer{};
   Octets packet{};
   Note note{};
+  bool may_wait{false};  ///< nobody waits for it: it may have company on its way to the disk, as telemetry has
 };
 
 /// Telemetry and event reports of severity info and low may be pushed out by later ones; nothing else may.
 [[nodiscard]] bool may_be_lost(const LogEntry& entry) noexcept;
 
-/// Records on their way into a database: memory is kept from batch to batch.
+/// Records on their way into a database: memory is kept from batch to batch, up to `most_kept_octets` for their packets.
 class LogBatch {
  public:
   /// Ends a batch early, so that it stays small in memory and on the disk.
   static constexpr std::size_t full_octets = 1 << 20;
+  static constexpr std::size_t most_kept_octets = 4 * full_octets;
   explicit LogBatch(std::size_t records = 1000) : records_(records == 0 ? 1 : records) {}
   [[nodiscard]] bool full() const noexcept { return used_ == records_.size() || octets_ >= full_octets; }
   [[nodiscard]] bool empty() const noexcept { return used_ == 0; }
@@ -38,11 +40,13 @@ class LogBatch {
   /// The next free record, its packet empty.  Requires: not full.
   [[nodiscard]] LogRecord& add(std::size_t packet_octets);
   void clear() noexcept;
+  [[nodiscard]] std::size_t kept_octets() const noexcept { return kept_octets_; }
 
  private:
   std::vector<LogRecord> records_;
   std::size_t used_{0};
   std::size_t octets_{0};
+  std::size_t kept_octets_{0};  ///< room of all packets
 };
 
 /// The bounded queue before a database: one ring for what may be lost, one for what may not, both preallocated.
@@ -84,8 +88,10 @@ class LogQueue {
   [[nodiscard]] std::size_t waiting() const noexcept {
     return telemetry_.size() + vital_.size() + (gap_ ? 1 : 0) + (inherited_ ? 1 : 0);
   }
-  /// A telecommand, an event or an action waits.
-  [[nodiscard]] bool vital_waiting() const noexcept { return vital_.size() != 0; }
+  /// A telecommand, an event or an action waits that may not (LogEntry::may_wait).
+  [[nodiscard]] bool urgent_waiting() const noexcept {
+    return vital_.size() != 0 && vital_.front().number <= newest_urgent_;
+  }
   [[nodiscard]] std::uint64_t last_number() const noexcept { return last_number_; }
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
   [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
@@ -142,6 +148,7 @@ class LogQueue {
   std::optional<Gap> inherited_;  ///< what the program had that died; before all others
   std::optional<Gap> gap_;
   std::uint64_t last_number_{0};
+  std::uint64_t newest_urgent_{0};
   std::uint64_t lost_{0};
   std::uint64_t refused_{0};
 };

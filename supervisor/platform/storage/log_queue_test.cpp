@@ -135,6 +135,40 @@ TEST(LogQueue, ABatchIsFullWhenItHasAllItsRecordsOrAMillionOctets) {
   EXPECT_TRUE(many.full());
 }
 
+TEST(LogQueue, IsUrgentAsLongAsARecordIsInItThatMayNotWait) {
+  LogQueue queue{{}, {}};
+  LogBatch batch;
+  LogEntry waiting = queued_telecommand();
+  waiting.may_wait = true;
+  push(queue, queued_telemetry());
+  push(queue, waiting);
+  EXPECT_FALSE(queue.urgent_waiting());
+  push(queue, queued_telecommand());
+  push(queue, waiting);
+  EXPECT_TRUE(queue.urgent_waiting());
+  queue.take(batch, 2);
+  EXPECT_TRUE(queue.urgent_waiting()) << "it waits behind those that were taken";
+  queue.take(batch, 1);
+  EXPECT_FALSE(queue.urgent_waiting());
+  push(queue, queued_telecommand());
+  EXPECT_TRUE(queue.urgent_waiting());
+}
+
+TEST(LogQueue, ABatchKeepsNoMoreRoomThanABoundHoweverLongThePacketsOfEachPlaceOnceWere) {
+  constexpr std::size_t places = 200, longest = 65'000;
+  LogBatch batch{places};
+  std::size_t most = 0;
+  // Each place has a long packet in its turn, in batches that end early for their octets.
+  for (std::size_t place = 0; place < places; ++place) {
+    for (std::size_t i = 0; i < place; ++i) static_cast<void>(batch.add(1));
+    static_cast<void>(batch.add(longest));
+    batch.clear();
+    most = std::max(most, batch.kept_octets());
+  }
+  EXPECT_GT(most, longest) << "it is kept";
+  EXPECT_LE(most, LogBatch::most_kept_octets);
+}
+
 TEST(LogQueue, PushesOutTheOldestTelemetryAndSaysExactlyHowMuch) {
   LogQueue queue{{.telemetry_records = 2, .telemetry_octets = 100, .vital_records = 8, .vital_octets = 100}, {}};
   push(queue, queued_telecommand());

@@ -141,7 +141,8 @@ void LogWriter::stop(TimePoint deadline) {
 }
 
 bool LogWriter::urgent() const {
-  return queue_.vital_waiting() || queue_.waiting() >= options_.batch_records || flushing_ != 0 || stopping_;
+  const std::size_t enough = std::min(options_.enough_records, options_.batch_records);
+  return queue_.urgent_waiting() || queue_.waiting() >= enough || flushing_ != 0 || stopping_;
 }
 
 void LogWriter::work() {

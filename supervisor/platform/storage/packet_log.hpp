@@ -101,8 +101,10 @@ class ThreadedPacketLog final : public PacketLog {
  public:
   struct Options {
     LogQueue::Limits limits{};
-    std::size_t batch_records{1000};
-    /// How long telemetry may wait for company; telecommands and events are written at once.
+    /// Most in one commit, which waits for the disk once, however many they are: what has come meanwhile goes together.
+    std::size_t batch_records{4000};
+    std::size_t enough_records{1000};  ///< so many wait for no further company
+    /// How long telemetry, and what else may wait (LogEntry), waits for company; all other telecommands and events are written at once.
     Duration delay{5ms};
     Duration flush_limit{2s};
     /// Called by the writer thread whenever `durable` or `failure` has changed; short, never blocking (a WakeEvent).

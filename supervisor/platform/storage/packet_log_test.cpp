@@ -228,6 +228,20 @@ TEST(ThreadedPacketLog, TelemetryWaitsNoLongerOnceABatchIsFullOrSomebodyWaitsFor
   expect_complete(all_of(*memory), 5);
 }
 
+TEST(ThreadedPacketLog, ATelecommandThatMayWaitHasCompanyUntilOneComesThatMayNot) {
+  const SystemClock clock;
+  auto memory = std::make_shared<MemoryDatabase>();
+  ThreadedPacketLog log{clock, std::make_unique<Shared>(memory), {.delay = 3600s, .flush_limit = long_enough}};
+  LogEntry waiting = telecommand();
+  waiting.may_wait = true;
+  for (int i = 0; i < 3; ++i) ASSERT_NE(log.append(waiting), 0U);
+  ASSERT_NE(log.append(telecommand()), 0U);
+  ASSERT_NE(log.append(waiting), 0U);
+  ASSERT_TRUE(log.flush(long_enough));
+  EXPECT_LE(log.counters().batches, 2U) << "those before it came with it";
+  expect_complete(all_of(*memory), 5);
+}
+
 TEST(ThreadedPacketLog, EndsAtOnceWhenItsDatabaseHasFailed) {
   const SystemClock clock;
   auto memory = std::make_shared<MemoryDatabase>();

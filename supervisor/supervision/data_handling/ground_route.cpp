@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace hirosco::supervisor {
 
@@ -16,17 +17,27 @@ void GroundRoute::send(Channel& link, Octets packet, Kind kind, TimePoint now) {
 
 void GroundRoute::keep(Octets packet, Kind kind) {
   auto& queue = kind == Kind::Housekeeping ? housekeeping_ : reports_;
-  queue.push_back({order_++, {packet.begin(), packet.end()}});
+  Packet& kept = queue.emplace_back(order_++);
+  if (!spare_.empty()) {
+    kept.octets = std::move(spare_.back());
+    spare_.pop_back();
+  }
+  kept.octets.assign(packet.begin(), packet.end());
   if (housekeeping_.size() > limits_.housekeeping) {
-    housekeeping_.pop_front();
+    drop(housekeeping_);
     ++lost_.housekeeping;
   }
   if (kind == Kind::Report) reports_octets_ += packet.size();
   while (reports_octets_ > limits_.reports_octets) {
     reports_octets_ -= reports_.front().octets.size();
-    reports_.pop_front();
+    drop(reports_);
     ++lost_.reports;
   }
+}
+
+void GroundRoute::drop(std::deque<Packet>& queue) {
+  if (spare_.size() < together) spare_.push_back(std::move(queue.front().octets));
+  queue.pop_front();
 }
 
 void GroundRoute::begin_step(TimePoint now) noexcept {
@@ -66,7 +77,7 @@ void GroundRoute::drop_sent(std::size_t count) {
     const bool report_first =
         housekeeping_.empty() || (!reports_.empty() && reports_.front().order < housekeeping_.front().order);
     if (report_first) reports_octets_ -= reports_.front().octets.size();
-    (report_first ? reports_ : housekeeping_).pop_front();
+    drop(report_first ? reports_ : housekeeping_);
   }
 }
 

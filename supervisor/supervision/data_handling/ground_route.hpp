@@ -69,6 +69,7 @@ class GroundRoute {
     std::vector<std::byte> octets;
   };
   void keep(Octets packet, Kind kind);
+  void drop(std::deque<Packet>& queue);
   /// Views of those that are next in order; how many.
   std::size_t next(std::span<Message, together> messages) const;
   void drop_sent(std::size_t count);
@@ -76,6 +77,7 @@ class GroundRoute {
   Limits limits_;
   std::deque<Packet> reports_;
   std::deque<Packet> housekeeping_;
+  std::vector<std::vector<std::byte>> spare_;  ///< room of packets that have left, for the next ones
   std::size_t reports_octets_{0};
   std::uint64_t order_{0};
   std::optional<TimePoint> breath_;  ///< the step that reads telecommands although many wait

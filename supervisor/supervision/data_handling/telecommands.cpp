@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/supervision/data_handling/telecommands.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "hirosco/pus/st08_function/function_service.hpp"
 #include "hirosco/pus/st129_supervision/supervision_messages.hpp"
 #include "hirosco/subsystem/service_loop/requester.hpp"
 #include "supervisor/supervision/commanded_members.hpp"
@@ -27,7 +29,7 @@ std::string telecommand_text(const pus::TelecommandView& telecommand) {
     if (call->first_argument) return fmt::format("{} {}", call->name, *call->first_argument);
     return std::string{call->name};
   }
-  return fmt::format("TC[{},{}]", telecommand.service(), telecommand.subtype());
+  return fmt::format(FMT_COMPILE("TC[{},{}]"), telecommand.service(), telecommand.subtype());
 }
 
 void Telecommands::take(const Incoming& incoming) {
@@ -43,7 +45,8 @@ void Telecommands::take(const Incoming& incoming) {
   const auto copy_to_ground = [&] {
     if (incoming.origin.is_ground() && !asks_only) send_telecommand_copy(parts_.own.telemetry(), incoming.packet);
   };
-  parts_.power.observe();
+  // What it reads decides over functions alone; of those a question may ask, too.
+  if (asks_only || telecommand->service() == pus::FunctionService::service_type) parts_.power.observe();
   // Before the number: whoever is stopped in between is not let go by this one.
   const std::uint64_t fences = incoming.free_at.value_or(craft_.guard.fences(apid));
   auto decision = parts_.judgement.judge(*telecommand, incoming.origin);
@@ -76,11 +79,11 @@ void Telecommands::take(const Incoming& incoming) {
     request.ack = telecommand->ack();
     text += fmt::format(" under the source id {}, which is somebody else's", telecommand->source());
   }
-  const LogEntry received{.kind = LogKind::TelecommandReceived,
-                          .source = incoming.origin.apid(),
-                          .peer = apid,
-                          .packet = incoming.packet,
-                          .note = std::string_view{text}};
+  LogEntry received{.kind = LogKind::TelecommandReceived,
+                    .source = incoming.origin.apid(),
+                    .peer = apid,
+                    .packet = incoming.packet,
+                    .note = std::string_view{text}};
   // Nobody could command anything until the ground link is back, or this supervisor itself where it goes on for another one: neither
   // waits for a disk.
   const Member* addressee = craft_.member(apid);
@@ -99,6 +102,7 @@ void Telecommands::take(const Incoming& incoming) {
                      restores && decision->releases_stop, fences});
     if (foreign) craft_.tell(text, incoming.origin.apid());
     if (!here) copy_to_ground();
+    received.may_wait = !here;  // it has left, or could not
     static_cast<void>(craft_.log.append(received));
     // Behind that it came in: its end is the last that log and ground hear of it.
     if (unsent) refusals_.refuse(incoming.packet, incoming.origin, request, *unsent);
@@ -284,11 +288,9 @@ std::optional<FailureNotice> Telecommands::send(const Outgoing& outgoing) {
 }
 
 void Telecommands::log_forwarded(const Outgoing& outgoing) {
-  static_cast<void>(craft_.log.append({.kind = LogKind::TelecommandForwarded,
-                                       .source = supervisor_apid,
-                                       .peer = outgoing.apid,
-                                       .packet = outgoing.packet,
-                                       .note = outgoing.essential ? "essential" : ""}));
+  constexpr bool may_wait = true;  // its note is in the journal, and nobody waits for this record
+  static_cast<void>(craft_.log.append({LogKind::TelecommandForwarded, supervisor_apid, outgoing.apid, outgoing.packet,
+                                       outgoing.essential ? "essential" : "", may_wait}));
 }
 
 }  // namespace hirosco::supervisor
