@@ -189,6 +189,16 @@ class New(outside.Installed, unittest.TestCase):
         self.assertIn("U0608", refused)
         self.assertFalse((self.folder / "stranger").exists())
 
+    def test_a_robot_that_homes_and_feels_is_tried_by_its_own_test(self):
+        """Its joints find their zeros, it works, its wrist feels, and it is unplugged: as its folder has it, nothing edited."""
+        self.assertIn("are of a robot", self.hirosco("new", "mission", "numb", "--wrist-sensor", code=2))
+        self.hirosco("new", "robot", "OrbitArm", "--homing", "--wrist-sensor")
+        folder = self.folder / "orbit_arm"
+        self.assertIn("no problem", self.hirosco("check", folder / "mission.xml"))
+        if "robot" in tried():
+            told = self.said("bash", "-euc", f"cmake -B build -DCMAKE_PREFIX_PATH={self.prefix} && ctest --test-dir build --output-on-failure", at=folder)
+            self.assertIn("100% tests passed, 0 tests failed out of 2", told)
+
     def here(self, folder, *words):
         self.environment = {"PATH": f"{folder}/build:{os.environ['PATH']}"}
         return self.hirosco(*words, at=folder)

@@ -210,6 +210,8 @@ struct NewOptions {
   std::string tip;  ///< of a robot: link; empty = the only end that moves
   std::string gripper;  ///< of a robot: joints that are a subsystem of their own; empty = none
   bool chain{false};  ///< of a robot: what does not move tip or gripper stands still
+  bool homing{false};  ///< of a robot: its joints look for their zeros
+  bool wrist_sensor{false};  ///< of a robot: force and moment are measured at its tip
   std::vector<std::string>
       packages;  ///< of a robot: folders in which those of its meshes lie, package://A/B is A/B there
 };

@@ -57,7 +57,7 @@ void add_connection(CLI::App& command, Connection& connection, const std::string
   if (kind == kinds.end() || (asked != "--help" && asked != "-h")) return false;
   command.remove_option(command.get_option("kind"));
   if (!kind->of_urdf)
-    for (const char* option : {"--urdf", "--tip", "--gripper", "--chain", "--packages"})
+    for (const char* option : {"--urdf", "--tip", "--gripper", "--chain", "--homing", "--wrist-sensor", "--packages"})
       command.remove_option(command.get_option(option));
   command.description(fmt::format("Make {}. It prints what to type next", kind->makes));
   command.name(fmt::format("new {}", kind->name));
@@ -142,6 +142,11 @@ int read_and_do(int argc, char** argv) {
                           "Of a robot: joints that drive fingers (NAME,NAME): a subsystem of their own");
   new_command->add_flag("--chain", new_options.chain,
                         "Of a robot: only the joints that move tip and gripper are flown, all others stand at 0");
+  new_command->add_flag(
+      "--homing", new_options.homing,
+      "Of a robot that weighs nothing: its encoders do not know their zeros, and its joints look for them");
+  new_command->add_flag("--wrist-sensor", new_options.wrist_sensor,
+                        "Of a robot: a sensor of force and moment at its tip");
   new_command->add_option("--packages", new_options.packages,
                           "Of a robot: a folder in which its meshes' packages lie, where they are not above its file");
 

@@ -78,7 +78,12 @@ void say_what_is_next(const NewKind& kind, const std::string& folder, const std:
     return std::nullopt;
   }
   if (options.urdf.empty()) judged.robot->urdf = without_licence(judged.robot->urdf);
-  return parts_of(*judged.robot, name);
+  return parts_of(*judged.robot, name, {.homing = options.homing, .wrist_sensor = options.wrist_sensor});
+}
+
+[[nodiscard]] bool says_of_a_robot(const NewOptions& options) {
+  return !(options.urdf.empty() && options.tip.empty() && options.gripper.empty() && options.packages.empty()) ||
+         options.chain || options.homing || options.wrist_sensor;
 }
 
 /// Whoever makes a subsystem of a name that a ready one has may want that one.
@@ -110,12 +115,12 @@ int make_new(const NewOptions& options) {
     fmt::print(stderr, "hirosco new: '{}' is no name for it: {}\n", options.name, name.error());
     return exit_usage;
   }
-  if (!kind->of_urdf && !(options.urdf.empty() && options.tip.empty() && options.gripper.empty() &&
-                          options.packages.empty() && !options.chain)) {
-    fmt::print(stderr,
-               "hirosco new: --urdf, --tip, --gripper, --chain and --packages are of a robot: hirosco new robot {} "
-               "--urdf FILE\n",
-               options.name);
+  if (!kind->of_urdf && says_of_a_robot(options)) {
+    fmt::print(
+        stderr,
+        "hirosco new: --urdf, --tip, --gripper, --chain, --homing, --wrist-sensor and --packages are of a robot: "
+        "hirosco new robot {} --urdf FILE\n",
+        options.name);
     return exit_usage;
   }
   if (options.chain && options.tip.empty() && options.gripper.empty()) {

@@ -245,6 +245,8 @@ class Judge {
     made.jerk = found.jerk;
     made.reach_m = found.reach_m;
     made.tip_z_m = found.tip_z_m;
+    made.marks = find_marks(model, hulls_, found.posture);
+    made.wrist_range_n = wrist_range_n(model, tip, found.posture);
     return true;
   }
 

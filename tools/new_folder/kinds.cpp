@@ -47,13 +47,24 @@ void replace_all(std::string& text, std::string_view word, const std::string& by
   return {std::istreambuf_iterator<char>{text}, {}};
 }
 
+/// Whether one of the words with which it begins is one of these: a line may be of two things at once.
+[[nodiscard]] bool is_left_out(std::string_view line, const std::vector<std::string>& words) {
+  while (line.starts_with('@')) {
+    const std::size_t end = line.find('@', 1);
+    if (end == std::string_view::npos) return false;
+    if (std::ranges::find(words, line.substr(0, end + 1)) != words.end()) return true;
+    line.remove_prefix(end + 1);
+  }
+  return false;
+}
+
 [[nodiscard]] std::string without_lines(const std::string& text, const std::vector<std::string>& words) {
   if (words.empty()) return text;
   std::string made;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
     const std::string_view line{text.data() + begin, end - begin};
-    if (std::ranges::none_of(words, [&](const std::string& word) { return line.starts_with(word); })) made += line;
+    if (!is_left_out(line, words)) made += line;
     begin = end;
   }
   return made;

@@ -40,7 +40,7 @@ struct NewParts {
   std::map<std::string, std::string> words;  ///< by what stands for them in the template: "@joints@"
   std::vector<std::pair<std::string, std::string>> files;  ///< names as in a template, and what is in them, as it is
   std::vector<std::pair<std::string, std::string>> files_as_named{};  ///< the same with names that no word stands in
-  std::vector<std::string> without_lines{};  ///< words: lines of the template that begin with them are left out
+  std::vector<std::string> without_lines{};  ///< words: lines that begin with one, or with others and it, are left out
   std::vector<std::string> without_files{};  ///< of the template
 };
 

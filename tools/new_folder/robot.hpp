@@ -14,6 +14,7 @@
 #include "hirosco/descriptor/read/read.hpp"
 #include "robotics/dynamics/model.hpp"
 #include "robotics/urdf/robot.hpp"
+#include "tools/new_folder/equipment.hpp"
 #include "tools/new_folder/kinds.hpp"
 
 /// `hirosco new robot`: whether a URDF file can be flown as an arm, and what of its folder follows from it (docs/adr/0115).
@@ -50,6 +51,8 @@ struct NewRobot {
   double jerk{0};  ///< likewise; rad/s3 or m/s3
   double reach_m{0};  ///< of the tip, from the origin of the base
   double tip_z_m{0};  ///< in the posture to begin with
+  std::vector<MarkSearch> marks{};  ///< of each joint, from that posture
+  double wrist_range_n{0};
 };
 
 /// What is a gripper's of all `fingers`, joints of `whole` by their names, at an arm whose tool is the link `tip`, or whatever carries them where it
@@ -75,6 +78,6 @@ struct JudgedRobot {
                                       std::span<const std::filesystem::path> packages = {}, bool chain = false);
 
 /// What of it stands in the templates, and the files that are its own: URDF and scene of the page.
-[[nodiscard]] NewParts parts_of(const NewRobot& robot, const NewName& name);
+[[nodiscard]] NewParts parts_of(const NewRobot& robot, const NewName& name, const Equipment& equipment = {});
 
 }  // namespace hirosco::tools

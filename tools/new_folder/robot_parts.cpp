@@ -132,8 +132,18 @@ struct Widest {
   return plot;
 }
 
+[[nodiscard]] ordered_json wrist_plot(const std::string& subsystem) {
+  ordered_json plot;
+  plot["title"] = "Force at the wrist";
+  plot["hint"] = "N";
+  plot["least"] = 1;
+  for (std::size_t i = 0; i < 3; ++i)
+    plot["curves"].push_back(curve(element(subsystem + ".WRIST.FORCE", i, 3), std::string(1, "xyz"[i]), ""));
+  return plot;
+}
+
 /// Of the page (ground/web/README.md).
-[[nodiscard]] std::string scene_of(const NewRobot& robot, const NewName& name) {
+[[nodiscard]] std::string scene_of(const NewRobot& robot, const NewName& name, const Equipment& equipment) {
   ordered_json shown;
   shown["urdf"] = name.lower + ".urdf";
   shown["subsystem"] = name.upper;
@@ -167,6 +177,7 @@ struct Widest {
   scene["camera"]["tip_from_m"] = rounded(0.7 * reach, -0.7 * reach, middle + 0.4 * reach);
   scene["plots"] = plots_of(robot.model, name.upper);
   if (robot.hand) scene["plots"].push_back(force_plot(name.upper + "_GRIPPER"));
+  if (equipment.wrist_sensor) scene["plots"].push_back(wrist_plot(name.upper));
   return scene.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -248,7 +259,7 @@ void add_hand(const NewGripper& hand, std::map<std::string, std::string>& words)
 
 }  // namespace
 
-NewParts parts_of(const NewRobot& robot, const NewName& name) {
+NewParts parts_of(const NewRobot& robot, const NewName& name, const Equipment& equipment) {
   const robotics::Model& model = robot.model;
   const Widest all = widest(model);
   const Timing timing = timing_of(model);
@@ -290,7 +301,7 @@ NewParts parts_of(const NewRobot& robot, const NewName& name) {
                            {"@force_unit@", unit(model, "N m", "N")},
                            {"@stiffness_unit@", unit(model, "N m/rad", "N/m")},
                            {"@inertia_unit@", unit(model, "kg m2", "kg")}},
-                 .files = {{"page/newpart.urdf", robot.urdf}, {"page/scene.json", scene_of(robot, name)}}};
+                 .files = {{"page/newpart.urdf", robot.urdf}, {"page/scene.json", scene_of(robot, name, equipment)}}};
   for (const auto& [mesh, octets] : robot.meshes) parts.files_as_named.emplace_back("page/" + mesh, octets);
   parts.words["@meshes@"] = "";
   parts.words["@mesh_count@"] = std::to_string(robot.meshes.size());
@@ -301,6 +312,7 @@ NewParts parts_of(const NewRobot& robot, const NewName& name) {
     parts.without_lines.emplace_back("@hand@");
     parts.without_files.emplace_back("newpart_gripper.xml");
   }
+  add_equipment(robot, equipment, name, parts);
   return parts;
 }
 
