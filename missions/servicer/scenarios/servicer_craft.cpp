@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -30,13 +31,17 @@ Plan ServicerCraft::plan_of(const ServicerOptions& options) {
   Plan plan;
   plan.mission = options.mission;
   plan.seed = options.seed;
+  plan.files = options.files;
+  plan.subsystems = options.subsystems;
   plan.edit = [&options](descriptor::Mission& mission) {
     mission.start_mode = options.mode;
-    for (auto& device : mission.devices)
+    for (auto& device : mission.devices) {
       for (auto& setting : device.settings) {
         if (setting.name == "posture" && !options.posture.empty()) setting.value = options.posture;
         if (setting.name.ends_with("_noise") && options.noise == Noise::None) setting.value = "0";
       }
+      if (device.name == "arm") std::ranges::copy(options.arm_settings, std::back_inserter(device.settings));
+    }
   };
   plan.devices["hirosco-sim-mujoco"] =
       [](FlowFactory& flows, const FlowAddress& address,

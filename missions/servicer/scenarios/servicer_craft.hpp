@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "simulation/mujoco/mujoco_device.hpp"
 #include "simulation/spacecraft/observed_flight.hpp"
@@ -22,6 +24,11 @@ struct ServicerOptions {
   std::string mode{"track"};
   std::string posture{};  ///< empty: the mission's
   Noise noise{Noise::AsDeclared};
+  /// Texts that stand in for files, by file name.
+  std::map<std::string, std::string> files{};
+  /// Of the arm's device, behind those of the mission.
+  std::vector<descriptor::Setting> arm_settings{};
+  SubsystemCatalogue subsystems{};  ///< besides modules
 };
 
 /// The servicer in a mode, with what its world tells.

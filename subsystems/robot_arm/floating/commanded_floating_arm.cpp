@@ -302,15 +302,24 @@ void CommandedFloatingArm::bind_lead() {
   using robot_arm::Lead;
   const bool by_positions = Lead::declared(own_descriptor(), Lead::positions_set);
   const bool by_speeds = Lead::declared(own_descriptor(), Lead::speeds_set);
-  if (!by_positions && !by_speeds) return;
+  const bool by_pose = Lead::declared(own_descriptor(), robot_arm::FloatingToolLead::set);
+  if (!by_positions && !by_speeds && !by_pose) return;
+  const auto publish_each = [this](std::string_view name, ParameterCell& cell) { publish(name, cell); };
   if (by_positions) require_link(Lead::positions_set, lead_.positions());
   if (by_speeds) require_link(Lead::speeds_set, lead_.speeds());
-  lead_.each([this](std::string_view name, ParameterCell& cell) { publish(name, cell); });
-  for (EventPort* event : std::initializer_list<EventPort*>{&lead_lost_, &lead_let_go_, &lead_unfit_})
-    use_event(*event);
+  if (by_positions || by_speeds) {
+    lead_.each(publish_each);
+    use_event(lead_unfit_);
+  }
+  if (by_pose) {
+    require_link(robot_arm::FloatingToolLead::set, tool_lead_.port());
+    tool_lead_.each(publish_each);
+    use_event(tool_lead_unfit_);
+  }
+  for (EventPort* event : std::initializer_list<EventPort*>{&lead_lost_, &lead_let_go_}) use_event(*event);
   on_function("FOLLOW", [this]() -> Outcome {
     if (const Outcome may = may_move(); may.kind == Outcome::Kind::Refused) return may;
-    const Outcome begun = guidance_.follow(lead_);
+    const Outcome begun = tool_lead_.leads() ? guidance_.follow(tool_lead_) : guidance_.follow(lead_);
     if (begun.kind != Outcome::Kind::Refused) contact_.arm(robot_arm::JointContact::Before::Stands);
     return begun;
   });

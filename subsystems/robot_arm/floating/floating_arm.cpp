@@ -69,6 +69,11 @@ Result<> FloatingArm::configure(const descriptor::Configuration& configuration) 
   HIROSCO_TRY(lead_.begin(configuration, cycle_s));
   if (tracks && lead_.leads())
     return fail(ErrorCode::Mismatch, "JOINT_POSITIONS lead, POSE is kept to: one in a configuration");
+  tool_lead_.begin(configuration, cycle_s);
+  if (tool_lead_.leads() && lead_.leads())
+    return fail(ErrorCode::Mismatch, "TOOL_POSE and JOINT_POSITIONS lead: one in a configuration");
+  if (tool_lead_.leads() && craft_.law() == ToolLaw::AttitudeHold)
+    return fail(ErrorCode::Mismatch, "TOOL_POSE leads, and ATTITUDE_HOLD turns no tool");
   work_.begin(cycle_s);
   work_.arm();
   laws_.begin(known_.model().joint_count(), cycle_s);
@@ -140,6 +145,7 @@ void FloatingArm::measure(const Cycle& cycle) noexcept {
   if (const auto age_ms = force_sensor_.update({.tip = tip})) raise(force_sensor_lost_, *age_ms);
   work_.measure();
   lead_.tell(guidance_.setpoints());
+  tool_lead_.tell(guidance_.tool_goal(), guidance_.follows_tool());
 }
 
 void FloatingArm::control(bool moves) noexcept {
@@ -174,6 +180,10 @@ void FloatingArm::control(bool moves) noexcept {
 void FloatingArm::advance() noexcept {
   if (guidance_.follows())
     if (const auto end = lead_.advance(guidance_.setpoints())) tell(*end);
+  if (guidance_.follows_tool()) {
+    if (const auto end = tool_lead_.advance(guidance_.tool_goal())) tell(*end);
+    guidance_.lead_tool(tool_lead_.turning(), tool_lead_.moving(), tool_lead_.over());
+  }
   const FloatingGuidance::News news = guidance_.advance();
   if (const auto gone = guidance_.end_retreat()) raise(retracted_, *gone);
   switch (news) {
@@ -199,6 +209,7 @@ void FloatingArm::tell(const robot_arm::Lead::End& end) noexcept {
   using Why = robot_arm::Lead::Why;
   if (end.why == Why::Lost) raise(lead_lost_, static_cast<std::uint32_t>(end.value));
   else if (end.why == Why::LetGo) raise(lead_let_go_);
+  else if (tool_lead_.leads()) raise(tool_lead_unfit_, end.value, end.limit, static_cast<std::uint8_t>(end.why));
   else raise(lead_unfit_, end.joint, end.value, end.limit, static_cast<std::uint8_t>(end.why));
 }
 

@@ -15,6 +15,7 @@
 #include "subsystems/robot_arm/floating/floating_motions.hpp"
 #include "subsystems/robot_arm/floating/floating_parameters.hpp"
 #include "subsystems/robot_arm/floating/floating_tip.hpp"
+#include "subsystems/robot_arm/floating/floating_tool_lead.hpp"
 #include "subsystems/robot_arm/floating/floating_work.hpp"
 #include "subsystems/robot_arm/force_sensor.hpp"
 #include "subsystems/robot_arm/lead.hpp"
@@ -51,6 +52,7 @@ class FloatingArmParts : public Subsystem {
   Event<> lead_let_go_{"LEAD_LET_GO"};
   /// Joint from 1, what was asked, the limit, and which.
   Event<std::uint8_t, double, double, std::uint8_t> lead_unfit_{"LEAD_UNFIT"};
+  Event<double, double, std::uint8_t> tool_lead_unfit_{"TOOL_LEAD_UNFIT"};  ///< likewise of its tool
 
   // Each refers to some of those before it.
   robot_arm::UrdfArm known_;
@@ -69,6 +71,7 @@ class FloatingArmParts : public Subsystem {
   robot_arm::FloatingWork work_{{known_, drives_, craft_, contact_, parameters_}};
   robot_arm::FloatingLaws laws_;
   robot_arm::Lead lead_{known_};
+  robot_arm::FloatingToolLead tool_lead_{parameters_};
   std::optional<Call> motion_;
   bool moving_{false};  ///< what is put out reaches the joints
   bool braked_{false};  ///< by BRAKE or a finding, until the next entry into Operational

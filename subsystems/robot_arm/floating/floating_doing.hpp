@@ -25,6 +25,7 @@ class FloatingDoing {
     Floats,
     Driven,
     Follows,
+    ToolFollows,
   };
   [[nodiscard]] bool holds() const noexcept { return phase_ == Phase::Holds; }
   /// Comes to rest, and does not yet.
@@ -36,6 +37,8 @@ class FloatingDoing {
   [[nodiscard]] bool driven() const noexcept { return phase_ == Phase::Driven; }
   /// Whoever leads its joints over a link.
   [[nodiscard]] bool follows() const noexcept { return phase_ == Phase::Follows; }
+  /// Whoever leads its tool.
+  [[nodiscard]] bool follows_tool() const noexcept { return phase_ == Phase::ToolFollows; }
   /// By its joints or whoever leads it, so that nothing is kept of what a law of the tool keeps.
   [[nodiscard]] bool keeps_nothing() const noexcept { return phase_ == Phase::GoesOut || floats() || driven(); }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "subsystems/robot_arm/testing/free_plant.hpp"
+#include "subsystems/robot_arm/testing/sensing.hpp"
 
 /// A floating arm with a sensor of force and moment at its tip (docs/adr/0235); the test is its device.
 namespace hirosco {
@@ -13,38 +14,12 @@ using robot_arm::JointVector;
 using robotics::Vector3;
 using ::testing::StartsWith;
 
-/// floating_arm.xml with what such a device tells.
-[[nodiscard]] std::string sensing_servicer() {
-  std::string text = robot_arm::testing::floating_descriptor();
-  const auto before = [&](std::string_view place, std::string_view more) { text.insert(text.find(place), more); };
-  before("    </Input>\n", R"(      <Field name="FORCE" type="DOUBLE" count="3" unit="N"/>
-      <Field name="MOMENT" type="DOUBLE" count="3" unit="N m"/>
-      <Field name="FORCE_AGE" type="UINT32" unit="ms"/>
-)");
-  before("    <StructRef name=\"CYCLE_STATS\"", R"(    <StructRef name="WRIST" id="72" type="STRUCT">
-      <ParamRef name="FORCE" id="200" type="DOUBLE" count="3" unit="N"/>
-      <ParamRef name="MOMENT" id="201" type="DOUBLE" count="3" unit="N m"/>
-      <ParamRef name="AGE" id="202" type="UINT32" unit="ms"/>
-      <ParamRef name="VALID" id="203" type="UINT8"/>
-    </StructRef>
-    <StructRef name="WRIST_RANGE" id="73" type="STRUCT" protection="yes">
-      <ParamRef name="FORCE" id="205" type="DOUBLE" unit="N" init="100" minimum="100" maximum="100"/>
-      <ParamRef name="MOMENT" id="206" type="DOUBLE" unit="N m" init="10" minimum="10" maximum="10"/>
-    </StructRef>
-)");
-  before("  </EventService>\n", R"(    <Event name="WRIST_CONTACT" id="2140" severity="low">
-      <Argument name="FORCE" type="DOUBLE" unit="N"/><Argument name="MOMENT" type="DOUBLE" unit="N m"/><Argument name="REACTION" type="UINT8" enumeration="REACTIONS"/>
-    </Event>
-    <Event name="FORCE_SENSOR_LOST" id="2141" severity="low"><Argument name="AGE" type="UINT32" unit="ms"/></Event>
-)");
-  return text;
-}
-
 /// Its frames end with six numbers of the sensor and their age.
 struct FloatingArmFeels : ::testing::Test {
   static constexpr std::uint16_t joints_met = 2113, went_back = 2112, wrist_met = 2140, sensor_lost = 2141;
   const std::string done = "1 3 7";
-  robot_arm::testing::FlownFree arm{sensing_servicer()};
+  robot_arm::testing::FlownFree arm{
+      robot_arm::testing::with_force_sensor_on_a_floating_base(robot_arm::testing::floating_descriptor())};
   Vector3 force{Vector3::Zero()};  ///< in the tip's axes
   std::uint32_t age_ms{0};
   const JointVector ready = robot_arm::vector_of(std::array{0.10, 0.75, -0.30, -1.25, -0.05, 1.85, 0.0});

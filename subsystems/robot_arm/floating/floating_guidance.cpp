@@ -118,6 +118,7 @@ FloatingGuidance::News FloatingGuidance::advance() noexcept {
     return News::None;
   }
   if (jogs_joints() || jogs_tool() || follows()) return jog_on();
+  if (follows_tool()) return News::None;
   moved_s_ += cycle_s_;
   const Course at = course(moved_s_, duration_s_);
   parts_.parameters.progress.store(at.share);
@@ -223,7 +224,8 @@ FloatingGuidance::News FloatingGuidance::arrive() noexcept {
 }
 
 bool FloatingGuidance::keeps_tool() const noexcept {
-  return phase_ == Phase::ToolMoves || jogs_tool() || (phase_ == Phase::Holds && parts_.craft.tracks());
+  return phase_ == Phase::ToolMoves || jogs_tool() || follows_tool() ||
+         (phase_ == Phase::Holds && parts_.craft.tracks());
 }
 
 JointVector FloatingGuidance::wanted_rates() const noexcept {

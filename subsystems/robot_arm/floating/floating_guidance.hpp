@@ -118,6 +118,8 @@ class FloatingGuidance : public FloatingDoing {
   KeptJoints joints_;
   FloatingDrive drive_;
 
+  double cycle_s_{0.001};
+
  private:
   void come_to_hold() noexcept;
   [[nodiscard]] News go_out() noexcept;
@@ -127,7 +129,6 @@ class FloatingGuidance : public FloatingDoing {
   [[nodiscard]] News arrive() noexcept;
   [[nodiscard]] bool keeps_tool() const noexcept;
 
-  double cycle_s_{0.001};
   double moved_s_{0}, duration_s_{0}, settled_s_{0};
   StopRamp stop_;
   bool stands_behind_drive_{false};  ///< whoever drove it waits for that

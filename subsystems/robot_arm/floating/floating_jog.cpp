@@ -9,16 +9,6 @@
 #include "subsystems/robot_arm/floating/floating_trouble.hpp"
 
 namespace hirosco::robot_arm {
-namespace {
-
-/// Nearer to it by so much at most.
-[[nodiscard]] Vector3 towards(const Vector3& now, const Vector3& wanted, double most) noexcept {
-  const Vector3 left = wanted - now;
-  const double length = left.norm();
-  return length > most ? Vector3{now + most / length * left} : wanted;
-}
-
-}  // namespace
 
 void FloatingJog::begin(double cycle_s) {
   const UrdfArm& known = parts_.known;

@@ -15,6 +15,13 @@
 
 namespace hirosco::robot_arm {
 
+/// Nearer to it by so much at most.
+[[nodiscard]] inline Vector3 towards(const Vector3& now, const Vector3& wanted, double most) noexcept {
+  const Vector3 left = wanted - now;
+  const double length = left.norm();
+  return length > most ? Vector3{now + most / length * left} : wanted;
+}
+
 /// Velocities of joints or tool for so long, then to rest (docs/adr/0222): who jogs on says so before. Joints go by the setpoints of the arm that stands, within their ranges, velocities
 /// and accelerations; of the tool it is what it is to have, which a law of the tool turns into joints.
 /// Realtime: wait-free, but begin(). Thread: the cycle, and the service loop while there is none.

@@ -99,6 +99,22 @@ Outcome FloatingMotions::follow(Lead& lead) noexcept {
   return ok();
 }
 
+Outcome FloatingMotions::follow(FloatingToolLead& lead) noexcept {
+  if (law() == LawKind::JointImpedance) return refused(FloatingTrouble::soft, springs_of_joints);
+  if (!parts_.craft.tracks() && !soft()) kept_.keep();
+  if (const auto none = lead.follow(kept_.goal().pose))
+    return refused(FloatingTrouble::not_led, none->text, none->number);
+  phase_ = Phase::ToolFollows;
+  return ok();
+}
+
+void FloatingMotions::lead_tool(const Vector3& turning_rad_s, const Vector3& moving_m_s, bool over) noexcept {
+  kept_.lead(turning_rad_s, moving_m_s, cycle_s_, soft() ? KeptTool::Leash::Goes : KeptTool::Leash::Waits);
+  if (!over) return;
+  joints_.keep();
+  phase_ = Phase::Holds;
+}
+
 Outcome FloatingMotions::leave(FloatingWayOut::By by, double number) noexcept {
   if (stops()) {
     out_.wait(by, number);

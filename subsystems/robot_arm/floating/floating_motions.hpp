@@ -6,6 +6,7 @@
 
 #include "hirosco/subsystem/author/handler.hpp"
 #include "subsystems/robot_arm/floating/floating_guidance.hpp"
+#include "subsystems/robot_arm/floating/floating_tool_lead.hpp"
 #include "subsystems/robot_arm/lead.hpp"
 
 namespace hirosco::robot_arm {
@@ -31,6 +32,13 @@ class FloatingMotions final : public FloatingGuidance {
 
   /// After whoever leads its joints, from where they are to be.
   [[nodiscard]] Outcome follow(Lead& lead) noexcept;
+  /// After whoever leads its tool, from where that is to be.
+  [[nodiscard]] Outcome follow(FloatingToolLead& lead) noexcept;
+
+  /// Of who follows with his tool, each cycle before he goes on (advance()): with these velocities; `over`: nobody leads him any more, and he stands.
+  void lead_tool(const Vector3& turning_rad_s, const Vector3& moving_m_s, bool over) noexcept;
+  /// Where it is to be.
+  [[nodiscard]] const robotics::Pose& tool_goal() const noexcept { return kept_.goal().pose; }
 
   /// Out, by its joints in whatever law. Who comes to rest by stop() begins once it stands, unless end_motion() comes before.
   [[nodiscard]] Outcome leave(FloatingWayOut::By by, double number) noexcept;

@@ -31,6 +31,23 @@ struct BasePose {
   std::uint32_t stamp;
 };
 
+/// TOOL_POSE, in the axes of TOOL: of whoever leads it over a real-time link (docs/adr/0245).
+struct LedTool {
+  std::array<double, 3> position_m;
+  std::array<double, 4> orientation_wxyz;
+  std::array<double, 3> velocity_m_s, turning_rad_s;
+  std::uint8_t active;
+};
+struct ToolLeadValues {
+  std::uint8_t leading;  ///< of LEADING
+  std::uint32_t age_cycles;  ///< of what came last
+  double distance_m, turn_rad;  ///< from the goal to where it is led
+};
+struct ToolLeadLimits {
+  double begin_m, begin_rad;
+  double distance_m, distance_rad;
+};
+
 /// In its units.  Thread: the cycle, and the service loop while there is none.
 struct FloatingParameters {
   /// Calls `publish(name, cell)` for each.
