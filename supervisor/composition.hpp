@@ -106,12 +106,12 @@ struct SupervisorParts final : OwnSubsystem::Author {
   OwnTelecommands own_telecommands;
   Replies replies{craft, unanswered};
   Subscriptions subscriptions{craft, own};
-  Telemetry telemetry{
-      craft,
-      own,
-      traffic,
-      ground_route,
-      {&traffic, &commanded, &stored, &replies, &subscriptions, &reception, &power, &draws, &own_telecommands, &links}};
+  Telemetry telemetry{craft,
+                      own,
+                      traffic,
+                      ground_route,
+                      {&traffic, &commanded, &stored, &replies, &subscriptions, &reception, &power, &draws,
+                       &own_telecommands, &links, &safe_all}};
   Retrieval retrieval;
   Reception reception{{craft, own, telecommands, telemetry, reactions, ground_loss, unanswered, traffic, subscriptions,
                        stored, adoption}};

@@ -205,11 +205,6 @@ int serve(const descriptor::Mission& mission, const Options& options, const Make
   const bool goes_on = keeper.goes_on();
   // First of all: their numbers are free again after that.
   auto inherited = goes_on ? StoreClient::inherited() : InheritedParts{};
-  if (const auto begun = begin_collecting(); !begun) {
-    errors.say(
-        fmt::format("hirosco: no {}: {}\n", begun.error().text, std::strerror(static_cast<int>(begun.error().value))));
-    return exit_environment;
-  }
   // Who has to be there before others make themselves safe waits for no ordinary work. Threads are ordinary all the same.
   if (goes_on && realtime_permitted()) static_cast<void>(set_fifo_priority(supervisor_priority));
   const SystemClock clock;

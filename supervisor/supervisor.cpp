@@ -68,7 +68,10 @@ TimePoint Supervisor::step(TimePoint now) {
   }
   parts_->shutdown.enforce(now);
   parts_->telemetry.serve_ground();  // all that this step had to say, together
-  if (!parts_->telemetry.ground().waiting()) parts_->unanswered.delivered();
+  if (!parts_->telemetry.ground().waiting()) {
+    parts_->unanswered.delivered();
+    parts_->safe_all.delivered();
+  }
   note();
   if (parts_->telemetry.ground().waiting()) wake = std::min(wake, now + ground_pace);
   // Where nothing wakes, it is looked at as often anyway.

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "hirosco/utilities/refused_allocations.hpp"
+
 // Defined by the hook, absent without it.
 extern "C" [[gnu::weak]] bool hirosco_malloc_hook_present() noexcept;
 
@@ -16,6 +18,9 @@ struct ThreadState {
   HeapUse use{HeapUse::Count};
   AllocationCount count;
   RealtimeUses waits;  // `heap` is in `count`
+  bool refusals_count{false};
+  std::uint64_t until_refusal{0};  // of those that count; 0: none is refused
+  bool refused{false};
 };
 // The one thread_local of the framework: malloc has no parameter to pass it in. Constant initialisation and this model
 // keep its access free of malloc, which would recur.
@@ -54,7 +59,28 @@ HeapPermitted::HeapPermitted() noexcept : depth_{std::exchange(thread_state.dept
 
 HeapPermitted::~HeapPermitted() { thread_state.depth = depth_; }
 
+void RefusedAllocations::refuse(std::uint64_t number) noexcept {
+  thread_state.until_refusal = number;
+  thread_state.refused = false;
+}
+
+bool RefusedAllocations::refused() const noexcept { return thread_state.refused; }
+
+void RefusedAllocations::set_counting(bool on) noexcept { thread_state.refusals_count = on; }
+
+RefusedAllocations::~RefusedAllocations() {
+  set_counting(false);
+  refuse(0);
+}
+
 }  // namespace hirosco
+
+bool hirosco_refuses_allocation() noexcept {
+  auto& state = hirosco::thread_state;
+  const bool refuses = state.refusals_count && state.until_refusal > 0 && --state.until_refusal == 0;
+  state.refused = state.refused || refuses;
+  return refuses;
+}
 
 [[gnu::noinline]] void hirosco_forbidden_use() noexcept { asm volatile(""); }
 

@@ -8,9 +8,11 @@
 #include <array>
 #include <cstdlib>
 #include <memory>
+#include <new>
 #include <vector>
 
 #include "hirosco/utilities/os/thread.hpp"
+#include "hirosco/utilities/refused_allocations.hpp"
 
 namespace hirosco {
 namespace {
@@ -97,6 +99,37 @@ TEST_F(AllocationGuard, AnotherThreadIsNotInTheScope) {
   }
   EXPECT_TRUE(done);
   EXPECT_EQ(counted.allocations, 0U);
+}
+
+TEST_F(AllocationGuard, RefusesTheAllocationThatItIsToldToAndNoOther) {
+  RefusedAllocations refusals;
+  const auto finds_memory = [] {
+    void* const place = std::malloc(10);
+    keep(place);
+    std::free(place);
+    return place != nullptr;
+  };
+  refusals.refuse(2);
+  EXPECT_TRUE(finds_memory()) << "it does not count yet";
+  refusals.set_counting(true);
+  EXPECT_TRUE(finds_memory());
+  EXPECT_FALSE(refusals.refused());
+  EXPECT_FALSE(finds_memory());
+  EXPECT_TRUE(refusals.refused());
+  EXPECT_TRUE(finds_memory());
+  refusals.refuse(1);
+  EXPECT_THROW(keep(std::make_unique<int>().get()), std::bad_alloc);
+}
+
+TEST_F(AllocationGuard, GivesTheHandlerOfNewTheRefusalAndMemoryBehindThat) {
+  static int handled = 0;
+  RefusedAllocations refusals;
+  const auto before = std::set_new_handler([] { ++handled; });
+  refusals.refuse(1);
+  refusals.set_counting(true);
+  keep(std::make_unique<int>().get());
+  std::set_new_handler(before);
+  EXPECT_EQ(handled, 1);
 }
 
 TEST_F(AllocationGuard, AbortsOnAPlantedAllocationInTestMode) {

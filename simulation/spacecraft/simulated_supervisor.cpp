@@ -58,11 +58,14 @@ void SimulatedSupervisor::step(TimePoint now) {
 
 void SimulatedSupervisor::step_supervisor(TimePoint now) {
   const std::uint64_t stops_heard_of = parts_.keeper.stops().carried_out();
+  if (on_step_) on_step_(Moment::Begins);
   supervisor_wake_ = supervisor_->step(now);
   if (!last_moment_ && supervisor_->remembers()) parts_.keeper.stops().taken(stops_heard_of);
-  if (!last_moment_) return;
-  std::exchange(last_moment_, nullptr)->put_back();
-  kill();
+  if (last_moment_) {
+    std::exchange(last_moment_, nullptr)->put_back();
+    kill();
+  }
+  if (on_step_) on_step_(Moment::Ends);
 }
 
 void SimulatedSupervisor::stop(bool stopped) {

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "simulation/spacecraft/last_moment.hpp"
 #include "simulation/spacecraft/simulated_keeper.hpp"
@@ -58,6 +60,9 @@ class SimulatedSupervisor {
   void keep_down() noexcept { revive_at_.reset(); }
   /// Those that have died.
   [[nodiscard]] int deaths() const noexcept { return deaths_; }
+  /// Called as a step of the supervisor begins, and behind its end.
+  enum class Moment : std::uint8_t { Begins, Ends };
+  void on_step(std::function<void(Moment)> watch) { on_step_ = std::move(watch); }
   /// It ends at this very moment, in the middle of its step: of what it does from here on until that returns nothing reaches pages
   /// or the journal.
   void die_here();
@@ -87,6 +92,7 @@ class SimulatedSupervisor {
   std::unique_ptr<LastMoment> last_moment_;  ///< of one that dies in the middle of its step; null: none does
   bool stands_still_{false};  ///< in the middle of its step
   int deaths_{0};
+  std::function<void(Moment)> on_step_;
   std::optional<supervisor::Guard> guard_;
   std::unique_ptr<supervisor::Supervisor> supervisor_;
   TimePoint supervisor_wake_{};

@@ -99,6 +99,10 @@ class Spacecraft final {
   /// The same, but that it stands still before for `span`, beside its guard, as one that spins in the middle of its step: the world goes on
   /// within this call. For the keeper's patience: it is ended by that.
   void supervisor_hangs_here(Duration span);
+  /// Called as each step of the supervisor begins, and behind its end.
+  void on_supervisor_step(std::function<void(SimulatedSupervisor::Moment)> watch) {
+    supervision_.on_step(std::move(watch));
+  }
   [[nodiscard]] bool supervisor_is_dying() const noexcept { return supervision_.is_dying(); }
   /// `hirosco safe`: the guard stops everything at once, or the next one where there is none now; the supervisor hears of it in its next
   /// step.

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subsystems/communication/told_ends.hpp"
 
+#include <algorithm>
+
 #include "hirosco/pus/packet/packet.hpp"
+#include "hirosco/utilities/crc32.hpp"
 
 namespace hirosco::communication {
 namespace {
@@ -21,20 +24,36 @@ ToldEnds::End& ToldEnds::place_of(std::uint32_t request) noexcept {
 }
 
 void ToldEnds::went_up(Octets telecommand) noexcept {
-  const auto read = pus::read_primary_header(telecommand);
-  if (!read) return;
-  if (End& before = place_of(read->request_id); before.request == read->request_id) before = {};
+  const auto header = pus::read_primary_header(telecommand);
+  if (!header) return;
+  End& before = place_of(header->request_id);
+  const auto read = pus::TelecommandView::parse(telecommand);
+  if (!read) {
+    if (before.request == header->request_id) before = {};
+    return;
+  }
+  End end{.request = header->request_id, .source = read->source(), .went_up = true, .due = 1, .told = 0};
+  // Two clients that count alike: each has an end.
+  if (before.is_of(end)) end.due = static_cast<std::uint8_t>(std::min(before.due + 1, 255));
+  before = end;
 }
 
 bool ToldEnds::goes_down(Octets report) noexcept {
   const auto read = pus::TelemetryView::parse(report);
   if (!read || read->service() != 1 || !is_end(read->subtype())) return true;
   OctetReader reader{read->source_data()};
-  const End end{reader.get<std::uint32_t>(), read->destination()};
+  End end{.request = reader.get<std::uint32_t>(), .source = read->destination(), .went_up = false, .due = 0, .told = 0};
   const auto code = static_cast<pus::FailureCode>(read->subtype() == 8 ? reader.get<std::uint16_t>() : 0);
   if (!reader.good()) return true;
+  end.told = (std::uint64_t{read->subtype()} << 32U) | crc32(read->source_data());
   End& before = place_of(end.request);
-  if (code == pus::FailureCode::OutcomeUnknown && before == end) return false;
+  if (before.is_of(end)) {
+    if (code == pus::FailureCode::OutcomeUnknown && before.told != 0) return false;
+    if (read->apid() == pus::supervisor_apid && before.went_up && before.due == 0 && before.told == end.told)
+      return false;
+    end.went_up = before.went_up;
+    end.due = static_cast<std::uint8_t>(std::max(before.due - 1, 0));
+  }
   before = end;
   return true;
 }

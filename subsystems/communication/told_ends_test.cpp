@@ -79,6 +79,38 @@ TEST_F(Ends, EveryOtherReportGoesDownAsOftenAsItComes) {
   EXPECT_TRUE(told.goes_down(damaged)) << "not ours to judge";
 }
 
+TEST_F(Ends, OfTheSupervisorIsNotToldTwiceAlikeAndIsToldWhereItIsAnother) {
+  const auto by_supervisor = [](std::uint8_t subtype, pus::FailureCode code = {}) {
+    return report(3, subtype, code, ground, pus::supervisor_apid);
+  };
+  told.went_up(ping(3, ground, pus::supervisor_apid));
+  EXPECT_TRUE(told.goes_down(by_supervisor(7)));
+  EXPECT_FALSE(told.goes_down(by_supervisor(7))) << "by the next supervisor";
+  EXPECT_TRUE(told.goes_down(by_supervisor(8, pus::FailureCode::DeviceError))) << "it does not hold any more";
+  EXPECT_FALSE(told.goes_down(by_supervisor(8, pus::FailureCode::DeviceError)));
+  EXPECT_TRUE(told.goes_down(by_supervisor(7))) << "and it does again";
+  told.went_up(ping(3, ground, pus::supervisor_apid));
+  EXPECT_TRUE(told.goes_down(by_supervisor(7))) << "of another telecommand";
+}
+
+TEST_F(Ends, OfTheSupervisorAreToldAsOftenAsTelecommandsWentUpAndOfThoseThatDidNotAsOftenAsTheyCome) {
+  const auto end = report(3, 7, {}, ground, pus::supervisor_apid);
+  for (int client = 0; client < 2; ++client) told.went_up(ping(3, ground, pus::supervisor_apid));
+  EXPECT_TRUE(told.goes_down(end));
+  EXPECT_TRUE(told.goes_down(end)) << "of the other client, which counts alike";
+  EXPECT_FALSE(told.goes_down(end));
+  const auto of_subsystem = report(4, 7, {}, joystick, pus::supervisor_apid);
+  for (int time = 0; time < 3; ++time) EXPECT_TRUE(told.goes_down(of_subsystem)) << "ground did not send it";
+}
+
+TEST_F(Ends, OfADamagedTelecommandThatWentUpStandAgainstNothing) {
+  ASSERT_TRUE(told.goes_down(report(3, 7)));
+  auto damaged = ping(3);
+  damaged.back() ^= std::byte{1};
+  told.went_up(damaged);
+  EXPECT_TRUE(told.goes_down(unknown(3)));
+}
+
 TEST_F(Ends, TheOldestAreForgottenAndNoneThatIsYounger) {
   for (std::uint16_t count = 0; count <= ToldEnds::kept; ++count) ASSERT_TRUE(told.goes_down(report(count, 7)));
   for (std::uint16_t count = 1; count <= ToldEnds::kept; ++count) ASSERT_FALSE(told.goes_down(unknown(count))) << count;

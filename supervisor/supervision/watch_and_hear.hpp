@@ -55,6 +55,21 @@ class Undertaking {
   virtual void all_stopped(std::string_view why) = 0;
 };
 
+/// What a way into a mode does with a member.
+enum class Moving : std::uint8_t {
+  No,  ///< it leaves it where it is
+  ToItsStop,  ///< it is about to take it out of Operational
+  Beyond,  ///< it has done so, or found it elsewhere, and leads it on
+};
+
+/// What brings the craft into a mode.
+class WayIntoMode : public Undertaking {
+ public:
+  [[nodiscard]] virtual Moving moving(std::uint16_t apid) const = 0;
+  /// Whom it is about to take out of Operational may not act until then: it is fenced at once, and the undertaking, which knows of that, goes on.
+  virtual void stop_now(std::uint16_t apid) = 0;
+};
+
 /// What the mission says of the loss of a link, done (docs/adr/0077).
 class LossHandling {
  public:

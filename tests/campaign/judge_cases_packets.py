@@ -57,6 +57,25 @@ def a_telecommand_with_two_ends(w):
     w.verified(1010 * MS, request, 8, ROBOT).verified(1020 * MS, request, 7, ROBOT)
 
 
+def stopped_twice(w, marks):
+    """The supervisor dies as it tells, and the next one tells again."""
+    request = w.command(1 * S, "forwarded", SUPERVISOR, 8, 1, call("SAFE_ALL"))
+    w.verified(1010 * MS, request, 7)
+    for time in range(marks):
+        w.report((1500 + time) * MS, SUPERVISOR, 5, 1, struct.pack(">HIH", 153, request, 0))
+    w.verified(1600 * MS, request, 7)
+
+
+@case(FINAL_RULE)
+def an_end_of_a_stop_that_was_marked_as_told_again(w):
+    stopped_twice(w, marks=1)
+
+
+@case(FINAL_RULE, found="has 2 final reports")
+def an_end_of_a_stop_that_is_told_again_without_a_word(w):
+    stopped_twice(w, marks=0)
+
+
 @case(FINAL_RULE)
 def a_damaged_packet_may_bear_any_request(w):
     w.verified(1010 * MS, 0x180AC7FF, 2).verified(1020 * MS, 0x180AC7FF, 2)

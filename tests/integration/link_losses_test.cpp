@@ -127,6 +127,45 @@ TEST(LinkLosses, AStopEndsWhatGoesOnHoweverItDoes) {
     }
 }
 
+/// A change to a mode in which it needs no set goes on, and so does one to where it is joined to the joystick again: that makes the link anew.
+/// The supervisor sees in every tenth millisecond that the time is over.
+TEST(LinkLosses, WhatIsHeldOverEndsNoChangeThatLeadsItsConsumerElsewhereWheneverItsTimeIsOver) {
+  constexpr Duration hold = 700ms, watched_each = 10ms;
+  for (const char* mode : {"standalone", "feel"}) {
+    int within = 0;
+    for (Duration before = -watched_each; before < 40ms; before += one_in(3) * 1ms) {
+      SCOPED_TRACE(std::string{mode} + " " + std::to_string(before / 1ms));
+      LossFlight flown{{.on_loss = OnLoss::Hold, .hold = hold, .comes_back = State::PreOperational}};
+      Flight& flight = flown.flight;
+      std::optional<TimePoint> lost_at;
+      bool acted_on = false;
+      flight.story().on_line = [&](std::string_view line) {
+        if (line.starts_with("MANIPULATOR has lost")) lost_at = flight.craft().now();
+      };
+      flight.craft().on_cycle([&](std::string_view name, TimePoint now) {
+        const bool over = lost_at && now > *lost_at + hold + 2 * watched_each;
+        const bool acts = flown.robot() == State::Operational && flown.robot_may_move();
+        if (over && name == "MANIPULATOR" && flown.configuration() == coupled && acts) acted_on = true;
+      });
+      flight.craft().kill("JOYSTICK");
+      ASSERT_TRUE(flight.craft().run_until([&] { return lost_at.has_value(); }, 1s)) << flight.story().text();
+      const TimePoint until = *lost_at + hold;
+      flight.craft().run(until - before - flight.craft().now());
+      if (flight.story().has("did not come back in time")) continue;  // that was seen before
+      EXPECT_EQ(flown.robot(), State::Operational);
+      EXPECT_TRUE(flight.set_mode(mode).completed) << flight.story().text();
+      EXPECT_FALSE(acted_on) << flight.story().text();
+      within += flight.craft().now() > until + watched_each ? 1 : 0;
+      flight.craft().run(1s);
+      EXPECT_EQ(flight.craft().supervisor().mode().name, mode);
+      EXPECT_EQ(flown.robot(), State::Operational) << flight.story().text();
+      EXPECT_TRUE(flown.robot_may_move()) << flight.story().text();
+      if (::testing::Test::HasFailure()) return;
+    }
+    EXPECT_GT(within, 3);
+  }
+}
+
 TEST(LinkLosses, AProducerThatLeavesInGoodOrderIsMissedToo) {
   LossFlight flown{{.on_loss = OnLoss::Hold, .hold = 700ms}};
   ASSERT_TRUE(flown.flight.set_state("JOYSTICK", State::SafeOperational).completed);

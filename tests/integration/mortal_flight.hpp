@@ -71,6 +71,13 @@ struct MortalFlight {
     }
     flight.craft().ground().send(function_packet(1, count, asked));
   }
+  /// To what the supervisor says.
+  void listen() {
+    flight.story().on_telemetry = [this](const pus::TelemetryView& report) {
+      verdicts.hear(report);
+      if (!flight.craft().supervisor_is_dying()) said.hear(report);
+    };
+  }
   /// As long as its keeper lets it: whoever cycles goes on meanwhile, and nobody loses a link for it.
   void hangs() {
     constexpr Duration members_change_their_states = 50ms;
@@ -105,6 +112,7 @@ struct MortalFlight {
 
   Deaths deaths;
   Verdicts verdicts;  ///< as the supervisor says, also one that is dying and will not have said so
+  Verdicts said;  ///< without what one that is dying says, which is kept back
   Verdicts heard;  ///< as they came down
   std::function<void()> on_hang;  ///< as it begins
   std::uint32_t may_be_inhibited_by{0};  ///< meanwhile, as what it was lost in is about that
@@ -137,7 +145,7 @@ inline int at_every_moment(const std::function<void(MortalFlight&)>& begin,
   for (int at = 1;; at += every) {
     MortalFlight mortal{at, plan(), loss};
     Flight& flight = mortal.flight;
-    flight.story().on_telemetry = [&](const pus::TelemetryView& report) { mortal.verdicts.hear(report); };
+    mortal.listen();
     if (!flight.commission()) {
       ADD_FAILURE() << "not commissioned\n" << mortal.text();
       return flights;

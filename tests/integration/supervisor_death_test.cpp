@@ -142,12 +142,16 @@ TEST(SupervisorDeath, AtEveryMomentOfAModeChangeEndsInTheOldModeTheNewOneOrSafe)
 }
 
 TEST(SupervisorDeath, AtEveryMomentOfAStopEverybodyHasStopped) {
+  int told_twice = 0;
   const int flights = at_every_moment([](MortalFlight& mortal) { mortal.send(3000, "SAFE_ALL"); },
-                                      [](MortalFlight& mortal) {
+                                      [&](MortalFlight& mortal) {
                                         has_stopped_all_or_nobody(mortal);
+                                        told_twice += a_second_end_is_marked(mortal);
+                                        ground_hears_one_end_each(mortal);
                                         flies_again(mortal);
                                       });
   EXPECT_GT(flights, 10 / one_in(3));
+  EXPECT_GT(told_twice, 0) << "there is a moment behind its leaving and before the note of that";
 }
 
 TEST(SupervisorDeath, AtEveryMomentOfARecoveryBothMachinesComeToRest) {

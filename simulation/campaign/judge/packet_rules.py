@@ -54,14 +54,23 @@ def i2_one_final_report(flight, victims):
     yield from given_up(flight, victims)
     # A damaged packet may bear any request id.
     whole = {sent.key for sent in flight.sent} | {r.telecommand.key for r in flight.log if r.kind == "telecommand-forwarded"}
+    told_again = ends_told_again(flight)
     for key, number in finals.items():
-        if number > 1 and key in whole:
+        if number > 1 + told_again[key] and key in whole:
             yield 0, f"request {key[1]:08x} of source {key[0]} has {number} final reports"
     for sent in flight.sent:
         quiet = sent.origin == "ground" and ground_link_works(flight, victims, sent.time, sent.time + PING_US)
         if quiet and sent.time < late and sent.key not in logged | reported:
             yield sent.time, f"TC[{sent.service},{sent.subtype}] of ground vanished without a word"
             break
+
+
+def ends_told_again(flight):
+    """Of a SAFE_ALL, as a supervisor that goes on says ahead of each (docs/adr/0243): how often, by source and request."""
+    mark = next((id for id, (name, _) in flight.mission.supervisor.events.items() if name == "END_TOLD_AGAIN"), None)
+    said = [r.report.data for r in flight.log if r.kind == "event" and r.report is not None and r.source == flight.mission.supervisor.apid]
+    return collections.Counter((int.from_bytes(data[6:8], "big"), int.from_bytes(data[2:6], "big"))
+                               for data in said if len(data) >= 8 and int.from_bytes(data[:2], "big") == mark)
 
 
 def given_up(flight, victims):

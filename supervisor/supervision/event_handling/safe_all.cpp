@@ -57,6 +57,28 @@ void SafeAll::again() {
   after_stop("a stop that the supervisor before had not ended");
 }
 
+void SafeAll::asked_meanwhile() {
+  if (std::ranges::all_of(before_, [](const auto& asked) { return asked.has_value(); })) before_.emplace_back();
+}
+
+/// It stays as it was: whoever has been let go since is not stopped again for a report.
+void SafeAll::tell_again() {
+  for (const End& end : std::exchange(told_before_, {})) {
+    // Ahead of the report, which may be the second one: whoever hears it twice can tell.
+    own_.announce("END_TOLD_AGAIN", {static_cast<double>(end.request.id), static_cast<double>(end.request.source)});
+    craft_.tell("the end of a SAFE_ALL is told by this supervisor: the one before may have told it", supervisor_apid);
+    told_.push_back(end);
+    tell(end);
+  }
+}
+
+void SafeAll::hear(std::uint16_t from, const pus::TelemetryView& report) {
+  if (told_.empty() || from != supervisor_apid || report.service() != 1 || report.subtype() < 7) return;
+  const auto id = OctetReader{report.source_data()}.get<std::uint32_t>();
+  for (End& end : told_)
+    if (end.request.id == id && end.request.source == report.destination()) end.heard = true;
+}
+
 void SafeAll::note(OctetWriter& writer) const {
   writer.put(static_cast<std::uint16_t>(pending_.size() + before_.size()));
   const auto put = [&](const std::optional<pus::Request>& asked) {
@@ -65,15 +87,28 @@ void SafeAll::note(OctetWriter& writer) const {
   };
   for (const Pending& pending : pending_) put(pending.request);
   for (const auto& asked : before_) put(asked);
+  writer.put(static_cast<std::uint16_t>(told_.size() + told_before_.size()));
+  for (const auto* ends : {&told_, &told_before_})
+    for (const End& end : *ends) {
+      put(end.request);
+      writer.put(static_cast<std::uint16_t>(end.moving.size()));
+      for (const std::uint16_t apid : end.moving) writer.put(apid);
+    }
 }
 
 void SafeAll::recall(OctetReader& reader) {
-  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+  const auto get = [&]() -> std::optional<pus::Request> {
     const bool asked = reader.get<std::uint8_t>() != 0;
     const auto id = reader.get<std::uint32_t>();
     const auto source = reader.get<std::uint16_t>();
     const pus::Request request{id, source, reader.get<std::uint8_t>()};
-    before_.push_back(asked ? std::optional{request} : std::nullopt);
+    return asked ? std::optional{request} : std::nullopt;
+  };
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) before_.push_back(get());
+  for (auto left = reader.get<std::uint16_t>(); left > 0 && reader.good(); --left) {
+    End& end = told_before_.emplace_back(End{get().value_or(pus::Request{}), {}});
+    for (auto moving = reader.get<std::uint16_t>(); moving > 0 && reader.good(); --moving)
+      end.moving.push_back(reader.get<std::uint16_t>());
   }
 }
 
@@ -101,30 +136,44 @@ void SafeAll::states_follow() {
 
 void SafeAll::follow() {
   states_follow();
-  for (auto pending = pending_.begin(); pending != pending_.end();) {
-    const auto answers = craft_.guard.stop_outcome(pending->stop);
-    if (!answers) return;
-    tell_outcome(*pending, *answers);
-    pending = pending_.erase(pending);
+  std::vector<End> ended;
+  while (!pending_.empty()) {
+    const auto answers = craft_.guard.stop_outcome(pending_.front().stop);
+    if (!answers) break;
+    const auto moving = tell_outcome(*answers);
+    const auto& request = pending_.front().request;
+    if (request && (!moving.empty() || (request->ack & pus::ack_completion) != 0)) ended.push_back({*request, moving});
+    pending_.erase(pending_.begin());
   }
+  if (ended.empty()) return;
+  told_.insert(told_.end(), ended.begin(), ended.end());
+  if (told_.size() > most_told) told_.erase(told_.begin(), told_.end() - most_told);
+  // Before the first of them can leave: whoever goes on does not carry out again what has ended, and knows what it may be telling twice.
+  craft_.remember();
+  for (const End& end : ended) tell(end);
 }
 
-void SafeAll::tell_outcome(const Pending& pending, const std::vector<StopAnswer>& answers) {
-  pus::FailureNotice notice{pus::FailureCode::DeviceError};
-  bool all = true;
+std::vector<std::uint16_t> SafeAll::tell_outcome(const std::vector<StopAnswer>& answers) {
+  std::vector<std::uint16_t> moving;
   for (const StopAnswer& answer : answers) {
     const std::string who = craft_.name_of(answer.apid);
     if (answer.killed) craft_.tell(who + " was ended: " + answer.name + " had not stopped in time", answer.apid);
     if (!answer.otherwise.empty())
       craft_.tell(fmt::format("{} of {} has stopped, but {}", answer.name, who, answer.otherwise), answer.apid);
     if (answer.stopped) continue;
-    all = false;
     craft_.tell(answer.name + " of " + who + " did not confirm that it stopped", answer.apid);
-    if (notice.data().size() + sizeof answer.apid <= pus::FailureNotice::max_data_octets) notice.with(answer.apid);
+    moving.push_back(answer.apid);
   }
-  if (all) craft_.tell("everything has stopped", supervisor_apid);
-  if (pending.request && all) own_.verification().completed(*pending.request);
-  if (pending.request && !all) own_.verification().completion_failed(*pending.request, notice);
+  if (moving.empty()) craft_.tell("everything has stopped", supervisor_apid);
+  return moving;
+}
+
+void SafeAll::tell(const End& end) {
+  if (end.moving.empty()) return own_.verification().completed(end.request);
+  pus::FailureNotice notice{pus::FailureCode::DeviceError};
+  for (const std::uint16_t apid : end.moving)
+    if (notice.data().size() + sizeof apid <= pus::FailureNotice::max_data_octets) notice.with(apid);
+  own_.verification().completion_failed(end.request, notice);
 }
 
 }  // namespace hirosco::supervisor

@@ -21,11 +21,14 @@ namespace hirosco::supervisor {
 /// was to stop. What was said before it, read or not, lets nobody move (`Guard::newest_stop()`).
 /// It holds until a SET_STATE(Operational) that was permitted after it leaves (`Telecommands::send()`, `Guard::release()`).
 /// Thread: the supervisor's; the stop itself is the guard's.
-class SafeAll final : public Remembered {
+class SafeAll final : public Remembered, public Hearer {
  public:
   /// Of one subsystem that wait for the outcome, as of all that it asks for. What goes beyond is carried out all the same; it is kept for nobody,
   /// for one that says it without end would fill what is noted for the next supervisor.
   static constexpr std::size_t most_waiting = 16;
+
+  /// Ends that have not left; beyond these the oldest is told by this supervisor alone.
+  static constexpr std::size_t most_told = 256;
 
   SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, std::vector<Undertaking*> under_way)
       : craft_{craft}, own_{own}, desk_{desk}, under_way_{std::move(under_way)} {}
@@ -41,8 +44,18 @@ class SafeAll final : public Remembered {
   void after_stop(std::string_view why);
   /// One was under way when the supervisor before died, or was asked for when there was none.
   void again();
+  /// Somebody asked for one by signal or local socket, and no supervisor has noted that.
+  void asked_meanwhile();
+  /// The ends of those that the supervisor before had ended: it may have told them, and may not (docs/adr/0243).
+  void tell_again();
+  /// Its own word on the end of a stop is on its way to ground.
+  void hear(std::uint16_t from, const pus::TelemetryView& report) override;
+  /// What was heard so far has left for the ground.
+  void delivered() noexcept {
+    std::erase_if(told_, [](const End& end) { return end.heard; });
+  }
   [[nodiscard]] bool under_way() const noexcept { return !pending_.empty() || !before_.empty(); }
-  /// Who waits for the end of a stop.
+  /// Who waits for the end of a stop, and whose end has perhaps not left.
   void note(OctetWriter& writer) const override;
   void recall(OctetReader& reader) override;
   /// Tells what became of the stops that are under way.
@@ -53,8 +66,16 @@ class SafeAll final : public Remembered {
     std::uint64_t stop{0};
     std::optional<pus::Request> request;  ///< empty: asked for by signal or local socket
   };
+  /// Of a request; who had not stopped, if any.
+  struct End {
+    pus::Request request;
+    std::vector<std::uint16_t> moving;
+    bool heard{false};  ///< it was told
+  };
   [[nodiscard]] bool has_room_for(const pus::Request& request) const;
-  void tell_outcome(const Pending& pending, const std::vector<StopAnswer>& answers);
+  /// Into the story. \return who had not stopped.
+  std::vector<std::uint16_t> tell_outcome(const std::vector<StopAnswer>& answers);
+  void tell(const End& end);
   /// Whoever is Operational, or enters it after all on the word of before, however slow its cycle: until it is let go, and once.
   void states_follow();
 
@@ -64,6 +85,8 @@ class SafeAll final : public Remembered {
   std::vector<Undertaking*> under_way_;
   std::vector<Pending> pending_;
   std::vector<std::optional<pus::Request>> before_;  ///< of stops that the supervisor before had begun
+  std::vector<End> told_;  ///< and not known to have left
+  std::vector<End> told_before_;  ///< by the supervisor before, perhaps
   std::vector<std::uint16_t> follow_;  ///< whose states have not followed the newest stop
 };
 

@@ -135,6 +135,7 @@ void Modes::change(const descriptor::Mode& mode, ModePlan plan, const Call& call
                  .finished = [this, &mode](const ProcedureEnd& end) { ended(mode, end.text()); },
                  .begins =
                      [this, call](std::size_t stage) {
+                       stage_ = stage;
                        if (stage > 0) parts_.own.progress(call, static_cast<std::uint16_t>(stage));
                      },
                  .knows_of_no_stop = true});
@@ -152,6 +153,16 @@ void Modes::ended(const descriptor::Mode& mode, const std::string& failure) {
     begin_pause(*call);
     parts_.own.finish(*call);
   }
+}
+
+Moving Modes::moving(std::uint16_t apid) const {
+  if (!running() || std::ranges::find(moved_, apid) == moved_.end()) return Moving::No;
+  const bool acts_still = stage_ == 0 && craft_.member(apid)->state() == State::Operational;
+  return acts_still ? Moving::ToItsStop : Moving::Beyond;
+}
+
+void Modes::stop_now(std::uint16_t apid) {
+  if (moving(apid) == Moving::ToItsStop) runner_.knows_of(apid, craft_.guard.fence(apid));
 }
 
 Cancelled Modes::cancel(std::string_view why) {

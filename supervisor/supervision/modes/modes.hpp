@@ -47,6 +47,9 @@ class Modes final : public Undertaking, public Remembered {
   /// The change ends.
   void all_stopped(std::string_view why) override;
   [[nodiscard]] bool running() const noexcept { return runner_.running(); }
+  /// As of a WayIntoMode.
+  [[nodiscard]] Moving moving(std::uint16_t apid) const;
+  void stop_now(std::uint16_t apid);
   /// What the change that is under way is to, and whom it moves.
   void note(OctetWriter& writer) const override;
   void recall(OctetReader& reader) override;
@@ -77,6 +80,7 @@ class Modes final : public Undertaking, public Remembered {
   ProcedureRunner runner_;
   std::optional<Call> call_;  ///< of the change that is under way
   std::vector<std::uint16_t> moved_;
+  std::size_t stage_{0};  ///< of the change that is under way; in the first one all control stops
   TimePoint subsystems_wait_until_{};
 };
 

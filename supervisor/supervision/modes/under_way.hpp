@@ -11,7 +11,7 @@ namespace hirosco::supervisor {
 
 /// Whatever brings the craft into a mode, of which there is one at a time: who stops or takes down ends it here, whichever it
 /// is. Thread: the supervisor's.
-class UnderWay final : public Undertaking {
+class UnderWay final : public WayIntoMode {
  public:
   UnderWay(Commissioning& commissioning, Modes& modes) : commissioning_{commissioning}, modes_{modes} {}
   Cancelled cancel(std::string_view why) override {
@@ -23,6 +23,8 @@ class UnderWay final : public Undertaking {
     modes_.all_stopped(why);
     commissioning_.all_stopped(why);
   }
+  [[nodiscard]] Moving moving(std::uint16_t apid) const override { return modes_.moving(apid); }
+  void stop_now(std::uint16_t apid) override { modes_.stop_now(apid); }
   /// Everybody goes down.
   void drop() {
     modes_.all_stopped("shutdown");

@@ -93,6 +93,14 @@ bool ProcedureRunner::running() const noexcept {
   return run && !run->over;
 }
 
+void ProcedureRunner::knows_of(std::uint16_t apid, std::uint64_t fences) {
+  const auto run = run_.lock();
+  if (!run) return;
+  for (Stage& each : run->procedure.stages)
+    for (ProcedureStep& step : each)
+      if (step.subject == apid && step.free_at && *step.free_at + 1 == fences) step.free_at = fences;
+}
+
 std::string ProcedureRunner::waiting_for() const {
   std::string text;
   const auto run = run_.lock();

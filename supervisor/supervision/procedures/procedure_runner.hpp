@@ -43,6 +43,9 @@ class ProcedureRunner {
   /// Nothing more is begun or told; what was begun goes on.
   void cancel();
   [[nodiscard]] bool running() const noexcept;
+  /// Whoever runs it has fenced this one meanwhile: that is no stop by somebody else, unless there was one besides.
+  /// \param fences The guard's count of its fences, with that one.
+  void knows_of(std::uint16_t apid, std::uint64_t fences);
   /// "ARM: link 1, HAND: Operational"; empty when nothing is awaited.
   [[nodiscard]] std::string waiting_for() const;
 

@@ -24,7 +24,7 @@ struct Means {
   CommandDesk& desk;
   const LinkGraph& links;
   Restarts& restarts;
-  Undertaking& under_way;
+  WayIntoMode& under_way;
   CommandedMembers& commanded;
   LossHandling& losses;
   Waiting& waiting;

@@ -67,6 +67,7 @@ Adoption::Before Adoption::before(const Member& member) const {
 void Adoption::begin(bool stop_asked) {
   remembered_ = parts_.memory.recall();
   stop_asked_ = stop_asked_ || stop_asked;
+  if (stop_asked) parts_.safe_all.asked_meanwhile();
   craft_.tell(
       remembered_
           ? "this supervisor goes on for one that died"
@@ -138,7 +139,10 @@ void Adoption::confirmed(std::uint16_t apid) {
 void Adoption::finish_what_was_begun() {
   parts_.telecommands.end_what_was_begun();
   parts_.links.end_what_was_begun();
+  parts_.safe_all.tell_again();
   if (shutting_down_) {
+    // Who asked for it hears how it ends; and nobody moves on the way down.
+    if (stop_asked_) parts_.safe_all.again();
     parts_.reactions.forget_what_was_under_way();
     return parts_.shutdown.request("the supervisor before this one");
   }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "supervisor/supervision/procedures/steps/shut_down_network.hpp"
 #include "supervisor/supervision/procedures/steps/step_kinds.hpp"
 #include "supervisor/supervision/procedures/steps/way_there.hpp"
 
@@ -81,6 +82,8 @@ void LinkLosses::lead_there(const descriptor::MissionLink& link, std::uint64_t o
        .finished =
            [this, &link, apid, own_fence, begun](const ProcedureEnd& end) {
              if (!craft_.member(apid)->alive() || craft_.shutting_down) return;
+             // A change of mode that began meanwhile has it in hand.
+             if (means_.under_way.moving(apid) != Moving::No) return;
              if (!end.success) return bring_down(link, end.text());
              const bool rests = begun == Begun::Before || craft_.guard.fences(apid) != own_fence;
              craft_.tell(
@@ -136,16 +139,30 @@ void LinkLosses::watch(TimePoint now) {
     if (link.on_loss != OnLoss::Down && is_missed(link)) lost(link.id);
   std::vector<std::uint8_t> over;
   std::erase_if(holds_, [&](const auto& entry) {
-    if (is_back(*craft_.mission.find_link(entry.first))) return true;
+    const descriptor::MissionLink& link = *craft_.mission.find_link(entry.first);
+    if (is_back(link) || is_made_anew(link)) return true;
     if (now < entry.second) return false;
     over.push_back(entry.first);
     return true;
   });
-  for (const std::uint8_t id : over) {
-    const descriptor::MissionLink& link = *craft_.mission.find_link(id);
-    if (!is_needed(link)) continue;
-    bring_down(link, fmt::format("{} did not come back in time", link.requires_));
-  }
+  for (const std::uint8_t id : over) held_long_enough(*craft_.mission.find_link(id));
+}
+
+/// A change of mode has taken its consumer out of Operational and makes what that needs anew, or leads it where it needs nothing: what is
+/// missed behind that is another loss.
+bool LinkLosses::is_made_anew(const descriptor::MissionLink& link) {
+  const Member& consumer = consumer_of(link);
+  return means_.under_way.moving(consumer.apid()) == Moving::Beyond && consumer.state() != State::Operational;
+}
+
+void LinkLosses::held_long_enough(const descriptor::MissionLink& link) {
+  if (!is_needed(link)) return;
+  const Member& consumer = consumer_of(link);
+  const std::string why = fmt::format("{} did not come back in time", link.requires_);
+  // From here on it does not act with what is lost, and a change that stops it anyway needs no end for that.
+  if (means_.under_way.moving(consumer.apid()) != Moving::ToItsStop) return bring_down(link, why);
+  means_.under_way.stop_now(consumer.apid());
+  craft_.tell(fmt::format("{}: {}: it is stopped, and the change of mode goes on", link.to, why), consumer.apid());
 }
 
 void LinkLosses::bring_down(const descriptor::MissionLink& link, const std::string& why) {
@@ -155,6 +172,11 @@ void LinkLosses::bring_down(const descriptor::MissionLink& link, const std::stri
   craft_.tell(fmt::format("{}: {}", link.to, why), consumer.apid());
   ProcedureStep down = step("shut_down_network", consumer.apid(), {});
   down.occasion.plan = fmt::format("on loss of link {}", link.id);
+  if (craft_.changing_to != nullptr) {
+    // Who asked for the change hears of the link; whoever is about to go down stands before anything is told.
+    for (const std::uint16_t apid : steps::network::members(down, means_)) craft_.guard.fence(apid);
+    static_cast<void>(means_.under_way.cancel(fmt::format("link {}: {}: {}", link.id, link.to, why)));
+  }
   ProcedureRunner{means_}.start({.stages = {{down}}});
 }
 

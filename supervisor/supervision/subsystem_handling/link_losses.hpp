@@ -60,6 +60,8 @@ class LinkLosses final : public Watch, public Undertaking, public LossHandling, 
   /// Whom it drives acts without it, however that came about.
   [[nodiscard]] bool is_missed(const descriptor::MissionLink& link);
   [[nodiscard]] bool is_needed(const descriptor::MissionLink& link);
+  [[nodiscard]] bool is_made_anew(const descriptor::MissionLink& link);
+  void held_long_enough(const descriptor::MissionLink& link);
   void bring_down(const descriptor::MissionLink& link, const std::string& why);
 
   Means means_;

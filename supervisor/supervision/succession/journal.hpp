@@ -19,7 +19,7 @@ namespace hirosco::supervisor {
 class Journal {
  public:
   /// Of what the parts note: another build's is not read.
-  static constexpr std::uint32_t version = 5;
+  static constexpr std::uint32_t version = 6;
 
   /// The memory outlives this; half of it is the most that one copy holds, with its head.
   explicit Journal(MutableOctets memory) noexcept : memory_{memory} {}

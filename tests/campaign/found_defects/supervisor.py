@@ -98,6 +98,14 @@ DEFECTS = [
     Defect("stops without end", f"{SUPERVISION}/event_handling/safe_all.cpp", "const bool kept = has_room_for(request);",
            "const bool kept = PLANTED || has_room_for(request);",
            "supervisor_test", "AskedOfSupervisor.AStopThatIsSaidWithoutEndIsCarriedOutEachTimeAndKeptForBoundedlyMany"),
+    # The time of a link that is held over was over within a change of mode, and ended it wherever that led its consumer.
+    Defect("a hold ends a change", f"{SUPERVISION}/subsystem_handling/link_losses.cpp", "!= Moving::ToItsStop) return bring_down(link, why);",
+           "!= Moving::ToItsStop || PLANTED) return bring_down(link, why);",
+           "supervisor_test", "HeldInAChange.DoesNotEndOneWhoseModeDoesWithoutItAtWhicheverStepItsTimeIsOver"),
+    # Nobody noted that a stop had ended before its end had left: the next supervisor knew nothing of it.
+    Defect("an end that is told and not noted", f"{SUPERVISION}/event_handling/safe_all.cpp",
+           "  told_.insert(told_.end(), ended.begin(), ended.end());", "  if (!PLANTED) told_.insert(told_.end(), ended.begin(), ended.end());",
+           "supervisor_test", "EndOfAStop.IsNotedBeforeItIsToldAndToldAgainBehindItsMarkWhereItMayHaveLeft"),
     # A recovery gave up who had not read the answers to its own flood.
     Defect("recovery and a full channel", TELECOMMANDS, "const bool surely = essential &&", "const bool surely = !PLANTED && essential &&",
            "supervisor_test", "FullChannel.ARecoveryReachesItsMemberAsSoonAsThatReads"),
