@@ -57,6 +57,7 @@ TimePoint Supervisor::step(TimePoint now) {
   parts_->ground_route.begin_step(now);
   for (Member& member : craft.members) parts_->reception.read(member);
   parts_->processes.watch_closed();
+  parts_->safe_all.ground_hears(!parts_->adoption.waits() && parts_->telemetry.ground_hears());
   parts_->safe_all.follow();
   parts_->telecommands.forward_durable();
   TimePoint wake = parts_->own.step(now);

@@ -48,7 +48,7 @@ bool ToldEnds::goes_down(Octets report) noexcept {
   end.told = (std::uint64_t{read->subtype()} << 32U) | crc32(read->source_data());
   End& before = place_of(end.request);
   if (before.is_of(end)) {
-    if (code == pus::FailureCode::OutcomeUnknown && before.told != 0) return false;
+    if (code == pus::FailureCode::OutcomeUnknown && before.told != 0 && before.due == 0) return false;
     if (read->apid() == pus::supervisor_apid && before.went_up && before.due == 0 && before.told == end.told)
       return false;
     end.went_up = before.went_up;

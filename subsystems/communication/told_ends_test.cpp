@@ -103,6 +103,13 @@ TEST_F(Ends, OfTheSupervisorAreToldAsOftenAsTelecommandsWentUpAndOfThoseThatDidN
   for (int time = 0; time < 3; ++time) EXPECT_TRUE(told.goes_down(of_subsystem)) << "ground did not send it";
 }
 
+TEST_F(Ends, OfTwoThatCountAlikeTheOneWithoutAnEndIsToldAsUnknownAndNoThird) {
+  for (int client = 0; client < 2; ++client) told.went_up(ping(3));
+  EXPECT_TRUE(told.goes_down(report(3, 7)));
+  EXPECT_TRUE(told.goes_down(unknown(3)));
+  EXPECT_FALSE(told.goes_down(unknown(3)));
+}
+
 TEST_F(Ends, OfADamagedTelecommandThatWentUpStandAgainstNothing) {
   ASSERT_TRUE(told.goes_down(report(3, 7)));
   auto damaged = ping(3);

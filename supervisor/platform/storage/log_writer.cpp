@@ -235,6 +235,7 @@ void LogWriter::fill_batch() {
 void LogWriter::write_batch() {
   if (batch_.empty()) return;
   const Result<> stored = database_->append(batch_.records());
+  if (stored) batch_.clear();  // by this thread alone, and not while somebody waits for the lock
   StoreTrouble trouble = database_->trouble();
   StoreTurnover turnover = database_->turnover();
   {
@@ -247,7 +248,6 @@ void LogWriter::write_batch() {
     turnover_ = std::move(turnover);
     if (stored) {
       ++batches_;
-      batch_.clear();
       durable_.store(durable_after_, std::memory_order_release);
     } else if (stored.error().code == ErrorCode::Unavailable) {
       pause_ = true;

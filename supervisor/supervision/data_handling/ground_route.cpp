@@ -36,7 +36,10 @@ void GroundRoute::keep(Octets packet, Kind kind) {
 }
 
 void GroundRoute::drop(std::deque<Packet>& queue) {
-  if (spare_.size() < together) spare_.push_back(std::move(queue.front().octets));
+  // What a long one has had is given back: in place of many short ones it would be more than the route may hold.
+  constexpr std::size_t longest_kept = 1024;
+  if (spare_.size() < together && queue.front().octets.capacity() <= longest_kept)
+    spare_.push_back(std::move(queue.front().octets));
   queue.pop_front();
 }
 

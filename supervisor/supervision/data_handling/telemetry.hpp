@@ -26,6 +26,8 @@ class Telemetry {
   /// What waits for the ground link goes on as soon as that takes it; what it could not take is told once a second.
   void serve_ground();
   [[nodiscard]] const GroundRoute& ground() const noexcept { return ground_; }
+  /// There is a ground link that takes what is said.
+  [[nodiscard]] bool ground_hears() { return to_ground() != nullptr; }
 
  private:
   /// Nullptr: it is not there, or in Offline.

@@ -61,19 +61,39 @@ void SafeAll::asked_meanwhile() {
   if (std::ranges::all_of(before_, [](const auto& asked) { return asked.has_value(); })) before_.emplace_back();
 }
 
-/// It stays as it was: whoever has been let go since is not stopped again for a report.
 void SafeAll::tell_again() {
+  if (ground_hears_) tell_before();
+}
+
+/// It stays as it was: whoever has been let go since is not stopped again for a report.
+void SafeAll::tell_before() {
   for (const End& end : std::exchange(told_before_, {})) {
     // Ahead of the report, which may be the second one: whoever hears it twice can tell.
     own_.announce("END_TOLD_AGAIN", {static_cast<double>(end.request.id), static_cast<double>(end.request.source)});
-    craft_.tell("the end of a SAFE_ALL is told by this supervisor: the one before may have told it", supervisor_apid);
+    craft_.tell("the end of a SAFE_ALL is told once more: ground may have heard it", supervisor_apid);
     told_.push_back(end);
     tell(end);
   }
+  keep_bounded();
+}
+
+void SafeAll::keep_bounded() {
+  if (told_.size() > most_told) told_.erase(told_.begin(), told_.end() - most_told);
+}
+
+void SafeAll::ground_hears(bool now) {
+  if (std::exchange(ground_hears_, now) == now) return;
+  // What waited in the route is dropped with the link.
+  for (End& end : told_) end.heard = false;
+  if (!now) return;
+  told_before_.insert(told_before_.end(), told_.begin(), told_.end());
+  told_.clear();
+  tell_before();
 }
 
 void SafeAll::hear(std::uint16_t from, const pus::TelemetryView& report) {
-  if (told_.empty() || from != supervisor_apid || report.service() != 1 || report.subtype() < 7) return;
+  if (!ground_hears_ || told_.empty() || from != supervisor_apid || report.service() != 1 || report.subtype() < 7)
+    return;
   const auto id = OctetReader{report.source_data()}.get<std::uint32_t>();
   for (End& end : told_)
     if (end.request.id == id && end.request.source == report.destination()) end.heard = true;
@@ -110,6 +130,8 @@ void SafeAll::recall(OctetReader& reader) {
     for (auto moving = reader.get<std::uint16_t>(); moving > 0 && reader.good(); --moving)
       end.moving.push_back(reader.get<std::uint16_t>());
   }
+  // One generation after another that cannot tell would fill what is noted.
+  if (told_before_.size() > most_told) told_before_.erase(told_before_.begin(), told_before_.end() - most_told);
 }
 
 void SafeAll::after_stop(std::string_view why) {
@@ -124,6 +146,7 @@ void SafeAll::after_stop(std::string_view why) {
 }
 
 void SafeAll::states_follow() {
+  if (craft_.shutting_down) return;  // which leads everybody farther down, in its order
   std::erase_if(follow_, [this](std::uint16_t apid) {
     const Member& subject = *craft_.member(apid);
     if (!subject.alive()) return false;
@@ -147,7 +170,7 @@ void SafeAll::follow() {
   }
   if (ended.empty()) return;
   told_.insert(told_.end(), ended.begin(), ended.end());
-  if (told_.size() > most_told) told_.erase(told_.begin(), told_.end() - most_told);
+  keep_bounded();
   // Before the first of them can leave: whoever goes on does not carry out again what has ended, and knows what it may be telling twice.
   craft_.remember();
   for (const End& end : ended) tell(end);
@@ -162,7 +185,8 @@ std::vector<std::uint16_t> SafeAll::tell_outcome(const std::vector<StopAnswer>& 
       craft_.tell(fmt::format("{} of {} has stopped, but {}", answer.name, who, answer.otherwise), answer.apid);
     if (answer.stopped) continue;
     craft_.tell(answer.name + " of " + who + " did not confirm that it stopped", answer.apid);
-    moving.push_back(answer.apid);
+    if (std::ranges::find(moving, answer.apid) == moving.end() && moving.size() < most_named)
+      moving.push_back(answer.apid);
   }
   if (moving.empty()) craft_.tell("everything has stopped", supervisor_apid);
   return moving;
@@ -171,8 +195,7 @@ std::vector<std::uint16_t> SafeAll::tell_outcome(const std::vector<StopAnswer>& 
 void SafeAll::tell(const End& end) {
   if (end.moving.empty()) return own_.verification().completed(end.request);
   pus::FailureNotice notice{pus::FailureCode::DeviceError};
-  for (const std::uint16_t apid : end.moving)
-    if (notice.data().size() + sizeof apid <= pus::FailureNotice::max_data_octets) notice.with(apid);
+  for (const std::uint16_t apid : end.moving) notice.with(apid);
   own_.verification().completion_failed(end.request, notice);
 }
 

@@ -29,6 +29,8 @@ class SafeAll final : public Remembered, public Hearer {
 
   /// Ends that have not left; beyond these the oldest is told by this supervisor alone.
   static constexpr std::size_t most_told = 256;
+  /// Who did not stop, by name: as many as a report of it has room for.
+  static constexpr std::size_t most_named = pus::FailureNotice::max_data_octets / sizeof(std::uint16_t);
 
   SafeAll(Craft& craft, OwnSubsystem& own, CommandDesk& desk, std::vector<Undertaking*> under_way)
       : craft_{craft}, own_{own}, desk_{desk}, under_way_{std::move(under_way)} {}
@@ -48,10 +50,13 @@ class SafeAll final : public Remembered, public Hearer {
   void asked_meanwhile();
   /// The ends of those that the supervisor before had ended: it may have told them, and may not (docs/adr/0243).
   void tell_again();
+  /// Whether there is a ground link to tell by. What was said without one is told again, with its mark, once there is.
+  void ground_hears(bool now);
   /// Its own word on the end of a stop is on its way to ground.
   void hear(std::uint16_t from, const pus::TelemetryView& report) override;
   /// What was heard so far has left for the ground.
   void delivered() noexcept {
+    if (!ground_hears_) return;
     std::erase_if(told_, [](const End& end) { return end.heard; });
   }
   [[nodiscard]] bool under_way() const noexcept { return !pending_.empty() || !before_.empty(); }
@@ -76,6 +81,8 @@ class SafeAll final : public Remembered, public Hearer {
   /// Into the story. \return who had not stopped.
   std::vector<std::uint16_t> tell_outcome(const std::vector<StopAnswer>& answers);
   void tell(const End& end);
+  void tell_before();
+  void keep_bounded();
   /// Whoever is Operational, or enters it after all on the word of before, however slow its cycle: until it is let go, and once.
   void states_follow();
 
@@ -86,7 +93,8 @@ class SafeAll final : public Remembered, public Hearer {
   std::vector<Pending> pending_;
   std::vector<std::optional<pus::Request>> before_;  ///< of stops that the supervisor before had begun
   std::vector<End> told_;  ///< and not known to have left
-  std::vector<End> told_before_;  ///< by the supervisor before, perhaps
+  std::vector<End> told_before_;  ///< by the supervisor before, perhaps, or where nobody could hear it
+  bool ground_hears_{true};
   std::vector<std::uint16_t> follow_;  ///< whose states have not followed the newest stop
 };
 

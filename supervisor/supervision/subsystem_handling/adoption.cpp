@@ -141,10 +141,11 @@ void Adoption::finish_what_was_begun() {
   parts_.links.end_what_was_begun();
   parts_.safe_all.tell_again();
   if (shutting_down_) {
+    parts_.reactions.forget_what_was_under_way();
+    parts_.shutdown.request("the supervisor before this one");
     // Who asked for it hears how it ends; and nobody moves on the way down.
     if (stop_asked_) parts_.safe_all.again();
-    parts_.reactions.forget_what_was_under_way();
-    return parts_.shutdown.request("the supervisor before this one");
+    return;
   }
   // Of whoever was dead already and is being recovered from that the plan begins anew: nobody else knows how far it was.
   // Whom a version that was on trial has been taken from meanwhile has been let go, and comes back by that.

@@ -120,6 +120,9 @@ bool LinkLosses::is_back(const descriptor::MissionLink& link) {
 bool LinkLosses::is_missed(const descriptor::MissionLink& link) {
   const Member& consumer = consumer_of(link);
   if (consumer.state() != State::Operational || !is_needed(link)) return false;
+  // The time of its hold was over on its way out: that was told.
+  if (craft_.guard.fenced(consumer.apid()) && means_.under_way.moving(consumer.apid()) == Moving::ToItsStop)
+    return false;
   if (!means_.links.is_up(means_.links.link_into(consumer.apid(), link.requires_))) return true;
   return judgement_of(link) == link_stale && !craft_.guard.fenced(consumer.apid());
 }

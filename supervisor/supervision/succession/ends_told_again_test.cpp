@@ -156,6 +156,31 @@ TEST_F(EndOfAStop, IsOwedAlsoByOneThatDiesBeforeItCanTell) {
   EXPECT_THAT(said, ElementsAre(mark, "TM[1,7]"));
 }
 
+TEST_F(EndOfAStop, WithoutAGroundLinkIsOwedToOneThatGoesOnWithOne) {
+  parts.safe_all.ground_hears(false);
+  ends();
+  parts.safe_all.delivered();
+  craft.remember();
+  static_cast<void>(goes_on());
+  EXPECT_THAT(said, ElementsAre(mark, "TM[1,7]"));
+}
+
+TEST_F(EndOfAStop, IsToldAgainByTheSameOneWhereItsLinkWasLostBeforeItLeft) {
+  ends();
+  said.clear();
+  parts.safe_all.ground_hears(false);
+  parts.safe_all.delivered();
+  parts.safe_all.ground_hears(true);
+  own_step();
+  EXPECT_THAT(said, ElementsAre(mark, "TM[1,7]"));
+  parts.safe_all.delivered();
+  said.clear();
+  parts.safe_all.ground_hears(false);
+  parts.safe_all.ground_hears(true);
+  own_step();
+  EXPECT_THAT(said, IsEmpty());
+}
+
 TEST_F(EndOfAStop, ThatWasAFailureIsToldAsThatAgain) {
   for (auto& [apid, member] : played) set(apid, SafeOperational);
   // ARM says nothing of its cycle.
